@@ -57,7 +57,7 @@ pub use self::{
     subtask::SubtaskOutputs,
     t3i::T3iOutputs,
 };
-pub use rcs_core::header::{Decided, Header};
+pub use rcs_core::header::{Basis, Consulted, Decided, Header};
 
 /// `status-report` of Subtask and E-move (V.2.2, V.3.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]

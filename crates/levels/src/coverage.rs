@@ -2,19 +2,22 @@
 
 use std::collections::BTreeSet;
 
-use interfaces::{Decided, Header};
-use rcs_core::table::Table;
+use interfaces::{Consulted, Header};
+use rcs_core::table::{Table, Values};
 
 use crate::execution::EXECUTE;
 
-/// Tables and rows that have fired.
+/// Tables and rows that have fired, with what the tables were consulted with.
 #[derive(Debug, Default)]
-pub struct Coverage(BTreeSet<(u8, u8)>);
+pub struct Coverage(BTreeSet<(u8, u8, u8, u64)>);
 
 impl Coverage {
     /// Take in what a process has reported.
     pub fn note(&mut self, header: &Header) {
-        self.0.extend(header.decided.map(|Decided { table, row }| (table, row)));
+        let rows = header.consulted().into_iter().chain(header.beside.into_iter().flatten());
+        self.0.extend(rows.map(|Consulted { decided, values: Values { step, variables } }| {
+            (decided.table, decided.row, step, variables)
+        }));
     }
 
     /// Take in what another test has covered.
@@ -24,14 +27,23 @@ impl Coverage {
 
     /// Rows that have not fired, as `GET-OBJECT 3`. Rows that no header ever names are left out: those that
     /// pass on to the table below, and those of EXECUTE that do not refuse.
+    ///
+    /// Each row that has fired must be the one that the table as text gives for the same values.
     pub fn missing(&self, tables: &[&Table]) -> Vec<String> {
+        for &(number, row, step, variables) in &self.0 {
+            let (table, values) = (tables[usize::from(number) - 1], Values { step, variables });
+            let read = table.consult(values).map(|row| row.number);
+            assert_eq!(read, Some(row), "{} with {values:?}", table.name);
+        }
         let rows = tables.iter().zip(1_u8..).flat_map(|(table, number)| {
             let named =
                 |action: &str| action != "consult" && (table.name != EXECUTE.name || action == "Refuse");
             let rows = table.rows.iter().filter(move |row| named(row.action));
             rows.map(move |row| (table.name, number, row.number))
         });
-        let missing = rows.filter(|(_, table, row)| !self.0.contains(&(*table, *row)));
+        let has_fired =
+            |table, row| self.0.range((table, row, 0, 0)..=(table, row, u8::MAX, u64::MAX)).next().is_some();
+        let missing = rows.filter(|(_, table, row)| !has_fired(*table, *row));
         missing.map(|(name, _, row)| format!("{name} {row}")).collect()
     }
 }

@@ -19,16 +19,18 @@
 //! process with others below it consults [`HALT`](crate::halt::HALT) before ACCEPT; Subtask and E-move consult
 //! [`EFFECT`](crate::halt::EFFECT) after the table of the command. `docs/design/tables.md` tells more.
 
-use interfaces::{Decided, Header, Reason, StatusReport};
+use interfaces::{Header, Reason, StatusReport};
 use rcs_core::{
     Actions, Plain, Variables, decision_table,
     handshake::{Arrival, Lower, Receiver},
-    name::Name16,
     table::{Choice, Decision, Verdict},
     tick::Tick,
 };
 
-use crate::halt::{Fired, Futile, Halt, Halting, Intake, Order, Replaced, effect, halt};
+use crate::{
+    halt::{Fired, Futile, Halt, Halting, Intake, Order, Replaced, effect, halt},
+    rows::Rows,
+};
 
 /// How far the current command has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -165,8 +167,8 @@ pub struct Execution {
     pub outcome: Outcome,
     /// Why it failed.
     pub reason: Reason,
-    /// The row that decided last, if any has.
-    pub decided: Option<Decided>,
+    /// The rows that the header tells of.
+    pub rows: Rows,
     /// The command is new and neither accepted nor refused yet.
     pub waiting: bool,
     /// What is done so that it can be.
@@ -185,6 +187,12 @@ const HALT_NUMBER: u8 = 3;
 const EFFECT_NUMBER: u8 = 4;
 
 impl Execution {
+    /// A tick begins: read the number of the command in the buffer.
+    pub fn observe(&mut self, tick: Tick, number: u32) -> Arrival {
+        self.rows.begin(tick);
+        self.receiver.observe(number)
+    }
+
     /// Consult [`EXECUTE`].
     pub fn course(&mut self, arrival: Arrival) -> Course {
         let decision = execute(self.outcome, &Buffer { arrival });
@@ -192,7 +200,7 @@ impl Execution {
         match decision.action {
             Course::Refuse => {
                 self.reason = Reason::Restarted;
-                self.decided = Some(Decided { table: EXECUTE_NUMBER, row: decision.row });
+                self.rows.decide(EXECUTE_NUMBER, decision.row, decision.values);
             }
             Course::Begin => self.reason = Reason::None,
             Course::Rest | Course::Continue => {}
@@ -244,6 +252,8 @@ impl Execution {
                 // The header of a restarted process says that it was restarted.
                 if intake == Intake::Asked {
                     self.note(&decision.of(HALT_NUMBER));
+                } else {
+                    self.rows.beside(&decision.of(HALT_NUMBER));
                 }
                 Err(decision.action)
             }
@@ -289,8 +299,9 @@ impl Execution {
                 self.last_order = if order == Order::New { Some(this) } else { self.last_order };
                 choice
             }
-            Verdict::Decided(Decision { row, action, .. }) => {
-                Choice { table: EFFECT_NUMBER, row, action: Action::of_effect(action), next: choice.next }
+            Verdict::Decided(Decision { row, action, values, .. }) => {
+                let action = Action::of_effect(action);
+                Choice { table: EFFECT_NUMBER, row, action, next: choice.next, values }
             }
         }
     }
@@ -300,8 +311,8 @@ impl Execution {
     pub fn accepts<Step>(&mut self, verdict: &Verdict<Refusal, Step, ()>) -> bool {
         match *verdict {
             Verdict::Passed(()) => true,
-            Verdict::Decided(Decision { row, action: Refusal::Fail(reason), .. }) => {
-                self.decided = Some(Decided { table: ACCEPT_NUMBER, row });
+            Verdict::Decided(Decision { row, action: Refusal::Fail(reason), values, .. }) => {
+                self.rows.decide(ACCEPT_NUMBER, row, values);
                 self.fail(reason);
                 false
             }
@@ -310,7 +321,7 @@ impl Execution {
 
     /// Note which row of which table fired.
     pub fn note<Action, Step>(&mut self, choice: &Choice<Action, Step>) {
-        self.decided = Some(Decided { table: choice.table, row: choice.row });
+        self.rows.decide(choice.table, choice.row, choice.values);
     }
 
     /// Is the command in the buffer to be accepted or refused, as soon as HALT allows it?
@@ -335,7 +346,7 @@ impl Execution {
     /// True if a row of ACCEPT decided last: the command was refused.
     #[must_use]
     pub fn is_refused(&self) -> bool {
-        self.decided.is_some_and(|decided| decided.table == ACCEPT_NUMBER)
+        self.rows.decided.is_some_and(|decided| decided.table == ACCEPT_NUMBER)
     }
 
     /// The process was dormant in the tick before: the next command number it reads is adopted, not executed.
@@ -381,18 +392,15 @@ impl Execution {
     /// The header of the outputs of this tick; `step` is the text of the command's step.
     #[must_use]
     pub fn header(&self, tick: Tick, step: &str) -> Header {
-        Header {
-            stamp: tick,
-            republished: false,
-            decided: self.decided,
-            step: Some(Name16::clipped(step)).filter(|step| !step.is_empty()),
-        }
+        self.rows.header(tick, step)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use interfaces::Decided;
+    use rcs_core::table::Values;
 
     #[test]
     fn an_outcome_stays_until_a_new_number_comes() {
@@ -418,11 +426,12 @@ mod tests {
         let mut e = Execution::default();
         e.course(Arrival::New);
         assert!(e.accepts(&Verdict::<Refusal, (), ()>::Passed(())));
-        assert_eq!((e.report(), e.decided), (StatusReport::Executing, None));
-        let refusal = Decision { row: 2, action: Refusal::Fail(Reason::UnknownCommand), next: () };
+        assert_eq!((e.report(), e.rows.decided), (StatusReport::Executing, None));
+        let action = Refusal::Fail(Reason::UnknownCommand);
+        let refusal = Decision { row: 2, action, next: (), values: Values::default() };
         assert!(!e.accepts(&Verdict::Decided(refusal)));
         assert_eq!((e.report(), e.reason), (StatusReport::Error, Reason::UnknownCommand));
-        assert_eq!(e.decided, Some(Decided { table: ACCEPT_NUMBER, row: 2 }));
+        assert_eq!(e.rows.decided, Some(Decided { table: ACCEPT_NUMBER, row: 2 }));
         assert!(!e.begins(Arrival::New));
     }
 
@@ -431,6 +440,6 @@ mod tests {
         let mut e = Execution::default();
         let arrival = e.receiver.observe(7);
         assert_eq!((e.course(arrival), e.reason), (Course::Refuse, Reason::Restarted));
-        assert_eq!(e.decided, Some(Decided { table: EXECUTE_NUMBER, row: 2 }));
+        assert_eq!(e.rows.decided, Some(Decided { table: EXECUTE_NUMBER, row: 2 }));
     }
 }

@@ -53,6 +53,7 @@ pub mod pedestal;
 pub mod places;
 pub mod prim;
 pub mod quick_change;
+pub mod rows;
 pub mod subtask;
 pub mod t3i;
 pub mod task;

@@ -1,6 +1,9 @@
 //! The header of output buffers.
 
-use crate::{Plain, name::Name16, tick::Tick};
+use crate::{Plain, name::Name16, table::Values, tick::Tick};
+
+/// Most tables that a process consults beside the one that decides about its command: those of Prim.
+pub const BESIDE: usize = 3;
 
 /// What every set of output buffers starts with.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -11,6 +14,12 @@ pub struct Header {
     pub republished: bool,
     /// The row that decided last, if any has.
     pub decided: Option<Decided>,
+    /// When that row fired, and what its table was consulted with. None for a row of another system, whose
+    /// mailbox does not say it.
+    pub basis: Option<Basis>,
+    /// Rows of other tables that fired when the process was stepped last: in the tick of the stamp, unless the
+    /// outputs are republished.
+    pub beside: [Option<Consulted>; BESIDE],
     /// Step of the current command after that row: its reference action (V.1.1).
     pub step: Option<Name16>,
 }
@@ -22,4 +31,66 @@ pub struct Decided {
     pub table: u8,
     /// The row, from 1.
     pub row: u8,
+}
+
+/// When a row fired, and what its table was consulted with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct Basis {
+    /// The tick.
+    pub tick: Tick,
+    /// The step and the state variables.
+    pub values: Values,
+}
+
+/// A row that fired, and what its table was consulted with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct Consulted {
+    /// The row.
+    pub decided: Decided,
+    /// The step and the state variables.
+    pub values: Values,
+}
+
+impl Header {
+    /// Ticks between the row that decided last and the stamp: 0 if it fired in the tick of the stamp. None if
+    /// no row has decided yet, or if another system does not say when.
+    #[must_use]
+    pub fn age(&self) -> Option<u64> {
+        self.basis.map(|basis| self.stamp.since(basis.tick))
+    }
+
+    /// The row that decided, if it fired in the tick of the stamp.
+    #[must_use]
+    pub fn fired(&self) -> Option<Decided> {
+        self.decided.filter(|_| self.age() == Some(0))
+    }
+
+    /// The row that decided last, with what its table was consulted with.
+    #[must_use]
+    pub fn consulted(&self) -> Option<Consulted> {
+        Some(Consulted { decided: self.decided?, values: self.basis?.values })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_grows_old_while_the_stamp_goes_on() {
+        let values = Values { step: 2, variables: 5 };
+        let decided = Decided { table: 3, row: 4 };
+        let header = Header {
+            stamp: Tick(12),
+            decided: Some(decided),
+            basis: Some(Basis { tick: Tick(12), values }),
+            ..Header::default()
+        };
+        assert_eq!((header.age(), header.fired()), (Some(0), Some(decided)));
+        let later = Header { stamp: Tick(87), ..header };
+        assert_eq!((later.age(), later.fired()), (Some(75), None));
+        assert_eq!(later.consulted(), Some(Consulted { decided, values }));
+        let elsewhere = Header { basis: None, ..header };
+        assert_eq!((elsewhere.age(), elsewhere.fired(), elsewhere.consulted()), (None, None, None));
+    }
 }

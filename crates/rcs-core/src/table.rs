@@ -85,15 +85,24 @@
 //! table below. The type is narrower than the variable that was asked for, so that the table below needs no
 //! rows for what was decided above. `-> Action or ()` and `consult` pass nothing.
 //!
+//! # Looking back
+//!
+//! A decision says with which [`Values`] the table was consulted. From them the table names its variables and
+//! their values again, and says which row each other value would have fired: [`Table::near_misses`].
+//!
 //! # Commands
 //!
 //! [`commands!`](crate::commands!) lists the tables of a process once. It gives the enum of all steps, the
 //! list of all tables, the numbers of those that no command selects, and the function that consults the table
 //! of a command. `A then b::c` consults two in turn.
 
+mod values;
+
 use core::fmt;
 
 use crate::plain::EnumSchema;
+
+pub use values::{NearMiss, Values};
 
 /// A decision table as text: what people read in logs, in `rcs-run tables` and in failure reports.
 #[derive(Debug)]
@@ -140,7 +149,8 @@ pub struct ActionText {
 
 /// The state variables of a table.
 pub trait Variables {
-    /// The values of all variables as one number: equal numbers are equal situations.
+    /// The values of all variables as one number, a digit a variable: equal numbers are equal situations. The
+    /// last variable is the lowest digit, and its base is the number of its values.
     fn code(&self) -> u64;
 }
 
@@ -179,6 +189,8 @@ pub struct Decision<Action, Step> {
     pub action: Action,
     /// The reference action from now on.
     pub next: Step,
+    /// What the table was consulted with.
+    pub values: Values,
 }
 
 /// What a table above others decided, or what it passes to the table below.
@@ -201,12 +213,14 @@ pub struct Choice<Action, Step> {
     pub action: Action,
     /// The step from now on.
     pub next: Step,
+    /// What the table was consulted with.
+    pub values: Values,
 }
 
 impl<Action, Step> Decision<Action, Step> {
     /// The decision as one of the table with this number.
     pub fn of(self, table: u8) -> Choice<Action, Step> {
-        Choice { table, row: self.row, action: self.action, next: self.next }
+        Choice { table, row: self.row, action: self.action, next: self.next, values: self.values }
     }
 }
 
@@ -219,7 +233,9 @@ impl<Action, Step, Passed> Verdict<Action, Step, Passed> {
         below: impl FnOnce(Passed) -> Choice<Action, Next>,
     ) -> Choice<Action, Next> {
         match self {
-            Self::Decided(Decision { row, action, next }) => Choice { table, row, action, next: next.into() },
+            Self::Decided(Decision { row, action, next, values }) => {
+                Choice { table, row, action, next: next.into(), values }
+            }
             Self::Passed(value) => below(value),
         }
     }

@@ -203,7 +203,7 @@ impl Commands {
                 if self.declared { quote!(#all::#variant(decision.next)) } else { quote!(decision.next) };
             quote! {
                 ::rcs_core::table::Choice {
-                    table: #number, row: decision.row, action: decision.action, next: #next,
+                    table: #number, row: decision.row, action: decision.action, next: #next, values: decision.values,
                 }
             }
         };

@@ -36,6 +36,11 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
             }, )* ];
         }
 
+        const _: () = assert!(
+            ::rcs_core::table::Variable::combinations(#name::VARIABLES).is_some(),
+            "the values of the state variables do not fit into one number: divide the table",
+        );
+
         impl ::rcs_core::table::Variables for #name {
             fn code(&self) -> u64 {
                 let code = 0_u64;

@@ -2,8 +2,7 @@
 //! schemas.
 //!
 //! The outputs of a process are a header and buffers. Each buffer gets a channel `/process/buffer`, a command
-//! `/process/buffer_command`; the header gets `/process/row`, the row of the decision table that fired as
-//! text, and the step of the command after it. A message is written when its buffer changes, and every ten
+//! `/process/buffer_command`; the header gets `/process/row` ([`crate::rows`]). A message is written when its buffer changes, and every ten
 //! seconds anyway, so that a viewer that jumps into the middle finds a value soon.
 
 use std::{
@@ -12,10 +11,9 @@ use std::{
     ops::Range,
 };
 
-use interfaces::{CommonMemory, Decided, ExternalInputs, Header};
+use interfaces::{CommonMemory, ExternalInputs, Header};
 use levels::ladder::{Ladder, ProcessInfo};
 use mcap::{McapResult, records::MessageHeader};
-use prost_types::field_descriptor_proto::Type;
 use rcs_core::{
     plain::{self, Schema, StructSchema},
     table::{Row, Table},
@@ -25,10 +23,7 @@ use rcs_core::{
 use crate::{
     input::Epoch,
     layout,
-    proto::{
-        descriptor::{self, encode_set, field, file},
-        message, wire,
-    },
+    proto::{descriptor, message},
 };
 
 /// Encoding of schemas and messages in protobuf.
@@ -235,80 +230,10 @@ pub fn headers() -> Vec<HeaderPlace> {
     found
 }
 
-/// The row channels.
-pub struct Rows(Vec<(u16, HeaderPlace, Option<Header>)>);
-
-/// Message on the row channels.
-const ROW: &str = "Row";
-
-impl Rows {
-    /// One channel a process.
-    pub fn open<W: Write + Seek>(output: &mut Output<W>) -> McapResult<Self> {
-        let fields = vec![
-            field("process", 1, Type::String),
-            field("table_number", 2, Type::Uint32),
-            field("table", 3, Type::String),
-            field("row", 4, Type::Uint32),
-            field("conditions", 5, Type::String),
-            field("action", 6, Type::String),
-            field("next", 7, Type::String),
-            field("republished", 8, Type::Bool),
-            field("step", 9, Type::String),
-        ];
-        let message = descriptor::message(ROW, fields);
-        let set = encode_set(vec![file("rcs.proto", descriptor::PACKAGE, &[], vec![message])]);
-        let name = format!("{}.{ROW}", descriptor::PACKAGE);
-        let open = |place: HeaderPlace| {
-            let channel = output.protobuf(&format!("/{}/row", place.field), &name, &set)?;
-            Ok((channel, place, None))
-        };
-        headers().into_iter().map(open).collect::<McapResult<_>>().map(Self)
-    }
-
-    /// Write the rows that are others than in the tick before, or all of them. The time stamp in the header
-    /// is no change.
-    pub fn write<W: Write + Seek>(
-        &mut self,
-        output: &mut Output<W>,
-        tick: Tick,
-        image: &[u8],
-        all: bool,
-    ) -> McapResult<()> {
-        for (channel, place, last) in &mut self.0 {
-            let header = Header { stamp: Tick::BEFORE_START, ..place.read(image) };
-            if all || *last != Some(header) {
-                output.put(*channel, tick, &row_message(place, &header))?;
-                *last = Some(header);
-            }
-        }
-        Ok(())
-    }
-}
-
-fn row_message(place: &HeaderPlace, header: &Header) -> Vec<u8> {
-    let (table, conditions, action, next) = match place.row(header) {
-        Some((table, row)) => {
-            (table.name, row.conditions().to_string(), row.call().to_string(), row.next.unwrap_or_default())
-        }
-        None => Default::default(),
-    };
-    let (table_number, row_number) = header.decided.map_or((0, 0), |Decided { table, row }| (table, row));
-    let mut data = Vec::new();
-    wire::bytes(1, place.process.name.as_bytes(), &mut data);
-    wire::unsigned(2, table_number.into(), &mut data);
-    wire::bytes(3, table.as_bytes(), &mut data);
-    wire::unsigned(4, row_number.into(), &mut data);
-    wire::bytes(5, conditions.as_bytes(), &mut data);
-    wire::bytes(6, action.as_bytes(), &mut data);
-    wire::bytes(7, next.as_bytes(), &mut data);
-    wire::unsigned(8, header.republished.into(), &mut data);
-    wire::bytes(9, header.step.unwrap_or_default().as_str().as_bytes(), &mut data);
-    data
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use interfaces::Decided;
     use rcs_core::Plain;
     use std::collections::BTreeSet;
 

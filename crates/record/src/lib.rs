@@ -37,6 +37,7 @@ pub mod reader;
 pub mod recorder;
 pub mod remarks;
 pub mod replay;
+pub mod rows;
 pub mod scene;
 pub mod sink;
 pub mod writer;

@@ -29,7 +29,7 @@ use prost_types::field_descriptor_proto::Type;
 use rcs_core::{Plain, plain::Writer, tick::Tick};
 
 use crate::{
-    channels::{Buffers, HeaderPlace, Output, Rows, headers},
+    channels::{Buffers, HeaderPlace, Output, headers},
     delta::Codec,
     input::{Attachment, CellFrame, End, Setup},
     layout,
@@ -40,6 +40,7 @@ use crate::{
     },
     recorder::Lost,
     remarks::{Remark, remarks},
+    rows::Rows,
     scene::Scene,
 };
 

@@ -1,7 +1,7 @@
 //! What every process did over a whole run, kept by change: its commands, rows and reports.
 
 use executive::failure;
-use interfaces::{Decided, Header, StatusReport};
+use interfaces::{Decided, Header};
 use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
     name::Name16,
@@ -87,24 +87,6 @@ impl History {
     /// The row that fired in a process in a tick, and since when it did.
     pub fn row(&self, process: ProcessId, tick: u64) -> Option<&Fired> {
         latest(&self.rows[process.position()], tick, |fired| fired.tick)
-    }
-
-    /// The tick in which a row fired last in a process that has had nothing to decide since; `None` if one
-    /// fired in this tick. A header repeats the last row while its process rests.
-    pub fn rests_since(&self, process: ProcessId, moment: &Moment) -> Option<u64> {
-        let tick = moment.tick.0;
-        let executes = |report: &Reported| report.report == StatusReport::Executing.text();
-        let arrives = |command: &Commanded| command.tick + u64::from(process != ProcessId::Task) == tick;
-        let is_held = moment.after.header(process).republished;
-        // T3I decides in every tick what goes out.
-        let fires = process == ProcessId::T3i
-            || self.command(process, tick).is_some_and(arrives)
-            || self.report(process, tick.saturating_sub(1)).is_some_and(executes);
-        if fires && !is_held {
-            return None;
-        }
-        let since = if is_held { self.row(process, tick).map(|fired| fired.tick) } else { None };
-        since.or(self.report(process, tick).map(|report| report.tick)).filter(|since| *since < tick)
     }
 
     /// What a process reported in a tick, and since when.

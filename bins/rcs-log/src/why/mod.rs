@@ -21,7 +21,11 @@ use std::{
 use executive::failure::{self, Failure};
 use levels::ladder::{Ladder, ProcessId};
 use rcs_core::tick::{TICK_S, Tick};
-use record::{Log, proto::foxglove::Level};
+use record::{
+    Log,
+    proto::foxglove::Level,
+    rows::{beside, values_text},
+};
 use serde::Serialize;
 
 pub use self::{chain::Link, history::History};
@@ -117,6 +121,10 @@ struct Rung {
     held: bool,
     /// The row is an old one, which fired last in this tick: the process has had nothing to decide since.
     old: Option<u64>,
+    /// The values of the state variables that the table asks for, when the row fired.
+    values: Option<String>,
+    /// Rows of other tables that fired when the process was stepped last, with their values.
+    beside: Vec<String>,
     table: Option<String>,
     row: Option<u8>,
     /// What the row asks for: its steps and state variables.
@@ -143,7 +151,7 @@ pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
         .filter(|world| arguments.tick.is_none() && failed_at.is_none_or(|tick| world.tick <= tick));
     let tick = arguments.tick.or(failed_at).or(world.as_ref().map(|world| world.tick));
     let moment = find(&log, arguments, tick)?;
-    print(&explain(&log, &history, &moment, world, told), arguments.answer.json)?;
+    print(&explain(&log, &moment, world, told), arguments.answer.json)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -224,13 +232,7 @@ fn find(log: &Log, arguments: &Arguments, tick: Option<u64>) -> Result<Moment, E
     found.ok_or_else(|| Error::NoTick { path: path(), tick: tick.unwrap_or_default(), first, last: last.0 })
 }
 
-fn explain(
-    log: &Log,
-    history: &History,
-    moment: &Moment,
-    world: Option<World>,
-    told: Option<Told>,
-) -> Explanation {
+fn explain(log: &Log, moment: &Moment, world: Option<World>, told: Option<Told>) -> Explanation {
     let levels = Ladder::processes().iter().zip(ProcessId::ALL).map(|(process, id)| {
         let header = moment.after.header(*id);
         let command = failure::command(*id, &moment.external.hws, &moment.before);
@@ -240,7 +242,9 @@ fn explain(
             process: process.name.to_owned(),
             command,
             held: header.republished,
-            old: history.rests_since(*id, moment),
+            old: header.basis.filter(|_| header.age() > Some(0)).map(|basis| basis.tick.0),
+            values: row.zip(header.consulted()).map(|((table, _), found)| values_text(table, found.values)),
+            beside: beside(process, header).collect(),
             table: row.map(|(table, _)| table.name.to_owned()),
             row: row.map(|(_, row)| row.number),
             conditions: row.map_or_else(Vec::new, |(_, row)| conditions(row)),
@@ -350,6 +354,10 @@ impl fmt::Display for Rung {
         writeln!(f, "  {:<14} executes {command}{held}", self.process)?;
         let (Some(table), Some(row)) = (&self.table, self.row) else { return Ok(()) };
         let old = self.old.map_or_else(String::new, |tick| format!("no row since tick {tick}, when it was "));
-        writeln!(f, "  {:<14} {old}{table} row {row}: {}, {}", "", self.deed, because(&self.conditions))
+        writeln!(f, "  {:<14} {old}{table} row {row}: {}, {}", "", self.deed, because(&self.conditions))?;
+        if let Some(values) = self.values.as_ref().filter(|values| !values.is_empty()) {
+            writeln!(f, "  {:<14} values: {values}", "")?;
+        }
+        self.beside.iter().try_for_each(|row| writeln!(f, "  {:<14} also {row}", ""))
     }
 }

@@ -30,6 +30,7 @@ use super::{
     tables::{
         AtDrum,
         drum::{AtTheDrum, Belief, Tool, drum},
+        number,
     },
     whereabouts::{ASIDE_INCHES, LOST_RADIANS},
 };
@@ -180,7 +181,9 @@ impl State {
             tool: if grasped_here { Tool::Grasped } else { Tool::Loose },
             outcome: self.execution.outcome,
         };
-        match drum((), &situation).action {
+        let decision = drum((), &situation);
+        self.execution.rows.beside(&decision.of(number::DRUM));
+        match decision.action {
             Belief::Keep => {}
             Belief::Leave if is_led(inputs.memory) => {}
             Belief::Leave => self.beliefs.drum = None,

@@ -60,7 +60,7 @@ use taskdata::files::TaskData;
 
 use self::{
     state::State,
-    tables::{Action, Seen, Step, Watch, attend::attend},
+    tables::{Action, Seen, Step, Watch, attend::attend, number},
 };
 use crate::execution::{Course, Orders as _};
 
@@ -92,6 +92,7 @@ impl<'d> Process<TaskData<'d>> for Emove {
             Ok(Course::Rest) => {
                 let watch = Watch { outcome: state.execution.outcome, ..seen.watch };
                 if let Verdict::Decided(decision) = attend(state.step, &watch) {
+                    state.execution.rows.beside(&decision.of(number::ATTEND));
                     return decision.action;
                 }
             }

@@ -26,6 +26,7 @@ use super::{
         At, Contact, Holster, Knowledge, Link, Load, Lock, Mate, Motion, Orders, Pause, Readiness, Request,
         Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch,
         e_pause::EPauseStep,
+        number,
         search::{Look, search},
     },
     whereabouts::{LOST_INCHES, LOST_RADIANS},
@@ -76,7 +77,7 @@ impl State {
     /// Read the inputs of a tick.
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &EmoveOutputs) -> Seen {
         let command = &inputs.memory.subtask.emove;
-        let arrival = self.execution.receiver.observe(command.number);
+        let arrival = self.execution.observe(inputs.tick, command.number);
         self.adopt(inputs.memory, outputs);
         self.sense_neighbours(inputs);
         self.sense_way(inputs.memory);
@@ -183,7 +184,9 @@ impl State {
             resolvers: known(present.is_some()),
         };
         self.look_around(watch.place, present.as_ref(), inputs.data);
-        match (search(self.step, &watch).action, &present) {
+        let decision = search(self.step, &watch);
+        self.execution.rows.beside(&decision.of(number::SEARCH));
+        match (decision.action, &present) {
             (Look::Look, Some(present)) => self.search(present, inputs.data),
             (Look::Look, None) | (Look::Rest, _) => {}
         }

@@ -114,6 +114,8 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
                 state.phase = decision.next;
                 if accepted {
                     state.execution.note(&decision.of(number::UP_INIT));
+                } else {
+                    state.execution.rows.beside(&decision.of(number::UP_INIT));
                 }
                 decision.action
             }

@@ -49,7 +49,7 @@ impl State {
             self.execution.wake();
             self.found = None;
         }
-        let arrival = self.execution.receiver.observe(command.number);
+        let arrival = self.execution.observe(inputs.tick, command.number);
         if arrival == Arrival::New {
             (self.verb, self.since, self.found) = (command.command, inputs.tick, None);
         }

@@ -427,10 +427,10 @@ proptest! {
             let state = *<ToolGrip as Process<()>>::state(&twin.process);
             twin.process = Jaws::default();
             Process::<()>::restore(&mut twin.process, state);
-            let (one, two): ([u8; 64], [u8; 64]) = (to_bytes(&bench.outputs), to_bytes(&twin.outputs));
+            let (one, two): ([u8; 128], [u8; 128]) = (to_bytes(&bench.outputs), to_bytes(&twin.outputs));
             prop_assert_eq!(one, two);
         }
         bench.finish();
-        prop_assert!(State::SIZE < 128 && JawsOutputs::SIZE <= 64);
+        prop_assert!(State::SIZE < 192 && JawsOutputs::SIZE <= 128);
     }
 }

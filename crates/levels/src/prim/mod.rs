@@ -55,6 +55,7 @@ use self::{
         Action, Attendance, Kind, Seen, Step,
         attend::{Attention, attend},
         link::LinkStep,
+        number,
     },
 };
 
@@ -85,7 +86,8 @@ impl<'d> Process<TaskData<'d>> for Prim {
             operator: seen.situation.operator,
         };
         let attention = attend(state.execution.outcome, &attendance);
-        (state.rows.attend, state.execution.outcome) = (attention.row, attention.next);
+        state.execution.rows.beside(&attention.of(number::ATTEND));
+        state.execution.outcome = attention.next;
         match attention.action {
             Attention::Leave => return Action::Wait,
             Attention::Halt => return Action::Halt,

@@ -20,7 +20,7 @@ use super::{
     motion::Motion,
     state::{Standstill, State},
     tables::{
-        Action, FirstPause, Path, Seen, Way,
+        Action, FirstPause, Path, Seen, Way, number,
         path_clock::{Flow, path_clock},
         record_pose::{Recording, record_pose},
     },
@@ -148,7 +148,8 @@ impl State {
             button: seen.button,
         };
         let (clock, record) = (path_clock((), &path), record_pose((), &path));
-        (self.rows.path_clock, self.rows.record_pose) = (clock.row, record.row);
+        self.execution.rows.beside(&clock.of(number::PATH_CLOCK));
+        self.execution.rows.beside(&record.of(number::RECORD_POSE));
         match clock.action {
             Flow::Repeat => {}
             Flow::Advance => {

@@ -48,7 +48,7 @@ impl State {
             self.calibration.bias = outputs.bias;
         }
         let command = &inputs.memory.emove.prim;
-        let arrival = self.execution.receiver.observe(command.number);
+        let arrival = self.execution.observe(inputs.tick, command.number);
         let request =
             if arrival == Arrival::New { self.look_up(command, inputs) } else { Request::default() };
         let verb = if arrival == Arrival::New { command.command } else { self.target.verb };

@@ -76,17 +76,6 @@ impl RestartTimes {
     }
 }
 
-/// Rows of the tables of every tick that fired last; the header names those of the command only.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct TickRows {
-    /// Row of ATTEND.
-    pub attend: u8,
-    /// Row of PATH-CLOCK.
-    pub path_clock: u8,
-    /// Row of RECORD-POSE.
-    pub record_pose: u8,
-}
-
 /// State of Prim.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
@@ -100,8 +89,6 @@ pub struct State {
     pub restarts: RestartTimes,
     /// The path to the goal.
     pub way: Way,
-    /// Rows of the tables of every tick.
-    pub rows: TickRows,
     /// Commands to T3I.
     pub t3i: Commander,
     /// What is to be done.

@@ -84,6 +84,8 @@ impl<Data: ?Sized> Process<Data> for QuickChange {
         let choice = of_command(state.command, state.step, &seen.situation);
         if accepted {
             state.execution.note(&choice);
+        } else {
+            state.execution.rows.beside(&choice);
         }
         state.step = choice.next;
         choice.action

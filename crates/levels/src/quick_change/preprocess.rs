@@ -22,7 +22,7 @@ impl State {
     /// Read the inputs of a tick.
     pub(super) fn sense<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> Seen {
         let command = &inputs.memory.emove.quick_change;
-        let arrival = self.execution.receiver.observe(command.number);
+        let arrival = self.execution.observe(inputs.tick, command.number);
         if arrival == Arrival::New {
             (self.command, self.since) = (command.command, inputs.tick);
         }

@@ -38,7 +38,7 @@ mod tests;
 
 use depc::Limits;
 use interfaces::{
-    Decided, T3iOutputs,
+    T3iOutputs,
     process::{Inputs, Process},
 };
 use rcs_core::table::Table;
@@ -87,16 +87,22 @@ impl<Data: ?Sized> Process<Data> for T3i {
     fn decide(&mut self, seen: &Seen) -> Action {
         let state = &mut self.state;
         let checked = report(state.check, &seen.answer);
-        (state.check, state.report_row) = (checked.next, checked.row);
+        state.rows.beside(&checked.of(number::REPORT));
+        state.check = checked.next;
         state.compare(checked.action);
         let taken = receive(state.receive, &seen.request);
-        (state.receive, state.receive_row) = (taken.next, taken.row);
+        state.receive = taken.next;
         state.take(taken.action, seen);
         let choice = of_command(state.command, state.step, &state.situation(seen));
         state.step = choice.next;
-        let refused = matches!(taken.action, Intake::Ignore | Intake::Refuse);
-        let (table, row) = if refused { (number::RECEIVE, taken.row) } else { (choice.table, choice.row) };
-        state.decided = Some(Decided { table, row });
+        // The last row decides: that of RECEIVE if it refuses the command.
+        if matches!(taken.action, Intake::Ignore | Intake::Refuse) {
+            state.rows.decide(choice.table, choice.row, choice.values);
+            state.rows.decide(number::RECEIVE, taken.row, taken.values);
+        } else {
+            state.rows.beside(&taken.of(number::RECEIVE));
+            state.rows.decide(choice.table, choice.row, choice.values);
+        }
         choice.action
     }
 

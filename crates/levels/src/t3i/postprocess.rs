@@ -9,12 +9,12 @@ use depc::{
 };
 use geometry::{kinematics::T3, pose::WireFrame};
 use interfaces::{
-    Header, T3iOutputs,
+    T3iOutputs,
     device::{LinkBytes, RESOLVER_COUNTS, Resolvers},
     process::Inputs,
     t3i::{LinkFault, SentWords, T3iReport, T3iStatus},
 };
-use rcs_core::{handshake::Arrival, name::Name16};
+use rcs_core::handshake::Arrival;
 
 use super::{
     state::State,
@@ -111,12 +111,7 @@ impl State {
         let resolvers = &inputs.external.devices.resolvers;
         let resolver_frame = resolver_frame(resolvers);
         let running = self.host.is_running();
-        let header = Header {
-            stamp: inputs.tick,
-            republished: false,
-            decided: self.decided,
-            step: Some(Name16::clipped(self.step.text())).filter(|step| !step.is_empty()),
-        };
+        let header = self.rows.header(inputs.tick, self.step.text());
         let status = T3iStatus {
             cycle: inputs.tick,
             cycle_echo: inputs.memory.prim.t3i.cycle,

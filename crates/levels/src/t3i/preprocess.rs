@@ -35,6 +35,7 @@ impl State {
         let prim = &inputs.memory.prim;
         let command = prim.t3i;
         let point = self.point(&command);
+        self.rows.begin(inputs.tick);
         let arrival = self.receiver.observe(command.number);
         let restart = arrival == Arrival::New && command.command == T3iVerb::Restart;
         let devices = &inputs.external.devices;

@@ -6,13 +6,11 @@ use depc::{
     step::Position,
 };
 use geometry::pose::WireFrame;
-use interfaces::{
-    Decided,
-    t3i::{ReportCheck, SentWords, T3iVerb},
-};
+use interfaces::t3i::{ReportCheck, SentWords, T3iVerb};
 use rcs_core::{Plain, handshake::Receiver};
 
 use super::tables::{Before, Step, receive::ReceiveStep};
+use crate::rows::Rows;
 
 /// Points that wait for the line (docs/design/link.md "Queue"): one that is being sent, one that was allowed,
 /// one that is on its way, and one to spare.
@@ -45,12 +43,8 @@ pub struct State {
     pub queue: [WireFrame; QUEUE_POINTS],
     /// How many.
     pub queued: u8,
-    /// The row that decided last, if any has.
-    pub decided: Option<Decided>,
-    /// Row of RECEIVE that fired last: the header names it for refusals only.
-    pub receive_row: u8,
-    /// Row of REPORT that fired last.
-    pub report_row: u8,
+    /// The rows that the header tells of.
+    pub rows: Rows,
 }
 
 impl State {

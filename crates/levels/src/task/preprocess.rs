@@ -31,7 +31,7 @@ impl State {
         let (command, data_base) = (&inputs.external.hws, &inputs.external.data_base);
         self.adopt(inputs);
         self.data_system.observe(data_base, inputs.tick);
-        let arrival = self.execution.receiver.observe(command.number);
+        let arrival = self.execution.observe(inputs.tick, command.number);
         let asked = self.execution.asked(arrival);
         let (plan, request) = if asked == Asked::Now {
             self.ordered = Ordered::Nothing;

@@ -53,7 +53,7 @@ impl Table {
                 }
                 _ => quote!(()),
             };
-            return quote!(#pattern => ::rcs_core::table::Verdict::Passed(#value),);
+            return quote!(#pattern => return ::rcs_core::table::Verdict::Passed(#value),);
         }
         let (name, action) = (&row.action, respan_path(&self.action, row.action.span()));
         let argument = row.argument.as_ref().map(|argument| {
@@ -68,13 +68,7 @@ impl Table {
                 quote_spanned!(next.span()=> #of::#next)
             },
         );
-        let decision = quote! {
-            ::rcs_core::table::Decision { row: #number, action: #action::#name #argument, next: #next }
-        };
-        match self.passed {
-            None => quote!(#pattern => #decision,),
-            Some(_) => quote!(#pattern => ::rcs_core::table::Verdict::Decided(#decision),),
-        }
+        quote!(#pattern => (#number, #action::#name #argument, #next),)
     }
 
     /// The enum of the steps, if the table declares it: a variant for each step whose group has a doc comment.
@@ -182,10 +176,23 @@ pub fn expand(input: TokenStream) -> Result<TokenStream> {
         Some(Step::Named(step)) => (quote!(), quote!(#step)),
         None => (quote!(<Step: Copy>), quote!(Step)),
     };
-    let result = match &table.passed {
-        None => quote!(::rcs_core::table::Decision<#action, #step>),
-        Some(Passed::Nothing) => quote!(::rcs_core::table::Verdict<#action, #step, ()>),
-        Some(Passed::Value(of)) => quote!(::rcs_core::table::Verdict<#action, #step, #of>),
+    let code = if table.step.is_some() { quote!(step.code()) } else { quote!(0) };
+    let decision = quote! {
+        ::rcs_core::table::Decision {
+            row,
+            action,
+            next,
+            values: ::rcs_core::table::Values {
+                step: #code,
+                variables: ::rcs_core::table::Variables::code(situation),
+            },
+        }
+    };
+    let verdict = quote!(::rcs_core::table::Verdict::Decided(#decision));
+    let (result, decided) = match &table.passed {
+        None => (quote!(::rcs_core::table::Decision<#action, #step>), decision),
+        Some(Passed::Nothing) => (quote!(::rcs_core::table::Verdict<#action, #step, ()>), verdict),
+        Some(Passed::Value(of)) => (quote!(::rcs_core::table::Verdict<#action, #step, #of>), verdict),
     };
     let see = format!("Decide by [`{name}`].");
     Ok(quote! {
@@ -207,7 +214,8 @@ pub fn expand(input: TokenStream) -> Result<TokenStream> {
         #[doc = #see]
         #[must_use]
         #vis fn #decide #generic (step: #step, situation: &#situation) -> #result {
-            match (step, *situation) { #( #arms )* }
+            let (row, action, next): (u8, #action, #step) = match (step, *situation) { #( #arms )* };
+            #decided
         }
     })
 }

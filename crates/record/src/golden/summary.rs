@@ -70,9 +70,7 @@ impl Summary {
         after.encode(&mut Writer::new(&mut self.image));
         for (at, place) in self.headers.iter().enumerate() {
             let header = place.read(&self.image);
-            if !header.republished
-                && let Some(Decided { table, row }) = header.decided
-            {
+            if let Some(Decided { table, row }) = header.fired() {
                 *self.rows.entry((at, table, row)).or_default() += 1;
             }
         }
@@ -150,7 +148,7 @@ impl Summary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::Reason;
+    use interfaces::{Basis, Reason};
     use rcs_core::name::Name16;
 
     #[test]
@@ -164,6 +162,10 @@ mod tests {
             if tick == 5 {
                 (after.task.status.echo, after.task.status.report) = (1, HwsReport::Executing);
                 after.task.header.decided = Some(Decided { table: 1, row: 2 });
+            }
+            after.task.header.stamp = Tick(tick);
+            if (5..=30).contains(&tick) {
+                after.task.header.basis = Some(Basis { tick: Tick(tick), ..Basis::default() });
             }
             if tick == 30 {
                 after.task.status.report = HwsReport::Error;
@@ -179,6 +181,9 @@ mod tests {
         );
         assert!(text.contains("       5    1.04  error      MOVE\n"), "{text}");
         assert!(text.contains("  tick 30  Task: the location is not in the task data"), "{text}");
-        assert!(text.contains("  Task ") && text.contains(": 2 x36\n"), "{text}");
+        assert!(
+            text.contains("  Task ") && text.contains(": 2 x26\n"),
+            "a row that rests is not counted: {text}"
+        );
     }
 }

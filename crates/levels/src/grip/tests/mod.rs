@@ -566,7 +566,7 @@ fn state_and_outputs_survive_as_bytes() {
     bench.wait(7);
     let state = *<Grip as Process<()>>::state(&bench.process);
     let image: [u8; 512] = to_bytes(&state);
-    assert!(State::SIZE <= image.len() && GripOutputs::SIZE <= 128, "{} {}", State::SIZE, GripOutputs::SIZE);
+    assert!(State::SIZE <= image.len() && GripOutputs::SIZE <= 192, "{} {}", State::SIZE, GripOutputs::SIZE);
     let back = rcs_core::plain::from_bytes::<State>(&image).unwrap();
     let mut resumed = Grip::default();
     Process::<()>::restore(&mut resumed, back);

@@ -38,7 +38,7 @@ impl State {
         if !self.execution.receiver.started {
             self.gripped = outputs.status.gripped;
         }
-        let arrival = self.execution.receiver.observe(command.number);
+        let arrival = self.execution.observe(inputs.tick, command.number);
         let asked = self.execution.asked(arrival);
         if asked == Asked::Now {
             (self.command, self.ordered) = (*command, Ordered::Nothing);

@@ -697,10 +697,10 @@ proptest! {
             let state = *<Pedestal as Process<()>>::state(&twin.process);
             twin.process = Pedestal::default();
             Process::<()>::restore(&mut twin.process, state);
-            let (one, two): ([u8; 128], [u8; 128]) =
+            let (one, two): ([u8; 192], [u8; 192]) =
                 (to_bytes(&bench.memory.pedestal), to_bytes(&twin.memory.pedestal));
             prop_assert_eq!(one, two);
         }
-        prop_assert!(State::SIZE < 128 && PedestalOutputs::SIZE <= 128);
+        prop_assert!(State::SIZE < 192 && PedestalOutputs::SIZE <= 192);
     }
 }

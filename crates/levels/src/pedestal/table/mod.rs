@@ -99,6 +99,8 @@ impl<Data: ?Sized> Process<Data> for Table {
                 state.phase = decision.next;
                 if accepted {
                     state.execution.note(&decision.of(number::CALIBRATE));
+                } else {
+                    state.execution.rows.beside(&decision.of(number::CALIBRATE));
                 }
                 decision.action
             }

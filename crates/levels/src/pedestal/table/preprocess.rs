@@ -48,7 +48,7 @@ impl State {
         let command = &inputs.memory.pedestal.table;
         let sensors = &inputs.external.devices.pedestal;
         let starting = !self.execution.receiver.started;
-        let arrival = self.execution.receiver.observe(command.number);
+        let arrival = self.execution.observe(inputs.tick, command.number);
         if arrival == Arrival::New {
             self.command = *command;
         }

@@ -518,6 +518,6 @@ proptest! {
             prop_assert!(motor.number == 0 || motor == last || motor.number != last.number);
             last = motor;
         }
-        prop_assert!(State::SIZE < 128 && TableOutputs::SIZE <= 80);
+        prop_assert!(State::SIZE < 192 && TableOutputs::SIZE <= 144);
     }
 }

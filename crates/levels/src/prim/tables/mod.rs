@@ -362,9 +362,9 @@ commands! {
 #[must_use]
 pub fn decide(step: Step, link_step: &mut LinkStep, seen: &Seen) -> Choice<Action, Step> {
     accept(step, &seen.request).then(number::ACCEPT, |()| match link(*link_step, &seen.situation) {
-        Verdict::Decided(Decision { row, action, next }) => {
+        Verdict::Decided(Decision { row, action, next, values }) => {
             *link_step = next;
-            Choice { table: number::LINK, row, action, next: step }
+            Choice { table: number::LINK, row, action, next: step, values }
         }
         Verdict::Passed(()) => of_command(seen.verb, step, &seen.situation),
     })

@@ -16,7 +16,7 @@ use geometry::{
     pose::{Pose, WireFrame},
 };
 use interfaces::{
-    ChangingPose, CommonMemory, Decided, ExternalInputs, Header, PrimOutputs, Reason, T3iOutputs, pose_range,
+    ChangingPose, CommonMemory, ExternalInputs, Header, PrimOutputs, Reason, T3iOutputs, pose_range,
     prim::{PrimReport, PrimVerb},
     process::{Inputs, Process},
     t3i::{LinkFault, ReportCheck, T3iReport, T3iVerb},
@@ -31,7 +31,7 @@ use taskdata::{
     load::{Source, Store},
 };
 
-use super::{Prim, tables::number};
+use super::Prim;
 use crate::coverage::Coverage;
 
 /// Points that T3I can queue.
@@ -278,14 +278,6 @@ impl Rig {
         } else {
             self.prim.step(&inputs, &mut prim);
             self.rows.note(&prim.header);
-            let of_tick = self.prim.state().rows;
-            for (table, row) in [
-                (number::ATTEND, of_tick.attend),
-                (number::PATH_CLOCK, of_tick.path_clock),
-                (number::RECORD_POSE, of_tick.record_pose),
-            ] {
-                self.rows.note(&Header { decided: Some(Decided { table, row }), ..Header::default() });
-            }
         }
         let t3i = self.t3i.step(self.tick, &self.memory, stalled);
         self.memory.prim = prim;

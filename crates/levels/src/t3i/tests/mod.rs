@@ -16,7 +16,7 @@ use geometry::{
     pose::WireFrame,
 };
 use interfaces::{
-    CommonMemory, Decided, ExternalInputs, Header, T3iOutputs,
+    CommonMemory, Decided, ExternalInputs, T3iOutputs,
     device::{LinkBytes, RESOLVER_COUNTS},
     process::{Inputs, Process},
     t3i::{LinkFault, ReportCheck, T3iReport, T3iVerb},
@@ -110,11 +110,7 @@ impl Bench {
         let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
         Process::<()>::step(&mut self.t3i, &inputs, &mut outputs);
         self.memory.t3i = outputs;
-        let received = Decided { table: tables::number::RECEIVE, row: self.t3i.state.receive_row };
-        let reported = Decided { table: tables::number::REPORT, row: self.t3i.state.report_row };
-        for decided in [Some(reported), Some(received), outputs.header.decided] {
-            self.rows.note(&Header { decided, ..Header::default() });
-        }
+        self.rows.note(&outputs.header);
         self.cell(&outputs.link_tx, false);
         &self.memory.t3i
     }

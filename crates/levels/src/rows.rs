@@ -1,0 +1,128 @@
+//! Which rows a process tells of in its header, when they fired, and what their tables were consulted with.
+
+use interfaces::{Basis, Consulted, Decided, Header};
+use rcs_core::{
+    Plain,
+    header::BESIDE,
+    name::Name16,
+    table::{Choice, Values},
+    tick::Tick,
+};
+
+/// The rows of a process.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Rows {
+    /// The tick in which the process was stepped last.
+    pub tick: Tick,
+    /// The row that decided last, if any has.
+    pub decided: Option<Decided>,
+    /// When it did, and what its table was consulted with.
+    pub basis: Option<Basis>,
+    /// Rows of other tables of that tick.
+    pub beside: [Option<Consulted>; BESIDE],
+}
+
+impl Rows {
+    /// A tick begins: what stood beside belongs to an earlier one.
+    pub fn begin(&mut self, tick: Tick) {
+        (self.tick, self.beside) = (tick, [None; BESIDE]);
+    }
+
+    /// A row has decided about the command. What has decided before in the same tick goes beside.
+    pub fn decide(&mut self, table: u8, row: u8, values: Values) {
+        if let (Some(decided), Some(basis)) = (self.decided, self.basis)
+            && basis.tick == self.tick
+        {
+            self.add(Consulted { decided, values: basis.values });
+        }
+        self.decided = Some(Decided { table, row });
+        self.basis = Some(Basis { tick: self.tick, values });
+    }
+
+    /// A row of a table that says nothing about the outcome of the command.
+    pub fn beside<Action, Step>(&mut self, choice: &Choice<Action, Step>) {
+        let decided = Decided { table: choice.table, row: choice.row };
+        self.add(Consulted { decided, values: choice.values });
+    }
+
+    /// The row of a table beside, if it was consulted in the last tick.
+    #[must_use]
+    pub fn row_of(&self, table: u8) -> Option<u8> {
+        let mut rows = self.beside.iter().flatten().map(|consulted| consulted.decided);
+        rows.find(|decided| decided.table == table).map(|decided| decided.row)
+    }
+
+    fn add(&mut self, consulted: Consulted) {
+        if let Some(free) = self.beside.iter_mut().find(|place| place.is_none()) {
+            *free = Some(consulted);
+        }
+    }
+
+    /// The header of the outputs of this tick; `step` is the text of the command's step.
+    #[must_use]
+    pub fn header(&self, tick: Tick, step: &str) -> Header {
+        Header {
+            stamp: tick,
+            republished: false,
+            decided: self.decided,
+            basis: self.basis,
+            beside: self.beside,
+            step: Some(Name16::clipped(step)).filter(|step| !step.is_empty()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const fn values(variables: u64) -> Values {
+        Values { step: 1, variables }
+    }
+
+    #[test]
+    fn a_row_keeps_its_tick_and_what_stands_beside_does_not() {
+        let mut rows = Rows::default();
+        rows.begin(Tick(4));
+        rows.beside(&Choice { table: 7, row: 2, action: (), next: (), values: values(9) });
+        rows.decide(3, 5, values(1));
+        let header = rows.header(Tick(4), "moving");
+        assert_eq!(header.fired(), Some(Decided { table: 3, row: 5 }));
+        assert_eq!(
+            header.beside,
+            [Some(Consulted { decided: Decided { table: 7, row: 2 }, values: values(9) }), None, None]
+        );
+        assert_eq!((rows.row_of(7), rows.row_of(3)), (Some(2), None));
+        rows.begin(Tick(5));
+        let header = rows.header(Tick(5), "");
+        assert_eq!((header.age(), header.fired(), header.step), (Some(1), None, None));
+        assert_eq!(header.beside, [None; BESIDE]);
+    }
+
+    #[test]
+    fn the_last_row_of_a_tick_is_the_one_that_decided() {
+        let mut rows = Rows::default();
+        rows.begin(Tick(4));
+        rows.decide(3, 5, values(1));
+        rows.begin(Tick(6));
+        rows.decide(4, 1, values(2));
+        assert_eq!(rows.beside, [None; BESIDE], "the row of an earlier tick is not one of this");
+        rows.decide(9, 8, values(3));
+        let header = rows.header(Tick(6), "");
+        assert_eq!(
+            header.consulted(),
+            Some(Consulted { decided: Decided { table: 9, row: 8 }, values: values(3) })
+        );
+        assert_eq!(rows.row_of(4), Some(1));
+    }
+
+    #[test]
+    fn there_is_room_for_the_tables_of_prim() {
+        let mut rows = Rows::default();
+        rows.begin(Tick(1));
+        for table in 1..=4 {
+            rows.beside(&Choice { table, row: table, action: (), next: (), values: values(0) });
+        }
+        assert_eq!((rows.row_of(3), rows.row_of(4)), (Some(3), None));
+    }
+}
