@@ -21,6 +21,7 @@ pub mod agreement;
 mod as_text;
 pub mod boards;
 pub mod change;
+mod cell_view;
 pub mod config;
 pub mod contacts;
 mod egm;

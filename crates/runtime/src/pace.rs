@@ -1,6 +1,6 @@
 //! Keeps the ticks of a run on their grid, and says how well that went.
 
-use std::{collections::BTreeMap, fmt::Write as _};
+use std::{collections::BTreeMap, fmt::Write as _, time::Duration};
 
 use executive::{
     clock::Clock,
@@ -126,6 +126,12 @@ impl Pace {
     #[must_use]
     pub fn verdict(&self) -> Option<String> {
         self.verdict.clone()
+    }
+
+    /// How late the last tick began.
+    #[must_use]
+    pub const fn last_late(&self) -> Duration {
+        self.clock.late()
     }
 
     /// How late ticks began; `None` if they follow each other at once.

@@ -31,6 +31,7 @@ use taskdata::load::Job;
 
 use crate::{
     boards::Controller,
+    cell_view::View,
     config::{ClockKind, RobotKind, RunConfig},
     contacts::{Commands, ContactCheck},
     egm::EgmPort,
@@ -86,6 +87,8 @@ pub struct Run {
     pub(crate) placement: PlacementCheck,
     /// The warning that the T3 controller showed last, and when.
     pub(crate) warning: Option<(Tick, String)>,
+    /// What the cell shows to programs outside.
+    view: Box<View>,
     /// Events of the cell since the last tick, for the log of the next one.
     fresh: Vec<(Level, &'static str, String)>,
     /// What has happened, for the result.
@@ -220,6 +223,7 @@ impl Run {
             placement: PlacementCheck::new(&description),
             warning: None,
             check: ContactCheck::new(description.contact),
+            view: Box::default(),
             fresh: Vec::new(),
             events: Events::default(),
             rest: RestWatch::default(),
@@ -367,6 +371,16 @@ impl Run {
         log.cell(tick, &self.workstation.cell, self.robot.egm().map(EgmPort::frames));
     }
 
+    /// Show programs outside the cell as a tick has left it. A robot elsewhere has none.
+    fn publish_cell(&mut self, tick: Tick) {
+        let publisher = self.runner.publisher().filter(|_| !self.robot.is_elsewhere());
+        if let Some(publisher) = publisher {
+            let job = (self.job.steps.len(), self.neighbours.begun_steps());
+            let cell = &self.workstation.cell;
+            publisher.show_cell(self.view.look(tick, cell, self.warning.as_ref(), job, &self.pace));
+        }
+    }
+
     /// One tick; how the run ends, if it ends with it.
     fn tick(&mut self) -> Option<Ending> {
         self.wait();
@@ -412,6 +426,7 @@ impl Run {
             self.generations.current(),
         );
         self.note_neighbours(tick);
+        self.publish_cell(tick);
         // Vision in another process has answered the tick that is over.
         self.inputs.vision = self.workstation.cell.inputs().vision;
         match progress {

@@ -1,11 +1,11 @@
 //! The side of the others: look into a run without disturbing it.
 
 use interfaces::{CommonMemory, ExternalInputs};
-use rcs_core::plain::DecodeError;
+use rcs_core::{plain::DecodeError, tick::Tick};
 
 use super::{
-    buffers::Readers, error::SharedMemoryError, layout::Pulse, name::RunName, place, publish::FIRST_EPOCH,
-    runs,
+    buffers::Readers, cell::CellView, error::SharedMemoryError, history::Headers, layout::Pulse,
+    name::RunName, place, publish::FIRST_EPOCH, runs,
 };
 
 /// How often a reader looks again when it meets the writer at work. Writing takes microseconds of a tick.
@@ -89,6 +89,28 @@ impl Attached {
     pub fn pulse(&self) -> Result<Pulse, ReadError> {
         let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
         Ok(ports.readers.executive.read()?)
+    }
+
+    /// The headers of the ticks behind `after`, the oldest first: at most those of the last ten seconds,
+    /// all of them with [`Tick::BEFORE_START`].
+    ///
+    /// # Errors
+    /// [`ReadError`].
+    pub fn history(&self, after: Tick) -> Result<Vec<Headers>, ReadError> {
+        let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
+        let last = ports.readers.executive.read()?.tick;
+        Ok(ports.readers.history.read(after, last)?)
+    }
+
+    /// What the simulated cell shows; `None` if the run has none, or before its first tick. It is published
+    /// after the tick whose number it bears, so that it may be a tick behind [`Self::memory`].
+    ///
+    /// # Errors
+    /// [`ReadError`].
+    pub fn cell(&self) -> Result<Option<CellView>, ReadError> {
+        let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
+        let view = ports.readers.cell.read()?;
+        Ok((view.tick != Tick::BEFORE_START).then_some(view))
     }
 }
 

@@ -1,7 +1,8 @@
 //! The buffers in shared memory, service by service.
 //!
-//! Each process has a service with one entry, its output buffers as a byte image. Two more services hold what
-//! came from outside and what the executive says. iceoryx2 hands an entry over whole, so all buffers that a
+//! Each process has a service with one entry, its output buffers as a byte image. More services hold what came
+//! from outside, what the executive says, what the simulated cell shows, and the headers of the last ten seconds
+//! ([`super::history`]). iceoryx2 hands an entry over whole, so all buffers that a
 //! reader finds in it are of one tick.
 
 use std::fmt::Debug;
@@ -19,7 +20,9 @@ use rcs_core::{
 use std::marker::PhantomData;
 
 use super::{
+    cell::{CELL, CellView},
     error::SharedMemoryError,
+    history::{HistoryReader, HistoryWriter},
     layout::{EXECUTIVE, Epoch, OUTSIDE, Outside, Pulse},
     runs,
 };
@@ -107,6 +110,9 @@ macro_rules! services {
             outside: ServiceWriter<{ Outside::SIZE }, Outside>,
             /// What the executive says.
             pub executive: ServiceWriter<{ Pulse::SIZE }, Pulse>,
+            /// What the simulated cell shows.
+            pub(super) cell: ServiceWriter<{ CellView::SIZE }, CellView>,
+            history: HistoryWriter,
         }
 
         impl Writers {
@@ -119,13 +125,17 @@ macro_rules! services {
                     $( $field: ServiceWriter::create(node, stringify!($field), epoch)?, )+
                     outside: ServiceWriter::create(node, OUTSIDE, epoch)?,
                     executive: ServiceWriter::create(node, EXECUTIVE, epoch)?,
+                    cell: ServiceWriter::create(node, CELL, epoch)?,
+                    history: HistoryWriter::create(node, epoch)?,
                 })
             }
 
-            /// Write a tick: what came in, what the processes wrote, and the pulse, in this order. Does not allocate.
+            /// Write a tick: what came in, what the processes wrote, their headers into the history, and the pulse, in
+            /// this order. Does not allocate.
             pub fn write(&self, inputs: &ExternalInputs, memory: &CommonMemory, pulse: &Pulse) {
                 self.outside.write(&Outside { tick: pulse.tick, inputs: *inputs });
                 $( self.$field.write(&memory.$field); )+
+                self.history.write(pulse.tick, memory);
                 self.executive.write(pulse);
             }
         }
@@ -137,6 +147,10 @@ macro_rules! services {
             pub outside: ServiceReader<{ Outside::SIZE }, Outside>,
             /// What the executive says.
             pub executive: ServiceReader<{ Pulse::SIZE }, Pulse>,
+            /// What the simulated cell shows.
+            pub(super) cell: ServiceReader<{ CellView::SIZE }, CellView>,
+            /// The headers of the last ten seconds.
+            pub(super) history: HistoryReader,
         }
 
         impl Readers {
@@ -149,6 +163,8 @@ macro_rules! services {
                     $( $field: ServiceReader::open(node, stringify!($field), epoch)?, )+
                     outside: ServiceReader::open(node, OUTSIDE, epoch)?,
                     executive: ServiceReader::open(node, EXECUTIVE, epoch)?,
+                    cell: ServiceReader::open(node, CELL, epoch)?,
+                    history: HistoryReader::open(node, epoch)?,
                 })
             }
 

@@ -4,6 +4,11 @@
 use interfaces::{ExternalInputs, for_each_process};
 use rcs_core::{Plain, digest::Digest, plain::Schema, tick::Tick};
 
+use super::{
+    cell::{CELL, CellView},
+    history::{HISTORY, Headers},
+};
+
 /// Epoch of a service: 1 for the first writer, the next number for a writer that takes over from a killed
 /// one, because a blackboard cannot be reopened for writing while a reader holds it. Part of the service's
 /// name.
@@ -55,6 +60,8 @@ macro_rules! services {
             $( (stringify!($field), <$outputs as Plain>::SCHEMA), )+
             (OUTSIDE, Outside::SCHEMA),
             (EXECUTIVE, Pulse::SCHEMA),
+            (HISTORY, Headers::SCHEMA),
+            (CELL, CellView::SCHEMA),
         ];
     };
 }

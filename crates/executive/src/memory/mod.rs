@@ -13,6 +13,7 @@
 //! * [`mod@layout`]: which services there are, [`buffers`]: how they are written and read;
 //! * [`publish`]: the side of the run;
 //! * [`attach`]: the side of the others;
+//! * [`history`]: the headers of the last ten seconds, [`cell`]: what the simulated cell shows;
 //! * [`mirror`]: the status for programs that know nothing of the buffers;
 //! * [`name`], [`place`]: names, directories, prefixes, and that they are this user's alone;
 //! * [`presence`]: which programs of a run live;
@@ -21,7 +22,9 @@
 
 pub mod attach;
 pub mod buffers;
+pub mod cell;
 mod error;
+pub mod history;
 pub mod layout;
 pub mod limit;
 pub mod mirror;
@@ -30,6 +33,7 @@ mod place;
 mod presence;
 pub mod publish;
 pub mod runs;
+mod text;
 
 pub use attach::{Attached, ReadError};
 pub use error::SharedMemoryError;
@@ -40,3 +44,4 @@ pub(crate) use place::{have_room, reserve};
 pub use place::{layout, prefix, root};
 pub use publish::Publisher;
 pub use runs::{clean, clean_objects, list, traces};
+pub use text::Text;

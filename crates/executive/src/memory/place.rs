@@ -27,9 +27,9 @@ use super::{error::SharedMemoryError, layout::layout_version, name::RunName};
 
 /// Where Linux keeps shared memory objects.
 pub(super) const SHARED_MEMORY: &str = "/dev/shm";
-/// Bytes of shared memory that must be free before a run makes its objects, which take 1.2 MB with boards and less
+/// Bytes of shared memory that must be free before a run makes its objects, which take 1.9 MB with boards and less
 /// without.
-const NEEDED: u64 = 2 * 1024 * 1024;
+const NEEDED: u64 = 3 * 1024 * 1024;
 /// What follows the prefix in the name of the directory of iceoryx2.
 const FILES: &str = "files";
 /// Longest wait for a lock that is held for milliseconds.

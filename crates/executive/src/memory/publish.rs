@@ -7,6 +7,7 @@ use interfaces::{CommonMemory, ExternalInputs};
 
 use super::{
     buffers::Writers,
+    cell::CellView,
     error::SharedMemoryError,
     layout::{Epoch, Pulse},
     name::RunName,
@@ -98,6 +99,15 @@ impl Publisher {
         self.pulse = pulse;
         // If it is being looked at, the next tick comes soon.
         let _ = self.window.with(|seen| *seen = Published { external: *external, memory: *memory, pulse });
+    }
+}
+
+impl Publisher {
+    /// Show the simulated cell as a tick has left it. Does not allocate.
+    pub fn show_cell(&self, view: &CellView) {
+        if let Some(ports) = &self.ports {
+            ports.writers.cell.write(view);
+        }
     }
 }
 

@@ -1,0 +1,120 @@
+//! What the simulated cell shows to programs outside: [`CellView`], filled after each tick.
+
+use ::neighbours::workstation::player::BegunStep;
+use executive::memory::{
+    Text,
+    cell::{CellView, ControllerView, JobView, Lamps, LatenessView, PARTS, PartView},
+};
+use plant::{
+    Cell, EStop, PartState,
+    t3::{Stage, T3Controller},
+};
+use rcs_core::{name::Name16, tick::Tick};
+
+use crate::pace::Pace;
+
+/// Ticks between two looks at the figures of all ticks so far: a second.
+const SECOND: u64 = 25;
+
+/// The last picture of the cell.
+#[derive(Debug, Default)]
+pub struct View {
+    shown: CellView,
+}
+
+impl View {
+    /// Look at the cell as `tick` has left it. `warning` is what the screen of the robot controller has shown
+    /// last; the job has so many lines, and those that were begun are its steps.
+    pub fn look(
+        &mut self,
+        tick: Tick,
+        cell: &Cell,
+        warning: Option<&(Tick, String)>,
+        (lines, steps): (usize, &[BegunStep]),
+        pace: &Pace,
+    ) -> &CellView {
+        let parts = cell.parts();
+        let (fingers, force) = cell.fingers();
+        let (hand, hand_force) = cell.pedestal_fingers();
+        self.shown = CellView {
+            tick,
+            controller: controller(cell.t3(), warning),
+            joints: cell.joints(),
+            tool: cell.tool().position.into(),
+            fingers: [fingers, force],
+            pedestal_fingers: [hand, hand_force],
+            vise_opening: cell.vise_opening(),
+            drum_closed: cell.drum_closed(),
+            gripper: cell.gripper(),
+            part_count: count(parts.len()),
+            parts: shown(&parts),
+            job: job(lines, steps),
+            lateness: lateness(self.shown.lateness, tick, pace),
+        };
+        &self.shown
+    }
+}
+
+fn controller(t3: &T3Controller, warning: Option<&(Tick, String)>) -> ControllerView {
+    let stage = t3.stage();
+    let is = |stages: &[Stage]| stages.contains(&stage);
+    ControllerView {
+        stage: Text::clipped(stage.text()),
+        lamps: Lamps {
+            power: stage != Stage::Dark,
+            fault_reset: stage == Stage::Faulted,
+            hydraulics_enabled: !is(&[Stage::Dark, Stage::Faulted, Stage::Ready]),
+            hydraulics_on: t3.cut().is_none(),
+            auto: is(&[Stage::Homing, Stage::Auto, Stage::Rehearsing, Stage::Depc]),
+            hold: t3.hold(),
+        },
+        screen: warning.map_or_else(Text::default, |(_, text)| Text::clipped(text)),
+        screen_tick: warning.map_or(Tick::BEFORE_START, |(tick, _)| *tick),
+        cut: t3.cut().map_or_else(Text::default, |cut| Text::clipped(&cut.to_string())),
+        estops: EStop::ALL.map(|site| t3.is_pressed(site)),
+        aligned: t3.aligned(),
+        at_rest: t3.at_rest(),
+    }
+}
+
+fn count(number: usize) -> u32 {
+    u32::try_from(number).unwrap_or(u32::MAX)
+}
+
+/// The first parts of the cell.
+fn shown(parts: &[PartState]) -> [PartView; PARTS] {
+    let mut views = [PartView::default(); PARTS];
+    for (view, part) in views.iter_mut().zip(parts) {
+        *view = PartView {
+            id: part.id,
+            name: Name16::clipped(&part.name),
+            location: Name16::clipped(&part.location),
+            sector: part.sector,
+            held: part.held,
+            clamped: part.clamped,
+            position: part.position,
+        };
+    }
+    views
+}
+
+fn job(lines: usize, steps: &[BegunStep]) -> JobView {
+    let last = steps.last();
+    JobView {
+        lines: count(lines),
+        begun: count(steps.len()),
+        line: last.map_or_else(Text::default, |step| Text::clipped(&step.text)),
+        began: last.map_or(Tick::BEFORE_START, |step| step.began),
+    }
+}
+
+/// The figures of all ticks take longer than a tick is to be delayed by: once a second they are taken anew.
+fn lateness(before: LatenessView, tick: Tick, pace: &Pace) -> LatenessView {
+    let last = pace.last_late().as_secs_f64() * 1e6;
+    match pace.late() {
+        Some(late) if tick.0.is_multiple_of(SECOND) => {
+            LatenessView { last, p50: late.p50, p99: late.p99, max: late.max }
+        }
+        _ => LatenessView { last, ..before },
+    }
+}
