@@ -20,8 +20,8 @@
 pub mod agreement;
 mod as_text;
 pub mod boards;
-pub mod change;
 mod cell_view;
+pub mod change;
 pub mod config;
 pub mod contacts;
 mod egm;
