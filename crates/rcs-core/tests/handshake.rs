@@ -1,0 +1,294 @@
+//! The handshake, searched through: breadth first over all states that commander and receiver can reach.
+//!
+//! The code under test is [`Commander`] and [`Receiver`] as the processes use them; the model around it is two buffers with
+//! one writer each. In every tick the commander may restart and may send a command, up to five; the receiver may step,
+//! restart, be held or be silent, and may finish what it executes; either may read what was written one tick or two ticks
+//! ago. A restart forgets the process and leaves its output buffer, as on the boards.
+//!
+//! Commands are told apart by their *content*, which the code does not see. Ages stand in place of ticks, up to the one
+//! beyond which the code does not tell them apart, so that the search comes to an end.
+
+use std::collections::{HashMap, VecDeque};
+
+use rcs_core::{
+    handshake::{Arrival, Commander, ECHO_LIMIT, Lower, Receiver},
+    header::Header,
+    tick::Tick,
+};
+
+/// Commands that are sent in all.
+const COMMANDS: u8 = 5;
+/// Ages above the limit are alike.
+const OLD: u8 = 5;
+/// The present tick.
+const NOW: Tick = Tick(1000);
+
+/// What a commander goes on from when it starts.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Start {
+    /// Its own output buffer: commanders of processes.
+    Buffer,
+    /// The echo of what is below: commanders of devices and of other systems.
+    Echo,
+}
+
+/// The command buffer: number, and the content, from 1; 0 for none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+struct Written {
+    number: u32,
+    content: u8,
+}
+
+/// How far a command has come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+enum Report {
+    #[default]
+    Done,
+    Executing,
+    Error,
+}
+
+impl Report {
+    const fn lower(self) -> Lower {
+        match self {
+            Self::Done => Lower::Done,
+            Self::Executing => Lower::Executing,
+            Self::Error => Lower::Error,
+        }
+    }
+}
+
+/// The status buffer, with the content that it is about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+struct Answered {
+    /// Ticks since it was stamped, beyond the one that every reading takes.
+    age: u8,
+    republished: bool,
+    echo: u32,
+    report: Report,
+    about: u8,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+struct State {
+    /// Of the commander: number, ticks since it was sent, whether it has started.
+    commander: (u32, u8, bool),
+    /// Of the receiver: echo, whether it has started, whether it has adopted.
+    receiver: (u32, bool, bool),
+    /// What the receiver's report is about.
+    current: u8,
+    /// The buffers: as written in the last tick, and in the one before.
+    written: [Written; 2],
+    answered: [Answered; 2],
+    /// Commands so far, and those that were executed, a bit each.
+    sent: u8,
+    executed: u8,
+}
+
+/// What one side does in a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Commanding {
+    restarts: bool,
+    sends: bool,
+    /// It reads what was written this tick and one more ago.
+    late: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Receiving {
+    Steps {
+        restarts: bool,
+        late: bool,
+        finishes: bool,
+    },
+    /// Held by a switch: its last outputs are published again.
+    Held,
+    /// Gone.
+    Silent,
+}
+
+/// A tick.
+type Event = (Commanding, Receiving);
+
+const QUIET: Commanding = Commanding { restarts: false, sends: false, late: false };
+const STEP: Receiving = Receiving::Steps { restarts: false, late: false, finishes: false };
+
+/// What a tick has shown to be wrong.
+type Wrong = &'static str;
+
+impl State {
+    /// Run a tick. The commander's reading comes with it.
+    fn tick(&mut self, (commanding, receiving): Event, start: Start) -> Result<Lower, Wrong> {
+        let before = *self;
+        let reading = self.command(&before, commanding, start)?;
+        self.receive(&before, receiving)?;
+        Ok(reading)
+    }
+
+    fn command(&mut self, before: &Self, event: Commanding, start: Start) -> Result<Lower, Wrong> {
+        let (number, age, started) = before.commander;
+        let mut commander = Commander { number, sent: Tick(NOW.0 - u64::from(age)), started };
+        if event.restarts {
+            commander = Commander::default();
+        }
+        let status = before.answered[usize::from(event.late)];
+        match start {
+            Start::Buffer => commander.start_from(NOW, before.written[0].number, status.echo),
+            Start::Echo => commander.start(status.echo),
+        }
+        let header = Header {
+            stamp: Tick(NOW.0 - 1 - u64::from(status.age)),
+            republished: status.republished,
+            ..Header::default()
+        };
+        let reading = commander.read(NOW, &header, status.echo, status.report.lower());
+        let believed = matches!(reading, Lower::Done | Lower::Executing | Lower::Error);
+        // A commander that has sent nothing since it started acts on no status.
+        if believed && commander.started && status.about != before.written[0].content {
+            return Err("a status is believed that is about another command");
+        }
+        let mut written = before.written[0];
+        if event.sends {
+            self.sent += 1;
+            written = Written { number: commander.send(NOW), content: self.sent };
+        }
+        self.written = [written, before.written[0]];
+        let age = u8::try_from(NOW.since(commander.sent) + 1).unwrap_or(OLD).min(OLD);
+        self.commander = (commander.number, age, commander.started);
+        Ok(reading)
+    }
+
+    fn receive(&mut self, before: &Self, event: Receiving) -> Result<(), Wrong> {
+        let last = before.answered[0];
+        let older = Answered { age: (last.age + 1).min(OLD), ..last };
+        let new = match event {
+            Receiving::Silent => older,
+            Receiving::Held => Answered { age: 0, republished: true, ..last },
+            Receiving::Steps { restarts, late, finishes } => {
+                let (echo, started, adopted) = before.receiver;
+                let mut receiver = Receiver { echo, started, adopted };
+                if restarts {
+                    receiver = Receiver::default();
+                }
+                let command = before.written[usize::from(late)];
+                let going = if finishes { Report::Done } else { Report::Executing };
+                let report = match receiver.observe(command.number) {
+                    Arrival::New => {
+                        let bit = 1 << command.content;
+                        if self.executed & bit != 0 {
+                            return Err("a command is executed twice");
+                        }
+                        self.executed |= bit;
+                        self.current = command.content;
+                        going
+                    }
+                    Arrival::Restarted => {
+                        self.current = command.content;
+                        Report::Error
+                    }
+                    Arrival::Nothing => Report::Done,
+                    Arrival::Same if last.report == Report::Executing => going,
+                    Arrival::Same => last.report,
+                };
+                self.receiver = (receiver.echo, receiver.started, receiver.adopted);
+                Answered { age: 0, republished: false, echo: receiver.echo, report, about: self.current }
+            }
+        };
+        self.answered = [new, older];
+        Ok(())
+    }
+
+    /// From here on nothing goes wrong: is the last command answered? And if the receiver has gone: is it lost?
+    fn is_answered(mut self, start: Start) -> Result<(), Wrong> {
+        let mut gone = self;
+        let (mut reading, mut lost) = (Lower::Pending, Lower::Pending);
+        for _ in 0..ECHO_LIMIT + 2 {
+            reading = self.tick((QUIET, STEP), start)?;
+            lost = gone.tick((QUIET, Receiving::Silent), start)?;
+        }
+        let content = self.written[0].content;
+        if content != 0 && !matches!(reading, Lower::Done | Lower::Executing | Lower::Error) {
+            return Err("a command is not answered");
+        }
+        if self.commander.2 && self.answered[0].about != content {
+            return Err("a command is neither executed nor adopted");
+        }
+        if lost != Lower::Lost {
+            return Err("a receiver that has gone is not reported lost");
+        }
+        Ok(())
+    }
+}
+
+/// All that can happen in a tick.
+fn events(state: &State) -> Vec<Event> {
+    let three = || (0_u8..8).map(|bits| (bits & 1 != 0, bits & 2 != 0, bits & 4 != 0));
+    let steps = three().map(|(restarts, late, finishes)| Receiving::Steps { restarts, late, finishes });
+    let receiving: Vec<Receiving> = steps.chain([Receiving::Held, Receiving::Silent]).collect();
+    let commanding = three().map(|(restarts, late, sends)| Commanding { restarts, sends, late });
+    let possible = commanding.filter(|commanding| !commanding.sends || state.sent < COMMANDS);
+    possible.flat_map(|commanding| receiving.iter().map(move |receiving| (commanding, *receiving))).collect()
+}
+
+/// What was searched, or the shortest way to something wrong.
+struct Found {
+    states: usize,
+    ticks: u64,
+    wrong: Option<(Vec<Event>, Wrong)>,
+}
+
+/// The states that are known, each with the one before it and the tick between them.
+type Known = HashMap<State, Option<(State, Event)>>;
+
+/// The ticks that lead to a state.
+fn way(known: &Known, mut state: State, last: Option<Event>) -> Vec<Event> {
+    let mut events = Vec::from_iter(last);
+    while let Some(Some((before, event))) = known.get(&state) {
+        events.push(*event);
+        state = *before;
+    }
+    events.reverse();
+    events
+}
+
+/// Search all states, the nearest first.
+fn search(start: Start) -> Found {
+    let mut known: Known = HashMap::from([(State::default(), None)]);
+    let mut open = VecDeque::from([State::default()]);
+    let mut ticks = 0;
+    while let Some(state) = open.pop_front() {
+        if let Err(wrong) = state.is_answered(start) {
+            return Found { states: known.len(), ticks, wrong: Some((way(&known, state, None), wrong)) };
+        }
+        for event in events(&state) {
+            ticks += 1;
+            let mut next = state;
+            if let Err(wrong) = next.tick(event, start) {
+                let way = way(&known, state, Some(event));
+                return Found { states: known.len(), ticks, wrong: Some((way, wrong)) };
+            }
+            known.entry(next).or_insert_with(|| {
+                open.push_back(next);
+                Some((state, event))
+            });
+        }
+    }
+    Found { states: known.len(), ticks, wrong: None }
+}
+
+#[test]
+fn between_processes_each_content_is_executed_once_and_each_status_is_about_its_command() {
+    let found = search(Start::Buffer);
+    assert!(found.wrong.is_none(), "{:#?}", found.wrong);
+    assert!(found.states > 100_000, "{} states, {} ticks", found.states, found.ticks);
+}
+
+/// A known limit: a commander that follows the echo alone gives a number twice if it restarts before its first command is
+/// echoed. The second command is then taken for seen, and the status of the first for its own. This is the shortest way.
+#[test]
+fn a_commander_that_follows_the_echo_gives_a_number_twice_after_a_restart_before_the_echo() {
+    let sends = Commanding { sends: true, ..QUIET };
+    let restarts = Commanding { restarts: true, ..sends };
+    let wrong = "a status is believed that is about another command";
+    assert_eq!(search(Start::Echo).wrong, Some((vec![(sends, STEP), (restarts, STEP)], wrong)));
+}
