@@ -11,7 +11,7 @@ use rcs_console::{
     model::{Effect, Key, Model, Pane, Place, Screen},
     once,
     picture::Picture,
-    source::{About, Parts, Recorded, Source, State},
+    source::{About, Cell, Recorded, Source, State},
     story::Story,
     view::{Look, Scene, Waiting, draw},
 };
@@ -66,8 +66,8 @@ impl Source for As {
         self.0.story()
     }
 
-    fn parts(&self, _: u64) -> Parts {
-        Parts::NotPublished
+    fn cell(&self, _: u64) -> Cell {
+        Cell::NotPublished
     }
 }
 

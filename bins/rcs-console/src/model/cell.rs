@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use executive::memory::cell::{CellView, PartView};
 use geometry::kinematics::{JOINT_NAMES, Joints, T3};
 use interfaces::{
     CommonMemory,
@@ -9,8 +10,10 @@ use interfaces::{
 };
 
 use super::{Section, Text, Tone};
-use crate::{picture::Picture, source::Parts};
+use crate::{picture::Picture, source::Cell};
 
+/// The emergency stops, in the order of the cell (III.6).
+const ESTOPS: [&str; 5] = ["control panel", "teach pendant", "terminals", "joystick box", "pedestal"];
 /// Degrees to a limit below which a joint is marked.
 const NEAR: f64 = 10.0;
 /// Degrees of margin for a sign of the bar.
@@ -20,21 +23,9 @@ const LONGEST: f64 = 12.0;
 
 /// The sections, from the top.
 #[must_use]
-pub fn sections(picture: &Picture, parts: &Parts) -> Vec<Section> {
+pub fn sections(picture: &Picture, cell: &Cell) -> Vec<Section> {
     let devices = &picture.external.devices;
-    vec![
-        joints(devices),
-        hand(&picture.memory, devices),
-        holsters(devices),
-        self::parts(parts),
-        Section::new(
-            "E-stops and clearances",
-            vec![Text::new(
-                Tone::Faint,
-                " neither a run nor a log tells them tick by tick; messages about both are on screen 3",
-            )],
-        ),
-    ]
+    vec![joints(devices), hand(&picture.memory, devices), holsters(devices), parts(cell), surroundings(cell)]
 }
 
 /// The joint angles that the resolvers tell, radians, turned into the limits of the arm.
@@ -150,18 +141,78 @@ fn holsters(devices: &DeviceInputs) -> Section {
     Section::new("holsters, by their sensors", vec![Text::plain(text)])
 }
 
-fn parts(parts: &Parts) -> Section {
-    let lines = match parts {
-        Parts::NotPublished => {
-            vec![Text::new(Tone::Faint, " a live run does not publish them; its log has them")]
+fn parts(cell: &Cell) -> Section {
+    let lines: Vec<Text> = match cell {
+        Cell::NotPublished => {
+            vec![Text::new(Tone::Faint, " the robot is at a port: no simulated cell shows them")]
         }
-        Parts::At(parts) if parts.is_empty() => vec![Text::new(Tone::Faint, " none has been delivered yet")],
-        Parts::At(parts) => parts
+        Cell::Recorded { parts, .. } => parts
             .iter()
-            .map(|(name, [x, y, z])| Text::plain(format!(" {name:<10} {x:>8.2} {y:>8.2} {z:>8.2} in")))
+            .map(|(name, [x, y, z])| Text::plain(format!(" {name:<17} {x:>8.2} {y:>8.2} {z:>8.2} in")))
             .collect(),
+        Cell::Shown(view) => view.parts.iter().filter(|part| part.id > 0).map(part).collect(),
     };
-    Section::new("parts, as the simulated cell has them", lines)
+    let none = vec![Text::new(Tone::Faint, " none has been delivered yet")];
+    Section::new("parts, as the simulated cell has them", if lines.is_empty() { none } else { lines })
+}
+
+fn part(part: &PartView) -> Text {
+    let [x, y, z] = part.position;
+    let held = match (part.held, part.clamped) {
+        (true, _) => ", held by the gripper",
+        (_, true) => ", held by the vise",
+        _ => "",
+    };
+    let sector = if part.sector > 0 { format!(" sector {}", part.sector) } else { String::new() };
+    let place = format!("{}{sector}{held}", part.location);
+    Text::plain(format!(" {:<17} {x:>8.2} {y:>8.2} {z:>8.2} in  {place}", part.name.as_str()))
+}
+
+/// What else the cell shows: E-stops, robot controller and job of a run; clearance and contacts of a log.
+fn surroundings(cell: &Cell) -> Section {
+    let faint = |text: &str| vec![Text::new(Tone::Faint, text)];
+    match cell {
+        Cell::NotPublished => Section::new("E-stops and clearances", faint(" they are at the robot")),
+        Cell::Recorded { clearance, contacts, .. } => {
+            let mut lines = vec![match clearance {
+                Some(clearance) => Text::plain(format!(" closest in the whole run: {clearance}")),
+                None => Text::new(Tone::Faint, " the log does not tell the closest clearance"),
+            }];
+            if let Some(contacts) = contacts {
+                lines.push(Text::new(Tone::Trouble, format!("!! contacts: {contacts}")));
+            }
+            lines.extend(faint(" E-stops are in its messages, on screen 3"));
+            Section::new("E-stops and clearances", lines)
+        }
+        Cell::Shown(view) => Section::new("E-stops, robot controller, job", shown(view)),
+    }
+}
+
+fn shown(view: &CellView) -> Vec<Text> {
+    let pressed: Vec<&str> = ESTOPS
+        .into_iter()
+        .zip(view.controller.estops)
+        .filter_map(|(name, is_in)| is_in.then_some(name))
+        .collect();
+    let estops = match &pressed[..] {
+        [] => Text::plain(" E-stops: all five are out"),
+        pressed => Text::new(Tone::Trouble, format!("!! E-stop is in: {}", pressed.join(", "))),
+    };
+    let mut lines = vec![estops];
+    if !view.controller.cut.as_str().is_empty() {
+        lines.push(Text::new(Tone::Trouble, format!("!! no pressure: {}", view.controller.cut)));
+    }
+    lines.push(Text::plain(format!(" robot controller: {}", view.controller.stage)));
+    if !view.controller.screen.as_str().is_empty() {
+        let text =
+            format!("!! its screen since tick {}: {}", view.controller.screen_tick, view.controller.screen);
+        lines.push(Text::new(Tone::Trouble, text));
+    }
+    lines
+        .push(Text::plain(format!(" job: line {} of {}, {}", view.job.begun, view.job.lines, view.job.line)));
+    lines.push(Text::plain(format!(" vise {:.2} in", view.vise_opening)));
+    lines.push(Text::new(Tone::Faint, " clearances are in the log of the run"));
+    lines
 }
 
 #[cfg(test)]
@@ -190,6 +241,20 @@ mod tests {
         assert_eq!(marked(&joints(&devices).lines), 1);
         devices.resolvers.valid = false;
         assert!(joints(&devices).lines[0].text.contains("no power"));
+    }
+
+    #[test]
+    fn what_the_cell_shows_is_told_in_words() {
+        let mut view = CellView::default();
+        let text =
+            |view: &CellView| shown(view).into_iter().map(|line| line.text).collect::<Vec<_>>().join("\n");
+        assert!(text(&view).contains("all five are out") && !text(&view).contains("!!"));
+        view.controller.estops[3] = true;
+        assert!(text(&view).contains("!! E-stop is in: joystick box"));
+        view.parts[0] = PartView { id: 1, held: true, position: [1.0, 2.0, 3.5], ..PartView::default() };
+        let lines = parts(&Cell::Shown(Box::new(view))).lines;
+        assert_eq!(lines.len(), 1);
+        assert!(lines[0].text.contains("3.50 in") && lines[0].text.contains("held by the gripper"));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The ladder (VI.6): a line for each process and for each neighbour, with its command, status and row.
 
 use executive::failure;
-use interfaces::{CommonMemory, ProcessId, device::VisionStatus, for_each_process};
+use interfaces::{CommonMemory, Header, ProcessId, device::VisionStatus, for_each_process};
 use levels::ladder::Ladder;
 use rcs_core::{handshake::Lower, tick::TICK_S};
 
@@ -98,7 +98,7 @@ pub struct Line {
     pub row: String,
     /// What the row says, in the manual's words.
     pub text: String,
-    /// Seconds since the row was chosen; none for one of this tick.
+    /// Seconds since the row fired; none for one of this tick.
     pub age: Option<f64>,
 }
 
@@ -164,15 +164,14 @@ fn process_line(branch: Branch, process: ProcessId, picture: &Picture, story: &S
         echo: Some(echo(&picture.memory, process)),
         row: row.map_or_else(String::new, |(table, row)| format!("{} {}", table.name, row.number)),
         text: row.map_or_else(String::new, |(_, row)| row.to_string()),
-        age: age(process, picture, story),
+        age: age(header),
     }
 }
 
-/// Seconds since a row was chosen; none if that was in this tick, or if no row was chosen yet.
-fn age(process: ProcessId, picture: &Picture, story: &Story) -> Option<f64> {
-    picture.memory.header(process).decided?;
-    let ticks = picture.tick.0.saturating_sub(story.rows(process, picture.tick.0).last()?.tick);
-    (ticks > 0).then_some(ticks as f64 * TICK_S)
+/// Seconds since the row fired; none if that was in this tick, or if it is not known.
+fn age(header: &Header) -> Option<f64> {
+    let ticks = header.age().filter(|ticks| *ticks > 0)?;
+    Some(ticks as f64 * TICK_S)
 }
 
 /// The gripper that is on the robot, as the id pins say (VI.2).

@@ -1,13 +1,14 @@
 //! The link to the robot and the times of the ticks.
 
 use depc::warning::Warning;
+use executive::memory::cell::LatenessView;
 use geometry::pose::WireFrame;
 use interfaces::t3i::{LinkFault, T3iStatus};
 use rcs_core::{Plain, plain::Schema, tick::TICK_S};
 use record::{Level, reader::LogLine};
 
 use super::{Section, Text, Tone, frames};
-use crate::{picture::Picture, story::Story};
+use crate::{picture::Picture, source::Cell, story::Story};
 
 /// Messages that are shown.
 const MESSAGES: usize = 6;
@@ -18,10 +19,10 @@ const SOURCES: [&str; 4] = ["T3 Interface", "cell", "fault", "executive"];
 
 /// The sections, from the top.
 #[must_use]
-pub fn sections(picture: &Picture, story: &Story) -> Vec<Section> {
+pub fn sections(picture: &Picture, story: &Story, cell: &Cell) -> Vec<Section> {
     vec![
         link(picture),
-        times(picture, story),
+        times(picture, story, cell),
         restarts(picture, story),
         messages(picture, story),
         positions(&picture.memory.t3i.status),
@@ -81,7 +82,7 @@ fn positions(status: &T3iStatus) -> Section {
     Section::new("where the robot is, 0.01 in", lines)
 }
 
-fn times(picture: &Picture, story: &Story) -> Section {
+fn times(picture: &Picture, story: &Story, cell: &Cell) -> Section {
     let Some(timing) = picture.timing else {
         let text = " a run in fast clock records no times, so that equal runs have equal logs";
         return Section::new("time", vec![Text::new(Tone::Faint, text)]);
@@ -107,9 +108,24 @@ fn times(picture: &Picture, story: &Story) -> Section {
             summary.max
         )),
         skipped,
-        Text::new(Tone::Faint, " how late a tick began is not published; rcs-run prints it at the end"),
+        lateness(cell),
     ];
     Section::new("time", lines)
+}
+
+/// How late ticks begin on the 40 ms grid.
+fn lateness(cell: &Cell) -> Text {
+    match cell {
+        Cell::Shown(view) => {
+            let LatenessView { last, p50, p99, max } = view.lateness;
+            Text::plain(format!(
+                " begins late {last:.1} us in this tick; p50 {p50:.1}  p99 {p99:.1}  max {max:.1} us"
+            ))
+        }
+        Cell::NotPublished | Cell::Recorded { .. } => {
+            Text::new(Tone::Faint, " how late a tick began is not told here; rcs-run prints it at the end")
+        }
+    }
 }
 
 fn restarts(picture: &Picture, story: &Story) -> Section {
@@ -168,7 +184,7 @@ mod tests {
     }
 
     fn all(picture: &Picture, story: &Story) -> String {
-        let sections = sections(picture, story);
+        let sections = sections(picture, story, &Cell::NotPublished);
         let lines = sections.iter().flat_map(|section| section.lines.iter().map(|line| line.text.as_str()));
         lines.collect::<Vec<_>>().join("\n")
     }

@@ -1,10 +1,10 @@
 //! A process: the decision table that decided last, the rows that fired before, and what they mean.
 
-use interfaces::ProcessId;
+use interfaces::{Header, ProcessId};
 use levels::ladder::{Ladder, ProcessInfo};
 use rcs_core::{
     plain::EnumSchema,
-    table::{Row, Table},
+    table::{Row, Table, Values},
     tick::TICK_S,
 };
 
@@ -28,7 +28,10 @@ pub fn table(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     let number = header.decided.map_or(0, |decided| decided.table);
     let step = header.step.unwrap_or_default();
     let after = if step.is_empty() { String::new() } else { format!(", then {step}") };
-    let mut lines: Vec<Text> = Vec::new();
+    let consulted = header.consulted();
+    let values = consulted.map(|consulted| consulted.values);
+    let mut lines: Vec<Text> = values.map(|values| Text::plain(asked(table, values))).into_iter().collect();
+    lines.extend(beside(info, header));
     let mut at = 0;
     for row in table.rows {
         if row.number == fired.number {
@@ -36,15 +39,46 @@ pub fn table(process: ProcessId, picture: &Picture, filter: &str) -> Section {
             lines.push(Text::new(Tone::Marked, format!("> {:>3}  {row}", row.number)));
             lines.extend(meaning(table, row).into_iter().map(|text| Text::plain(format!("       {text}"))));
         } else {
-            lines.push(Text::plain(format!("  {:>3}  {row}", row.number)));
+            let near = values.and_then(|values| near(table, row, values));
+            let mark = if near.is_some() { '~' } else { ' ' };
+            lines.push(Text::plain(format!("{mark} {:>3}  {row}{}", row.number, near.unwrap_or_default())));
         }
     }
     let filter = filter.to_lowercase();
     let shown = |line: &Text| line.text.to_lowercase().contains(&filter);
     let at = lines.iter().take(at).filter(|line| shown(line)).count();
     lines.retain(shown);
-    let title = format!("table {number} {}, row {} fired{after}", table.name, fired.number);
+    let when = match header.age() {
+        Some(0) => " fired".to_owned(),
+        Some(ticks) => format!(" fired {:.2} s ago", ticks as f64 * TICK_S),
+        None => " was the last".to_owned(),
+    };
+    let title = format!("table {number} {}, row {}{when}{after}", table.name, fired.number);
     Section { title, lines, at }
+}
+
+/// The values with which the table was consulted, of the variables that its rows ask for.
+fn asked(table: &Table, values: Values) -> String {
+    let asked: Vec<&str> = table.asked().map(|variable| variable.name).collect();
+    let known = table.values(values).filter(|(variable, _)| asked.contains(&variable.name));
+    let step = table.step(values).map(|step| format!("step {}", step.name));
+    let values = known.map(|(variable, value)| format!("{} {}", variable.name, value.name));
+    format!("       values: {}", step.into_iter().chain(values).collect::<Vec<_>>().join(", "))
+}
+
+/// With which other value of one variable a row would have fired; none if with no such value.
+fn near(table: &Table, row: &Row, values: Values) -> Option<String> {
+    let misses = table.near_misses(values).filter(|miss| miss.row.number == row.number);
+    let misses: Vec<String> =
+        misses.map(|miss| format!("{} {}", miss.variable.name, miss.value.name)).collect();
+    (!misses.is_empty()).then(|| format!("   [with {}]", misses.join(" or ")))
+}
+
+/// The rows of other tables that fired beside the one that decided.
+fn beside(info: &ProcessInfo, header: &Header) -> Vec<Text> {
+    let rows = header.beside.iter().flatten().filter_map(|consulted| info.row(consulted.decided));
+    rows.map(|(table, row)| Text::plain(format!("       beside: {} {}: {row}", table.name, row.number)))
+        .collect()
 }
 
 /// What a row means, in the words of the source: each condition, the action, the next step.

@@ -6,10 +6,10 @@ use std::{
 };
 
 use executive::memory::{
-    Attached, OnStuck, ReadError, RunName, SET_UP_LIMIT, SharedMemoryError, within_limit,
+    Attached, OnStuck, ReadError, RunName, SET_UP_LIMIT, SharedMemoryError, cell::CellView, within_limit,
 };
 
-use super::{About, Parts, Source, State};
+use super::{About, Cell, Source, State};
 use crate::{
     picture::{Picture, Timing},
     story::Story,
@@ -28,6 +28,7 @@ const SILENCE: Duration = Duration::from_secs(1);
 pub struct Live {
     run: Attached,
     pictures: VecDeque<Picture>,
+    cells: VecDeque<CellView>,
     story: Story,
     state: State,
     news: Instant,
@@ -43,6 +44,7 @@ impl Live {
         let mut live = Self {
             run,
             pictures: VecDeque::new(),
+            cells: VecDeque::new(),
             story: Story::new(STORY),
             state: State::Runs,
             news: Instant::now(),
@@ -80,6 +82,13 @@ impl Live {
             self.pictures.pop_front();
         }
         self.pictures.push_back(picture);
+        // The cell shows itself after the tick; what cannot be read now is read with the next one.
+        if let Ok(Some(cell)) = self.run.cell() {
+            if self.cells.len() == KEPT {
+                self.cells.pop_front();
+            }
+            self.cells.push_back(cell);
+        }
         self.news = Instant::now();
     }
 }
@@ -125,7 +134,9 @@ impl Source for Live {
         &self.story
     }
 
-    fn parts(&self, _: u64) -> Parts {
-        Parts::NotPublished
+    fn cell(&self, tick: u64) -> Cell {
+        let end = self.cells.partition_point(|cell| cell.tick.0 <= tick);
+        let shown = end.checked_sub(1).and_then(|at| self.cells.get(at));
+        shown.map_or(Cell::NotPublished, |cell| Cell::Shown(Box::new(*cell)))
     }
 }

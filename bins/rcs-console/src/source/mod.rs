@@ -7,6 +7,8 @@ mod recorded;
 pub use live::Live;
 pub use recorded::Recorded;
 
+use executive::memory::cell::CellView;
+
 use crate::{picture::Picture, story::Story};
 
 /// A source of pictures. None of them ever writes to what it reads.
@@ -26,8 +28,8 @@ pub trait Source {
     /// What happened from tick to tick.
     fn story(&self) -> &Story;
 
-    /// The parts in the cell as they were in a tick.
-    fn parts(&self, tick: u64) -> Parts;
+    /// The cell as it was in a tick.
+    fn cell(&self, tick: u64) -> Cell;
 }
 
 /// What is looked at.
@@ -58,11 +60,20 @@ pub enum State {
     Torn,
 }
 
-/// Where the parts are.
+/// What a source tells of the cell, beside what the controller senses.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Parts {
-    /// The source does not tell.
+pub enum Cell {
+    /// Nothing: the robot is at a port.
     NotPublished,
-    /// Name and position in inches of each part that has moved or been delivered.
-    At(Vec<(String, [f64; 3])>),
+    /// What a simulated cell shows.
+    Shown(Box<CellView>),
+    /// What a log has.
+    Recorded {
+        /// Name and position in inches of each part that has moved or been delivered.
+        parts: Vec<(String, [f64; 3])>,
+        /// Closest clearance and contacts of the whole run; none before its end, or if nothing is said of them.
+        clearance: Option<String>,
+        /// Contacts of the whole run that are not permitted.
+        contacts: Option<String>,
+    },
 }

@@ -7,7 +7,7 @@ use std::{
 
 use record::{Log, ReadError};
 
-use super::{About, Parts, Source, State, deltas::Deltas};
+use super::{About, Cell, Source, State, deltas::Deltas};
 use crate::{error::ConsoleError, picture::Picture, story::Story};
 
 /// Metres to inches.
@@ -26,6 +26,8 @@ pub struct Recorded {
     story: Story,
     parts: BTreeMap<String, Places>,
     result: Option<String>,
+    clearance: Option<String>,
+    contacts: Option<String>,
     damage: Option<String>,
 }
 
@@ -63,9 +65,20 @@ impl Recorded {
         if deltas.range().is_none() {
             return Err(ConsoleError::Empty(path.to_owned()));
         }
-        let result = log.end.as_ref().and_then(|end| end.get("result")).cloned();
+        let fact = |key| log.end.as_ref().and_then(|end| end.get(key)).cloned();
+        let [result, clearance, contacts] = ["result", "clearance", "contacts"].map(fact);
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-        Ok(Self { path: path.to_owned(), name, deltas, story, parts: parts(&log), result, damage })
+        Ok(Self {
+            path: path.to_owned(),
+            name,
+            deltas,
+            story,
+            parts: parts(&log),
+            result,
+            clearance,
+            contacts,
+            damage,
+        })
     }
 
     /// The file.
@@ -110,13 +123,17 @@ impl Source for Recorded {
         &self.story
     }
 
-    fn parts(&self, tick: u64) -> Parts {
+    fn cell(&self, tick: u64) -> Cell {
         let at = |(name, places): (&String, &Places)| {
             let end = places.partition_point(|(from, _)| *from <= tick);
             let (_, place) = places.get(end.checked_sub(1)?)?;
             // What has not been delivered yet stands at the origin of the world.
             (*place != [0.0; 3]).then(|| (name.clone(), *place))
         };
-        Parts::At(self.parts.iter().filter_map(at).collect())
+        Cell::Recorded {
+            parts: self.parts.iter().filter_map(at).collect(),
+            clearance: self.clearance.clone(),
+            contacts: self.contacts.clone(),
+        }
     }
 }

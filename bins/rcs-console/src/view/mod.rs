@@ -133,10 +133,13 @@ fn screen(
         (Some(picture), false) => match model.screen {
             Screen::Ladder => (ladder::body(model, picture, source, look, width, room), Reach::default()),
             Screen::Process => panes::process(model, picture, source, look, width, room),
-            Screen::Link => panes::column(&link::sections(picture, source.story()), model, look, width, room),
+            Screen::Link => {
+                let cell = source.cell(picture.tick.0);
+                panes::column(&link::sections(picture, source.story(), &cell), model, look, width, room)
+            }
             Screen::Cell => {
-                let parts = source.parts(picture.tick.0);
-                panes::column(&cell::sections(picture, &parts), model, look, width, room)
+                let cell = source.cell(picture.tick.0);
+                panes::column(&cell::sections(picture, &cell), model, look, width, room)
             }
         },
     };
