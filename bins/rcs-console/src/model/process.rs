@@ -30,14 +30,15 @@ pub fn table(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     let after = if step.is_empty() { String::new() } else { format!(", then {step}") };
     let consulted = header.consulted();
     let values = consulted.map(|consulted| consulted.values);
-    let mut lines: Vec<Text> = values.map(|values| Text::plain(asked(table, values))).into_iter().collect();
-    lines.extend(beside(info, header));
+    let mut lines: Vec<Text> = Vec::new();
     let mut at = 0;
     for row in table.rows {
         if row.number == fired.number {
             at = lines.len();
             lines.push(Text::new(Tone::Marked, format!("> {:>3}  {row}", row.number)));
+            lines.extend(values.map(|values| Text::plain(asked(table, values))));
             lines.extend(meaning(table, row).into_iter().map(|text| Text::plain(format!("       {text}"))));
+            lines.extend(beside(info, header));
         } else {
             let near = values.and_then(|values| near(table, row, values));
             let mark = if near.is_some() { '~' } else { ' ' };

@@ -32,7 +32,7 @@ pub fn lines(look: Look) -> Vec<Line<'static>> {
     let words = [
         "",
         MARKS,
-        " A row with seconds behind it was chosen that long ago.",
+        " A row with seconds behind it fired that long ago; ~ marks a row that nearly fired.",
         " This program only reads: no key changes the run.",
     ];
     keys.chain(words.map(|text| look.line(Tone::Plain, text))).collect()

@@ -13,9 +13,10 @@ pub fn fit(text: &str, width: usize) -> String {
     cut
 }
 
-/// Text in lines of at most so many columns. Lines after the first are indented by two columns more.
+/// Text in lines of at most so many columns. Lines after the first are indented by two columns more than the text
+/// behind blanks and marks.
 pub fn wrap(text: &str, width: usize) -> Vec<String> {
-    let indent = text.chars().take_while(|sign| *sign == ' ').count() + 2;
+    let indent = text.chars().take_while(|sign| " >~!".contains(*sign)).count() + 2;
     let mut lines = Vec::new();
     let mut rest = text;
     let mut front = String::new();
@@ -64,6 +65,7 @@ mod tests {
     fn long_lines_are_broken_at_spaces() {
         assert_eq!(wrap(" short", 20), [" short"]);
         assert_eq!(wrap("  one two three", 9), ["  one two", "    three"]);
+        assert_eq!(wrap("~ 7 one two", 9), ["~ 7 one", "    two"]);
         assert_eq!(wrap("abcdefghij", 4), ["abcd", "  ef", "  gh", "  ij"]);
         assert!(wrap("a long sentence that goes on and on", 7).iter().all(|line| line.chars().count() <= 7));
     }
