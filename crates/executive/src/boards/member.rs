@@ -5,9 +5,10 @@
 //! outside, the generation of the task data. It never counts pulses and never looks at a clock.
 //!
 //! A board that takes over from a killed one in the middle of a run finds a pulse that the other has not
-//! answered. It latches the outputs of its predecessor, whose processes it starts anew: they adopt the
-//! numbers of the commands that they find and report that they were restarted (docs/design/handshake.md
-//! "Restart").
+//! answered. It latches the outputs of its predecessor, and writes them again under its own epoch, so that its
+//! neighbours read the same whether they look before or after the change. The processes it starts anew: they
+//! adopt the numbers of the commands that they find and report that they were restarted
+//! (docs/design/handshake.md "Restart").
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
@@ -16,7 +17,7 @@ use std::{
 
 use iceoryx2::{node::Node, prelude::ipc};
 use interfaces::CommonMemory;
-use levels::ladder::{Ladder, ProcessId};
+use levels::ladder::{Ladder, LadderState, ProcessId};
 use rcs_core::{Plain, plain::DecodeError, tick::Tick};
 use rustix::process::{Pid, Signal, getppid, set_parent_process_death_signal};
 use taskdata::files::TaskData;
@@ -185,7 +186,9 @@ impl Member {
         let mut halves = [CommonMemory::ZERO; 2];
         let (tick, epoch) = (pulse.tick.previous(), pulse.epochs[board.index()]);
         if pulse.tick != Tick::BEFORE_START {
-            latch(&node, board, &pulse, &mut halves)?;
+            let latched = latch(&node, board, &pulse, &mut halves)?;
+            // A neighbour that has not stepped this tick yet reads it here.
+            writers.write(tick, latched, &LadderState::default());
         }
         reports.write(tick, &report);
         let ports = Ports { taker, writers, reports, neighbours: [const { None }; BOARDS], node };
@@ -233,7 +236,7 @@ impl Member {
                 self.leave();
                 return Ok(MemberEnd::Asked);
             }
-            if !self.follow(&pulse) {
+            if !self.follow(&pulse)? {
                 std::thread::sleep(AGAIN);
                 silent += 1;
             } else if pulse.tick == self.tick.next() {
@@ -273,8 +276,12 @@ impl Member {
 
     /// Open the neighbours that came, or came anew, since the last look; true if all are there. With the
     /// first time the board is ready.
-    fn follow(&mut self, pulse: &SystemPulse) -> bool {
-        let Some(ports) = &mut self.ports else { return false };
+    fn follow(&mut self, pulse: &SystemPulse) -> Result<bool, MemberError> {
+        let Some(ports) = &mut self.ports else { return Ok(false) };
+        // What this board needs to know for the next tick, if that has come.
+        let needed = Some(self.tick).filter(|tick| *tick != Tick::BEFORE_START && *tick != pulse.tick);
+        let [even, odd] = &mut self.halves;
+        let half = if self.tick.0.is_multiple_of(2) { even } else { odd };
         let (mut complete, mut changed) = (true, !self.report.ready);
         for board in self.board.others() {
             let epoch = pulse.epochs[board.index()];
@@ -283,9 +290,13 @@ impl Member {
                 continue;
             }
             // What cannot be opened is not there yet; until it is, a successor may need what is open.
-            match Readers::open(&ports.node, board, epoch) {
-                Ok(readers) => (*place, changed) = (Some((epoch, readers)), true),
-                Err(_) => complete = false,
+            let Ok(readers) = Readers::open(&ports.node, board, epoch) else {
+                complete = false;
+                continue;
+            };
+            match needed.map_or(Ok(true), |tick| readers.outputs(tick, half))? {
+                true => (*place, changed) = (Some((epoch, readers)), true),
+                false => complete = false,
             }
         }
         if complete && changed {
@@ -294,7 +305,7 @@ impl Member {
             // The first call after a change of the run's nodes allocates: not in a tick.
             ports.taker.done();
         }
-        complete
+        Ok(complete)
     }
 
     /// One tick.
@@ -329,12 +340,12 @@ impl Member {
 }
 
 /// What the last predecessor that stepped wrote stays on its devices.
-fn latch(
+fn latch<'a>(
     node: &Node<ipc::Service>,
     board: Board,
     pulse: &SystemPulse,
-    halves: &mut [CommonMemory; 2],
-) -> Result<(), MemberError> {
+    halves: &'a mut [CommonMemory; 2],
+) -> Result<&'a CommonMemory, MemberError> {
     let last = pulse.tick.previous();
     let [even, odd] = halves;
     let half = if last.0.is_multiple_of(2) { even } else { odd };
@@ -342,7 +353,7 @@ fn latch(
         // One that never came to a tick may have left no services, or empty ones.
         let Ok(predecessor) = Readers::open(node, board, epoch) else { continue };
         if predecessor.outputs(last, half)? {
-            return Ok(());
+            return Ok(half);
         }
     }
     Err(MemberError::NothingToLatch { board, last })
