@@ -6,21 +6,26 @@
 use std::{
     io,
     path::{Path, PathBuf},
+    process,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
     },
+    thread,
     time::{Duration, Instant},
 };
 
 use executive::memory::{self, RunName};
 use ratatui::{
     DefaultTerminal,
-    crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers},
+    crossterm::{
+        event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers},
+        terminal,
+    },
 };
 use signal_hook::{
     consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM},
-    flag,
+    iterator::Signals,
 };
 
 use crate::{
@@ -35,6 +40,8 @@ use crate::{
 const LOOK_AT: Duration = Duration::from_millis(40);
 /// The screen is drawn every other tick (VI.6).
 const DRAW: Duration = Duration::from_millis(80);
+/// Time that a console has to end in order after a signal.
+const PATIENCE: Duration = Duration::from_secs(1);
 /// Runs are looked for this often.
 const SEARCH: Duration = Duration::from_secs(1);
 
@@ -44,14 +51,12 @@ const SEARCH: Duration = Duration::from_secs(1);
 /// [`ConsoleError`] if it cannot be read, or if the terminal cannot be used.
 pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
     let stop = Arc::new(AtomicBool::new(false));
-    for signal in [SIGTERM, SIGHUP, SIGINT, SIGQUIT] {
-        flag::register(signal, Arc::clone(&stop)).map_err(ConsoleError::Signals)?;
-    }
+    end_by_signal(Arc::clone(&stop)).map_err(ConsoleError::Signals)?;
     // What cannot be read is told before the terminal changes.
     let scene = Console::open(cli)?;
-    let terminal = ratatui::try_init().map_err(ConsoleError::Terminal)?;
+    let screen = ratatui::try_init().map_err(ConsoleError::Terminal)?;
     let ended =
-        Session { console: scene, look: cli.look(), stop, drawn: None, log: cli.log.clone() }.run(terminal);
+        Session { console: scene, look: cli.look(), stop, drawn: None, log: cli.log.clone() }.run(screen);
     ratatui::try_restore().map_err(ConsoleError::Terminal)?;
     ended
 }
@@ -86,6 +91,22 @@ impl Console {
     }
 }
 
+/// A signal sets `stop`, which ends this program in order. A terminal that takes no more output (Ctrl-S, a line
+/// that hangs) keeps it from that: then the modes of the terminal are restored, and the program ends.
+fn end_by_signal(stop: Arc<AtomicBool>) -> io::Result<()> {
+    let mut signals = Signals::new([SIGTERM, SIGHUP, SIGINT, SIGQUIT])?;
+    let wait = move || {
+        if signals.forever().next().is_some() {
+            stop.store(true, Ordering::Relaxed);
+            thread::sleep(PATIENCE);
+            // Nothing can be said: the program ends because the terminal takes nothing.
+            let _ = terminal::disable_raw_mode();
+            process::exit(1);
+        }
+    };
+    thread::Builder::new().name("signals".into()).spawn(wait).map(drop)
+}
+
 /// End this program: a run's shared memory is damaged, and opening it does not return.
 fn stuck(limit: Duration) {
     ratatui::restore();
@@ -93,7 +114,7 @@ fn stuck(limit: Duration) {
         "rcs-console: the shared memory of the run could not be opened within {} s: another program has damaged it",
         limit.as_secs()
     );
-    std::process::exit(2);
+    process::exit(2);
 }
 
 fn look_for_runs(waiting: &mut Waiting) {

@@ -7,7 +7,10 @@ use std::{
     os::fd::OwnedFd,
     path::Path,
     process::{Child, Command},
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
     thread,
     time::{Duration, Instant},
 };
@@ -17,7 +20,7 @@ use rustix::{
     fs::{Mode, OFlags, open},
     process::{Pid, Signal, kill_process},
     pty,
-    termios::{Termios, Winsize, tcgetattr, tcsetwinsize},
+    termios::{Action, Termios, Winsize, tcflow, tcgetattr, tcsetwinsize},
 };
 
 /// The least terminal.
@@ -44,10 +47,12 @@ struct Terminal {
 impl Terminal {
     /// Start the console in a directory, with an environment of its own.
     fn start(arguments: &[&str], directory: &Path, environment: &[(&str, &Path)]) -> Self {
-        let master = pty::openpt(pty::OpenptFlags::RDWR | pty::OpenptFlags::NOCTTY).unwrap();
+        // No other program that this one starts keeps the terminal open.
+        let flags = pty::OpenptFlags::RDWR | pty::OpenptFlags::NOCTTY | pty::OpenptFlags::CLOEXEC;
+        let master = pty::openpt(flags).unwrap();
         pty::unlockpt(&master).unwrap();
         let name = pty::ptsname(&master, Vec::new()).unwrap();
-        let slave = open(&*name, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).unwrap();
+        let slave = open(&*name, OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC, Mode::empty()).unwrap();
         let size = Winsize { ws_row: LINES.get(), ws_col: COLUMNS.get(), ws_xpixel: 0, ws_ypixel: 0 };
         tcsetwinsize(&slave, size).unwrap();
         let before = tcgetattr(&slave).unwrap();
@@ -91,8 +96,8 @@ impl Terminal {
         self.keys.write_all(keys.as_bytes()).unwrap();
     }
 
-    /// Wait for the end; the terminal must be as it was before.
-    fn end(mut self) -> Option<i32> {
+    /// Wait for the end; the modes of the terminal must be as they were before.
+    fn status(&mut self) -> Option<i32> {
         let begun = Instant::now();
         let status = loop {
             if let Some(status) = self.child.try_wait().unwrap() {
@@ -101,6 +106,16 @@ impl Terminal {
             assert!(begun.elapsed() < PATIENCE, "the console does not end:\n{}", self.screen());
             thread::sleep(Duration::from_millis(20));
         };
+        let after = tcgetattr(&self.slave).unwrap();
+        let modes = |of: &Termios| (of.local_modes, of.input_modes, of.output_modes, of.control_modes);
+        assert_eq!(modes(&after), modes(&self.before), "the modes of the terminal are not what they were");
+        status.code()
+    }
+
+    /// Wait for the end; the whole terminal must be as it was before.
+    fn end(mut self) -> Option<i32> {
+        let status = self.status();
+        let begun = Instant::now();
         // The parser may have to read the last bytes yet.
         let is_back = || {
             let parser = locked(&self.parser);
@@ -110,10 +125,7 @@ impl Terminal {
             assert!(begun.elapsed() < PATIENCE, "the screen is not what it was");
             thread::sleep(Duration::from_millis(20));
         }
-        let after = tcgetattr(&self.slave).unwrap();
-        let modes = |of: &Termios| (of.local_modes, of.input_modes, of.output_modes, of.control_modes);
-        assert_eq!(modes(&after), modes(&self.before), "the modes of the terminal are not what they were");
-        status.code()
+        status
     }
 }
 
@@ -130,19 +142,20 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A run in real time for so many ticks, in a thread of its own.
-fn run(name: &str, log: &Path, ticks: u64) -> thread::JoinHandle<()> {
+/// A run in real time, in a thread of its own, and what ends it.
+fn run(name: &str, log: &Path) -> (thread::JoinHandle<()>, Arc<AtomicBool>) {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
     let config = RunConfig {
         clock: ClockKind::Real,
-        ticks: Some(ticks),
         name: Some(name.parse().unwrap()),
         log: LogTarget::File(log.to_owned()),
         ..RunConfig::new(data, "linkbar")
     };
-    thread::spawn(move || {
+    let stop = Arc::clone(&config.stop);
+    let run = thread::spawn(move || {
         let _ = Run::new(config, Box::new(Silent)).unwrap().complete();
-    })
+    });
+    (run, stop)
 }
 
 #[test]
@@ -150,7 +163,7 @@ fn a_run_is_looked_at_on_all_screens_until_its_end_and_then_its_log() {
     let directory = tempfile::tempdir().unwrap();
     let log = directory.path().join("short.mcap");
     let name = format!("console-{}", std::process::id());
-    let run = run(&name, &log, 250);
+    let (run, stop) = run(&name, &log);
     // A run is there when it has published its first tick.
     let begun = Instant::now();
     let listed =
@@ -177,6 +190,7 @@ fn a_run_is_looked_at_on_all_screens_until_its_end_and_then_its_log() {
     console.press("x1p");
     console.wait_for("FROZEN, live is");
     console.press("p");
+    stop.store(true, Ordering::Relaxed);
     run.join().unwrap();
     console.wait_for("ENDED at tick");
     console.press("o");
@@ -207,4 +221,16 @@ fn what_cannot_be_read_is_said_before_the_terminal_changes() {
     let console = Terminal::start(&["--run", "no-such-run"], directory.path(), &[]);
     console.wait_for("rcs-console: there is no run named no-such-run");
     assert_eq!(console.end(), Some(2));
+}
+
+#[test]
+fn a_signal_ends_it_while_the_terminal_takes_no_output() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut console = Terminal::start(&["--ascii"], directory.path(), &[("TMPDIR", directory.path())]);
+    console.wait_for("Looking for runs");
+    // As Ctrl-S does it; what is drawn from now on waits.
+    tcflow(&console.slave, Action::OOff).unwrap();
+    thread::sleep(Duration::from_millis(300));
+    kill_process(Pid::from_child(&console.child), Signal::TERM).unwrap();
+    assert_eq!(console.status(), Some(1));
 }
