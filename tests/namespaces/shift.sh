@@ -4,8 +4,8 @@
 #
 #   tests/namespaces/shift.sh [DIRECTORY WITH rcs-run AND rcs-neighbour]     default: target/release
 #
-# The run is in fast clock, so its digest must be that of a run with everybody in the controller's own process. Prints the item
-# table of the Data System as the shift has left it.
+# The run is in fast clock, so its digest must be that of a run with everybody but the pedestal in the controller's own process
+# (docs/neighbours.md, "The Active Pedestal"). Prints the item table of the Data System as the shift has left it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 programs=$(cd "${1:-target/release}" && pwd)
@@ -38,9 +38,11 @@ done
 "$programs/rcs-neighbour" keys "$work/keys" > /dev/null
 
 digest() { python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["digest"])' "$1"; }
-"$programs/rcs-run" shift --json --log none --shared-memory off > "$work/inside.json" 2> "$work/inside.err"
+"$programs/rcs-neighbour" pedestal --network "unix:$work/rcs.sock" --wait 20 > /dev/null 2> "$work/inside-pedestal.err" &
+"$programs/rcs-run" shift --json --log none --shared-memory off --network "unix:$work/rcs.sock" --outside pedestal \
+    > "$work/inside.json" 2> "$work/inside.err"
 expected=$(digest "$work/inside.json")
-echo "everybody in one process: digest $expected"
+echo "everybody but the pedestal in one process: digest $expected"
 
 shifts=0
 shift_over() { # ADDRESS

@@ -1,7 +1,6 @@
 //! A controller that waits for neighbours, and a workstation controller that says whatever a test wants.
 
 use std::{
-    fs,
     io::{BufRead as _, BufReader, Read as _},
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
@@ -9,7 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use interfaces::HwsCommand;
+use interfaces::{CommonMemory, Header, HwsCommand};
 use neighbours::{
     mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS, Mailbox},
     network::{Address, NeighbourKeys, Peer, PeerError, Received, Role},
@@ -19,7 +18,8 @@ use neighbours::{
         command, status,
     },
 };
-use rcs_core::name::Name16;
+use rcs_core::{Plain as _, digest::Digest, name::Name16, plain::from_bytes};
+use record::Log;
 use serde_json::Value;
 use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 
@@ -53,7 +53,8 @@ impl Controller {
         let socket = format!("unix:{}", scratch.file("rcs.sock").display());
         let mut child = Command::new(rcs_run())
             .args(["--network", address.unwrap_or(&socket), "--outside", outside])
-            .args(["--log", "none", "--shared-memory", "off"])
+            .args(["--shared-memory", "off"])
+            .args(if more.contains(&"--log") { &[][..] } else { &["--log", "none"] })
             .args(more)
             .current_dir(root())
             .stdin(Stdio::null())
@@ -281,11 +282,35 @@ pub fn make_keys(scratch: &Scratch, name: &str, days: u16) -> PathBuf {
     directory
 }
 
-/// The digest of a shipped job, whose pedestal is in the controller's own process.
-pub fn digest_of(job: &str) -> String {
-    let text = fs::read_to_string(root().join(format!("tests/goldens/{job}.txt"))).expect("a golden run");
-    let line = text.lines().find_map(|line| line.strip_prefix("digest")).expect("it has a digest");
-    line.trim().to_owned()
+/// Fingerprint of all buffers of a logged run in all ticks, but for what the tables of the pedestal were consulted
+/// with: its mailboxes tell the rows that fired, and nothing about them.
+pub fn computed(log: &Path) -> u64 {
+    let log = Log::open(log).expect("a log");
+    let (mut digest, mut scratch) = (Digest::new(), vec![0; CommonMemory::SIZE]);
+    for logged in log.ticks() {
+        let image = logged.expect("a whole log").memory;
+        let mut memory: CommonMemory = from_bytes(&image).expect("a picture of the buffers");
+        let CommonMemory { pedestal, hand, table, .. } = &mut memory;
+        for header in [&mut pedestal.header, &mut hand.header, &mut table.header] {
+            *header = Header { basis: None, beside: Default::default(), ..*header };
+        }
+        digest.add_record(&memory, &mut scratch);
+    }
+    digest.value()
+}
+
+/// [`computed`] of a shipped job, all of whose neighbours are in the controller's own process.
+pub fn computed_alone(job: &str) -> u64 {
+    let scratch = Scratch::new(&format!("alone-{job}"));
+    let log = scratch.file("alone.mcap");
+    let run = Command::new(rcs_run())
+        .args([job, "--shared-memory", "off", "--log"])
+        .arg(&log)
+        .current_dir(root())
+        .output()
+        .expect("rcs-run can be started");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    computed(&log)
 }
 
 /// The result of a run with everybody in the controller's own process.

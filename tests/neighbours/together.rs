@@ -9,7 +9,7 @@ use std::{
 use neighbours::data_system::{Item, Store};
 use whole_system_tests::{Scratch, rcs_neighbour, root};
 
-use crate::bench::{Controller, digest_of, run_alone};
+use crate::bench::{Controller, computed, computed_alone, run_alone};
 
 /// The items in a data base.
 fn items(file: &Path) -> Vec<Item> {
@@ -41,7 +41,10 @@ fn a_shift_with_everybody_elsewhere_has_the_same_bits_and_items() {
     let scratch = Scratch::new("everybody");
     let (outbox, file) = (scratch.file("outbox").display().to_string(), scratch.file("items.db"));
     let everybody = "workstation,data-system,pedestal,vision";
-    let controller = Controller::start_at(scratch, None, everybody, &["--json", "--outbox", &outbox]);
+    let logs = Scratch::new("everybody-log");
+    let log = logs.file("run.mcap");
+    let more = ["--json", "--outbox", &outbox, "--log", log.to_str().expect("a path")];
+    let controller = Controller::start_at(scratch, None, everybody, &more);
     let (address, data_base) = (controller.address.to_string(), file.display().to_string());
     let servants = [&["data-system", &data_base][..], &["pedestal"], &["vision"]];
     let mut servants = servants.map(|words| start(program, &address, words));
@@ -55,7 +58,7 @@ fn a_shift_with_everybody_elsewhere_has_the_same_bits_and_items() {
         told = items(&file);
     });
     assert_eq!(ended.status, Some(0), "{}", ended.said);
-    assert_eq!(ended.result["digest"], digest_of("shift"));
+    assert_eq!(computed(&log), computed_alone("shift"));
     assert_eq!(ended.result["allocations_after_start"], 0);
     assert_eq!(told, known);
 }
