@@ -94,8 +94,8 @@ impl SerialLine {
 
 /// When the controller takes its next step.
 ///
-/// A move takes a period, and the next command is taken when it is over; a controller that waits takes a command as soon
-/// as it is there (A 2.3: ACK, then the move during the next period). Without that, two clocks of the same period would
+/// A move takes a period, and the next command is taken when it is over; a controller that waits takes a command as
+/// soon as it is there (A 2.3: ACK, then the move during the next period). Without that, two clocks of the same period would
 /// lose every second period whenever a frame happened to straddle a step.
 #[derive(Debug)]
 pub struct Cadence {

@@ -1,7 +1,7 @@
 //! The shell around the state machine: clock, pseudo-terminal, standard input and output.
 //!
-//! One thread, which sleeps until a byte comes or the next one is due. Nothing in it blocks: what a host does not read is
-//! lost, what has not come is not there yet.
+//! One thread, which sleeps until a byte comes or the next one is due. Nothing in it blocks: what a host does not
+//! read is lost, what has not come is not there yet.
 
 use std::{
     collections::VecDeque,

@@ -1,6 +1,5 @@
-//! `rcs-log diff`: where two runs differ: first which rows, motions and times changed
-//! ([`Changes`]), then the first tick, and then by buffer and field. Runs with different task data are compared without record
-//! numbers.
+//! `rcs-log diff`: where two runs differ: first which rows, motions and times changed ([`Changes`]), then the
+//! first tick, and then by buffer and field. Runs with different task data are compared without record numbers.
 //!
 //! Ticks are aligned by their number, or by command: then the ticks of a command are counted from the one in which Task
 //! took it, so that a command which took longer in one run does not make all that follows it different.
