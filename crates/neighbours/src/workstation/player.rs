@@ -28,10 +28,13 @@
 //! are kept until it is sent, and begun when their time comes, whatever step is going on then. A job is not
 //! over before they are.
 //!
+//! An operator can stop the job, command the robot meanwhile, and let the job go on ([`operator`]).
+//!
 //! The emulator knows Task by its mailboxes only: it reads a [`Status`], and writes a command
 //! ([`Hwsc::mailgram`]). So it can run in the controller's process or in one of its own, and the program that speaks
 //! the same mailboxes can take its place.
 
+mod operator;
 mod outcome;
 
 use interfaces::{Header, HwsCommand, Reason, hws::HwsReport};
@@ -42,7 +45,11 @@ use rcs_core::{
 };
 use taskdata::load::job::{JobLine, Panel, Step, Workstation as Action};
 
-pub use self::outcome::{BegunStep, JobFailure, Outcome, Progress, Retry};
+use self::operator::Intervention;
+pub use self::{
+    operator::OperatorError,
+    outcome::{BegunStep, JobFailure, Outcome, Progress, Retry},
+};
 use super::status::{Status, TaskState};
 use crate::fields::command_number;
 
@@ -89,6 +96,8 @@ pub struct Hwsc {
     /// The command is to be sent.
     to_send: bool,
     begun_steps: Vec<BegunStep>,
+    /// Which of them is the current step.
+    entry: usize,
     /// Commands that have failed while the job went on.
     failed: Vec<FailedCommand>,
     progress: Progress,
@@ -101,6 +110,8 @@ pub struct Hwsc {
     /// A PAUSE goes on before the current step begins, or begins again.
     pausing: bool,
     retried: Vec<Retry>,
+    /// What an operator does to the job.
+    intervention: Intervention,
 }
 
 /// A command that has failed while the job went on.
@@ -145,6 +156,7 @@ impl Hwsc {
             repeated: false,
             to_send: false,
             begun_steps,
+            entry: 0,
             failed: Vec::new(),
             progress: Progress::Running,
             time_limit,
@@ -153,6 +165,7 @@ impl Hwsc {
             tried: 0,
             pausing: false,
             retried: Vec::new(),
+            intervention: Intervention::default(),
         }
     }
 
@@ -233,6 +246,10 @@ impl Hwsc {
             return &self.progress;
         }
         self.commander.start(u32::from(task.echo));
+        if self.is_waiting() {
+            self.follow_operator(tick, task);
+            return &self.progress;
+        }
         let emergency = workstation.emergency();
         if let Some(emergency) = emergency.clone().filter(|_| !self.resets()) {
             self.fail(JobFailure::Emergency(emergency));
@@ -261,7 +278,7 @@ impl Hwsc {
             }
             Some(Err(JobFailure::Command(reason))) if emergency.is_some() => {
                 self.finish(Outcome::Failed);
-                self.failed.push(FailedCommand { step: self.begun_steps.len() - 1, tick, reason });
+                self.failed.push(FailedCommand { step: self.entry, tick, reason });
                 self.next(tick, workstation);
             }
             Some(Err(failure)) => self.failed(tick, failure, workstation),
@@ -298,7 +315,7 @@ impl Hwsc {
         }
         self.finish(Outcome::Failed);
         self.tried += 1;
-        let line = self.begun_steps.last().map_or_else(String::new, |step| step.text.clone());
+        let line = self.begun_steps.get(self.entry).map_or_else(String::new, |step| step.text.clone());
         self.retried.push(Retry { tick, line, reason, number: self.tried, of: self.retries });
         self.pause(tick);
     }
@@ -306,7 +323,9 @@ impl Hwsc {
     fn next(&mut self, tick: Tick, workstation: &mut impl Workstation) {
         self.current += 1;
         self.tried = 0;
-        self.begin(tick, workstation);
+        if !self.waits_here() {
+            self.begin(tick, workstation);
+        }
     }
 
     /// The command that is going on has to fail.
@@ -440,7 +459,7 @@ impl Hwsc {
 
     /// The step that is going on has taken its time.
     fn took(&mut self, tick: Tick) {
-        if let (Some(step), Some(began)) = (self.begun_steps.last_mut(), self.began) {
+        if let (Some(step), Some(began)) = (self.begun_steps.get_mut(self.entry), self.began) {
             step.ticks = tick.since(began);
         }
     }
@@ -489,6 +508,7 @@ impl Hwsc {
     }
 
     fn begun(&mut self, tick: Tick, text: String, is_command: bool) {
+        self.entry = self.begun_steps.len();
         self.begun_steps.push(BegunStep {
             text,
             is_command,
@@ -500,11 +520,13 @@ impl Hwsc {
 
     fn fail(&mut self, failure: JobFailure) {
         self.finish(Outcome::Failed);
-        self.progress = Progress::Failed(failure);
+        if !self.waits_for_operator(&failure) {
+            self.progress = Progress::Failed(failure);
+        }
     }
 
     fn finish(&mut self, outcome: Outcome) {
-        if let Some(step) = self.begun_steps.last_mut() {
+        if let Some(step) = self.begun_steps.get_mut(self.entry) {
             step.outcome = outcome;
         }
     }

@@ -16,6 +16,8 @@ pub enum Outcome {
     Failed,
     /// It failed, as its line says.
     FailedAsExpected,
+    /// An operator's command took its place.
+    Interrupted,
 }
 
 impl Outcome {
@@ -27,6 +29,7 @@ impl Outcome {
             Self::Finished => HwsReport::Finished.text(),
             Self::Failed => HwsReport::Error.text(),
             Self::FailedAsExpected => "error as expected",
+            Self::Interrupted => "interrupted",
         }
     }
 }

@@ -492,3 +492,5 @@ fn a_command_that_has_to_fail_fails() {
     assert_eq!(played(None, true), as_it_should, "the joystick box ends a command as well");
     assert_eq!(played(None, false), (Progress::Failed(JobFailure::Unexpected), vec![finished, failed]));
 }
+
+mod operator;

@@ -1,0 +1,196 @@
+//! Jobs in which an operator intervenes.
+
+use super::*;
+
+const MOVE_AND_ACQUIRE: [&str; 2] = ["MOVE", "ACQUIRE"];
+
+/// A job that is played tick by tick.
+struct Stage {
+    hwsc: Hwsc,
+    task: Task,
+    jaws: Vise,
+    tick: u64,
+}
+
+impl Stage {
+    fn new(steps: Vec<JobLine>) -> Self {
+        let mut hwsc = Hwsc::new(steps, 100);
+        hwsc.attend(true);
+        Self { hwsc, task: Task::default(), jaws: Vise::default(), tick: 0 }
+    }
+
+    fn commands() -> Self {
+        Self::new(MOVE_AND_ACQUIRE.into_iter().map(command).collect())
+    }
+
+    fn step(&mut self) {
+        self.tick += 1;
+        let status = self.task.step(&mut self.hwsc);
+        self.hwsc.step(Tick(self.tick), &status, &mut self.jaws);
+    }
+
+    fn until(&mut self, what: impl Fn(&Self) -> bool) {
+        for _ in 0..200 {
+            if what(self) {
+                return;
+            }
+            self.step();
+        }
+        panic!("{:?} {:?}", self.hwsc.begun_steps(), self.task.received);
+    }
+
+    fn order(&mut self, verb: &str) {
+        let Step::Command(command) = command(verb).step else { panic!("it is a command") };
+        self.hwsc.command_by_operator(Tick(self.tick), verb.to_owned(), command).unwrap();
+    }
+
+    fn received(&self) -> String {
+        self.task.received.join(" ")
+    }
+
+    fn outcomes(&self) -> Vec<(&str, Outcome)> {
+        self.hwsc.begun_steps().iter().map(|step| (step.text.as_str(), step.outcome)).collect()
+    }
+
+    fn go_on(&mut self) {
+        self.hwsc.go_on(Tick(self.tick)).unwrap();
+    }
+}
+
+fn is_over(stage: &Stage) -> bool {
+    *stage.hwsc.progress() == Progress::Over
+}
+
+fn is_idle(stage: &Stage) -> bool {
+    stage.hwsc.begun_steps().last().is_some_and(|step| step.outcome != Outcome::Executing)
+}
+
+#[test]
+fn a_command_takes_the_place_of_the_jobs_which_is_sent_again_after_pause() {
+    let mut stage = Stage::commands();
+    stage.until(|stage| stage.task.received.len() == 2);
+    stage.order("TRANSFER");
+    assert_eq!(stage.hwsc.go_on(Tick(stage.tick)), Err(OperatorError::Executes("TRANSFER".into())));
+    stage.until(is_idle);
+    for _ in 0..20 {
+        stage.step();
+    }
+    assert_eq!(stage.received(), "PAUSE MOVE TRANSFER", "the job waits");
+    stage.go_on();
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE MOVE TRANSFER PAUSE MOVE ACQUIRE");
+    let (done, cut) = (Outcome::Finished, Outcome::Interrupted);
+    let expected = [
+        ("PAUSE", done),
+        ("== MOVE", cut),
+        ("TRANSFER", done),
+        ("PAUSE", done),
+        ("== MOVE", done),
+        ("== ACQUIRE", done),
+    ];
+    assert_eq!(stage.outcomes(), expected);
+    let numbers: Vec<u32> = stage.task.sent.clone();
+    assert!(numbers.windows(2).all(|pair| pair[1] == pair[0] + 1), "one sequence: {numbers:?}");
+}
+
+#[test]
+fn a_job_waits_between_two_lines_and_a_line_is_skipped() {
+    let mut stage = Stage::commands();
+    stage.until(|stage| stage.task.received.len() == 2);
+    stage.hwsc.wait_for_operator().unwrap();
+    stage.until(|stage| stage.hwsc.is_waiting());
+    assert_eq!((stage.received().as_str(), stage.outcomes().len()), ("PAUSE MOVE", 2), "MOVE has ended");
+    assert!(stage.hwsc.operator_news().is_some_and(|news| news.contains("job go")));
+    assert_eq!(stage.hwsc.operator_news(), None);
+    stage.hwsc.skip(Tick(stage.tick)).unwrap();
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE MOVE PAUSE");
+    assert_eq!(stage.hwsc.wait_for_operator(), Err(OperatorError::Ended));
+}
+
+#[test]
+fn a_wait_is_taken_back_and_a_job_that_plays_cannot_go_on() {
+    let mut stage = Stage::commands();
+    stage.hwsc.wait_for_operator().unwrap();
+    stage.go_on();
+    assert_eq!(stage.hwsc.go_on(Tick(0)), Err(OperatorError::Plays));
+    assert_eq!(stage.hwsc.skip(Tick(0)), Err(OperatorError::Plays));
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE MOVE ACQUIRE");
+}
+
+#[test]
+fn a_failure_ends_the_job_only_if_no_operator_is_there() {
+    let mut stage = Stage::commands();
+    stage.task.fails_at = Some(2);
+    stage.until(|stage| stage.hwsc.is_waiting());
+    assert_eq!(*stage.hwsc.progress(), Progress::Running);
+    stage.task.fails_at = None;
+    stage.go_on();
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE MOVE PAUSE MOVE ACQUIRE");
+
+    let mut stage = Stage::commands();
+    stage.task.fails_at = Some(2);
+    stage.until(|stage| stage.hwsc.is_waiting());
+    stage.hwsc.attend(false);
+    assert_eq!(*stage.hwsc.progress(), Progress::Failed(JobFailure::Command(Reason::GraspMissed)));
+}
+
+#[test]
+fn a_line_of_the_workstation_goes_on_while_the_operator_commands() {
+    let steps = vec![vise(ViseOpening::Close), command("MOVE")];
+    let mut stage = Stage::new(steps);
+    stage.until(|stage| stage.jaws.told.len() == 1);
+    stage.order("ACQUIRE");
+    stage.until(is_idle);
+    stage.go_on();
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE ACQUIRE MOVE");
+    assert_eq!(stage.jaws.told, [ViseOpening::Close], "not begun again");
+    assert!(
+        stage.outcomes().iter().all(|(_, outcome)| *outcome == Outcome::Finished),
+        "{:?}",
+        stage.outcomes()
+    );
+}
+
+#[test]
+fn a_second_command_of_the_operator_replaces_the_first_and_a_lost_one_is_sent_again() {
+    let mut stage = Stage::commands();
+    stage.until(|stage| stage.task.received.len() == 2);
+    stage.order("TRANSFER");
+    stage.step();
+    stage.task.losing = 1;
+    stage.order("PAUSE");
+    stage.until(is_idle);
+    assert_eq!(stage.received(), "PAUSE MOVE TRANSFER PAUSE");
+    assert_eq!(stage.outcomes()[2..], [("TRANSFER", Outcome::Interrupted), ("PAUSE", Outcome::Finished)]);
+}
+
+#[test]
+fn a_job_that_waits_from_the_start_begins_when_it_may() {
+    let mut stage = Stage::commands();
+    stage.hwsc.wait_for_operator().unwrap();
+    for _ in 0..30 {
+        stage.step();
+    }
+    assert_eq!(stage.received(), "PAUSE");
+    stage.order("STARTUP");
+    stage.until(is_idle);
+    stage.go_on();
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE STARTUP PAUSE MOVE ACQUIRE");
+}
+
+#[test]
+fn an_emergency_waits_for_the_operator() {
+    let mut stage = Stage::commands();
+    stage.until(|stage| stage.task.received.len() == 2);
+    stage.jaws.emergency = Some("the arm has no pressure");
+    stage.until(|stage| stage.hwsc.is_waiting());
+    stage.jaws.emergency = None;
+    stage.go_on();
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE MOVE PAUSE MOVE ACQUIRE");
+}
