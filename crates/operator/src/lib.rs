@@ -1,0 +1,23 @@
+//! How an operator reaches a run (IV): lines of text over a Unix socket.
+//!
+//! ```text
+//!  console ── Client ──socket── session thread ──bounded queue── run, between two ticks
+//!                     ◄──────────── answer, without waiting ────────────┘
+//! ```
+//!
+//! * [`protocol`]: the lines of a session, without I/O;
+//! * [`Listener`]: the side of the run, one thread a session;
+//! * [`Client`]: the side of a console or a script.
+//!
+//! What the lines mean is the run's to say.
+
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
+mod client;
+mod listener;
+pub mod protocol;
+
+pub use client::{Client, ClientError};
+pub use listener::{Given, Listener};
+pub use protocol::{Answer, Event, Name};

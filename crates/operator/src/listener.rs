@@ -1,0 +1,281 @@
+//! The side of the run.
+
+use std::{
+    fs, io,
+    io::Read as _,
+    os::unix::{
+        fs::PermissionsExt as _,
+        net::{UnixListener, UnixStream},
+    },
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+        mpsc::{Receiver, SyncSender, sync_channel},
+    },
+    thread,
+    time::Duration,
+};
+
+use rustix::{
+    net::{SendFlags, send, sockopt},
+    process::geteuid,
+};
+
+use crate::protocol::{self, Answer, Event, GREETING, Lines, Name, ProtocolError, SILENCE};
+
+/// Sessions at a time.
+const SESSIONS: usize = 8;
+/// Events that wait for the next tick. A session that says more waits.
+const QUEUE: usize = 64;
+/// A session has to say who it is within this time.
+const HELLO: Duration = Duration::from_secs(2);
+
+/// An event of a session, as the run gets it.
+#[derive(Debug)]
+pub struct Given {
+    /// Who.
+    pub source: Name,
+    /// What.
+    pub event: Event,
+    /// Where the answer to a request goes.
+    reply: Option<(u32, Arc<UnixStream>)>,
+}
+
+impl Given {
+    /// Answer the request, if it is one. This does not wait: a session that does not take its answers ends.
+    pub fn answer(self, verdict: Result<String, String>) {
+        let Some((number, stream)) = self.reply else { return };
+        let line = format!("{}\n", Answer { number, verdict });
+        if say(&stream, &line).is_err() {
+            end(&stream);
+        }
+    }
+}
+
+/// Lets operators connect to a run, as long as it lives.
+pub struct Listener {
+    path: PathBuf,
+    events: Receiver<Given>,
+    stop: Arc<AtomicBool>,
+    streams: Streams,
+}
+
+/// The sessions that are open.
+type Streams = Arc<Mutex<Vec<Arc<UnixStream>>>>;
+
+impl Listener {
+    /// Listen at a path, which only this user may use. Its directory must be this user's alone.
+    ///
+    /// # Errors
+    /// Why the socket or the thread cannot be had.
+    pub fn start(path: &Path, run: &str) -> io::Result<Self> {
+        let socket = UnixListener::bind(path)?;
+        fs::set_permissions(path, fs::Permissions::from_mode(0o600))?;
+        let (sender, events) = sync_channel(QUEUE);
+        let (stop, streams) = (Arc::new(AtomicBool::new(false)), Streams::default());
+        let accept =
+            Accept { socket, run: run.to_owned(), sender, stop: stop.clone(), streams: streams.clone() };
+        thread::Builder::new().name("operators".into()).spawn(move || accept.run())?;
+        Ok(Self { path: path.to_owned(), events, stop, streams })
+    }
+
+    /// The next event, if one has come.
+    #[must_use]
+    pub fn try_next(&self) -> Option<Given> {
+        self.events.try_recv().ok()
+    }
+
+    /// Where it listens.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Drop for Listener {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        lock(&self.streams).iter().for_each(|stream| end(stream));
+        // The thread sees `stop` with the next connection.
+        let _ = UnixStream::connect(&self.path);
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+fn lock(streams: &Streams) -> std::sync::MutexGuard<'_, Vec<Arc<UnixStream>>> {
+    streams.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Send a line whole and at once, or not at all.
+fn say(stream: &UnixStream, line: &str) -> io::Result<()> {
+    let sent = send(stream, line.as_bytes(), SendFlags::DONTWAIT | SendFlags::NOSIGNAL)?;
+    if sent == line.len() { Ok(()) } else { Err(io::ErrorKind::WriteZero.into()) }
+}
+
+/// Nothing is read or written any more; it may be closed already.
+fn end(stream: &UnixStream) {
+    let _ = stream.shutdown(std::net::Shutdown::Both);
+}
+
+/// The thread that lets sessions in.
+struct Accept {
+    socket: UnixListener,
+    run: String,
+    sender: SyncSender<Given>,
+    stop: Arc<AtomicBool>,
+    streams: Streams,
+}
+
+impl Accept {
+    fn run(self) {
+        let open = Arc::new(AtomicUsize::new(0));
+        for stream in self.socket.incoming() {
+            if self.stop.load(Ordering::Relaxed) {
+                return;
+            }
+            // A client that has left again is no reason to refuse the next one.
+            let Ok(stream) = stream else {
+                thread::sleep(SILENCE);
+                continue;
+            };
+            // If the thread cannot be had, the client sees the end of its session.
+            let _ = self.admit(stream, &open);
+        }
+    }
+
+    fn admit(&self, stream: UnixStream, open: &Arc<AtomicUsize>) -> io::Result<()> {
+        let stream = Arc::new(stream);
+        if let Err(why) = check_user(&stream) {
+            return say(&stream, &refusal(&why.to_string()));
+        }
+        if open.load(Ordering::Relaxed) >= SESSIONS {
+            let why = format!("{SESSIONS} operators are connected: end another session first");
+            return say(&stream, &refusal(&why));
+        }
+        let session = Session {
+            stream: stream.clone(),
+            lines: Lines::default(),
+            sender: self.sender.clone(),
+            greeting: format!("{GREETING} {}\n", self.run),
+        };
+        open.fetch_add(1, Ordering::Relaxed);
+        lock(&self.streams).push(stream.clone());
+        let (count, streams) = (open.clone(), self.streams.clone());
+        let thread = thread::Builder::new().name("operator".into()).spawn(move || {
+            session.run();
+            lock(&streams).retain(|open| !Arc::ptr_eq(open, &stream));
+            count.fetch_sub(1, Ordering::Relaxed);
+        });
+        thread.map(|_| ()).inspect_err(|_| {
+            open.fetch_sub(1, Ordering::Relaxed);
+        })
+    }
+}
+
+/// A line without a number: no request is answered by it.
+fn refusal(why: &str) -> String {
+    format!("{}\n", Answer { number: 0, verdict: Err(why.to_owned()) })
+}
+
+/// Refuse a session of another user.
+fn check_user(stream: &UnixStream) -> io::Result<()> {
+    let (expected, found) = (geteuid(), sockopt::socket_peercred(stream)?.uid);
+    if expected == found {
+        return Ok(());
+    }
+    let why = format!("user {} was expected, found user {}", expected.as_raw(), found.as_raw());
+    Err(io::Error::new(io::ErrorKind::PermissionDenied, why))
+}
+
+/// A session, in a thread of its own.
+struct Session {
+    stream: Arc<UnixStream>,
+    lines: Lines,
+    sender: SyncSender<Given>,
+    greeting: String,
+}
+
+/// Why a session ends.
+enum End {
+    /// It or the run has ended.
+    Closed,
+    /// What it says is not the protocol.
+    Wrong(ProtocolError),
+}
+
+impl From<ProtocolError> for End {
+    fn from(error: ProtocolError) -> Self {
+        Self::Wrong(error)
+    }
+}
+
+impl Session {
+    fn run(mut self) {
+        let Err(end_of_session) = self.greet().and_then(|name| {
+            self.give(&name, Event::Connected, None)?;
+            let ended = self.listen(&name);
+            let _ = self.give(&name, Event::Disconnected, None);
+            ended
+        });
+        if let End::Wrong(why) = end_of_session {
+            // The client may have gone.
+            let _ = say(&self.stream, &refusal(&why.to_string()));
+        }
+        end(&self.stream);
+    }
+
+    fn greet(&mut self) -> Result<Name, End> {
+        let limit = self.stream.set_read_timeout(Some(HELLO));
+        limit.map_err(|_| End::Closed)?;
+        let line = self.line(|| Err(End::Wrong(ProtocolError::NoHello(String::new()))))?;
+        let name = protocol::hello(&line)?;
+        say(&self.stream, &self.greeting).map_err(|_| End::Closed)?;
+        Ok(name)
+    }
+
+    fn listen(&mut self, name: &Name) -> Result<std::convert::Infallible, End> {
+        self.stream.set_read_timeout(Some(SILENCE)).map_err(|_| End::Closed)?;
+        let mut is_silent = false;
+        loop {
+            let (sender, name_again) = (self.sender.clone(), name.clone());
+            let line = self.line(|| {
+                if is_silent {
+                    return Ok(());
+                }
+                is_silent = true;
+                let given = Given { source: name_again.clone(), event: Event::Silent, reply: None };
+                sender.send(given).map_err(|_| End::Closed)
+            })?;
+            is_silent = false;
+            if let Some((number, text)) = protocol::request(&line)? {
+                self.give(name, Event::Line(text.to_owned()), Some(number))?;
+            }
+        }
+    }
+
+    /// The next line. `silent` is called when nothing has come within the time limit.
+    fn line(&mut self, mut silent: impl FnMut() -> Result<(), End>) -> Result<String, End> {
+        let mut bytes = [0; 512];
+        loop {
+            if let Some(line) = self.lines.next_line()? {
+                return Ok(line);
+            }
+            match (&*self.stream).read(&mut bytes) {
+                Ok(0) => return Err(End::Closed),
+                Ok(count) => self.lines.push(bytes.get(..count).unwrap_or_default()),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
+                    silent()?;
+                }
+                Err(_) => return Err(End::Closed),
+            }
+        }
+    }
+
+    fn give(&self, name: &Name, event: Event, number: Option<u32>) -> Result<(), End> {
+        let reply = number.map(|number| (number, self.stream.clone()));
+        let given = Given { source: name.clone(), event, reply };
+        self.sender.send(given).map_err(|_| End::Closed)
+    }
+}
