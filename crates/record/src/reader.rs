@@ -21,6 +21,7 @@ use crate::{
     error::ReadError,
     input::{Attachment, Link},
     layout,
+    operator::{OPERATOR, OperatorLine},
     pieces::{Piece, Pieces, decode},
     proto::{
         foxglove::{self, Level, Transform},
@@ -260,6 +261,17 @@ impl Log {
             }
             line
         })
+    }
+
+    /// What operators have asked for, in order.
+    pub fn operator_lines(&self) -> impl Iterator<Item = OperatorLine> {
+        self.messages(OPERATOR).map(|(tick, data)| OperatorLine::decode(tick, &data))
+    }
+
+    /// The file that was read.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The digests of the simulated cell, as the controller met it in each tick; none of a real one.

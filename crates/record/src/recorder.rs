@@ -27,6 +27,7 @@ use crate::{
     error::RecordError,
     file::LogFile,
     input::{Attachment, CellFrame, End, Setup},
+    operator::OperatorLine,
     proto::foxglove::Level,
     remarks::Remark,
     sink::Sink,
@@ -45,6 +46,8 @@ const IDLE: Duration = Duration::from_millis(5);
 const FULL: Duration = Duration::from_micros(100);
 /// Files that the ring holds.
 const FILE_RING: usize = 64;
+/// Lines of operators that the ring holds.
+const OPERATOR_RING: usize = 256;
 /// Characters of a note; what is longer is cut.
 pub const NOTE: usize = 192;
 
@@ -88,6 +91,7 @@ pub struct Recorder {
     cells: Producer<CellFrame>,
     notes: Producer<Note>,
     files: Producer<(Tick, Attachment)>,
+    operators: Producer<OperatorLine>,
     pace: Pace,
     last_state: Option<Tick>,
     timing: Option<Timing>,
@@ -109,6 +113,8 @@ pub struct Lost {
     pub notes: u64,
     /// Files that came up during the run: without them it cannot be replayed to the end.
     pub files: u64,
+    /// Lines of operators: without them their inputs cannot be given again.
+    pub operators: u64,
 }
 
 /// What became of a log.
@@ -152,6 +158,7 @@ impl Recorder {
         let note = Note { tick, level: Level::Info, source: [0; 16], text: [0; NOTE] };
         let (notes, note_consumer) = ring(NOTE_RING, note);
         let (files, file_consumer) = RingBuffer::new(FILE_RING);
+        let (operators, operator_consumer) = RingBuffer::new(OPERATOR_RING);
         let end = Arc::default();
         let drain = Drain {
             log,
@@ -161,6 +168,7 @@ impl Recorder {
             cells: cell_consumer,
             notes: note_consumer,
             files: file_consumer,
+            operators: operator_consumer,
             end: Arc::clone(&end),
         };
         let thread = thread::Builder::new()
@@ -173,6 +181,7 @@ impl Recorder {
             cells,
             notes,
             files,
+            operators,
             pace,
             last_state: None,
             timing: None,
@@ -206,6 +215,14 @@ impl Recorder {
     pub fn attach(&mut self, tick: Tick, attachment: Attachment) {
         if !has_room(&self.files, self.pace) || self.files.push((tick, attachment)).is_err() {
             self.lost.files += 1;
+        }
+    }
+
+    /// What an operator has asked for; before [`Recorder::tick`] of the tick that sees it first. The text is the
+    /// caller's to allocate, outside the tick.
+    pub fn operator(&mut self, line: OperatorLine) {
+        if !has_room(&self.operators, Pace::Drop) || self.operators.push(line).is_err() {
+            self.lost.operators += 1;
         }
     }
 
@@ -262,10 +279,10 @@ impl Recorder {
     /// # Errors
     /// What ended the log before the run did.
     pub fn finish(self, end: End) -> Result<Summary, RecordError> {
-        let Self { ticks, states, cells, notes, files, lost, path, end: slot, thread, .. } = self;
+        let Self { ticks, states, cells, notes, files, operators, lost, path, end: slot, thread, .. } = self;
         *slot.lock().unwrap_or_else(PoisonError::into_inner) = (end, lost);
         // Without a producer the writer finishes; the ticks go last, since they are what it waits for.
-        drop((states, cells, notes, files));
+        drop((states, cells, notes, files, operators));
         drop(ticks);
         let written = thread.join().map_err(|_| RecordError::Thread)??;
         Ok(Summary { path, ticks: written.ticks, lost, bytes: written.bytes })
@@ -301,6 +318,7 @@ struct Drain {
     cells: Consumer<CellFrame>,
     notes: Consumer<Note>,
     files: Consumer<(Tick, Attachment)>,
+    operators: Consumer<OperatorLine>,
     end: Arc<Mutex<(End, Lost)>>,
 }
 
@@ -322,6 +340,7 @@ impl Drain {
             thread::sleep(IDLE);
         }
         self.write_notes(Tick(u64::MAX))?;
+        self.write_operators(Tick(u64::MAX))?;
         let (end, lost) = self.end.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let written = self.log.finish(&end, lost)?;
         self.file.look()?;
@@ -330,6 +349,7 @@ impl Drain {
 
     fn write(&mut self, record: &TickRecord) -> Result<(), RecordError> {
         self.write_notes(record.tick)?;
+        self.write_operators(record.tick)?;
         while self.files.peek().is_ok_and(|(tick, _)| *tick <= record.tick) {
             if let Ok((tick, attachment)) = self.files.pop() {
                 self.log.attach(tick, attachment)?;
@@ -338,6 +358,15 @@ impl Drain {
         let state = latest(&mut self.states, record.tick, |(tick, _)| *tick).map(|(_, state)| state);
         let cell = latest(&mut self.cells, record.tick, |frame| frame.tick);
         self.log.tick(record, state.as_ref(), cell.as_ref())?;
+        Ok(())
+    }
+
+    fn write_operators(&mut self, until: Tick) -> Result<(), RecordError> {
+        while self.operators.peek().is_ok_and(|line| line.tick <= until) {
+            if let Ok(line) = self.operators.pop() {
+                self.log.operator(&line)?;
+            }
+        }
         Ok(())
     }
 

@@ -7,6 +7,7 @@
 //! | `/task/row`, `/prim/row` ... | `rcs.Row`: the row that fired, as text | on change, and every ten seconds |
 //! | `/tf`, `/joint_states`, `/robot_description` | the moving cell | on change, and every ten seconds |
 //! | `/log` | `foxglove.Log` | when there is something to say |
+//! | `/operator` | `rcs.OperatorLine` | when an operator asks for something |
 //!
 //! `/replay` alone is lossless: message *n* holds the difference of the images to those of message *n*-1, and
 //! once a second the whole images and the states after that tick, where a replay can start. The other
@@ -33,6 +34,7 @@ use crate::{
     delta::Codec,
     input::{Attachment, CellFrame, End, Setup},
     layout,
+    operator::{OperatorChannel, OperatorLine},
     proto::{
         descriptor::{self, encode_set, field, file},
         foxglove::{self, Level},
@@ -121,6 +123,7 @@ pub struct LogWriter<W: Write + Seek> {
     rows: Rows,
     headers: Vec<HeaderPlace>,
     scene: Option<Scene>,
+    operator: OperatorChannel,
     codecs: Codecs,
     zeros: Images,
     last: Images,
@@ -194,6 +197,7 @@ impl<W: Write + Seek> LogWriter<W> {
             rows,
             headers: headers(),
             scene,
+            operator: OperatorChannel::default(),
             codecs: Codecs::new(),
             zeros: Images::zeros(),
             last: Images::zeros(),
@@ -266,6 +270,14 @@ impl<W: Write + Seek> LogWriter<W> {
         self.output.put(self.log, tick, &data)
     }
 
+    /// Write what an operator has asked for.
+    ///
+    /// # Errors
+    /// What the sink says.
+    pub fn operator(&mut self, line: &OperatorLine) -> McapResult<()> {
+        self.operator.put(&mut self.output, line)
+    }
+
     /// Write a file that came up during the run.
     ///
     /// # Errors
@@ -290,6 +302,7 @@ impl<W: Write + Seek> LogWriter<W> {
             ("lost_frames", lost.frames.to_string()),
             ("lost_notes", lost.notes.to_string()),
             ("lost_files", lost.files.to_string()),
+            ("lost_operators", lost.operators.to_string()),
         ];
         let mut metadata = end.facts.clone();
         metadata.extend(entries.map(|(key, value)| (key.to_owned(), value)));

@@ -48,7 +48,7 @@ use std::path::Path;
 
 use interfaces::hws::HwsCommand;
 
-pub use own_line::{OwnLineError, own_line};
+pub use own_line::{OwnLineError, is_command, own_command, own_line};
 pub use reload::Reload;
 
 pub use action::{

@@ -1,4 +1,4 @@
-//! A line of the workstation that stands in no job: another process says it while the robot runs.
+//! A line that stands in no job: another process or an operator says it while the robot runs.
 //!
 //! It is read from its words and the task data alone. No file is opened for it, since that could take any
 //! time, and would tell the connected system which files there are.
@@ -13,7 +13,7 @@ use super::{
         report::{Diagnostics, Problems},
         source::{At, Source, SourceLine},
     },
-    Workstation,
+    JobLine, Step, TASK_COMMANDS, Workstation,
     fields::Fields,
     read::Reader,
 };
@@ -54,13 +54,57 @@ impl fmt::Display for OwnLineError {
 
 impl std::error::Error for OwnLineError {}
 
+/// The name of a line that stands in no job, in messages.
+const SOURCE: &str = "the line";
+
+/// Read a command as it stands in a job, with or without `==` in front of it. PAUSE, STARTUP and SHUTDOWN need no
+/// fields. Where the robot is and what it holds are not known here.
+///
+/// # Errors
+/// [`OwnLineError`].
+pub fn own_command(text: &str, store: &Store) -> Result<JobLine, OwnLineError> {
+    let mut text = text.trim().trim_start_matches("==").trim_start().to_owned();
+    if ["PAUSE", "STARTUP", "SHUTDOWN"].contains(&text.as_str()) {
+        text += " -- 0 -- 0 0 -- 0 -- 0";
+    }
+    let text = format!("== {text}");
+    let line = source_line(&text);
+    let mut problems = Problems::default();
+    let mut reader = Reader::new(store.view(), Vec::new(), &mut problems);
+    reader.forget();
+    let read = reader.line(1, &line);
+    match read.filter(|_| !problems.has_errors()) {
+        Some(line) if matches!(line.step, Step::Command(_)) => Ok(line),
+        _ => Err(unreadable(&text, problems)),
+    }
+}
+
+/// True if a line begins as a command to Task does.
+#[must_use]
+pub fn is_command(text: &str) -> bool {
+    let text = text.trim_start();
+    let verb = text.split_whitespace().next().unwrap_or_default();
+    text.starts_with("==") || TASK_COMMANDS.contains(&verb)
+}
+
+fn source_line(text: &str) -> SourceLine<'_> {
+    SourceLine { text, at: At { source: 0, start: 0, length: u32::try_from(text.len()).unwrap_or(u32::MAX) } }
+}
+
+fn unreadable(text: &str, problems: Problems) -> OwnLineError {
+    let source = Source { name: SOURCE.into(), text: text.into() };
+    let places = Places::in_lines(std::slice::from_ref(&source));
+    let report = Diagnostics::new(problems, places, 0, Vec::new());
+    let errors: Vec<_> = report.errors().map(|error| error.message().to_owned()).collect();
+    OwnLineError::Unreadable(errors.join("; "))
+}
+
 /// Read a line as it stands in a job, without its asterisks.
 ///
 /// # Errors
 /// [`OwnLineError`].
 pub fn own_line(text: &str, store: &Store) -> Result<Workstation, OwnLineError> {
-    let length = u32::try_from(text.len()).unwrap_or(u32::MAX);
-    let words = words_of_line(&SourceLine { text, at: At { source: 0, start: 0, length } });
+    let words = words_of_line(&source_line(text));
     match words.first().map(|word| word.text) {
         None => return Err(OwnLineError::Nothing),
         Some("load") => return Err(OwnLineError::Load),
@@ -73,13 +117,7 @@ pub fn own_line(text: &str, store: &Store) -> Result<Workstation, OwnLineError> 
     let read = Reader::new(store.view(), Vec::new(), &mut problems).own_line(&mut Fields::new(&words));
     match read.filter(|_| !problems.has_errors()) {
         Some(action) => Ok(action),
-        None => {
-            let source = Source { name: String::new(), text: text.into() };
-            let places = Places::in_lines(std::slice::from_ref(&source));
-            let report = Diagnostics::new(problems, places, 0, Vec::new());
-            let errors: Vec<_> = report.errors().map(|error| error.message().to_owned()).collect();
-            Err(OwnLineError::Unreadable(errors.join("; ")))
-        }
+        None => Err(unreadable(text, problems)),
     }
 }
 
@@ -111,6 +149,15 @@ mod tests {
         );
         let OwnLineError::Unreadable(why_not) = why("** vise open PFIXTURE") else { panic!("it is no line") };
         assert_eq!(why_not, "no line for the cell is named **");
+        let command = |line: &str| own_command(line, &store).map(|line| line.text);
+        let pause = Ok("== PAUSE -- 0 -- 0 0 -- 0 -- 0".to_owned());
+        assert_eq!((command("PAUSE"), command(" == PAUSE")), (pause.clone(), pause));
+        let position = "== POSITION LINKBAR1_BH +2 PFIXTURE 0 0 -- 0 -- 0";
+        assert_eq!(command(position), Ok(position.to_owned()), "what is held is not known");
+        let Err(OwnLineError::Unreadable(why_not)) = command("MOVE LINKBAR9 +2") else {
+            panic!("it is no command")
+        };
+        assert!(why_not.contains("was expected, the line ends"), "{why_not}");
         let OwnLineError::Unreadable(why_not) = why("estop terminals now") else { panic!("it is no line") };
         assert_eq!(why_not, "the line should end before now");
     }
