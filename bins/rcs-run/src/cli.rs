@@ -1,12 +1,12 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::{path::PathBuf, str::FromStr};
 
 use crate::campaign::CampaignArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use executive::{boards::Board, memory::RunName, overrun::Policy};
 use neighbours::network::{Address, Role};
-use runtime::{Boards, ClockKind, LogTarget, RobotConfig, RunConfig};
+use runtime::{Boards, ClockKind, LogTarget, OperatorAccess, RobotConfig, RunConfig, setup::MOST_SPEED};
 
 /// The RCS-II/T3 controller: runs jobs in the simulated cell, with a robot at a serial port, or with one by EGM.
 #[derive(Debug, Parser)]
@@ -64,6 +64,8 @@ pub enum Command {
     Latency(LatencyArguments),
     /// Print what a run that goes on is doing: each process with its command, its status, and the row that fired
     Status(StatusArguments),
+    /// Ask something of a run that goes on, as an operator: a stop, a command, a line for the cell
+    Send(SendArguments),
     /// Interrupt a job at many ticks, let an operator recover it, and judge what became of each branch
     Campaign(CampaignArguments),
     /// Remove what killed runs left in shared memory
@@ -79,9 +81,9 @@ pub struct RunArguments {
     /// Task data, jobs and cell description
     #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
-    /// Run ticks at once, or one every 40 ms
-    #[arg(long, value_enum, default_value_t = ClockKind::Fast)]
-    pub clock: ClockKind,
+    /// Run ticks at once: fast; one every 40 ms: real; or N in that time, with the simulated robot: Nx, such as 5x
+    #[arg(long, value_name = "CLOCK", default_value = "fast")]
+    pub clock: Clock,
     /// What to do about slots of the 40 ms grid that are skipped: count, hold, hold:SLOTS, stop or
     /// stop:SLOTS
     ///
@@ -153,6 +155,15 @@ pub struct RunArguments {
     /// Errors that need a person are not retried (docs/reasons.md). Actions `** after` of the line are not begun again.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub retry: u32,
+    /// Who may operate the run while it goes on, by rcs-console --operate or rcs-run send; needs --clock real
+    #[arg(long, value_enum, default_value_t = OperatorAccess::Owner)]
+    pub operator: OperatorAccess,
+    /// Wait for an operator before the first line of the job
+    #[arg(long, conflicts_with = "inputs")]
+    pub stand_by: bool,
+    /// Give the operator's inputs of this log again, each in its tick
+    #[arg(long, value_name = "LOG")]
+    pub inputs: Option<PathBuf>,
     /// Show the buffers to other programs
     #[arg(long, value_enum, default_value_t = Switch::On)]
     pub shared_memory: Switch,
@@ -193,7 +204,8 @@ impl RunArguments {
     pub fn config(&self) -> RunConfig {
         let own = self.clone();
         RunConfig {
-            clock: own.clock,
+            clock: own.clock.kind,
+            speed: own.clock.speed,
             overrun: own.overrun,
             cpu: own.cpu,
             robot: own.robot,
@@ -212,6 +224,9 @@ impl RunArguments {
             zenoh_config: own.zenoh_config,
             ticks: own.ticks,
             retry: own.retry,
+            operator: own.operator,
+            inputs: own.inputs,
+            stand_by: own.stand_by,
             shared_memory: own.shared_memory == Switch::On,
             ..RunConfig::new(own.data, own.job)
         }
@@ -271,6 +286,24 @@ pub struct StatusArguments {
     pub json: bool,
 }
 
+/// Arguments of `send`.
+#[derive(Clone, Debug, Args)]
+pub struct SendArguments {
+    /// What to ask for, such as `stop`, `PAUSE`, `job go`, `vise open PFIXTURE` (docs/operator.md); several lines are
+    /// asked for one after the other, up to the first that is refused
+    #[arg(value_name = "LINE", required = true)]
+    pub lines: Vec<String>,
+    /// Name of the run; may be left out if there is only one
+    #[arg(long, value_name = "NAME")]
+    pub run: Option<RunName>,
+    /// Stay connected for so many seconds after the last line: what is held at the joystick box is let go at the end
+    #[arg(long, value_name = "SECONDS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=86_400))]
+    pub stay: u32,
+    /// Who asks, for the log
+    #[arg(long, value_name = "NAME", default_value = "send")]
+    pub name: operator::Name,
+}
+
 /// Arguments of `check`.
 #[derive(Clone, Debug, Args)]
 pub struct CheckArguments {
@@ -295,6 +328,33 @@ pub struct CheckArguments {
     /// Location at which the robot is taken to stand before the command
     #[arg(long, value_name = "NAME", default_value = "HOME", requires = "explain")]
     pub from: String,
+}
+
+/// When ticks are run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Clock {
+    /// Whether there is a grid.
+    pub kind: ClockKind,
+    /// Ticks in 40 ms.
+    pub speed: u8,
+}
+
+impl FromStr for Clock {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let speed = || text.strip_suffix('x')?.parse().ok().filter(|speed| (1..=MOST_SPEED).contains(speed));
+        let (kind, speed) = match text {
+            "fast" => (ClockKind::Fast, 1),
+            "real" => (ClockKind::Real, 1),
+            _ => (
+                ClockKind::Real,
+                speed()
+                    .ok_or_else(|| format!("fast, real or 1x to {MOST_SPEED}x was expected; found {text}"))?,
+            ),
+        };
+        Ok(Self { kind, speed })
+    }
 }
 
 /// Yes or no.
@@ -338,6 +398,17 @@ mod tests {
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("--boards split"), "{error}");
         assert!(board("3").is_err());
+    }
+
+    #[test]
+    fn a_clock_has_a_speed() {
+        let clock = |text| Cli::try_parse_from(["rcs-run", "--clock", text]).map(|cli| cli.run.clock);
+        assert_eq!(clock("fast").ok(), Some(Clock { kind: ClockKind::Fast, speed: 1 }));
+        assert_eq!(clock("real").ok(), Some(Clock { kind: ClockKind::Real, speed: 1 }));
+        assert_eq!(clock("5x").ok(), Some(Clock { kind: ClockKind::Real, speed: 5 }));
+        for wrong in ["0x", "21x", "x", "5", "slow"] {
+            assert!(clock(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

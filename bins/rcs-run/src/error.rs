@@ -54,6 +54,9 @@ pub enum Error {
     /// There are several runs.
     #[error("there are several runs, name one: {}", .0.join(", "))]
     WhichRun(Vec<String>),
+    /// A run cannot be operated.
+    #[error(transparent)]
+    Operator(#[from] operator::ClientError),
     /// A board cannot take part in a run.
     #[error(transparent)]
     Board(#[from] MemberError),

@@ -21,6 +21,7 @@ mod memory_fault;
 mod page;
 mod progress;
 mod run;
+mod send;
 mod status;
 mod tables;
 mod ways;
@@ -83,6 +84,7 @@ fn execute(cli: Cli) -> Result<ExitCode, Error> {
         Some(Command::Latency(arguments)) => latency::latency(&arguments),
         Some(Command::Status(arguments)) => status::status(&arguments),
         Some(Command::Campaign(arguments)) => campaign::campaign(&arguments),
+        Some(Command::Send(arguments)) => send::send(&arguments),
         Some(Command::Clean) => clean::clean(),
     }
 }

@@ -39,6 +39,9 @@ impl fmt::Display for Page<'_> {
         if let Some(last) = result.retries.last() {
             writeln!(f, "retries    {}, the last one at tick {}", result.retries.len(), last.tick)?;
         }
+        if let Some(operator) = &result.operator {
+            writeln!(f, "operator   {} requests, {} refused", operator.requests, operator.refused)?;
+        }
         for part in &result.parts {
             writeln!(f, "part       {part}")?;
         }

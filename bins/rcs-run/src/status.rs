@@ -31,7 +31,11 @@ pub fn status(arguments: &StatusArguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn only_run() -> Result<RunName, Error> {
+/// The run that goes on, if there is one only.
+///
+/// # Errors
+/// [`Error::SharedMemory`], [`Error::WhichRun`].
+pub fn only_run() -> Result<RunName, Error> {
     let alive: Vec<_> = memory::list()?.into_iter().filter(|run| run.alive).map(|run| run.name).collect();
     match &alive[..] {
         [only] => Ok(only.clone()),

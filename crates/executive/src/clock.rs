@@ -70,6 +70,8 @@ impl Time for Monotonic {
 pub struct Grid<T> {
     time: T,
     start: Duration,
+    /// How long a slot is.
+    length: Duration,
     slot: u64,
     ticks: u64,
     skipped: u64,
@@ -80,9 +82,14 @@ pub struct Grid<T> {
 
 impl<T: Time> Grid<T> {
     /// A grid that starts now; slot 1, the first to be run, begins 40 ms from now.
-    pub fn new(mut time: T) -> Self {
+    pub fn new(time: T) -> Self {
+        Self::with_slots_of(time, SLOT)
+    }
+
+    /// A grid whose slots have another length: simulated time goes faster than real time.
+    fn with_slots_of(mut time: T, length: Duration) -> Self {
         let start = time.now();
-        Self { time, start, slot: 0, ticks: 0, skipped: 0, ready_for: None, late: Duration::ZERO }
+        Self { time, start, length, slot: 0, ticks: 0, skipped: 0, ready_for: None, late: Duration::ZERO }
     }
 
     /// Sleep until [`LEAD`] before the next slot begins; the next [`wait`](Self::wait) is for this slot.
@@ -121,12 +128,12 @@ impl<T: Time> Grid<T> {
 
     /// When a slot begins.
     fn begin(&self, slot: u64) -> Duration {
-        self.start + SLOT * u32::try_from(slot).unwrap_or(u32::MAX)
+        self.start + self.length * u32::try_from(slot).unwrap_or(u32::MAX)
     }
 
     fn slot_now(&mut self) -> u64 {
         let elapsed = self.time.now().saturating_sub(self.start);
-        u64::try_from(elapsed.as_nanos() / SLOT.as_nanos()).unwrap_or(u64::MAX)
+        u64::try_from(elapsed.as_nanos() / self.length.as_nanos()).unwrap_or(u64::MAX)
     }
 
     /// Slots in which a tick was run.
@@ -164,10 +171,11 @@ pub enum Clock {
 }
 
 impl Clock {
-    /// A clock that starts to wait for 40 ms slots now.
+    /// A clock that runs so many ticks in the time of one, with a simulated robot; one slot has 1 ms at least.
     #[must_use]
-    pub fn real() -> Self {
-        Self::Real(Grid::new(Monotonic))
+    pub fn times(speed: u8) -> Self {
+        let length = (SLOT / u32::from(speed.max(1))).max(Duration::from_millis(1));
+        Self::Real(Grid::with_slots_of(Monotonic, length))
     }
 
     /// Sleep until shortly before the next tick; true if there is time left until it is due, which is never so

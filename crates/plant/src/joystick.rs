@@ -113,6 +113,12 @@ impl Joystick {
         !self.held.is_empty() || !self.steps.is_empty()
     }
 
+    /// Let go of stick and buttons; switches and knob stay.
+    pub fn let_go(&mut self) {
+        self.held.clear();
+        self.steps.clear();
+    }
+
     /// What the controller reads in the next tick; once a tick.
     pub fn read(&mut self) -> JoystickBox {
         for (process, count, wait) in &mut self.steps {

@@ -80,6 +80,6 @@ pub use cell::{
     WorkstationError, part_link,
 };
 pub use description::CellDescription;
-pub use joystick::{BoxAction, BoxButton};
+pub use joystick::{BoxAction, BoxButton, Joystick};
 pub use part::PartState;
 pub use t3::{Cut, EStop, Key};

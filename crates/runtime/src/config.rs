@@ -27,6 +27,8 @@ pub struct RunConfig {
     pub job: String,
     /// Ticks at once, or one every 40 ms.
     pub clock: ClockKind,
+    /// Ticks in 40 ms with the real clock; more than 1 needs the simulated robot.
+    pub speed: u8,
     /// What to do about slots of the 40 ms grid that are skipped.
     #[serde(with = "as_text")]
     pub overrun: Policy,
@@ -74,6 +76,12 @@ pub struct RunConfig {
     /// After a command that ends with an error send PAUSE and the same command again, at most so many times a
     /// line of the job.
     pub retry: u32,
+    /// Who may operate the run while it goes on.
+    pub operator: OperatorAccess,
+    /// A log whose operator's inputs are given again, each in its tick; then nobody can connect.
+    pub inputs: Option<PathBuf>,
+    /// The job waits for an operator before its first line.
+    pub stand_by: bool,
     /// What the log is to say of the run beside what this configuration says.
     pub remarks: BTreeMap<String, String>,
     /// Show the buffers to other programs.
@@ -95,6 +103,7 @@ impl RunConfig {
             data: data.into(),
             job: job.into(),
             clock: ClockKind::Fast,
+            speed: 1,
             overrun: Policy::Count,
             cpu: None,
             robot: RobotConfig { kind: RobotKind::Sim, silence: None },
@@ -114,6 +123,9 @@ impl RunConfig {
             zenoh_config: None,
             ticks: None,
             retry: 0,
+            operator: OperatorAccess::Owner,
+            inputs: None,
+            stand_by: false,
             remarks: BTreeMap::new(),
             shared_memory: true,
             on_stuck: None,
@@ -132,6 +144,17 @@ impl Default for RunConfig {
     fn default() -> Self {
         Self::new("data", "linkbar")
     }
+}
+
+/// Who may operate a run (`docs/operator.md`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum OperatorAccess {
+    /// Nobody
+    None,
+    /// Programs of the user who runs it, on this machine
+    Owner,
 }
 
 /// When ticks are run.

@@ -47,6 +47,9 @@ pub enum StartError {
     /// A robot at a port with a clock that does not wait for it.
     #[error("a robot at a port lives in real time: add --clock real")]
     NotInRealTime,
+    /// A clock that cannot be kept.
+    #[error("a speed from 1 to {most} times real time was expected, found {0}", most = crate::setup::MOST_SPEED)]
+    Speed(u8),
     /// A robot of the caller's own that the caller did not bring.
     #[error("the configuration names a robot of the caller's own: start the run by Run::with_robot")]
     NoOwnRobot,
@@ -67,6 +70,9 @@ pub enum StartError {
     /// The robot's frames cannot be used.
     #[error(transparent)]
     Placement(#[from] egm_robot::placement::PlacementError),
+    /// The log whose inputs are to be given again cannot be read.
+    #[error("the inputs cannot be given again: {0}")]
+    Inputs(#[source] Box<record::ReadError>),
     /// The data base of the Data System cannot be had.
     #[error("the Data System cannot keep its items: {0}")]
     DataBase(#[from] StoreError),

@@ -29,6 +29,7 @@ pub mod error;
 mod log;
 pub mod neighbours;
 pub mod observer;
+mod operator;
 mod outside;
 mod own;
 mod pace;
@@ -44,7 +45,7 @@ pub mod workstation;
 
 pub use self::{
     change::ChangeError,
-    config::{Boards, ClockKind, LogTarget, RobotConfig, RobotKind, RunConfig},
+    config::{Boards, ClockKind, LogTarget, OperatorAccess, RobotConfig, RobotKind, RunConfig},
     error::StartError,
     observer::{Observer, TickReport},
     own::OwnRobot,

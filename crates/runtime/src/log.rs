@@ -10,8 +10,8 @@ use levels::ladder::LadderState;
 use plant::{Cell, part_link};
 use rcs_core::{digest::Digest, tick::Tick};
 use record::{
-    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, LogFile, Pace, RecordError, Recorder, Summary,
-    Timing, Transform,
+    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, LogFile, OperatorLine, Pace, RecordError,
+    Recorder, Summary, Timing, Transform,
 };
 use taskdata::load::{
     Source,
@@ -37,6 +37,8 @@ pub const OUTSIDE: &str = "outside";
 pub const DATA_BASE: &str = "data_base_in";
 /// What stands there if they are forgotten at the end.
 pub const IN_MEMORY: &str = "memory";
+/// Key: the job waited for an operator before its first line.
+pub const STAND_BY: &str = "stand_by";
 /// Key: after how many ticks the run was to stop.
 pub const TICKS: &str = "ticks";
 
@@ -108,6 +110,11 @@ impl Log {
     /// Something worth a line; before [`Log::tick`] of the same tick.
     pub fn note(&mut self, tick: Tick, level: Level, source: &str, text: &str) {
         self.recorder.note(tick, level, source, text);
+    }
+
+    /// What an operator has asked for; before [`Log::tick`] of the tick that sees it first.
+    pub fn operator(&mut self, line: OperatorLine) {
+        self.recorder.operator(line);
     }
 
     /// Faults that the plan has put on the line so far: told when others than in the tick before come up;
@@ -224,5 +231,6 @@ fn metadata(config: &RunConfig, job: &Job, attachments: &[Attachment]) -> BTreeM
     ];
     let own = entries.into_iter().map(|(key, value)| (key.to_owned(), value));
     let limit = config.ticks.map(|ticks| (TICKS.to_owned(), ticks.to_string()));
-    own.chain(limit).chain(config.remarks.clone()).collect()
+    let stand_by = config.stand_by.then(|| (STAND_BY.to_owned(), "yes".to_owned()));
+    own.chain(limit).chain(stand_by).chain(config.remarks.clone()).collect()
 }

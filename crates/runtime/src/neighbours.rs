@@ -178,6 +178,32 @@ impl Neighbours {
         }
     }
 
+    /// The job, if it commands now.
+    ///
+    /// # Errors
+    /// Who commands instead, in a sentence.
+    pub fn job_under_way(&mut self) -> Result<&mut Hwsc, String> {
+        if self.is_ending {
+            return Err("the run is about to end".to_owned());
+        }
+        let other =
+            "the workstation controller commands this run: ask there, or end its session; stops are possible";
+        match &mut self.workstation {
+            WorkstationSource::Emulator(emulator) => Ok(&mut emulator.hwsc),
+            WorkstationSource::Switched(switched) => switched.job_under_way().ok_or_else(|| other.to_owned()),
+            WorkstationSource::Outside(_) => Err(other.to_owned()),
+        }
+    }
+
+    /// Why the job has begun to wait for an operator; each reason is given once.
+    pub fn operator_news(&mut self) -> Option<String> {
+        match &mut self.workstation {
+            WorkstationSource::Emulator(emulator) => emulator.hwsc.operator_news(),
+            WorkstationSource::Switched(switched) => switched.job_under_way()?.operator_news(),
+            WorkstationSource::Outside(_) => None,
+        }
+    }
+
     /// Another process may command for a time.
     #[must_use]
     pub const fn can_switch(&self) -> bool {

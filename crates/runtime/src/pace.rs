@@ -47,15 +47,15 @@ impl Pace {
         }
     }
 
-    /// From now on a tick every 40 ms. The threads of log and progress must run already: they keep their
+    /// From now on a tick every 40 ms, or `speed` ticks in that time. The threads of log and progress must run already: they keep their
     /// ordinary priority.
-    pub fn ask_for_real_time(&mut self, core: Option<usize>) -> Remark {
+    pub fn ask_for_real_time(&mut self, core: Option<usize>, speed: u8) -> Remark {
         let granted = realtime::acquire(core);
         let text = format!("real time: {}; {}", granted.verdict, Machine::look());
         let level = if granted.verdict.complete() { Level::Info } else { Level::Warning };
         self.granted = Some(granted);
         self.verdict = Some(text.clone());
-        self.clock = Clock::real();
+        self.clock = Clock::times(speed);
         (level, text)
     }
 

@@ -14,7 +14,7 @@ use record::{Attachment, Log};
 
 use crate::{
     config::{LogTarget, RobotConfig, RunConfig},
-    log::{DATA_BASE, FAULTS, IN_MEMORY, LOADS, OUTSIDE, RETRY, TICKS},
+    log::{DATA_BASE, FAULTS, IN_MEMORY, LOADS, OUTSIDE, RETRY, STAND_BY, TICKS},
     setup::{CELL, EXTENSION},
 };
 
@@ -98,6 +98,7 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
     write(&data, CELL, cell)?;
     let job = log.attachment(Attachment::JOB).ok_or(RepeatError::Missing("job"))?;
     let job = write(&jobs, &format!("{name}.{EXTENSION}"), job)?;
+    let operated = log.operator_lines().next().is_some();
     let faults = log.attachment(FAULTS).map(|faults| write(directory, FAULTS, faults)).transpose()?;
     Ok(RunConfig {
         robot,
@@ -105,6 +106,8 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
         seed: number("seed").ok_or(RepeatError::Missing("seed"))?,
         ticks: number(TICKS),
         retry: number(RETRY).and_then(|retry| u32::try_from(retry).ok()).unwrap_or(0),
+        inputs: operated.then(|| log.path().to_owned()),
+        stand_by: said(STAND_BY).is_some(),
         log: LogTarget::None,
         shared_memory: false,
         ..RunConfig::new(data, job.to_string_lossy())

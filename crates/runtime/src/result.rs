@@ -14,6 +14,7 @@ use serde::Serialize;
 use crate::{
     contacts::{Collision, NearMiss},
     egm::EgmPort,
+    operator::Requests,
     robot::Port,
     workstation::Emergency,
 };
@@ -461,6 +462,9 @@ pub struct RunResult {
     pub commands: Vec<CommandResult>,
     /// Commands that had failed and were sent again, after a PAUSE (`--retry`).
     pub retries: Vec<RetryResult>,
+    /// What operators have asked for; none if nobody has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub operator: Option<Requests>,
     /// Ticks that were run, without those in which the robot was brought to rest.
     pub ticks: u64,
     /// Ticks in which the robot was brought to rest at the end.

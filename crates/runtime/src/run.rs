@@ -39,6 +39,7 @@ use crate::{
     log::Log,
     neighbours::Neighbours,
     observer::{Observer, TickReport},
+    operator::{A_TICK, Around, Inputs, Operator},
     own::OwnRobot,
     pace::{self, Pace},
     placement::PlacementCheck,
@@ -72,6 +73,9 @@ pub struct Run {
     pub(crate) runner: Runner<Controller>,
     pub(crate) neighbours: Neighbours,
     pub(crate) workstation: SimulatedWorkstation,
+    /// Where operators' requests come from, and what becomes of them.
+    asked: Inputs,
+    operator: Operator,
     inputs: DeviceInputs,
     pub(crate) robot: Robot,
     pub(crate) log: Option<Log>,
@@ -206,7 +210,9 @@ impl Run {
         let workstation = SimulatedWorkstation::new(cell);
         let workstation = if robot.is_elsewhere() { workstation.with_robot_elsewhere() } else { workstation };
         let workstation = if neighbours.can_switch() { workstation.with_hand_over() } else { workstation };
+        let operator = Operator::new(robot.is_elsewhere());
         let runner = Runner::new(controller, publisher);
+        let asked = Inputs::of(&config, &name, &mut *observer)?;
         let mirror = runner.publisher().and_then(|publisher| mirror(publisher, &mut *observer));
         Ok(Self {
             runner,
@@ -215,6 +221,8 @@ impl Run {
             inputs: workstation.cell.inputs(),
             robot,
             workstation,
+            asked,
+            operator,
             log,
             log_path,
             pace: Pace::fast(config.overrun),
@@ -316,7 +324,7 @@ impl Run {
 
     /// The log's thread runs already: it keeps its ordinary priority.
     fn ask_for_real_time(&mut self, core: Option<usize>) {
-        let (level, text) = self.pace.ask_for_real_time(core);
+        let (level, text) = self.pace.ask_for_real_time(core, self.config.speed);
         self.observer.message(&text);
         if let Some(log) = &mut self.log {
             log.note(Tick::BEFORE_START.next(), level, "executive", &text);
@@ -346,6 +354,7 @@ impl Run {
     fn external(&self) -> ExternalInputs {
         let mut devices = self.pace.inputs(self.inputs);
         devices.link_patience = self.first_patience.or(self.patience);
+        devices.joystick = self.operator.at_the_box(devices.joystick);
         if self.ramp.is_some() {
             devices.joystick.velocity = 0;
         }
@@ -418,6 +427,7 @@ impl Run {
         let steps = self.neighbours.begun_steps();
         let (lines, hws) = (self.job.steps.len(), &external.hws);
         self.observer.tick(&TickReport { tick, lines, steps, hws, memory: &memory });
+        self.operate(tick);
         let progress = self.neighbours.step(
             tick,
             &memory,
@@ -425,6 +435,7 @@ impl Run {
             &mut self.workstation,
             self.generations.current(),
         );
+        self.tell_operators(tick);
         self.note_neighbours(tick);
         self.publish_cell(tick);
         // Vision in another process has answered the tick that is over.
@@ -505,6 +516,39 @@ impl Run {
         }
         let ending = std::mem::replace(&mut ramp.ending, Ending::Stopped);
         Some(if matches!(ending, Ending::Stopped) { self.left(ending) } else { ending })
+    }
+
+    /// What operators have asked for since the last tick. The next tick is the first to see it.
+    fn operate(&mut self, tick: Tick) {
+        let first = tick.next();
+        for _ in 0..A_TICK {
+            let Some(input) = self.asked.next(first) else { break };
+            let mut around = Around {
+                tick,
+                store: self.generations.current(),
+                neighbours: &mut self.neighbours,
+                workstation: &mut self.workstation,
+            };
+            let verdict = self.operator.carry_out(&input, &mut around);
+            let line = input.line(first, &verdict);
+            if let Some(difference) = input.answer(first, &verdict) {
+                self.observer.message(&format!("tick {first}: {difference}"));
+            }
+            if let (Some(log), Some(line)) = (&mut self.log, line) {
+                log.operator(line);
+            }
+        }
+        self.operator.work_the_box();
+    }
+
+    /// The job has begun to wait: who looks at the program or its log is told, too.
+    fn tell_operators(&mut self, tick: Tick) {
+        let Some(news) = self.neighbours.operator_news() else { return };
+        self.observer.message(&format!("tick {tick}: {news}"));
+        if let Some(log) = &mut self.log {
+            log.note(tick.next(), Level::Warning, "operator", &news);
+        }
+        self.events.push(tick, &news);
     }
 
     /// The rest of a tick: the cell moves.
@@ -608,6 +652,7 @@ impl Run {
             realtime: self.pace.verdict(),
             boards: self.runner.levels().results(),
             link: (&self.runner.memory().t3i.status.counters).into(),
+            operator: self.operator.requests(),
             faults: self.robot.faults().map(FaultsResult::from),
             cell_faults: self.workstation.cell.faults().into_iter().map(Into::into).collect(),
             port: self.robot.port().map(PortResult::from),

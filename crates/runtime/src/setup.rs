@@ -42,6 +42,9 @@ pub const EXTENSION: &str = "job";
 /// The cell description in the data directory.
 pub const CELL: &str = "cell.toml";
 
+/// Ticks in 40 ms at most: a tick with the simulated cell takes some 0.2 ms.
+pub const MOST_SPEED: u8 = 20;
+
 /// What a run works with.
 pub struct Setup {
     /// Task data.
@@ -74,8 +77,12 @@ impl Setup {
         own: Option<Box<dyn OwnRobot>>,
         observer: &mut dyn Observer,
     ) -> Result<Self, StartError> {
-        if config.robot.kind.lives_in_real_time() && config.clock != ClockKind::Real {
+        let is_real = config.clock == ClockKind::Real && config.speed == 1;
+        if config.robot.kind.lives_in_real_time() && !is_real {
             return Err(StartError::NotInRealTime);
+        }
+        if config.speed == 0 || config.speed > MOST_SPEED {
+            return Err(StartError::Speed(config.speed));
         }
         let data = &config.data;
         let TaskFiles { store, job, job_path, warnings } = TaskFiles::load(data, config.played())?;
@@ -213,7 +220,10 @@ fn neighbours(
             DataSystem::new(items, ANSWER_TICKS, pace)
         }
     };
-    let hwsc = Hwsc::new(job.steps.clone(), TIME_LIMIT).with_retries(config.retry);
+    let mut hwsc = Hwsc::new(job.steps.clone(), TIME_LIMIT).with_retries(config.retry);
+    if config.stand_by {
+        hwsc = hwsc.on_stand_by();
+    }
     let workstation = match commands {
         Some(endpoint) if config.stand_alone => {
             WorkstationSource::Switched(Box::new(Switched::new(hwsc, endpoint, config.wait)))

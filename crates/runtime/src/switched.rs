@@ -80,6 +80,11 @@ impl Switched {
         self.job.hwsc.is_handed_over()
     }
 
+    /// The job, unless it has handed over.
+    pub fn job_under_way(&mut self) -> Option<&mut Hwsc> {
+        (!self.is_handed_over()).then_some(&mut self.job.hwsc)
+    }
+
     /// Steps of the job, or the commands of the workstation controller since it took over.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {

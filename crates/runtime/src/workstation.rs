@@ -119,6 +119,14 @@ impl SimulatedWorkstation {
         std::mem::take(&mut self.state.loads)
     }
 
+    /// Begin what an operator asks for; `line` is how it is said.
+    ///
+    /// # Errors
+    /// A sentence, if the workstation cannot do it.
+    pub fn begin_line(&mut self, action: &Action, line: &str) -> Result<(), String> {
+        self.begin(action, line)
+    }
+
     /// What the cell has to do for an action, in this order.
     fn translate(&self, action: &Action) -> Result<Vec<WorkstationAction>, String> {
         let at_the_robot = matches!(action, Action::Press(_) | Action::Release(_) | Action::Panel(_));
@@ -196,7 +204,7 @@ const fn at_the_panel(key: Panel) -> Key {
 }
 
 /// The words of a job are those of a person, the box has switches.
-const fn at_the_box(action: Joystick) -> BoxAction {
+pub const fn at_the_box(action: Joystick) -> BoxAction {
     match action {
         Joystick::Frame(frame) => BoxAction::Frame(match frame {
             JoystickFrame::World => joystick_frame::WORLD,

@@ -61,6 +61,13 @@ pub(super) fn files(prefix: &str) -> PathBuf {
     Path::new(SHARED_MEMORY).join(format!("{prefix}{FILES}"))
 }
 
+/// The socket at which operators reach a run: in a directory that is this user's alone, and there as long as the run
+/// is shown to others.
+#[must_use]
+pub fn operator_socket(name: &RunName) -> PathBuf {
+    files(&prefix(name, &layout())).join("operator")
+}
+
 /// What the names of a run's objects in shared memory start with: short, since it stands in paths of sockets too.
 #[must_use]
 pub fn prefix(name: &RunName, layout: &str) -> String {

@@ -1,0 +1,45 @@
+//! `rcs-run send`: asks something of a run that goes on, as an operator.
+
+use std::{
+    process::ExitCode,
+    thread,
+    time::{Duration, Instant},
+};
+
+use executive::memory::operator_socket;
+use operator::Client;
+use os_io::{console, stderr_line};
+
+use crate::{
+    cli::SendArguments,
+    error::{Error, FAILED},
+    status::only_run,
+};
+
+/// Time between two signs of life: well within what a held stick needs.
+const ALIVE: Duration = Duration::from_millis(100);
+
+/// Ask for one line after the other, and print the answers. A refusal ends it with exit status 1.
+///
+/// # Errors
+/// [`Error::Operator`] if the run takes no operator, [`Error::SharedMemory`] and [`Error::WhichRun`] if it is not
+/// clear which run is meant.
+pub fn send(arguments: &SendArguments) -> Result<ExitCode, Error> {
+    let run = arguments.run.clone().map_or_else(only_run, Ok)?;
+    let mut client = Client::connect(&operator_socket(&run), &arguments.name)?;
+    for line in &arguments.lines {
+        match client.ask(line)? {
+            Ok(answer) => console::answer(&format!("{line}: {answer}\n"))?,
+            Err(why) => {
+                stderr_line!("rcs-run: `{line}` is refused: {why}");
+                return Ok(ExitCode::from(FAILED));
+            }
+        }
+    }
+    let end = Instant::now() + Duration::from_secs(arguments.stay.into());
+    while Instant::now() < end {
+        client.keep_alive()?;
+        thread::sleep(ALIVE.min(end.saturating_duration_since(Instant::now())));
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,288 @@
+//! The operator of a run (IV): what is asked for between two ticks, who may ask for it, and what becomes of it.
+//!
+//! A request is a line of text ([`Request`]). What the controller reads anyway goes into its joystick box
+//! ([`Operator::at_the_box`]); what the cell takes is applied to the cell; a command goes through the mailbox of the job
+//! player, whose numbers it shares. All of it happens in [`Run::operate`](crate::Run), after the cell has moved and
+//! before the job player looks: the next tick is the first one that sees it. Every request stands in the log with that
+//! tick, so that the same inputs can be given again.
+//!
+//! One operator commands at a time: the first who asks for something that moves, until it leaves. Stops are never
+//! arbitrated.
+
+mod request;
+mod source;
+
+use ::operator::Event;
+use interfaces::device::{JoystickBox, KNOB_FULL};
+use neighbours::workstation::player::Hwsc;
+use plant::{BoxAction, Joystick};
+use rcs_core::tick::Tick;
+use serde::Serialize;
+use taskdata::load::Store;
+
+pub use self::source::Inputs;
+use self::{request::Request, source::Input};
+use crate::{neighbours::Neighbours, workstation::SimulatedWorkstation};
+
+/// Requests that are taken in a tick; more wait for the next one.
+pub const A_TICK: usize = 16;
+
+/// The operators of a run.
+pub struct Operator {
+    /// The joystick box that they work; it stands beside that of the job's lines.
+    hand: Joystick,
+    /// What it shows in the next tick.
+    shown: JoystickBox,
+    /// The velocity knob is at zero until `go`.
+    is_stopped: bool,
+    /// Who is connected.
+    sessions: Vec<String>,
+    /// Who commands.
+    commander: Option<String>,
+    /// The robot is at a port: what moves it must not go on when nobody is heard of.
+    robot_elsewhere: bool,
+    counts: Requests,
+}
+
+/// How many requests there were.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Requests {
+    /// All, those about the status not counted.
+    pub requests: u64,
+    /// Those that were refused.
+    pub refused: u64,
+}
+
+/// What a request works on.
+pub struct Around<'a> {
+    /// The tick that is over.
+    pub tick: Tick,
+    /// Task data, with which lines are read.
+    pub store: &'a Store,
+    /// Who commands Task.
+    pub neighbours: &'a mut Neighbours,
+    /// The cell.
+    pub workstation: &'a mut SimulatedWorkstation,
+}
+
+impl Operator {
+    /// Nobody is connected, and the box is as a box is at the start.
+    #[must_use]
+    pub fn new(robot_elsewhere: bool) -> Self {
+        Self {
+            hand: Joystick::default(),
+            shown: JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() },
+            is_stopped: false,
+            sessions: Vec::new(),
+            commander: None,
+            robot_elsewhere,
+            counts: Requests::default(),
+        }
+    }
+
+    /// The joystick box of the next tick: that of the job's lines, with that of the operators beside it. The lower
+    /// velocity holds, a stick that is moved and a frame that is on come first, and switches and buttons add up.
+    #[must_use]
+    pub fn at_the_box(&self, job: JoystickBox) -> JoystickBox {
+        let own = &self.shown;
+        let stick = if (own.x, own.y) == (0, 0) { (job.x, job.y) } else { (own.x, own.y) };
+        JoystickBox {
+            velocity: if self.is_stopped { 0 } else { own.velocity.min(job.velocity) },
+            x: stick.0,
+            y: stick.1,
+            up: own.up || job.up,
+            down: own.down || job.down,
+            roll_plus: own.roll_plus || job.roll_plus,
+            roll_minus: own.roll_minus || job.roll_minus,
+            open: own.open || job.open,
+            close: own.close || job.close,
+            frame: if own.frame == 0 { job.frame } else { own.frame },
+            record: own.record || job.record,
+            resume: own.resume || job.resume,
+            hold: own.hold | job.hold,
+            single_step: own.single_step | job.single_step,
+        }
+    }
+
+    /// Once a tick, after all requests: what the box shows in the next one.
+    pub fn work_the_box(&mut self) {
+        self.shown = self.hand.read();
+    }
+
+    /// How many requests there were; none if nobody has connected.
+    #[must_use]
+    pub fn requests(&self) -> Option<Requests> {
+        (self.counts != Requests::default()).then_some(self.counts)
+    }
+
+    /// Carry an event out. The answer says what there is to say, or why it is refused.
+    pub fn carry_out(&mut self, input: &Input, around: &mut Around<'_>) -> Result<String, String> {
+        let who = input.source();
+        match input.event() {
+            Event::Connected => self.connected(who, around),
+            Event::Silent => self.is_silent(who),
+            Event::Disconnected => self.disconnected(who, around),
+            Event::Line(line) => {
+                let request = Request::read(line, around.store);
+                if request == Ok(Request::Status) {
+                    return Ok(self.status(around));
+                }
+                let carried_out = request.and_then(|request| self.obey(who, request, around));
+                self.counts.requests += 1;
+                self.counts.refused += u64::from(carried_out.is_err());
+                carried_out
+            }
+        }
+    }
+
+    fn connected(&mut self, who: &str, around: &mut Around<'_>) -> Result<String, String> {
+        self.sessions.push(who.to_owned());
+        self.attend(around);
+        Ok(String::new())
+    }
+
+    /// The stick and the buttons go back. A robot at a port comes to rest.
+    fn is_silent(&mut self, who: &str) -> Result<String, String> {
+        if self.commander.as_deref() == Some(who) && self.hand.busy() {
+            self.hand.let_go();
+            self.is_stopped |= self.robot_elsewhere;
+        }
+        Ok(String::new())
+    }
+
+    fn disconnected(&mut self, who: &str, around: &mut Around<'_>) -> Result<String, String> {
+        if let Some(at) = self.sessions.iter().position(|session| session == who) {
+            self.sessions.remove(at);
+        }
+        if self.commander.as_deref() == Some(who) && !self.sessions.iter().any(|session| session == who) {
+            self.is_silent(who)?;
+            self.commander = None;
+            self.hand.act(BoxAction::Frame(0));
+        }
+        self.attend(around);
+        Ok(String::new())
+    }
+
+    /// A job waits for an operator only while one is there.
+    fn attend(&self, around: &mut Around<'_>) {
+        if let Ok(job) = around.neighbours.job_under_way() {
+            job.attend(!self.sessions.is_empty());
+        }
+    }
+
+    fn obey(&mut self, who: &str, request: Request, around: &mut Around<'_>) -> Result<String, String> {
+        if !request.is_stop() {
+            self.take_command(who)?;
+        }
+        let done = String::new();
+        let tick = around.tick;
+        match request {
+            Request::Status => Ok(self.status(around)),
+            Request::Stop => {
+                self.is_stopped = true;
+                Ok("the velocity knob is at 0; `go` turns it back".to_owned())
+            }
+            Request::Go => {
+                self.is_stopped = false;
+                Ok(format!("the velocity knob is at {} of {KNOB_FULL}", self.shown.velocity))
+            }
+            Request::Leave => {
+                if self.commander.as_deref() == Some(who) {
+                    self.commander = None;
+                }
+                Ok(done)
+            }
+            Request::Wait => {
+                job(around)?.wait_for_operator().map(|()| done).map_err(|error| error.to_string())
+            }
+            Request::GoOn => job(around)?.go_on(tick).map(|()| done).map_err(|error| error.to_string()),
+            Request::Skip => job(around)?.skip(tick).map(|()| done).map_err(|error| error.to_string()),
+            Request::Command(text, command) => {
+                let number = job(around)?.command_by_operator(tick, text, command);
+                number.map(|number| format!("command {number}")).map_err(|error| error.to_string())
+            }
+            Request::Box(action) => {
+                self.hand.act(action);
+                Ok(done)
+            }
+            Request::Cell(action, line) => around.workstation.begin_line(&action, &line).map(|()| done),
+        }
+    }
+
+    /// One operator commands at a time.
+    fn take_command(&mut self, who: &str) -> Result<(), String> {
+        match &self.commander {
+            Some(other) if other != who => Err(format!(
+                "{other} commands this run; stops are for everybody, the rest when it says `leave`"
+            )),
+            _ => {
+                self.commander = Some(who.to_owned());
+                Ok(())
+            }
+        }
+    }
+
+    /// How things stand, in a line.
+    fn status(&self, around: &mut Around<'_>) -> String {
+        let job = match around.neighbours.job_under_way() {
+            Ok(job) if job.is_waiting() => "the job waits",
+            Ok(_) => "the job plays",
+            Err(_) => "the workstation controller commands",
+        };
+        let commander = self.commander.as_deref().unwrap_or("nobody");
+        let knob = if self.is_stopped { 0 } else { self.shown.velocity };
+        format!("{job}; {commander} commands; knob {knob}; connected {}", self.sessions.len())
+    }
+}
+
+/// The job, if it is the job that commands.
+fn job<'a>(around: &'a mut Around<'_>) -> Result<&'a mut Hwsc, String> {
+    around.neighbours.job_under_way()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::device::joystick_frame;
+
+    #[test]
+    fn the_lower_knob_holds_and_switches_add_up() {
+        let mut operator = Operator::new(false);
+        let job =
+            JoystickBox { velocity: 700, hold: 1, frame: joystick_frame::WORLD, x: 5, ..Default::default() };
+        assert_eq!(operator.at_the_box(job), job, "nobody has done anything");
+        operator.hand.act(BoxAction::Velocity(800));
+        operator.hand.act(BoxAction::Hold(2));
+        operator.hand.act(BoxAction::Stick { x: 0, y: -30, ticks: 1 });
+        operator.work_the_box();
+        let both = operator.at_the_box(job);
+        assert_eq!((both.velocity, both.hold, both.x, both.y), (700, 3, 0, -30));
+        operator.hand.act(BoxAction::Velocity(100));
+        operator.work_the_box();
+        assert_eq!((operator.at_the_box(job).velocity, operator.at_the_box(job).x), (100, 5));
+        operator.is_stopped = true;
+        assert_eq!(operator.at_the_box(job).velocity, 0);
+    }
+
+    #[test]
+    fn one_commands_until_it_leaves() {
+        let mut operator = Operator::new(false);
+        assert_eq!(operator.take_command("a"), Ok(()));
+        assert_eq!(operator.take_command("a"), Ok(()));
+        let refused = operator.take_command("b").unwrap_err();
+        assert!(refused.starts_with("a commands this run"), "{refused}");
+    }
+
+    #[test]
+    fn who_is_silent_lets_go_and_a_robot_at_a_port_stops() {
+        for elsewhere in [false, true] {
+            let mut operator = Operator::new(elsewhere);
+            operator.take_command("a").unwrap();
+            operator.hand.act(BoxAction::Stick { x: 900, y: 0, ticks: 1000 });
+            operator.is_silent("b").unwrap();
+            assert!(operator.hand.busy(), "another one is silent");
+            operator.is_silent("a").unwrap();
+            assert_eq!((operator.hand.busy(), operator.is_stopped), (false, elsewhere));
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Where an operator's inputs come from: sessions, or a log.
+
+use std::{collections::VecDeque, fs, path::Path};
+
+use ::operator::{Event, Given, Listener};
+use executive::memory::{RunName, operator_socket};
+use rcs_core::tick::Tick;
+use record::{Log, OperatorLine};
+
+use super::request::STATUS;
+use crate::{
+    config::{ClockKind, OperatorAccess, RunConfig},
+    error::StartError,
+    observer::Observer,
+};
+
+/// Where inputs come from.
+pub enum Inputs {
+    /// Nowhere.
+    None,
+    /// Operators who connect.
+    Sessions(Listener),
+    /// A log, tick by tick.
+    Recorded(VecDeque<OperatorLine>),
+}
+
+/// An input, from wherever.
+pub enum Input {
+    /// Of a session.
+    Given(Given),
+    /// Of a log.
+    Recorded(OperatorLine, Event),
+}
+
+impl Input {
+    /// Who.
+    pub fn source(&self) -> &str {
+        match self {
+            Self::Given(given) => given.source.as_str(),
+            Self::Recorded(line, _) => &line.source,
+        }
+    }
+
+    /// What.
+    pub const fn event(&self) -> &Event {
+        match self {
+            Self::Given(given) => &given.event,
+            Self::Recorded(_, event) => event,
+        }
+    }
+
+    /// How it stands in the log, with the tick that sees it first; none for what changes nothing.
+    pub fn line(&self, tick: Tick, verdict: &Result<String, String>) -> Option<OperatorLine> {
+        let line = self.event().to_string();
+        (line != STATUS).then(|| OperatorLine {
+            tick,
+            source: self.source().to_owned(),
+            line,
+            answer: verdict.clone().unwrap_or_default(),
+            refused: verdict.clone().err(),
+        })
+    }
+
+    /// Say what has become of it. In a repetition it should be what it was: if not, that is what is returned.
+    pub fn answer(self, tick: Tick, verdict: &Result<String, String>) -> Option<String> {
+        match self {
+            Self::Given(given) => {
+                let ok = |text: &String| {
+                    if text.is_empty() { format!("tick {tick}") } else { format!("tick {tick}: {text}") }
+                };
+                given.answer(verdict.as_ref().map(ok).map_err(Clone::clone));
+                None
+            }
+            Self::Recorded(line, _) => {
+                let (was, is) = (line.refused.as_deref(), verdict.as_ref().err().map(String::as_str));
+                (was != is).then(|| {
+                    let said = |why: Option<&str>| {
+                        why.map_or("was taken".to_owned(), |why| format!("was refused: {why}"))
+                    };
+                    format!("`{}` {} in the log, and now {}", line.line, said(was), said(is))
+                })
+            }
+        }
+    }
+}
+
+impl Inputs {
+    /// What a configuration asks for. Operators can connect to a run that others can see, on the 40 ms grid.
+    ///
+    /// # Errors
+    /// [`StartError::Inputs`].
+    pub fn of(config: &RunConfig, name: &RunName, observer: &mut dyn Observer) -> Result<Self, StartError> {
+        if let Some(path) = &config.inputs {
+            return Self::recorded(path);
+        }
+        let can_connect = config.shared_memory && config.clock == ClockKind::Real;
+        if config.operator == OperatorAccess::None || !can_connect {
+            return Ok(Self::None);
+        }
+        let path = operator_socket(name);
+        // Of a killed run of the same name.
+        let _ = fs::remove_file(&path);
+        match Listener::start(&path, name.as_str()) {
+            Ok(listener) => Ok(Self::Sessions(listener)),
+            Err(error) => {
+                observer.message(&format!("no operator can connect: {}: {error}", path.display()));
+                Ok(Self::None)
+            }
+        }
+    }
+
+    fn recorded(path: &Path) -> Result<Self, StartError> {
+        let log = Log::open(path).map_err(|source| StartError::Inputs(Box::new(source)))?;
+        Ok(Self::Recorded(log.operator_lines().collect()))
+    }
+
+    /// The next input that `tick` is the first to see.
+    pub fn next(&mut self, tick: Tick) -> Option<Input> {
+        match self {
+            Self::None => None,
+            Self::Sessions(listener) => listener.try_next().map(Input::Given),
+            Self::Recorded(lines) => {
+                let line = lines.pop_front_if(|line| line.tick <= tick)?;
+                let event = Event::from(line.line.as_str());
+                Some(Input::Recorded(line, event))
+            }
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! An operator works on a run that goes on: stops it, commands it, presses an emergency stop, starts it up again, and lets
+//! the job go on. The same inputs from the log give the same bits.
+
+use std::{
+    path::PathBuf,
+    sync::atomic::{AtomicU64, Ordering},
+    thread::{self, JoinHandle},
+    time::{Duration, Instant},
+};
+
+use executive::memory::{Attached, RunName, operator_socket};
+use operator::{Client, ClientError};
+use record::{Log, OperatorLine};
+use runtime::{ClockKind, LogTarget, OperatorAccess, Run, RunConfig, RunOutcome};
+use tempfile::TempDir;
+use whole_system_tests::root;
+
+/// Twenty ticks in the time of one: a tick takes 2 ms.
+const SPEED: u8 = 20;
+/// Longest time for anything to happen.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A run that goes on in a thread, and its directory.
+struct Cell {
+    directory: TempDir,
+    name: RunName,
+    log: PathBuf,
+    run: JoinHandle<RunOutcome>,
+}
+
+impl Cell {
+    fn start(job: &str, change: impl FnOnce(RunConfig) -> RunConfig) -> Self {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("operated.job");
+        std::fs::write(&path, job).unwrap();
+        let log = directory.path().join("operated.mcap");
+        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        let name: RunName = format!("operated-{}-{count}", std::process::id()).parse().unwrap();
+        let config = RunConfig {
+            clock: ClockKind::Real,
+            speed: SPEED,
+            name: Some(name.clone()),
+            log: LogTarget::File(log.clone()),
+            ..RunConfig::new(root().join("data"), path.to_string_lossy())
+        };
+        let config = change(config);
+        let run = thread::spawn(move || Run::new(config, Box::new(())).unwrap().complete());
+        Self { directory, name, log, run }
+    }
+
+    fn client(&self, name: &str) -> Client {
+        let begun = Instant::now();
+        loop {
+            match Client::connect(&operator_socket(&self.name), &name.parse().unwrap()) {
+                Ok(client) => return client,
+                Err(error) => assert!(begun.elapsed() < PATIENCE, "{error}"),
+            }
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    fn end(self) -> (RunOutcome, PathBuf, TempDir) {
+        (self.run.join().unwrap(), self.log, self.directory)
+    }
+}
+
+/// Asks for each line; all must be taken.
+fn ask(client: &mut Client, lines: &[&str]) {
+    for line in lines {
+        let answer = client.ask(line).unwrap();
+        assert!(answer.is_ok(), "{line}: {answer:?}");
+    }
+}
+
+/// Wait until the status holds a text; the last status.
+fn wait_for(client: &mut Client, text: &str) -> String {
+    let begun = Instant::now();
+    loop {
+        let status = client.ask("status").unwrap().unwrap();
+        if status.contains(text) {
+            return status;
+        }
+        assert!(begun.elapsed() < PATIENCE, "{text:?} did not come: {status}");
+        thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// Wait until so many ticks of the run are over.
+fn wait_ticks(client: &mut Client, ticks: u64) {
+    let tick = |client: &mut Client| {
+        let status = client.ask("status").unwrap().unwrap();
+        let number = status.strip_prefix("tick ").and_then(|rest| rest.split_once(':')).unwrap().0;
+        number.parse::<u64>().unwrap()
+    };
+    let until = tick(client) + ticks;
+    while tick(client) < until {
+        thread::sleep(Duration::from_millis(4));
+    }
+}
+
+/// Try to let the job go on until the command that is executed has ended.
+fn go_on(client: &mut Client) {
+    let begun = Instant::now();
+    while let Err(why) = client.ask("job go").unwrap() {
+        assert!(why.contains("is still executed"), "{why}");
+        assert!(begun.elapsed() < PATIENCE, "{why}");
+        thread::sleep(Duration::from_millis(20));
+    }
+}
+
+const TO_SAFE_AND_HOME: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n== MOVE -- 0 -- 0 0 HOME 0 -- 0\n";
+
+fn outcomes(outcome: &RunOutcome) -> Vec<(&str, &'static str)> {
+    let bare = |text: &'_ str| -> &'static str {
+        ["PAUSE", "SAFE", "HOME"].into_iter().find(|word| text.contains(word)).unwrap_or("other")
+    };
+    outcome.steps.iter().map(|step| (bare(&step.text), step.outcome.text())).collect()
+}
+
+/// The log's inputs, given again in fast clock, lead to the same bits.
+fn assert_repeats(outcome: &RunOutcome, log: &PathBuf, directory: &TempDir) {
+    let again = directory.path().join("again.mcap");
+    let config = RunConfig {
+        inputs: Some(log.clone()),
+        log: LogTarget::File(again.clone()),
+        ticks: Some(outcome.result.ticks),
+        shared_memory: false,
+        ..RunConfig::new(root().join("data"), directory.path().join("operated.job").to_string_lossy())
+    };
+    let repeated = Run::new(config, Box::new(())).unwrap().complete();
+    let digests = |log: &PathBuf| Log::open(log).unwrap().cell_digests().collect::<Vec<_>>();
+    assert_eq!(repeated.result.digest, outcome.result.digest);
+    assert!(digests(&again) == digests(log), "the cell differs");
+    let lines = |log: &PathBuf| Log::open(log).unwrap().operator_lines().collect::<Vec<OperatorLine>>();
+    assert_eq!(lines(&again), lines(log));
+}
+
+#[test]
+fn a_job_is_stopped_commanded_and_finished_and_the_log_gives_the_same_run() {
+    let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
+    let mut client = cell.client("anna");
+    let mut other = cell.client("bert");
+    wait_for(&mut client, "the job plays");
+    wait_ticks(&mut client, 150);
+    ask(&mut client, &["stop"]);
+    assert!(client.ask("bogus").unwrap().unwrap_err().contains("no line for the cell is named bogus"));
+    ask(&mut client, &["go", "PAUSE"]);
+    wait_for(&mut client, "the job waits");
+    let refused = other.ask("job go").unwrap().unwrap_err();
+    assert!(refused.starts_with("anna commands this run"), "{refused}");
+    ask(&mut other, &["stop", "joystick hold PRIM"]);
+    ask(&mut client, &["go", "joystick free PRIM"]);
+    go_on(&mut client);
+    drop((client, other));
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}", outcome.result.failure);
+    let expected = [
+        ("PAUSE", "finished"),
+        ("SAFE", "interrupted"),
+        ("PAUSE", "finished"),
+        ("PAUSE", "finished"),
+        ("SAFE", "finished"),
+        ("HOME", "finished"),
+    ];
+    assert_eq!(outcomes(&outcome), expected);
+    let requests = outcome.result.operator.unwrap();
+    assert!(requests.requests >= 8 && requests.refused >= 2, "{requests:?}");
+    assert_eq!(outcome.result.allocations_after_start.unwrap_or(0), 0);
+    assert_repeats(&outcome, &log, &directory);
+}
+
+#[test]
+fn after_an_emergency_stop_the_operator_starts_the_robot_up_and_the_job_goes_on() {
+    let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
+    let mut client = cell.client("anna");
+    wait_ticks(&mut client, 150);
+    ask(&mut client, &["estop pedestal"]);
+    wait_for(&mut client, "the job waits");
+    wait_ticks(&mut client, 100);
+    ask(&mut client, &["release pedestal"]);
+    for key in ["fault-reset", "hydraulics enable", "manual on", "align", "auto", "cycle-start"] {
+        let begun = Instant::now();
+        // The controller takes a key when it has done what the one before has begun.
+        while let Err(why) = client.ask(&format!("panel {key}")).unwrap() {
+            assert!(begun.elapsed() < PATIENCE, "{key}: {why}");
+            thread::sleep(Duration::from_millis(20));
+        }
+        wait_ticks(&mut client, 10);
+    }
+    wait_ticks(&mut client, 600);
+    go_on(&mut client);
+    drop(client);
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
+    assert!(outcome.result.emergency_stop.is_some());
+    assert_repeats(&outcome, &log, &directory);
+}
+
+#[test]
+fn a_job_on_stand_by_begins_when_it_may_and_one_that_nobody_attends_ends_with_its_failure() {
+    let cell =
+        Cell::start("== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n", |config| RunConfig { stand_by: true, ..config });
+    let mut client = cell.client("anna");
+    wait_for(&mut client, "the job waits");
+    ask(&mut client, &["job go", "estop pedestal"]);
+    wait_for(&mut client, "the job waits");
+    drop(client);
+    let (outcome, ..) = cell.end();
+    let failure = outcome.result.failure.expect("nobody is left who could start the robot up");
+    assert!(failure.text.contains("pedestal"), "{}", failure.text);
+}
+
+#[test]
+fn a_run_may_take_no_operator() {
+    for change in [
+        (|config| RunConfig { operator: OperatorAccess::None, ..config }) as fn(RunConfig) -> RunConfig,
+        |config| RunConfig { clock: ClockKind::Fast, ticks: None, ..config },
+    ] {
+        let cell = Cell::start("** wait 2000\n", change);
+        let mut seen = false;
+        while !cell.run.is_finished() {
+            seen |= Attached::open(&cell.name).is_ok();
+            let refused =
+                Client::connect(&operator_socket(&cell.name), &"anna".parse().unwrap()).unwrap_err();
+            assert!(matches!(refused, ClientError::Unreachable(_)), "{refused}");
+            thread::sleep(Duration::from_millis(5));
+        }
+        assert!(seen, "the run was there");
+        cell.end();
+    }
+}
