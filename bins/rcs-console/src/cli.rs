@@ -7,7 +7,7 @@ use executive::memory::RunName;
 
 use crate::{model::Screen, view::Look};
 
-/// Shows what every control process of a run does and why, or of a log, back and forth in time. It only reads
+/// Shows what every control process of a run does and why, or of a log, back and forth in time. With --operate it works on the run
 #[derive(Debug, Parser)]
 #[command(
     name = "rcs-console",
@@ -17,6 +17,7 @@ use crate::{model::Screen, view::Look};
 Examples:
   rcs-console                                  the run that goes on; waits for one if there is none
   rcs-console --run linkbar-4711               one of several runs
+  rcs-console --operate                        stop, command and recover the run, too (docs/operator.md)
   rcs-console --log runs/linkbar.mcap          a log
   rcs-console --log runs/linkbar.mcap --once ladder --tick 623   one screen as text
 
@@ -29,6 +30,9 @@ pub struct Cli {
     /// The log to look at; with --run the log of that run, for the key that opens it
     #[arg(long, value_name = "FILE")]
     pub log: Option<PathBuf>,
+    /// Work on the run, not only look at it; it needs --clock real
+    #[arg(long, conflicts_with_all = ["once", "tick"])]
+    pub operate: bool,
     /// Colours repeat what marks say; auto heeds NO_COLOR and TERM=dumb
     #[arg(long, value_enum, default_value_t = Colour::Auto)]
     pub colour: Colour,

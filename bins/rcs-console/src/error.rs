@@ -10,6 +10,12 @@ pub enum ConsoleError {
     /// No such run, or it cannot be read.
     #[error(transparent)]
     SharedMemory(#[from] SharedMemoryError),
+    /// A run that takes no operator.
+    #[error(transparent)]
+    Operator(#[from] operator::ClientError),
+    /// A log is no run.
+    #[error("a log cannot be operated: leave --operate out, or name a run")]
+    OperateLog,
     /// A log that cannot be read.
     #[error("{}: {source}", path.display())]
     Log {

@@ -1,4 +1,4 @@
-//! The operator's console, view side (IV, VI.6): what every control process does and why.
+//! The operator's console (IV, VI.6): what every control process does and why.
 //!
 //! ```text
 //!  run ---> source::Live ----.
@@ -12,13 +12,16 @@
 //! * [`view`]: the model as a frame of text, on any terminal of at least 80 x 24;
 //! * [`terminal`]: keys, signals, and the terminal as it was before.
 //!
-//! The console only reads. A run never waits for it.
+//! * `hand`: the session with a run of an operator, with `--operate`.
+//!
+//! Without `--operate` the console only reads. A run never waits for it.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
 pub mod cli;
 pub mod error;
+mod hand;
 pub mod model;
 pub mod once;
 pub mod picture;

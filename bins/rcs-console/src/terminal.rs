@@ -31,7 +31,8 @@ use signal_hook::{
 use crate::{
     cli::Cli,
     error::ConsoleError,
-    model::{Effect, Key, Model, Place, Screen},
+    hand::Hand,
+    model::{Effect, Key, Model, Operating, Place, Screen},
     source::{Live, Recorded, Source, State},
     view::{Look, Scene, Waiting, draw},
 };
@@ -55,16 +56,23 @@ pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
     // What cannot be read is told before the terminal changes.
     let scene = Console::open(cli)?;
     let screen = ratatui::try_init().map_err(ConsoleError::Terminal)?;
-    let ended =
-        Session { console: scene, look: cli.look(), stop, drawn: None, log: cli.log.clone() }.run(screen);
+    let ended = Session {
+        console: scene,
+        look: cli.look(),
+        stop,
+        drawn: None,
+        log: cli.log.clone(),
+        operate: cli.operate,
+    }
+    .run(screen);
     ratatui::try_restore().map_err(ConsoleError::Terminal)?;
     ended
 }
 
 /// What is shown.
 enum Console {
-    /// A run or a log.
-    Source(Box<Model>, Box<dyn Source>),
+    /// A run or a log, and the session with the run of an operator.
+    Source(Box<Model>, Box<dyn Source>, Option<Hand>),
     /// The choice of a run.
     Waiting(Waiting, Instant),
 }
@@ -72,8 +80,13 @@ enum Console {
 impl Console {
     fn open(cli: &Cli) -> Result<Self, ConsoleError> {
         let mut model = Model::new(Screen::Ladder);
+        let mut hand = None;
         let source: Box<dyn Source> = match (&cli.run, &cli.log) {
-            (Some(run), _) => Box::new(Live::open(run, Some(stuck))?),
+            (Some(run), _) => {
+                hand = cli.operate.then(|| Hand::reach(run)).transpose()?;
+                Box::new(Live::open(run, Some(stuck))?)
+            }
+            (None, Some(_)) if cli.operate => return Err(ConsoleError::OperateLog),
             (None, Some(log)) => {
                 let log = Recorded::open(log)?;
                 model.place = cli.tick.map_or(Place::Last, Place::At);
@@ -81,7 +94,8 @@ impl Console {
             }
             (None, None) => return Ok(Self::search()),
         };
-        Ok(Self::Source(Box::new(model), source))
+        model.operating = hand.as_ref().map(|_| Operating::default());
+        Ok(Self::Source(Box::new(model), source, hand))
     }
 
     fn search() -> Self {
@@ -133,6 +147,8 @@ struct Session {
     drawn: Option<Instant>,
     /// The log of the run, if it was named.
     log: Option<PathBuf>,
+    /// Work on the run that is attached to.
+    operate: bool,
 }
 
 impl Session {
@@ -162,9 +178,12 @@ impl Session {
     /// Look at the source, or for runs.
     fn refresh(&mut self) {
         match &mut self.console {
-            Console::Source(model, source) => {
+            Console::Source(model, source, hand) => {
                 source.refresh();
                 model.take(source.as_ref());
+                if let (Some(hand), Some(operating)) = (hand, &mut model.operating) {
+                    hand.work(operating, source.about().state == State::Over);
+                }
             }
             Console::Waiting(waiting, looked) => {
                 if looked.elapsed() >= SEARCH {
@@ -182,9 +201,15 @@ impl Session {
     }
 
     fn attach(&mut self, run: &RunName) {
-        match (Live::open(run, Some(stuck)), &mut self.console) {
-            (Ok(live), _) => {
-                self.console = Console::Source(Box::new(Model::new(Screen::Ladder)), Box::new(live))
+        let opened = Live::open(run, Some(stuck)).map_err(ConsoleError::from).and_then(|live| {
+            let hand = self.operate.then(|| Hand::reach(run)).transpose()?;
+            Ok((live, hand))
+        });
+        match (opened, &mut self.console) {
+            (Ok((live, hand)), _) => {
+                let mut model = Model::new(Screen::Ladder);
+                model.operating = hand.as_ref().map(|_| Operating::default());
+                self.console = Console::Source(Box::new(model), Box::new(live), hand);
             }
             (Err(error), Console::Waiting(waiting, _)) => waiting.refused = Some(error.to_string()),
             (Err(_), Console::Source(..)) => {}
@@ -195,12 +220,12 @@ impl Session {
         let mut reach = None;
         terminal.draw(|frame| {
             let scene = match &self.console {
-                Console::Source(model, source) => Scene::Source(model, source.as_ref()),
+                Console::Source(model, source, _) => Scene::Source(model, source.as_ref()),
                 Console::Waiting(waiting, _) => Scene::Waiting(waiting),
             };
             reach = Some(draw(frame, &scene, self.look));
         })?;
-        if let (Some(reach), Console::Source(model, _)) = (reach, &mut self.console) {
+        if let (Some(reach), Console::Source(model, ..)) = (reach, &mut self.console) {
             model.limit_scroll(reach.up, reach.down);
         }
         self.drawn = Some(Instant::now());
@@ -211,7 +236,7 @@ impl Session {
         let Event::Key(pressed) = event else { return Effect::Draw };
         let Some(key) = key(pressed) else { return Effect::Draw };
         let effect = match &mut self.console {
-            Console::Source(model, source) => model.key(key, source.as_ref()),
+            Console::Source(model, source, _) => model.key(key, source.as_ref()),
             Console::Waiting(..) => return self.choose(key),
         };
         if effect == Effect::OpenLog {
@@ -242,13 +267,14 @@ impl Session {
 
     /// Open the log of the run that is shown, at the first cause of its failure.
     fn open_log(&mut self) {
-        let Console::Source(model, source) = &mut self.console else { return };
+        let Console::Source(model, source, hand) = &mut self.console else { return };
         match log_of(source.as_ref(), self.log.as_deref()) {
             Ok(log) => {
                 let cause = log.story().first_cause();
                 let tick = cause.as_ref().map_or(model.tick(), |cause| cause.tick);
                 model.show(Place::At(tick), cause.and_then(|cause| cause.process));
                 *source = Box::new(log);
+                *hand = None;
             }
             Err(why) => model.answer = Some(why),
         }
@@ -295,6 +321,9 @@ fn key(pressed: &KeyEvent) -> Option<Key> {
         KeyCode::BackTab => Key::BackTab,
         KeyCode::Up => Key::Up,
         KeyCode::Down => Key::Down,
+        KeyCode::Left => Key::Left,
+        KeyCode::Right => Key::Right,
+        KeyCode::F(1) => Key::F1,
         KeyCode::PageUp => Key::PageUp,
         KeyCode::PageDown => Key::PageDown,
         KeyCode::Home => Key::Home,
@@ -315,6 +344,7 @@ mod tests {
         assert_eq!(key(&event(KeyCode::Char('c'), KeyModifiers::CONTROL)), Some(Key::Interrupt));
         assert_eq!(key(&event(KeyCode::Char('q'), KeyModifiers::CONTROL)), None);
         assert_eq!(key(&event(KeyCode::Char('N'), KeyModifiers::SHIFT)), Some(Key::Char('N')));
-        assert_eq!(key(&event(KeyCode::F(1), KeyModifiers::NONE)), None);
+        assert_eq!(key(&event(KeyCode::F(1), KeyModifiers::NONE)), Some(Key::F1));
+        assert_eq!(key(&event(KeyCode::F(2), KeyModifiers::NONE)), None);
     }
 }

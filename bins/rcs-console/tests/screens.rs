@@ -5,10 +5,14 @@ use std::{
     sync::LazyLock,
 };
 
+use executive::memory::{
+    Text,
+    cell::{CellView, ControllerView, Lamps},
+};
 use interfaces::ProcessId;
 use ratatui::{Terminal, backend::TestBackend};
 use rcs_console::{
-    model::{Effect, Key, Model, Pane, Place, Screen},
+    model::{Effect, Key, Model, Operating, Pane, Place, Screen},
     once,
     picture::Picture,
     source::{About, Cell, Recorded, Source, State},
@@ -68,6 +72,46 @@ impl Source for As {
 
     fn cell(&self, _: u64) -> Cell {
         Cell::NotPublished
+    }
+}
+
+/// A run with a simulated cell, whose robot controller has been started up.
+struct Operated(As);
+
+impl Source for Operated {
+    fn about(&self) -> About<'_> {
+        self.0.about()
+    }
+
+    fn refresh(&mut self) {}
+
+    fn range(&self) -> Option<(u64, u64)> {
+        self.0.range()
+    }
+
+    fn picture(&self, tick: u64) -> Option<Picture> {
+        self.0.picture(tick)
+    }
+
+    fn story(&self) -> &Story {
+        self.0.story()
+    }
+
+    fn cell(&self, _: u64) -> Cell {
+        let lamps = Lamps {
+            power: true,
+            hydraulics_enabled: true,
+            hydraulics_on: true,
+            auto: true,
+            ..Lamps::default()
+        };
+        let controller = ControllerView {
+            stage: Text::clipped("DEPC"),
+            lamps,
+            aligned: [true; 6],
+            ..ControllerView::default()
+        };
+        Cell::Shown(Box::new(CellView { controller, ..CellView::default() }))
     }
 }
 
@@ -167,6 +211,58 @@ fn cell() {
     insta::assert_snapshot!("cell", screen(&model(Screen::Cell, ProcessId::Task, FAILURE, &log), &log));
 }
 
+/// A console that operates a run in which a command was sent and another one refused.
+fn operating(kind: Screen, run: &dyn Source) -> Model {
+    let mut model = model(kind, ProcessId::Emove, 300, run);
+    model.place = Place::Last;
+    model.take(run);
+    let mut operating = Operating::default();
+    operating
+        .answered(0, Ok("tick 624: the job waits; console-4711 commands; knob 1000; connected 1".into()));
+    operating.sent(1, "PAUSE".into());
+    operating.answered(1, Ok("tick 620: command 7".into()));
+    operating.sent(2, "vise open TABLE".into());
+    operating.answered(2, Err("there is no vise at TABLE; the cell description has one at PFIXTURE".into()));
+    operating.sent(3, "job go".into());
+    model.operating = Some(operating);
+    model
+}
+
+#[test]
+fn the_keys_of_an_operator_ask_the_run() {
+    let run = As(log(), State::Runs);
+    let mut model = operating(Screen::Ladder, &run);
+    let asked = |model: &mut Model| std::mem::take(&mut model.operating.as_mut().unwrap().outbox).join("; ");
+    keys(&mut model, &run, " h:job w\t\n");
+    assert_eq!(asked(&mut model), "stop; joystick hold PRIM; job wait");
+    model.key(Key::F1, &run);
+    keys(&mut model, &run, "j");
+    model.key(Key::F1, &run);
+    assert_eq!(asked(&mut model), "", "another key takes the first F1 back");
+    model.key(Key::F1, &run);
+    assert_eq!(asked(&mut model), "estop terminals");
+    keys(&mut model, &run, "6w35jjj\n");
+    assert_eq!(
+        asked(&mut model),
+        "joystick frame WORLD; joystick velocity 300; joystick velocity 500; PAUSE"
+    );
+    model.key(Key::Up, &run);
+    assert_eq!(asked(&mut model), "");
+    assert!(
+        model.answer.as_ref().is_some_and(|answer| answer.contains("no frame is on")),
+        "{:?}",
+        model.answer
+    );
+    model.picture.as_mut().unwrap().external.devices.joystick.frame = 1;
+    model.key(Key::Up, &run);
+    model.key(Key::PageDown, &run);
+    assert_eq!(asked(&mut model), "joystick stick 192 0 3; joystick down 3");
+    // What looks only asks for nothing.
+    model.operating = None;
+    keys(&mut model, &run, "\x1b :");
+    assert!(model.prompt.is_none());
+}
+
 /// The pictures of the page are those of this run, with one process under the cursor.
 #[test]
 fn the_page_shows_these_screens() {
@@ -178,9 +274,17 @@ fn the_page_shows_these_screens() {
         .skip(1)
         .filter_map(|block| block.split_once("```").map(|(picture, _)| picture))
         .collect();
-    let drawn =
-        Screen::ALL.map(|kind| once::screen_text(&model(kind, ProcessId::Emove, FAILURE, &log), &log, PLAIN));
-    assert_eq!(shown, drawn);
+    let looking = Screen::ALL.into_iter().take(4);
+    let looking =
+        looking.map(|kind| once::screen_text(&model(kind, ProcessId::Emove, FAILURE, &log), &log, PLAIN));
+    let run = Operated(As(Recorded::open(&LOG.1).expect("the log can be read"), State::Runs));
+    let operating =
+        [Screen::Terminal, Screen::Panels].map(|kind| once::screen_text(&operating(kind, &run), &run, PLAIN));
+    let drawn: Vec<String> = looking.chain(operating).collect();
+    for (shown, drawn) in shown.iter().zip(&drawn) {
+        assert_eq!(shown, drawn);
+    }
+    assert_eq!(shown.len(), drawn.len());
 }
 
 #[test]

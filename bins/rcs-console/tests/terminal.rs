@@ -143,27 +143,25 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// A run in real time, in a thread of its own, and what ends it.
-fn run(name: &str, log: &Path) -> (thread::JoinHandle<()>, Arc<AtomicBool>) {
+fn run(
+    name: &str,
+    log: &Path,
+    job: &str,
+    speed: u8,
+) -> (thread::JoinHandle<Vec<&'static str>>, Arc<AtomicBool>) {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
     let config = RunConfig {
         clock: ClockKind::Real,
+        speed,
         name: Some(name.parse().unwrap()),
         log: LogTarget::File(log.to_owned()),
-        ..RunConfig::new(data, "linkbar")
+        ..RunConfig::new(data, job)
     };
     let stop = Arc::clone(&config.stop);
     let run = thread::spawn(move || {
-        let _ = Run::new(config, Box::new(Silent)).unwrap().complete();
+        let outcome = Run::new(config, Box::new(Silent)).unwrap().complete();
+        outcome.steps.iter().map(|step| step.outcome.text()).collect()
     });
-    (run, stop)
-}
-
-#[test]
-fn a_run_is_looked_at_on_all_screens_until_its_end_and_then_its_log() {
-    let directory = tempfile::tempdir().unwrap();
-    let log = directory.path().join("short.mcap");
-    let name = format!("console-{}", std::process::id());
-    let (run, stop) = run(&name, &log);
     // A run is there when it has published its first tick.
     let begun = Instant::now();
     let listed =
@@ -173,6 +171,15 @@ fn a_run_is_looked_at_on_all_screens_until_its_end_and_then_its_log() {
         thread::sleep(Duration::from_millis(50));
     }
     thread::sleep(Duration::from_millis(200));
+    (run, stop)
+}
+
+#[test]
+fn a_run_is_looked_at_on_all_screens_until_its_end_and_then_its_log() {
+    let directory = tempfile::tempdir().unwrap();
+    let log = directory.path().join("short.mcap");
+    let name = format!("console-{}", std::process::id());
+    let (run, stop) = run(&name, &log, "linkbar", 1);
     let mut console =
         Terminal::start(&["--run", &name, "--log", log.to_str().unwrap()], directory.path(), &[]);
     console.wait_for(">1 Ladder");
@@ -198,6 +205,75 @@ fn a_run_is_looked_at_on_all_screens_until_its_end_and_then_its_log() {
     console.wait_for("RECORDED");
     console.press("q");
     assert_eq!(console.end(), Some(0));
+}
+
+#[test]
+fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_finishes_the_job() {
+    let directory = tempfile::tempdir().unwrap();
+    let job = directory.path().join("home.job");
+    std::fs::write(&job, "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n").unwrap();
+    let name = format!("operated-{}", std::process::id());
+    let (run, _) = run(&name, &directory.path().join("home.mcap"), job.to_str().unwrap(), 10);
+    let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);
+    console.wait_for("OPERATING");
+    console.press(" ");
+    console.wait_for("knob 0 %");
+    console.press(":PAUSE\r");
+    console.wait_for("JOB WAITS");
+    console.press(" ");
+    console.wait_for("knob 100 %");
+    // Tab completes, and a refusal is shown.
+    console.press("5:job n\r");
+    console.wait_for("refused: job wait, job go or job skip was expected");
+    console.press("6");
+    console.wait_for("no frame is on");
+    console.press("\x1b[A");
+    console.wait_for("w t o r switch one on");
+    console.press("w");
+    console.wait_for("frame   WORLD");
+    console.press("5");
+    console.wait_for("knob     50 %");
+    console.press("\x1b[A");
+    console.wait_for("joystick stick 192 0 3");
+    console.press("0x");
+    console.wait_for("knob    100 %");
+    console.press("\x1bOP");
+    console.wait_for("F1 again presses the E-stop");
+    console.press("\x1bOP");
+    console.wait_for("E-stops that are in: terminals");
+    for request in ["release terminals", "panel fault-reset"] {
+        console.press(&format!(":{request}\r"));
+        console.wait_for(&format!("{request}: tick"));
+    }
+    for (request, stage) in [
+        ("panel hydraulics enable", "HYD ENABLED"),
+        ("panel manual on", "MANUAL"),
+        ("panel align", "aligned ******"),
+        ("panel auto", "AUTO"),
+        ("panel cycle-start", "stage   DEPC"),
+    ] {
+        let begun = Instant::now();
+        while !console.screen().contains(stage) {
+            assert!(begun.elapsed() < PATIENCE, "{request} has not led to {stage}:\n{}", console.screen());
+            console.press(&format!(":{request}\r"));
+            thread::sleep(Duration::from_millis(300));
+        }
+    }
+    thread::sleep(Duration::from_secs(2));
+    console.press(":job go\r");
+    console.wait_for("ENDED at tick");
+    console.press("q");
+    assert_eq!(console.end(), Some(0));
+    let outcomes = run.join().unwrap();
+    assert_eq!(outcomes.last(), Some(&"finished"), "{outcomes:?}");
+}
+
+#[test]
+fn what_cannot_be_operated_is_said() {
+    let directory = tempfile::tempdir().unwrap();
+    let console = Terminal::start(&["--log", "nowhere.mcap", "--operate"], directory.path(), &[]);
+    console.wait_for("a log cannot be operated");
+    assert_eq!(console.end(), Some(2));
 }
 
 #[test]

@@ -27,6 +27,10 @@ pub enum Key {
     Up,
     /// Arrow down.
     Down,
+    /// Arrow left.
+    Left,
+    /// Arrow right.
+    Right,
     /// Page up.
     PageUp,
     /// Page down.
@@ -37,6 +41,8 @@ pub enum Key {
     End,
     /// Backspace.
     Backspace,
+    /// F1.
+    F1,
     /// Control and C.
     Interrupt,
 }
@@ -63,7 +69,7 @@ impl Model {
             self.type_on(prompt, key, source);
         } else if self.help {
             self.help = false;
-        } else {
+        } else if !self.operate(key) {
             return self.command(key, source);
         }
         Effect::Draw
@@ -74,7 +80,7 @@ impl Model {
             Key::Char('q') => return Effect::Quit,
             Key::Char('o') => return Effect::OpenLog,
             Key::Char('?') => self.help = true,
-            Key::Char(digit @ '1'..='4') => {
+            Key::Char(digit @ '1'..='6') => {
                 let at = digit.to_digit(10).and_then(|digit| usize::try_from(digit).ok());
                 self.turn_to(Screen::ALL[at.map_or(0, |at| at - 1)]);
             }
@@ -193,7 +199,10 @@ impl Model {
     }
 
     fn type_on(&mut self, mut prompt: Prompt, key: Key, source: &dyn Source) {
-        let (Prompt::Filter(text) | Prompt::Tick(text)) = &mut prompt;
+        let text = match &mut prompt {
+            Prompt::Filter(text) | Prompt::Tick(text) => text,
+            Prompt::Request(text) => return self.type_request(std::mem::take(text), key),
+        };
         match key {
             Key::Char(typed) => text.push(typed),
             Key::Backspace => drop(text.pop()),
@@ -206,6 +215,7 @@ impl Model {
     fn typed(&mut self, prompt: Prompt, source: &dyn Source) {
         match prompt {
             Prompt::Filter(text) => (self.filter, self.scroll) = (text, 0),
+            Prompt::Request(_) => {}
             Prompt::Tick(text) => match text.trim().parse() {
                 Ok(tick) => self.go(tick, source),
                 Err(_) => self.answer = Some(format!("a tick is a number such as 623; found {text:?}")),

@@ -6,12 +6,17 @@ pub mod frames;
 mod keys;
 pub mod ladder;
 pub mod link;
+pub mod operating;
+pub mod panels;
 pub mod process;
 pub mod units;
 
-use interfaces::ProcessId;
+use interfaces::{ProcessId, device::JoystickBox};
 
-pub use self::keys::{Effect, Key};
+pub use self::{
+    keys::{Effect, Key},
+    operating::Operating,
+};
 use crate::{
     picture::Picture,
     source::{Source, State},
@@ -28,11 +33,16 @@ pub enum Screen {
     Link,
     /// Joints, sensors and parts
     Cell,
+    /// Requests to the run, and its answers (IV.2)
+    Terminal,
+    /// Joystick box, robot controller, emergency stops (III.3.3, IV.3.3)
+    Panels,
 }
 
 impl Screen {
     /// All screens, in the order of their keys.
-    pub const ALL: [Self; 4] = [Self::Ladder, Self::Process, Self::Link, Self::Cell];
+    pub const ALL: [Self; 6] =
+        [Self::Ladder, Self::Process, Self::Link, Self::Cell, Self::Terminal, Self::Panels];
 
     /// The name in the first line.
     #[must_use]
@@ -42,6 +52,8 @@ impl Screen {
             Self::Process => "Process",
             Self::Link => "Link",
             Self::Cell => "Cell",
+            Self::Terminal => "Terminal",
+            Self::Panels => "Panels",
         }
     }
 }
@@ -135,6 +147,8 @@ pub enum Prompt {
     Filter(String),
     /// A tick to go to.
     Tick(String),
+    /// A request to the run.
+    Request(String),
 }
 
 /// The state of the screen.
@@ -159,6 +173,8 @@ pub struct Model {
     pub acknowledged: u64,
     /// The answer to the last key, where it did nothing else.
     pub answer: Option<String>,
+    /// What an operator asks for; none on a console that looks only.
+    pub operating: Option<Operating>,
     /// The picture.
     pub picture: Option<Picture>,
     /// The picture before it on the screen.
@@ -180,6 +196,7 @@ impl Model {
             place: Place::Last,
             acknowledged: 0,
             answer: None,
+            operating: None,
             picture: None,
             last: None,
         }
@@ -211,6 +228,12 @@ impl Model {
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.picture.as_ref().map_or(0, |picture| picture.tick.0)
+    }
+
+    /// The joystick box as the controller reads it.
+    #[must_use]
+    pub fn joystick(&self) -> JoystickBox {
+        self.picture.as_ref().map_or_else(JoystickBox::default, |picture| picture.external.devices.joystick)
     }
 
     /// The picture does not go on with the run.

@@ -6,8 +6,8 @@ use super::Look;
 use crate::model::Tone;
 
 /// What each key does.
-const KEYS: [(&str, &str); 14] = [
-    ("1 2 3 4", "screens: ladder, process, link and time, cell"),
+const KEYS: [(&str, &str); 15] = [
+    ("1 2 3 4 5 6", "screens: ladder, process, link, cell, terminal, panels"),
     ("j k, arrows, PgUp PgDn", "choose a process; scroll"),
     ("Enter, Esc", "the process under the cursor; back to the ladder"),
     ("Tab", "next pane of the process screen"),
@@ -20,6 +20,7 @@ const KEYS: [(&str, &str); 14] = [
     ("c", "to the first cause of the last failure"),
     ("a", "acknowledge the alarm in the line above the keys"),
     ("o", "open the log of this run, at the first cause"),
+    (": Space h F1", "with --operate: request, stop and go, hold Prim, E-stop"),
     ("q, Control-C", "quit; the run does not notice"),
 ];
 
@@ -33,7 +34,7 @@ pub fn lines(look: Look) -> Vec<Line<'static>> {
         "",
         MARKS,
         " A row with seconds behind it fired that long ago; ~ marks a row that nearly fired.",
-        " This program only reads: no key changes the run.",
+        " Without --operate this program only reads: no key changes the run.",
     ];
     keys.chain(words.map(|text| look.line(Tone::Plain, text))).collect()
 }

@@ -18,7 +18,7 @@ use ratatui::{
 use record::Level;
 
 use crate::{
-    model::{Model, Place, Prompt, Screen, Tone, cell, ladder as lines, link},
+    model::{Model, Operating, Place, Prompt, Screen, Tone, cell, ladder as lines, link, panels},
     source::{About, Source, State},
 };
 use text::{fit, rule};
@@ -141,6 +141,15 @@ fn screen(
                 let cell = source.cell(picture.tick.0);
                 panes::column(&cell::sections(picture, &cell), model, look, width, room)
             }
+            Screen::Terminal => {
+                let said = panels::conversation(model.operating.as_ref());
+                panes::column(&said, model, look, width, room)
+            }
+            Screen::Panels => {
+                let (joystick, cell) = (model.joystick(), source.cell(picture.tick.0));
+                let sections = panels::sections(&joystick, &cell, model.operating.as_ref());
+                panes::column(&sections, model, look, width, room)
+            }
         },
     };
     all.extend(body.into_iter().take(room));
@@ -180,6 +189,9 @@ fn run(model: &Model, source: &dyn Source, about: &About<'_>, width: usize) -> S
     let seconds = model.picture.as_ref().map_or(0.0, crate::picture::Picture::seconds);
     let tick = model.tick();
     let place = format!("tick {tick}  {seconds:.2} s  knob {knob} %");
+    let operator = model.operating.as_ref().filter(|operating| operating.lost.is_none());
+    let operating = if operator.is_some() { "OPERATING" } else { "LOOK ONLY" };
+    let waits = if operator.is_some_and(Operating::job_waits) { "  JOB WAITS" } else { "" };
     let (left, right) = match about.state {
         State::Log => {
             (format!(" LOG {}  tick {tick} of {last}  {seconds:.2} s  knob {knob} %", about.name), "RECORDED")
@@ -190,9 +202,9 @@ fn run(model: &Model, source: &dyn Source, about: &About<'_>, width: usize) -> S
         }
         State::Torn => (format!(" {}  {place}  TORN: not of one tick, look again", about.name), "LOOK ONLY"),
         State::Runs if model.place != Place::Last => {
-            (format!(" {}  {place}  FROZEN, live is {last}", about.name), "LOOK ONLY")
+            (format!(" {}  {place}  FROZEN, live is {last}", about.name), operating)
         }
-        State::Runs => (format!(" {}  {place}", about.name), "LOOK ONLY"),
+        State::Runs => (format!(" {}  {place}{waits}", about.name), operating),
     };
     let room = width.saturating_sub(right.len() + 1);
     format!("{} {right}", fit(&left, room))
@@ -205,11 +217,18 @@ fn news(model: &Model, source: &dyn Source, about: &About<'_>, look: Look, width
         Some(Prompt::Filter(text)) => {
             return line(Tone::Marked, &format!(" show lines with: {text}_   Enter  Esc"));
         }
+        Some(Prompt::Request(text)) => {
+            let said = model.answer.as_deref().unwrap_or("Enter  Tab  Esc");
+            return line(Tone::Marked, &format!(" : {text}_   {said}"));
+        }
         Some(Prompt::Tick(text)) => return line(Tone::Marked, &format!(" go to tick: {text}_   Enter  Esc")),
         None => {}
     }
     if let Some(answer) = &model.answer {
         return line(Tone::Marked, &format!(" {answer}"));
+    }
+    if let Some((tone, text)) = model.operating.as_ref().and_then(said_last) {
+        return line(tone, &text);
     }
     let tick = model.tick();
     let said = source.story().lines(tick);
@@ -230,6 +249,18 @@ fn news(model: &Model, source: &dyn Source, about: &About<'_>, look: Look, width
             let text = said.iter().rev().find(|line| line.level >= Level::Info).map(link::message);
             line(Tone::Plain, &text.unwrap_or_default().text)
         }
+    }
+}
+
+/// What became of the newest request: a refusal, or that the connection is lost.
+fn said_last(operating: &Operating) -> Option<(Tone, String)> {
+    if let Some(lost) = &operating.lost {
+        return Some((Tone::Trouble, format!("!!{lost}")));
+    }
+    let newest = operating.exchanges.last()?;
+    match newest.answer.as_ref()? {
+        Err(why) => Some((Tone::Trouble, format!("!!{}: {why}", newest.line))),
+        Ok(text) => Some((Tone::Plain, format!(" {}: {text}", newest.line))),
     }
 }
 
@@ -254,6 +285,11 @@ fn keys(model: &Model, state: State) -> &'static str {
         (_, Screen::Process, _) => {
             " Esc=back  Tab=pane  j k=scroll  /=filter  [ ]=tick  n=its change  t=trouble"
         }
+        (_, Screen::Terminal | Screen::Panels, _) if model.operating.is_none() => " Esc=back",
+        (_, Screen::Terminal, _) => {
+            " Esc=back  :=request  Space=stop, go  h=hold Prim  F1=E-stop  j k=scroll"
+        }
+        (_, Screen::Panels, _) => " Esc=back  Space=stop, go  F1=E-stop  :=request  j k Enter=keys  s=jog",
         (_, Screen::Link | Screen::Cell, _) => {
             " Esc=back  j k=scroll  [ ] { }=tick, second  n=change  t=trouble  g=go to tick"
         }

@@ -1,0 +1,64 @@
+//! The session of an operator with a run: requests go out, answers come back, and the run is told that the operator is
+//! there.
+
+use std::time::{Duration, Instant};
+
+use executive::memory::{RunName, operator_socket};
+use operator::{Client, ClientError, Name};
+
+use crate::model::Operating;
+
+/// Time between two questions about the status, which say that the operator is there, too: well within the time that a
+/// run waits for a sign of life.
+const ASK: Duration = Duration::from_millis(100);
+
+/// A session.
+pub struct Hand {
+    client: Client,
+    asked: Option<Instant>,
+}
+
+impl Hand {
+    /// Begin a session.
+    ///
+    /// # Errors
+    /// [`ClientError`] if the run takes no operator.
+    pub fn reach(run: &RunName) -> Result<Self, ClientError> {
+        let name = format!("console-{}", std::process::id());
+        let name: Name = name.parse().map_err(operator::protocol::ProtocolError::from)?;
+        Ok(Self { client: Client::connect(&operator_socket(run), &name)?, asked: None })
+    }
+
+    /// Send what is asked for, and take what has been answered.
+    pub fn work(&mut self, operating: &mut Operating, is_over: bool) {
+        if operating.lost.is_some() {
+            return;
+        }
+        if let Err(error) = self.exchange(operating) {
+            let ended = "the run has ended: nothing can be asked for any more".to_owned();
+            operating.lost = Some(if is_over { ended } else { error.to_string() });
+            operating.outbox.clear();
+        }
+    }
+
+    fn exchange(&mut self, operating: &mut Operating) -> Result<(), ClientError> {
+        for line in std::mem::take(&mut operating.outbox) {
+            match self.client.send(&line) {
+                Ok(number) => operating.sent(number, line),
+                Err(error @ ClientError::Line { .. }) => {
+                    operating.sent(0, line);
+                    operating.answered(0, Err(error.to_string()));
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        if self.asked.is_none_or(|asked| asked.elapsed() >= ASK) {
+            self.client.send("status")?;
+            self.asked = Some(Instant::now());
+        }
+        while let Some(answer) = self.client.poll()? {
+            operating.answered(answer.number, answer.verdict);
+        }
+        Ok(())
+    }
+}

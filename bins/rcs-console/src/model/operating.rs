@@ -1,0 +1,300 @@
+//! What an operator asks of a run: the conversation with it, and the keys that ask.
+
+use interfaces::device::{KNOB_FULL, single_step};
+
+use super::{Key, Model, Prompt, Screen, panels};
+
+/// Exchanges that are kept.
+const KEPT: usize = 200;
+/// Lengths of a jog, in.
+pub const JOGS: [f64; 4] = [0.10, 0.50, 2.00, 0.02];
+/// Requests that Tab completes: how they begin.
+const FORMS: [&str; 27] = [
+    "stop",
+    "go",
+    "leave",
+    "job wait",
+    "job go",
+    "job skip",
+    "PAUSE",
+    "STARTUP",
+    "SHUTDOWN",
+    "MOVE -- 0 -- 0 0 HOME 0 -- 0",
+    "MOVE -- 0 -- 0 0 SAFE 0 -- 0",
+    "TRANSFER ",
+    "POSITION ",
+    "ACQUIRE ",
+    "REFIXTURE ",
+    "joystick frame ",
+    "joystick stick ",
+    "joystick velocity ",
+    "joystick hold ",
+    "joystick free ",
+    "joystick step ",
+    "estop ",
+    "release ",
+    "panel ",
+    "tray ",
+    "vise ",
+    "drum ",
+];
+
+/// A request, and what became of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Exchange {
+    /// The number of the request.
+    pub number: u32,
+    /// What was asked for.
+    pub line: String,
+    /// The answer; none before it comes.
+    pub answer: Option<Result<String, String>>,
+}
+
+/// An operator at work.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Operating {
+    /// What the run says of itself: who commands, whether the job waits, where the knob is.
+    pub status: String,
+    /// Requests, the oldest first.
+    pub exchanges: Vec<Exchange>,
+    /// Requests that are to be sent.
+    pub outbox: Vec<String>,
+    /// Why the run cannot be reached any more.
+    pub lost: Option<String>,
+    /// The length of a jog: which of [`JOGS`].
+    pub jog: usize,
+    /// The key of the panels under the cursor.
+    pub cursor: usize,
+    /// The next F1 presses the emergency stop.
+    pub is_armed: bool,
+    /// How many requests back the arrow keys of the prompt have gone.
+    pub back: usize,
+}
+
+impl Operating {
+    /// A request was sent.
+    pub fn sent(&mut self, number: u32, line: String) {
+        if self.exchanges.len() == KEPT {
+            self.exchanges.remove(0);
+        }
+        self.exchanges.push(Exchange { number, line, answer: None });
+    }
+
+    /// An answer has come: to a request, or about the status.
+    pub fn answered(&mut self, number: u32, verdict: Result<String, String>) {
+        match self.exchanges.iter_mut().rev().find(|exchange| exchange.number == number) {
+            Some(exchange) => exchange.answer = Some(verdict),
+            None => {
+                let status = verdict.unwrap_or_else(|why| why);
+                self.status = status.split_once(": ").map_or(status.as_str(), |(_, rest)| rest).to_owned();
+            }
+        }
+    }
+
+    /// The job waits for an operator.
+    #[must_use]
+    pub fn job_waits(&self) -> bool {
+        self.status.starts_with("the job waits")
+    }
+
+    fn ask(&mut self, line: impl Into<String>) {
+        self.outbox.push(line.into());
+    }
+
+    /// A line that was asked for before; `by` goes back, or on with 0.
+    fn recall(&mut self, back: bool) -> Option<String> {
+        self.back = if back { self.back + 1 } else { self.back.saturating_sub(1) };
+        self.back = self.back.min(self.exchanges.len());
+        let at = self.exchanges.len().checked_sub(self.back)?;
+        Some(self.exchanges.get(at).map_or_else(String::new, |exchange| exchange.line.clone()))
+    }
+}
+
+/// What Tab makes of a line, and the forms that it could become.
+fn complete(typed: &str) -> (String, Vec<&'static str>) {
+    let fitting: Vec<_> = FORMS.into_iter().filter(|form| form.starts_with(typed)).collect();
+    let Some(first) = fitting.first() else { return (typed.to_owned(), fitting) };
+    let common = fitting.iter().fold(first.len(), |common, form| {
+        first.bytes().zip(form.bytes()).take(common).take_while(|(a, b)| a == b).count()
+    });
+    (first.get(..common).unwrap_or(typed).to_owned(), fitting)
+}
+
+impl Model {
+    /// A key that asks something of the run; false if it is none.
+    pub(super) fn operate(&mut self, key: Key) -> bool {
+        let on_panels = self.screen == Screen::Panels;
+        let velocity = self.joystick().velocity;
+        let holds_prim = self.joystick().hold & single_step::PRIM != 0;
+        let Some(operating) = self.operating.as_mut().filter(|operating| operating.lost.is_none()) else {
+            return false;
+        };
+        let was_armed = std::mem::take(&mut operating.is_armed);
+        match key {
+            Key::Char(' ') if velocity == 0 => operating.ask("go"),
+            Key::Char(' ') => operating.ask("stop"),
+            Key::Char('h') if holds_prim => operating.ask("joystick free PRIM"),
+            Key::Char('h') => operating.ask("joystick hold PRIM"),
+            Key::F1 if was_armed => operating.ask("estop terminals"),
+            Key::F1 => {
+                operating.is_armed = true;
+                self.answer = Some(
+                    "F1 again presses the E-stop near the terminals: the arm sinks; Space is gentler (IV.3.1)"
+                        .to_owned(),
+                );
+            }
+            Key::Char(':') => {
+                operating.back = 0;
+                self.prompt = Some(Prompt::Request(String::new()));
+            }
+            _ => return on_panels && self.work_a_panel(key),
+        }
+        true
+    }
+
+    /// A key of the panels: of the joystick box, or of the list of keys beside it.
+    fn work_a_panel(&mut self, key: Key) -> bool {
+        let frame = self.joystick().frame;
+        let Some(operating) = &mut self.operating else { return false };
+        let size = JOGS.get(operating.jog).copied().unwrap_or(JOGS[0]);
+        let jog = |x: f64, y: f64| {
+            let (share, ticks) = stick(size);
+            let counts = |direction: f64| (direction * share * f64::from(KNOB_FULL)).round();
+            format!("joystick stick {} {} {ticks}", counts(x), counts(y))
+        };
+        let press = |button: &str| format!("joystick {button} {}", button_ticks(size));
+        let line = match key {
+            Key::Up => jog(1.0, 0.0),
+            Key::Down => jog(-1.0, 0.0),
+            Key::Left => jog(0.0, 1.0),
+            Key::Right => jog(0.0, -1.0),
+            Key::PageUp => press("up"),
+            Key::PageDown => press("down"),
+            Key::Char(',') => press("roll-"),
+            Key::Char('.') => press("roll+"),
+            Key::Char('{') => press("open"),
+            Key::Char('}') => press("close"),
+            Key::Char('w') => "joystick frame WORLD".to_owned(),
+            Key::Char('t') => "joystick frame TOOL".to_owned(),
+            Key::Char('o') => "joystick frame TOOL-ORIGIN".to_owned(),
+            Key::Char('r') => "joystick frame WRIST-ORIGIN".to_owned(),
+            Key::Char('x') => "joystick frame OFF".to_owned(),
+            Key::Char('z') => "joystick step PRIM".to_owned(),
+            Key::Char('m') => "joystick record".to_owned(),
+            Key::Char('M') => "joystick resume".to_owned(),
+            Key::Char('`') => "joystick velocity 0".to_owned(),
+            Key::Char(digit @ '0'..='9') => {
+                let tenths = digit.to_digit(10).filter(|tenths| *tenths > 0).unwrap_or(10);
+                format!("joystick velocity {}", tenths * u32::from(KNOB_FULL) / 10)
+            }
+            Key::Char('s') => {
+                operating.jog = (operating.jog + 1) % JOGS.len();
+                return true;
+            }
+            Key::Char('j') => {
+                operating.cursor = (operating.cursor + 1).min(panels::KEYS.len() - 1);
+                return true;
+            }
+            Key::Char('k') => {
+                operating.cursor = operating.cursor.saturating_sub(1);
+                return true;
+            }
+            Key::Enter => panels::KEYS.get(operating.cursor).copied().unwrap_or_default().to_owned(),
+            _ => return false,
+        };
+        let moves = matches!(key, Key::Up | Key::Down | Key::Left | Key::Right | Key::PageUp | Key::PageDown);
+        if moves && frame == 0 {
+            self.answer = Some("no frame is on: w t o r switch one on, then arrows move the hand".to_owned());
+        } else {
+            operating.ask(line);
+        }
+        true
+    }
+
+    /// A key while a request is typed.
+    pub(super) fn type_request(&mut self, mut text: String, key: Key) {
+        let Some(operating) = &mut self.operating else { return };
+        match key {
+            Key::Char(typed) => text.push(typed),
+            Key::Backspace => drop(text.pop()),
+            Key::Up => text = operating.recall(true).unwrap_or(text),
+            Key::Down => text = operating.recall(false).unwrap_or(text),
+            Key::Tab => {
+                let (completed, fitting) = complete(&text);
+                if fitting.len() != 1 {
+                    let words: Vec<_> = fitting.iter().map(|form| form.trim_end()).collect();
+                    self.answer = Some(words.join(", "));
+                }
+                text = completed;
+            }
+            Key::Enter if text.trim().is_empty() => return,
+            Key::Enter => return operating.ask(text.trim()),
+            _ => return,
+        }
+        self.prompt = Some(Prompt::Request(text));
+    }
+}
+
+/// Speed of a stick at full deflection and full knob, in/s (`levels::prim::manual`).
+const SPEED: f64 = 5.0;
+/// Its acceleration, in/s².
+const ACCELERATION: f64 = 10.0;
+/// Play of the stick, a share of its way.
+const PLAY: f64 = 0.03;
+/// Ticks in a second.
+const TICKS: f64 = 25.0;
+
+/// Deflection, a share, and ticks that move the hand so far at full knob: the ramps at both ends cancel each other.
+fn stick(inches: f64) -> (f64, u32) {
+    let ticks = (inches * TICKS).clamp(2.0, 20.0).round();
+    let share = (inches * TICKS / ticks / SPEED).clamp(0.0, 1.0);
+    (PLAY + share * (1.0 - PLAY), ticks as u32)
+}
+
+/// Ticks that a button is held to move about so far at full knob: its speed is always the full one.
+fn button_ticks(inches: f64) -> u32 {
+    let ramp = SPEED / ACCELERATION;
+    let seconds = if inches < SPEED * ramp { (inches / ACCELERATION).sqrt() } else { inches / SPEED };
+    (seconds * TICKS).round().max(1.0) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tab_completes_as_far_as_it_is_clear() {
+        assert_eq!(complete("job").0, "job ");
+        assert_eq!(complete("job g").0, "job go");
+        assert_eq!(complete("joy").0, "joystick ");
+        assert_eq!(complete("xyz"), ("xyz".to_owned(), Vec::new()));
+        assert_eq!(complete("st"), ("stop".to_owned(), vec!["stop"]));
+    }
+
+    #[test]
+    fn a_jog_has_its_length() {
+        for inches in JOGS {
+            let (deflection, ticks) = stick(inches);
+            let share = (deflection - PLAY) / (1.0 - PLAY);
+            let moved = share * SPEED * f64::from(ticks) / TICKS;
+            assert!((moved - inches).abs() < 0.01 * inches, "{inches}: {moved}");
+            assert!(button_ticks(inches) >= 1);
+        }
+    }
+
+    #[test]
+    fn the_last_requests_come_back() {
+        let mut operating = Operating::default();
+        operating.sent(1, "stop".into());
+        operating.sent(2, "go".into());
+        assert_eq!(operating.recall(true).as_deref(), Some("go"));
+        assert_eq!(operating.recall(true).as_deref(), Some("stop"));
+        assert_eq!(operating.recall(true).as_deref(), Some("stop"));
+        assert_eq!(operating.recall(false).as_deref(), Some("go"));
+        assert_eq!(operating.recall(false).as_deref(), Some(""));
+        operating.answered(2, Err("no".into()));
+        operating.answered(9, Ok("tick 7: the job waits; anna commands".into()));
+        assert_eq!(operating.exchanges[1].answer, Some(Err("no".into())));
+        assert!(operating.job_waits() && operating.status.ends_with("anna commands"));
+    }
+}

@@ -1,0 +1,172 @@
+//! Joystick box (III.3.3), robot controller (IV.3.3) and emergency stops (III.6), as they are now, and the requests to
+//! a run.
+
+use interfaces::device::{JoystickBox, KNOB_FULL, joystick_frame, single_step};
+
+use super::{
+    Section, Text, Tone,
+    operating::{Exchange, JOGS, Operating},
+};
+use crate::source::Cell;
+
+/// What the list of keys presses, in its order.
+pub const KEYS: [&str; 27] = [
+    "job go",
+    "job wait",
+    "job skip",
+    "PAUSE",
+    "panel power on",
+    "panel power off",
+    "panel fault-reset",
+    "panel hydraulics enable",
+    "panel hydraulics disable",
+    "panel manual on",
+    "panel manual off",
+    "panel align",
+    "panel auto",
+    "panel cycle-start",
+    "panel interrupt",
+    "panel cancel",
+    "panel enter",
+    "panel hold on",
+    "panel hold off",
+    "release control-panel",
+    "release teach-pendant",
+    "release terminals",
+    "release joystick-box",
+    "release pedestal",
+    "joystick hold EMOVE",
+    "joystick free EMOVE",
+    "leave",
+];
+/// Keys around the cursor that are shown.
+const SHOWN: usize = 5;
+/// The emergency stops, in the order of the cell.
+const ESTOPS: [&str; 5] =
+    ["control panel", "teach pendant", "terminals", "joystick box", "near the pedestal"];
+
+/// Box, controller and keys, from the top.
+#[must_use]
+pub fn sections(joystick: &JoystickBox, cell: &Cell, operating: Option<&Operating>) -> Vec<Section> {
+    let mut sections = vec![joystick_box(joystick, operating), controller(cell)];
+    match operating {
+        Some(operating) => sections.push(keys(operating)),
+        None => sections.push(look_only()),
+    }
+    sections
+}
+
+fn look_only() -> Section {
+    let text = " This console looks only: start it with --operate to work on a run.";
+    Section::new("keys", vec![Text::new(Tone::Faint, text)])
+}
+
+fn frame(joystick: &JoystickBox) -> &'static str {
+    match joystick.frame {
+        0 => "no frame is on: the box moves nothing",
+        joystick_frame::WORLD => "WORLD",
+        joystick_frame::TOOL => "TOOL",
+        joystick_frame::TOOL_ORIGIN => "TOOL-ORIGIN",
+        joystick_frame::WRIST_ORIGIN => "WRIST-ORIGIN",
+        _ => "several switches are on: the box moves nothing",
+    }
+}
+
+fn joystick_box(joystick: &JoystickBox, operating: Option<&Operating>) -> Section {
+    let processes = [
+        (single_step::TASK, "Task"),
+        (single_step::SUBTASK, "Subtask"),
+        (single_step::EMOVE, "E-move"),
+        (single_step::PRIM, "Prim"),
+    ];
+    let held: Vec<_> =
+        processes.into_iter().filter(|(bit, _)| joystick.hold & bit != 0).map(|(_, name)| name).collect();
+    let held = if held.is_empty() { "no process".to_owned() } else { held.join(", ") };
+    let percent = u32::from(joystick.velocity) * 100 / u32::from(KNOB_FULL);
+    let bar = "#".repeat(usize::try_from(percent / 5).unwrap_or_default());
+    let mut lines = vec![
+        Text::plain(format!(" frame   {}", frame(joystick))),
+        Text::plain(format!(" knob    {percent:>3} %  {bar}")),
+        Text::plain(format!(" holds   {held}")),
+    ];
+    if let Some(operating) = operating {
+        let jog = JOGS.get(operating.jog).copied().unwrap_or_default();
+        let keys = [
+            " w t o r=frame WORLD, TOOL, TOOL-ORIGIN, WRIST-ORIGIN   x=off".to_owned(),
+            " ` 1 ... 9 0=knob 0, 10 ... 90, 100 %   h=hold Prim   z=step Prim".to_owned(),
+            format!(" arrows=X Y   PgUp PgDn=Z   , .=roll   {{ }}=gripper   a key moves {jog:.2} in (s)"),
+            " m=record the pose   M=return after it".to_owned(),
+        ];
+        lines.extend(keys.map(|text| Text::new(Tone::Faint, text)));
+    }
+    Section::new("joystick box", lines)
+}
+
+fn controller(cell: &Cell) -> Section {
+    let Cell::Shown(view) = cell else {
+        let text = " the robot is not simulated here: its panel and its E-stops are at the robot";
+        return Section::new("robot controller", vec![Text::new(Tone::Faint, text)]);
+    };
+    let t3 = &view.controller;
+    let lit = |on: bool, name: &'static str| on.then_some(name);
+    let lamps = [
+        lit(t3.lamps.power, "POWER"),
+        lit(t3.lamps.fault_reset, "FAULT RESET"),
+        lit(t3.lamps.hydraulics_enabled, "HYD ENABLED"),
+        lit(t3.lamps.hydraulics_on, "MANUAL"),
+        lit(t3.lamps.auto, "AUTO"),
+        lit(t3.lamps.hold, "HOLD"),
+    ];
+    let lamps: Vec<_> = lamps.into_iter().flatten().collect();
+    let aligned: String = t3.aligned.iter().map(|axis| if *axis { '*' } else { '.' }).collect();
+    let mut lines = vec![
+        Text::plain(format!(" stage   {}   lit: {}", t3.stage, lamps.join(", "))),
+        Text::plain(format!(" screen  {}   aligned {aligned}", t3.screen)),
+    ];
+    if !t3.cut.to_string().is_empty() {
+        lines.push(Text::new(Tone::Trouble, format!("!!no pressure: {}", t3.cut)));
+    }
+    let pressed: Vec<_> =
+        t3.estops.iter().zip(ESTOPS).filter(|(pressed, _)| **pressed).map(|(_, name)| name).collect();
+    lines.push(match pressed.is_empty() {
+        true => Text::plain(" E-stops all five are out"),
+        false => Text::new(Tone::Trouble, format!("!!E-stops that are in: {}", pressed.join(", "))),
+    });
+    Section::new("robot controller", lines)
+}
+
+fn keys(operating: &Operating) -> Section {
+    let first = operating.cursor.saturating_sub(SHOWN / 2).min(KEYS.len().saturating_sub(SHOWN));
+    let line = |(at, key): (usize, &&str)| {
+        let (mark, tone) = if at == operating.cursor { ('>', Tone::Marked) } else { (' ', Tone::Plain) };
+        Text::new(tone, format!(" {mark} {key}"))
+    };
+    let shown = KEYS.iter().enumerate().skip(first).take(SHOWN).map(line);
+    let title = format!("keys, {} of {}: j k=choose, Enter=press", operating.cursor + 1, KEYS.len());
+    Section::new(title, shown.collect())
+}
+
+/// The conversation with the run, the newest request first.
+#[must_use]
+pub fn conversation(operating: Option<&Operating>) -> Vec<Section> {
+    let Some(operating) = operating else { return vec![look_only()] };
+    let mut about = vec![Text::plain(format!(" {}", operating.status))];
+    if let Some(lost) = &operating.lost {
+        about.push(Text::new(Tone::Trouble, format!("!!{lost}")));
+    }
+    let hints = [
+        " :=request   Tab=complete   Up=the last one   Space=stop, go   h=hold Prim",
+        " PAUSE   MOVE ...   job wait, go, skip   vise open PFIXTURE   panel auto",
+    ];
+    about.extend(hints.map(|text| Text::new(Tone::Faint, text)));
+    let exchange = |exchange: &Exchange| {
+        let (tone, text) = match &exchange.answer {
+            None => (Tone::Faint, "  not answered yet".to_owned()),
+            Some(Ok(text)) => (Tone::Plain, format!("  {text}")),
+            Some(Err(why)) => (Tone::Trouble, format!("!!refused: {why}")),
+        };
+        [Text::new(Tone::Marked, format!(" : {}", exchange.line)), Text::new(tone, text)]
+    };
+    let said = operating.exchanges.iter().rev().flat_map(exchange).collect();
+    vec![Section::new("the run", about), Section::new("requests, newest first", said)]
+}
