@@ -5,6 +5,7 @@ use std::{path::PathBuf, str::FromStr};
 use crate::campaign::CampaignArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use executive::{boards::Board, memory::RunName, overrun::Policy};
+use live::Origin;
 use neighbours::network::{Address, Role};
 use runtime::{Boards, ClockKind, LogTarget, OperatorAccess, RobotConfig, RunConfig, setup::MOST_SPEED};
 
@@ -164,6 +165,14 @@ pub struct RunArguments {
     /// Give the operator's inputs of this log again, each in its tick
     #[arg(long, value_name = "LOG")]
     pub inputs: Option<PathBuf>,
+    /// Show the run to Foxglove or Lichtblick on this machine, at ws://127.0.0.1:PORT [default port: 8765]
+    ///
+    /// The view gets what the log gets, so that it needs one (docs/live.md). People need --clock real, or 5x.
+    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8765", value_parser = port)]
+    pub live: Option<u16>,
+    /// Let pages of this site connect to the live view, such as http://localhost:8080; may be given again
+    #[arg(long, value_name = "ORIGIN", requires = "live")]
+    pub live_origin: Vec<Origin>,
     /// Show the buffers to other programs
     #[arg(long, value_enum, default_value_t = Switch::On)]
     pub shared_memory: Switch,
@@ -227,6 +236,8 @@ impl RunArguments {
             operator: own.operator,
             inputs: own.inputs,
             stand_by: own.stand_by,
+            live: own.live,
+            live_origins: own.live_origin,
             shared_memory: own.shared_memory == Switch::On,
             ..RunConfig::new(own.data, own.job)
         }
@@ -357,6 +368,12 @@ impl FromStr for Clock {
     }
 }
 
+/// A port of this machine.
+fn port(text: &str) -> Result<u16, String> {
+    text.parse()
+        .map_err(|_| format!("a port from 0 to 65535 was expected, found {text}; a job stands before --live"))
+}
+
 /// Yes or no.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Switch {
@@ -409,6 +426,22 @@ mod tests {
         for wrong in ["0x", "21x", "x", "5", "slow"] {
             assert!(clock(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn a_live_view_has_a_port() {
+        let live = |arguments: &[&str]| {
+            let all = ["rcs-run"].iter().chain(arguments);
+            Cli::try_parse_from(all).map(|cli| (cli.run.job, cli.run.live))
+        };
+        assert_eq!(live(&[]).ok(), Some(("linkbar".into(), None)));
+        assert_eq!(live(&["shift", "--live"]).ok(), Some(("shift".into(), Some(8765))));
+        assert_eq!(live(&["--live", "--clock", "real"]).ok(), Some(("linkbar".into(), Some(8765))));
+        assert_eq!(live(&["--live", "9000"]).ok(), Some(("linkbar".into(), Some(9000))));
+        let error = live(&["--live", "shift"]).expect_err("that is no port").to_string();
+        assert!(error.contains("a job stands before --live"), "{error}");
+        assert!(live(&["--live-origin", "http://localhost:80"]).is_err());
+        assert!(live(&["--live", "--live-origin", "localhost"]).is_err());
     }
 
     #[test]

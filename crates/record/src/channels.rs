@@ -24,6 +24,7 @@ use crate::{
     input::Epoch,
     layout,
     proto::{descriptor, message},
+    tap::{Channel, Tap},
 };
 
 /// Encoding of schemas and messages in protobuf.
@@ -35,6 +36,8 @@ pub struct Output<W: Write + Seek> {
     pub mcap: mcap::Writer<W>,
     /// Time of tick 0.
     pub epoch: Epoch,
+    /// Who else gets it.
+    pub tap: Option<Box<dyn Tap>>,
 }
 
 impl<W: Write + Seek> Output<W> {
@@ -52,8 +55,13 @@ impl<W: Write + Seek> Output<W> {
         definition: &[u8],
         message_encoding: &str,
     ) -> McapResult<u16> {
-        let schema = self.mcap.add_schema(schema, schema_encoding, definition)?;
-        self.mcap.add_channel(schema, topic, message_encoding, &BTreeMap::new())
+        let number = self.mcap.add_schema(schema, schema_encoding, definition)?;
+        let id = self.mcap.add_channel(number, topic, message_encoding, &BTreeMap::new())?;
+        if let Some(tap) = &mut self.tap {
+            let (encoding, schema_name, schema) = (message_encoding, schema, definition);
+            tap.channel(id, &Channel { topic, encoding, schema_name, schema_encoding, schema });
+        }
+        Ok(id)
     }
 
     /// Write a message of a tick.
@@ -64,7 +72,11 @@ impl<W: Write + Seek> Output<W> {
         self.mcap.write_to_known_channel(
             &MessageHeader { channel_id, sequence, log_time, publish_time: log_time },
             data,
-        )
+        )?;
+        if let Some(tap) = &mut self.tap {
+            tap.message(channel_id, log_time, data);
+        }
+        Ok(())
     }
 }
 

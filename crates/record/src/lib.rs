@@ -41,6 +41,7 @@ pub mod replay;
 pub mod rows;
 pub mod scene;
 pub mod sink;
+pub mod tap;
 pub mod writer;
 
 pub use error::{ReadError, RecordError, ReplayError};
@@ -51,4 +52,5 @@ pub use proto::foxglove::{Level, Transform};
 pub use reader::Log;
 pub use recorder::{Lost, Pace, Recorder, Summary};
 pub use replay::{Difference, Options, ReplayReport, replay, replay_with};
+pub use tap::Tap;
 pub use writer::Timing;

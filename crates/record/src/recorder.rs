@@ -31,6 +31,7 @@ use crate::{
     proto::foxglove::Level,
     remarks::Remark,
     sink::Sink,
+    tap::Tap,
     writer::{FULL_SET, LogWriter, TickRecord, Timing, Written},
 };
 
@@ -136,20 +137,25 @@ impl Recorder {
     /// # Errors
     /// As [`LogFile::claim`] and [`Recorder::start_in`].
     pub fn start(path: &Path, pace: Pace, setup: Setup) -> Result<Self, RecordError> {
-        Self::start_in(LogFile::claim(path)?, pace, setup)
+        Self::start_in(LogFile::claim(path)?, pace, setup, None)
     }
 
-    /// Empty the file and start the writer.
+    /// Empty the file and start the writer. A tap gets what the file gets.
     ///
     /// # Errors
     /// [`RecordError`] if the file cannot be emptied, or its head cannot be written.
-    pub fn start_in(mut file: LogFile, pace: Pace, setup: Setup) -> Result<Self, RecordError> {
+    pub fn start_in(
+        mut file: LogFile,
+        pace: Pace,
+        setup: Setup,
+        tap: Option<Box<dyn Tap>>,
+    ) -> Result<Self, RecordError> {
         if let Some(cell) = &setup.cell {
             cell.check()?;
         }
         let path = file.path().to_owned();
         let emptied = file.emptied().map_err(|source| RecordError::Create { path: path.clone(), source })?;
-        let log = LogWriter::create(Sink::new(emptied, pace == Pace::Drop), setup)?;
+        let log = LogWriter::create_with(Sink::new(emptied, pace == Pace::Drop), setup, tap)?;
         let tick = Tick::BEFORE_START;
         let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
         let (ticks, tick_consumer) = ring(RING, TickRecord { tick, gap: 0, external, memory, timing: None });

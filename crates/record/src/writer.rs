@@ -44,6 +44,7 @@ use crate::{
     remarks::{Remark, remarks},
     rows::Rows,
     scene::Scene,
+    tap::Tap,
 };
 
 /// Ticks from one set of whole images, and of states, to the next: a second.
@@ -170,6 +171,14 @@ impl<W: Write + Seek> LogWriter<W> {
     /// # Errors
     /// What `sink` says.
     pub fn create(sink: W, setup: Setup) -> McapResult<Self> {
+        Self::create_with(sink, setup, None)
+    }
+
+    /// Like [`LogWriter::create`]; a tap gets all channels and messages, too.
+    ///
+    /// # Errors
+    /// What `sink` says.
+    pub fn create_with(sink: W, setup: Setup, tap: Option<Box<dyn Tap>>) -> McapResult<Self> {
         // A profile would promise a viewer that all channels follow its rules.
         let options = WriteOptions::new()
             .profile("")
@@ -179,7 +188,7 @@ impl<W: Write + Seek> LogWriter<W> {
             // In this thread: the file must not depend on how many cores there are.
             .compression_threads(0)
             .chunk_size(Some(CHUNK));
-        let mut output = Output { mcap: options.create(sink)?, epoch: setup.epoch };
+        let mut output = Output { mcap: options.create(sink)?, epoch: setup.epoch, tap };
         write_head(&mut output, &setup)?;
         output.mcap.flush()?;
         let external = Buffers::external(&mut output)?;

@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, fmt, path::PathBuf, str::FromStr, sync::Arc, sync::atomic::AtomicBool};
 
+use ::live::Origin;
 use depc::host::RESTART_TICKS;
 use egm_robot::{EgmOptions, Peer};
 use executive::{
@@ -82,6 +83,11 @@ pub struct RunConfig {
     pub inputs: Option<PathBuf>,
     /// The job waits for an operator before its first line.
     pub stand_by: bool,
+    /// Show the run to viewers that connect to this port of 127.0.0.1, 0 for any that is free; it needs a log.
+    pub live: Option<u16>,
+    /// Pages that may connect as viewers, besides Foxglove's.
+    #[serde(with = "as_text::list")]
+    pub live_origins: Vec<Origin>,
     /// What the log is to say of the run beside what this configuration says.
     pub remarks: BTreeMap<String, String>,
     /// Show the buffers to other programs.
@@ -126,6 +132,8 @@ impl RunConfig {
             operator: OperatorAccess::Owner,
             inputs: None,
             stand_by: false,
+            live: None,
+            live_origins: Vec::new(),
             remarks: BTreeMap::new(),
             shared_memory: true,
             on_stuck: None,
@@ -364,6 +372,8 @@ mod tests {
             network: Some("tcp:127.0.0.1:7400".parse().unwrap()),
             outside: vec![Role::Workstation, Role::DataSystem],
             ticks: Some(50),
+            live: Some(0),
+            live_origins: vec!["http://localhost:8080".parse().unwrap()],
             ..RunConfig::new("cell", "clevis")
         };
         let text = toml::to_string(&config).unwrap();

@@ -100,6 +100,20 @@ pub enum StartError {
     /// The log cannot be written.
     #[error("the log cannot be written: {0}; --log names another file, --log none runs without")]
     Log(#[from] RecordError),
+    /// The live view shows what a log gets.
+    #[error("the live view shows what the log gets: leave --log none out, or name a file")]
+    LiveWithoutLog,
+    /// Viewers cannot connect.
+    #[error("viewers cannot connect at 127.0.0.1:{port}: {source}; --live PORT names another port")]
+    Live {
+        /// The port.
+        port: u16,
+        /// Why.
+        source: io::Error,
+    },
+    /// The system has no random numbers.
+    #[error(transparent)]
+    NoRandom(#[from] ::live::NoRandom),
     /// A signal, before the first tick.
     #[error("{0} failed at tick 0: interrupted")]
     Interrupted(String),

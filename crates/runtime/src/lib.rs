@@ -26,6 +26,7 @@ pub mod config;
 pub mod contacts;
 mod egm;
 pub mod error;
+mod live;
 mod log;
 pub mod neighbours;
 pub mod observer;

@@ -21,6 +21,7 @@ use taskdata::load::{
 use crate::{
     config::{ClockKind, RobotKind, RunConfig},
     egm::FRAMES,
+    live::Live,
     setup::Setup,
 };
 
@@ -58,6 +59,7 @@ impl Log {
     /// # Errors
     /// [`RecordError`] if the file cannot be written.
     pub fn start(file: LogFile, config: &RunConfig, setup: &Setup) -> Result<Self, RecordError> {
+        let tap = setup.live.as_ref().map(Live::tap);
         let coming: Vec<&str> = setup.job.steps.iter().filter_map(|line| delivered(&line.step)).collect();
         let later = (1..).take(coming.len()).map(|id| ("world", part_link(id)));
         let here = setup.cell.links().into_iter().map(|link| (link.parent, link.name));
@@ -83,8 +85,8 @@ impl Log {
             ClockKind::Real => (Pace::Drop, Epoch::now()),
         };
         let run = metadata(config, &setup.job, &attachments);
-        let recorder =
-            Recorder::start_in(file, pace, record::Setup { epoch, run, attachments, cell: Some(model) })?;
+        let start = record::Setup { epoch, run, attachments, cell: Some(model) };
+        let recorder = Recorder::start_in(file, pace, start, tap)?;
         Ok(Self { recorder, links, faults: Counts::default(), kinds: Vec::new() })
     }
 

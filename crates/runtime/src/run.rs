@@ -36,6 +36,7 @@ use crate::{
     contacts::{Commands, ContactCheck},
     egm::EgmPort,
     error::StartError,
+    live::Live,
     log::Log,
     neighbours::Neighbours,
     observer::{Observer, TickReport},
@@ -80,6 +81,8 @@ pub struct Run {
     pub(crate) robot: Robot,
     pub(crate) log: Option<Log>,
     log_path: Option<PathBuf>,
+    /// Lets viewers see what the log gets.
+    live: Option<Live>,
     pace: Pace,
     /// When the first tick was due.
     started: Option<Instant>,
@@ -206,7 +209,7 @@ impl Run {
         let log_path = file.as_ref().map(|file| file.path().to_owned());
         let log = file.map(|file| Log::start(file, &config, &setup)).transpose()?;
         let publisher = publisher(&config, &name, &mut *observer);
-        let Setup { store, job, description, cell, robot, neighbours, .. } = setup;
+        let Setup { store, job, description, cell, robot, neighbours, live, .. } = setup;
         let workstation = SimulatedWorkstation::new(cell);
         let workstation = if robot.is_elsewhere() { workstation.with_robot_elsewhere() } else { workstation };
         let workstation = if neighbours.can_switch() { workstation.with_hand_over() } else { workstation };
@@ -225,6 +228,7 @@ impl Run {
             operator,
             log,
             log_path,
+            live,
             pace: Pace::fast(config.overrun),
             started: None,
             ending: None,
@@ -301,6 +305,7 @@ impl Run {
         let log = self.finish_log(&ending, &mut result);
         // What is shared goes first: a caller may start the next run of the name at once.
         drop(self.mirror.take());
+        drop(self.live.take());
         RunOutcome {
             result,
             steps: self.neighbours.all_steps(),

@@ -28,6 +28,7 @@ use crate::{
     config::{ClockKind, LogTarget, RobotKind, RunConfig},
     egm::EgmPort,
     error::StartError,
+    live::Live,
     neighbours::{Emulator, Neighbours, Network, WorkstationSource},
     observer::Observer,
     own::{OwnPort, OwnRobot},
@@ -65,6 +66,8 @@ pub struct Setup {
     pub neighbours: Neighbours,
     /// Where the log goes.
     pub log: Option<LogFile>,
+    /// Who looks on.
+    pub live: Option<Live>,
 }
 
 impl Setup {
@@ -93,6 +96,7 @@ impl Setup {
         let cell = Cell::with_faults(&description, config.seed, &faults.cell)?;
         let sees_elsewhere = config.outside.contains(&Role::Vision);
         let cell = if sees_elsewhere { cell.with_vision_elsewhere() } else { cell };
+        let live = Live::open(config, &job.name, observer)?;
         let log = match &config.log {
             LogTarget::None => None,
             LogTarget::File(path) => Some(LogFile::claim(path)?),
@@ -106,7 +110,18 @@ impl Setup {
             RobotKind::Egm(options) => Robot::Egm(Box::new(EgmPort::open(options, config, observer)?)),
             RobotKind::Own => Robot::Own(OwnPort::new(own.ok_or(StartError::NoOwnRobot)?)),
         };
-        Ok(Self { store, job, description_text, description, cell, faults_text, robot, neighbours, log })
+        Ok(Self {
+            store,
+            job,
+            description_text,
+            description,
+            cell,
+            faults_text,
+            robot,
+            neighbours,
+            log,
+            live,
+        })
     }
 }
 

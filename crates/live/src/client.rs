@@ -1,0 +1,280 @@
+//! The thread of a client: takes what it says, and gives it what waits for it.
+
+use std::{
+    io::{self, ErrorKind, Read, Write},
+    net::TcpStream,
+    sync::Arc,
+    thread,
+    time::{Duration, Instant},
+};
+
+use tungstenite::{
+    Error, Message, WebSocket,
+    error::CapacityError,
+    protocol::{CloseFrame, frame::coding::CloseCode},
+};
+
+use crate::{
+    feed::{Feed, Item, Queue},
+    protocol::{self, StatusLevel},
+    session::{Action, Session},
+};
+
+/// How long a thread sleeps when there is nothing to do: a quarter of a tick.
+const IDLE: Duration = Duration::from_millis(10);
+/// From one ping to the next.
+const PING: Duration = Duration::from_secs(1);
+/// How long the end of a connection may take.
+const FAREWELL: Duration = Duration::from_millis(500);
+/// From one count of dropped messages to the next.
+const COUNT: Duration = Duration::from_secs(5);
+/// Messages of a client that are read before others are written.
+const READS: usize = 16;
+/// Items that are written before messages of the client are read.
+const WRITES: usize = 512;
+
+/// A connection. Until a moment it waits for bytes, and then fails; later it never waits.
+pub struct Connection {
+    stream: TcpStream,
+    until: Option<Instant>,
+}
+
+impl Connection {
+    /// A connection that has so long for its handshake.
+    pub fn new(stream: TcpStream, handshake: Duration) -> io::Result<Self> {
+        stream.set_nodelay(true)?;
+        stream.set_write_timeout(Some(handshake))?;
+        Ok(Self { stream, until: Some(Instant::now() + handshake) })
+    }
+
+    fn never_wait(&mut self) -> io::Result<()> {
+        self.until = None;
+        self.stream.set_nonblocking(true)
+    }
+}
+
+impl Read for Connection {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if let Some(until) = self.until {
+            let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Err(ErrorKind::TimedOut.into());
+            }
+            self.stream.set_read_timeout(Some(left))?;
+        }
+        self.stream.read(buffer)
+    }
+}
+
+impl Write for Connection {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
+}
+
+/// Why a session ends.
+#[derive(Debug)]
+enum End {
+    /// The client is gone, or takes nothing.
+    Gone,
+    /// It is told why.
+    Told(CloseCode, String),
+}
+
+impl From<io::Error> for End {
+    fn from(_: io::Error) -> Self {
+        Self::Gone
+    }
+}
+
+impl From<Error> for End {
+    fn from(error: Error) -> Self {
+        let code = match &error {
+            Error::Capacity(CapacityError::MessageTooLong { .. }) => CloseCode::Size,
+            Error::Utf8(_) => CloseCode::Invalid,
+            Error::Protocol(_) => CloseCode::Protocol,
+            _ => return Self::Gone,
+        };
+        Self::Told(code, error.to_string())
+    }
+}
+
+/// A client whose handshake is done.
+pub struct Client {
+    socket: WebSocket<Connection>,
+    feed: Feed,
+    queue: Arc<Queue>,
+    session: Session,
+    /// How long it may take nothing.
+    patience: Duration,
+    /// Number and time of the last ping.
+    ping: (u64, Instant),
+    /// Number of the last ping that was answered, and when.
+    pong: (u64, Instant),
+    /// Dropped messages that it was told of, and when.
+    dropped: (u64, Instant),
+}
+
+impl Client {
+    pub fn new(socket: WebSocket<Connection>, feed: Feed, queue: Arc<Queue>, patience: Duration) -> Self {
+        let now = Instant::now();
+        let session = Session::default();
+        Self { socket, feed, queue, session, patience, ping: (0, now), pong: (0, now), dropped: (0, now) }
+    }
+
+    /// Serve the client until it is gone or nothing more comes. It is told `first` at first.
+    pub fn run(mut self, first: Vec<String>) {
+        if let Err(End::Told(code, reason)) = self.serve(first) {
+            self.close(code, reason);
+        }
+    }
+
+    fn serve(&mut self, first: Vec<String>) -> Result<(), End> {
+        self.socket.get_mut().never_wait()?;
+        for text in first {
+            self.write(Message::text(text))?;
+        }
+        loop {
+            let is_busy = self.flush()? && (self.listen()? | self.speak()?);
+            self.look_after()?;
+            if self.queue.is_over() && self.flush()? {
+                return Err(End::Told(CloseCode::Away, "there is nothing more to come".to_owned()));
+            }
+            if !is_busy {
+                thread::sleep(IDLE);
+            }
+        }
+    }
+
+    /// Take what the client says; true if there may be more.
+    fn listen(&mut self) -> Result<bool, End> {
+        for _ in 0..READS {
+            let actions = match self.socket.read() {
+                Ok(Message::Text(text)) => self.session.text(&text, |channel| self.feed.has(channel)),
+                Ok(Message::Binary(bytes)) => self.session.binary(&bytes),
+                Ok(Message::Pong(number)) => {
+                    self.answered(&number);
+                    continue;
+                }
+                Ok(_) => continue,
+                Err(Error::Io(error)) if error.kind() == ErrorKind::WouldBlock => return Ok(false),
+                Err(error) => return Err(error.into()),
+            };
+            for action in actions {
+                self.act(action)?;
+            }
+        }
+        // The answers must not pile up.
+        self.flush()
+    }
+
+    fn act(&mut self, action: Action) -> Result<(), End> {
+        match action {
+            Action::Text(text) => {
+                self.write(Message::text(text))?;
+            }
+            Action::Subscribe { channel, subscription } => {
+                self.feed.subscribe(&self.queue, channel, subscription);
+            }
+            Action::Unsubscribe { channel } => self.queue.unsubscribe(channel),
+            Action::Close(reason) => return Err(End::Told(CloseCode::Policy, reason)),
+        }
+        Ok(())
+    }
+
+    /// Give the client what waits for it; true if there may be more.
+    fn speak(&mut self) -> Result<bool, End> {
+        for _ in 0..WRITES {
+            let Some(item) = self.queue.pop() else {
+                self.flush()?;
+                return Ok(false);
+            };
+            let message = match item {
+                Item::Text(text) => Message::text(text.as_ref()),
+                Item::Time(time) => Message::binary(protocol::time(time)),
+                Item::Message { subscription, time, data } => {
+                    Message::binary(protocol::message(subscription, time, &data))
+                }
+            };
+            if !self.write(message)? {
+                return Ok(false);
+            }
+        }
+        self.flush()
+    }
+
+    /// Is it still there, and does it know what it has missed?
+    fn look_after(&mut self) -> Result<(), End> {
+        if self.pong.1.elapsed() > self.patience {
+            return Err(End::Gone);
+        }
+        if self.ping.1.elapsed() > PING.min(self.patience / 4) && self.flush()? {
+            self.ping = (self.ping.0.wrapping_add(1), Instant::now());
+            self.write(Message::Ping(self.ping.0.to_le_bytes().to_vec().into()))?;
+        }
+        let dropped = self.queue.dropped();
+        if dropped > self.dropped.0 && self.dropped.1.elapsed() > COUNT && self.flush()? {
+            let text =
+                format!("{dropped} messages are left out so far: they come faster than they are taken");
+            self.dropped = (dropped, Instant::now());
+            self.write(Message::text(protocol::status(StatusLevel::Warning, &text, Some("left-out"))))?;
+        }
+        Ok(())
+    }
+
+    /// It has taken everything up to a ping.
+    fn answered(&mut self, number: &[u8]) {
+        let number = number.try_into().map_or(0, u64::from_le_bytes);
+        if (self.pong.0..=self.ping.0).contains(&number) && number != self.pong.0 {
+            self.pong = (number, Instant::now());
+        }
+    }
+
+    /// Hand a message over; false if the client does not take it at once.
+    fn write(&mut self, message: Message) -> Result<bool, End> {
+        taken(self.socket.write(message))
+    }
+
+    /// True if the client has taken everything.
+    fn flush(&mut self) -> Result<bool, End> {
+        taken(self.socket.flush())
+    }
+
+    /// Say why, and wait a little for the client to have read it.
+    fn close(mut self, code: CloseCode, reason: String) {
+        // The reason has 123 bytes at most.
+        let mut reason = reason;
+        while reason.len() > 123 {
+            reason.pop();
+        }
+        let until = Instant::now() + FAREWELL;
+        let _ = self.socket.close(Some(CloseFrame { code, reason: reason.into() }));
+        while Instant::now() < until {
+            let _ = self.socket.flush();
+            match self.socket.read() {
+                Ok(_) => {}
+                Err(Error::Io(error)) if error.kind() == ErrorKind::WouldBlock => thread::sleep(IDLE),
+                Err(_) => return,
+            }
+        }
+    }
+}
+
+impl Drop for Client {
+    fn drop(&mut self) {
+        self.feed.leave(&self.queue);
+    }
+}
+
+/// False if it would have to wait: what was to be written is kept.
+fn taken(written: tungstenite::Result<()>) -> Result<bool, End> {
+    match written {
+        Ok(()) => Ok(true),
+        Err(Error::Io(error)) if error.kind() == ErrorKind::WouldBlock => Ok(false),
+        Err(error) => Err(error.into()),
+    }
+}

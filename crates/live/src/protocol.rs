@@ -1,0 +1,217 @@
+//! Messages of `foxglove.websocket.v1` and `foxglove.sdk.v1`, which are the same as far as they are used here.
+//!
+//! Text is JSON with a field `op`; binary messages begin with an operation code, and their numbers are
+//! little-endian. Source: Foxglove WebSocket protocol v1, `docs/spec.md` of github.com/foxglove/ws-protocol.
+
+use std::collections::BTreeMap;
+
+use data_encoding::{BASE64, HEXLOWER};
+use record::tap::Channel;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+/// The subprotocols, the preferred one first.
+pub const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
+/// Encodings of schemas that are no text, and stand in JSON as base64.
+const BINARY_SCHEMAS: [&str; 2] = ["protobuf", "flatbuffer"];
+
+/// Operation codes of binary messages to the client.
+mod to_client {
+    pub const MESSAGE: u8 = 0x01;
+    pub const TIME: u8 = 0x02;
+}
+
+/// What a client says in text.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "op", rename_all = "camelCase")]
+pub enum Request {
+    /// Send messages of channels.
+    Subscribe {
+        /// Which.
+        subscriptions: Vec<Subscription>,
+    },
+    /// Send no more of them.
+    #[serde(rename_all = "camelCase")]
+    Unsubscribe {
+        /// By the client's numbers.
+        subscription_ids: Vec<u32>,
+    },
+}
+
+/// A channel that a client wants to see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Subscription {
+    /// The client's number for it.
+    pub id: u32,
+    /// The channel.
+    pub channel_id: u64,
+}
+
+/// How much a status matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StatusLevel {
+    /// It does not harm.
+    Warning,
+    /// Something was not done.
+    Error,
+}
+
+/// The system has no random numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the system gives no random numbers: {0}")]
+pub struct NoRandom(#[from] getrandom::Error);
+
+/// A word of 128 random bits.
+///
+/// # Errors
+/// [`NoRandom`].
+pub fn random_word() -> Result<String, NoRandom> {
+    let mut bits = [0; 16];
+    getrandom::fill(&mut bits)?;
+    Ok(HEXLOWER.encode(&bits))
+}
+
+/// Who serves, in the first message to a client.
+#[derive(Clone, Debug, Default, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct ServerInfo {
+    /// Shown to the person.
+    pub name: String,
+    /// What the client may use.
+    pub capabilities: Vec<&'static str>,
+    /// Encodings of service calls.
+    pub supported_encodings: Vec<&'static str>,
+    /// What else there is to know.
+    pub metadata: BTreeMap<String, String>,
+    /// Another run has another one.
+    pub session_id: String,
+}
+
+impl ServerInfo {
+    /// With time, and a session id that no other one has.
+    ///
+    /// # Errors
+    /// [`NoRandom`] if the system has no random numbers.
+    pub fn new() -> Result<Self, NoRandom> {
+        Ok(Self { capabilities: vec!["time"], session_id: random_word()?, ..Self::default() })
+    }
+
+    /// The message.
+    #[must_use]
+    pub fn encode(&self) -> String {
+        let mut message = json!(self);
+        if let Some(fields) = message.as_object_mut() {
+            fields.insert("op".to_owned(), json!("serverInfo"));
+        }
+        message.to_string()
+    }
+}
+
+/// A channel as it stands in a message of [`advertise`].
+#[must_use]
+pub fn channel(id: u16, channel: &Channel<'_>) -> String {
+    let schema = if BINARY_SCHEMAS.contains(&channel.schema_encoding) {
+        BASE64.encode(channel.schema)
+    } else {
+        String::from_utf8_lossy(channel.schema).into_owned()
+    };
+    json!({
+        "id": id,
+        "topic": channel.topic,
+        "encoding": channel.encoding,
+        "schemaName": channel.schema_name,
+        "schemaEncoding": channel.schema_encoding,
+        "schema": schema,
+    })
+    .to_string()
+}
+
+/// The message that names channels.
+#[must_use]
+pub fn advertise<'a>(channels: impl Iterator<Item = &'a str>) -> String {
+    let channels: Vec<&str> = channels.collect();
+    format!(r#"{{"op":"advertise","channels":[{}]}}"#, channels.join(","))
+}
+
+/// Something that the person should know. A later status with the same `id` takes its place.
+#[must_use]
+pub fn status(level: StatusLevel, message: &str, id: Option<&str>) -> String {
+    let level = match level {
+        StatusLevel::Warning => 1,
+        StatusLevel::Error => 2,
+    };
+    match id {
+        Some(id) => json!({ "op": "status", "level": level, "message": message, "id": id }),
+        None => json!({ "op": "status", "level": level, "message": message }),
+    }
+    .to_string()
+}
+
+/// A message of a subscribed channel, with its time in nanoseconds.
+#[must_use]
+pub fn message(subscription: u32, time: u64, data: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(data.len().saturating_add(13));
+    bytes.push(to_client::MESSAGE);
+    bytes.extend(subscription.to_le_bytes());
+    bytes.extend(time.to_le_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+/// What time it is in the run, in nanoseconds.
+#[must_use]
+pub fn time(time: u64) -> Vec<u8> {
+    let mut bytes = vec![to_client::TIME];
+    bytes.extend(time.to_le_bytes());
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::Value;
+
+    #[test]
+    fn binary_messages_are_little_endian_behind_their_code() {
+        assert_eq!(message(0x0102, 3, &[9, 8]), [1, 2, 1, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 9, 8]);
+        assert_eq!(time(258), [2, 2, 1, 0, 0, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn schemas_that_are_no_text_stand_in_base64() {
+        let of = |schema_encoding, schema| {
+            let text = channel(
+                7,
+                &Channel { topic: "/tf", encoding: "e", schema_name: "s", schema_encoding, schema },
+            );
+            serde_json::from_str::<Value>(&text).unwrap()
+        };
+        assert_eq!(of("protobuf", &[0, 255])["schema"], "AP8=");
+        assert_eq!(of("ros2msg", b"string data")["schema"], "string data");
+        assert_eq!(of("ros2msg", b"")["id"], 7);
+    }
+
+    #[test]
+    fn server_info_and_advertise_are_as_the_protocol_has_them() {
+        let info = ServerInfo { name: "linkbar".into(), capabilities: vec!["time"], ..Default::default() };
+        let read: Value = serde_json::from_str(&info.encode()).unwrap();
+        assert_eq!((&read["op"], &read["capabilities"][0]), (&"serverInfo".into(), &"time".into()));
+        assert!(read["sessionId"].is_string() && read["supportedEncodings"].is_array());
+        let read: Value = serde_json::from_str(&advertise(["{\"id\":1}", "{\"id\":2}"].into_iter())).unwrap();
+        assert_eq!(read["channels"][1]["id"], 2);
+    }
+
+    #[test]
+    fn requests_are_read() {
+        let read = |text| serde_json::from_str::<Request>(text).unwrap();
+        assert_eq!(
+            read(r#"{"op":"subscribe","subscriptions":[{"id":0,"channelId":3}]}"#),
+            Request::Subscribe { subscriptions: vec![Subscription { id: 0, channel_id: 3 }] }
+        );
+        assert_eq!(
+            read(r#"{"op":"unsubscribe","subscriptionIds":[0,1]}"#),
+            Request::Unsubscribe { subscription_ids: vec![0, 1] }
+        );
+    }
+}

@@ -1,0 +1,231 @@
+//! Lets viewers on this machine connect.
+
+use std::{
+    io::{self, Write as _},
+    net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+    },
+    thread::{self, JoinHandle},
+    time::{Duration, Instant},
+};
+
+use tungstenite::{
+    accept_hdr_with_config,
+    handshake::server::{Callback, ErrorResponse, Request, Response},
+    http::{HeaderMap, HeaderValue, StatusCode, header},
+    protocol::WebSocketConfig,
+};
+
+use crate::{
+    client::{Client, Connection},
+    feed::Feed,
+    origin::Origin,
+    protocol::{SUBPROTOCOLS, ServerInfo},
+};
+
+/// The port that viewers try first.
+pub const PORT: u16 = 8765;
+/// Clients at a time.
+pub const CLIENTS: usize = 16;
+/// Bytes of a client's message at most.
+pub const MESSAGE: usize = 64 * 1024;
+/// How long a client may take nothing.
+pub const PATIENCE: Duration = Duration::from_secs(5);
+/// How long a handshake may take.
+const HANDSHAKE: Duration = Duration::from_secs(3);
+/// How long the clients may take the rest at the end.
+const LAST: Duration = Duration::from_secs(2);
+/// How long to wait after a connection that could not be accepted.
+const AGAIN: Duration = Duration::from_millis(100);
+
+/// Where to serve, and to whom.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The port on 127.0.0.1; 0 for any that is free.
+    pub port: u16,
+    /// Pages that may connect, besides Foxglove's.
+    pub origins: Vec<Origin>,
+    /// What clients are told first.
+    pub info: ServerInfo,
+    /// How long a client may take nothing.
+    pub patience: Duration,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { port: PORT, origins: Vec::new(), info: ServerInfo::default(), patience: PATIENCE }
+    }
+}
+
+/// Serves a feed as long as it lives. At the end the clients get what is left, for two seconds at most.
+#[derive(Debug)]
+pub struct Server {
+    address: SocketAddr,
+    feed: Feed,
+    stop: Arc<AtomicBool>,
+    open: Arc<AtomicUsize>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Server {
+    /// Listen on 127.0.0.1. The threads inherit the priority of the caller.
+    ///
+    /// # Errors
+    /// Why the port or the thread cannot be had.
+    pub fn start(options: Options, feed: Feed) -> io::Result<Self> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, options.port))?;
+        let address = listener.local_addr()?;
+        let (stop, open) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
+        let accept = Accept {
+            listener,
+            options: Arc::new(options),
+            feed: feed.clone(),
+            stop: stop.clone(),
+            open: open.clone(),
+        };
+        let thread = thread::Builder::new().name("live".into()).spawn(move || accept.run())?;
+        Ok(Self { address, feed, stop, open, thread: Some(thread) })
+    }
+
+    /// Where it listens.
+    #[must_use]
+    pub const fn address(&self) -> SocketAddr {
+        self.address
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.feed.finish();
+        self.stop.store(true, Ordering::Relaxed);
+        // The thread sees `stop` with the next connection.
+        if TcpStream::connect(self.address).is_ok() {
+            let _ = self.thread.take().map(JoinHandle::join);
+        }
+        let until = Instant::now() + LAST;
+        while self.open.load(Ordering::Acquire) > 0 && Instant::now() < until {
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+/// The thread that lets clients in.
+struct Accept {
+    listener: TcpListener,
+    options: Arc<Options>,
+    feed: Feed,
+    stop: Arc<AtomicBool>,
+    open: Arc<AtomicUsize>,
+}
+
+impl Accept {
+    fn run(self) {
+        for stream in self.listener.incoming() {
+            if self.stop.load(Ordering::Relaxed) {
+                return;
+            }
+            match stream {
+                Ok(stream) => self.admit(stream),
+                // A client that has left again, or no more files: neither is a reason to end.
+                Err(_) => thread::sleep(AGAIN),
+            }
+        }
+    }
+
+    fn admit(&self, stream: TcpStream) {
+        if self.open.load(Ordering::Acquire) >= CLIENTS {
+            return refuse(stream);
+        }
+        self.open.fetch_add(1, Ordering::AcqRel);
+        let (options, feed, open) = (self.options.clone(), self.feed.clone(), Open(self.open.clone()));
+        // If the thread cannot be had, the client sees the end of its connection.
+        let _ = thread::Builder::new().name("live client".into()).spawn(move || {
+            let _open = open;
+            serve(stream, &options, feed);
+        });
+    }
+}
+
+/// Counts a client as long as it lives.
+struct Open(Arc<AtomicUsize>);
+
+impl Drop for Open {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::AcqRel);
+    }
+}
+
+/// There is no room for another client.
+fn refuse(mut stream: TcpStream) {
+    let why = format!("{CLIENTS} viewers are connected: close one first\n");
+    let head = "HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nContent-Type: text/plain";
+    let answer = format!("{head}\r\nContent-Length: {}\r\n\r\n{why}", why.len());
+    // It is small and fits, or the client does without.
+    if stream.set_nonblocking(true).is_ok() {
+        let _ = stream.write(answer.as_bytes());
+    }
+}
+
+fn serve(stream: TcpStream, options: &Options, feed: Feed) {
+    let Ok(connection) = Connection::new(stream, HANDSHAKE) else { return };
+    let limits = WebSocketConfig::default()
+        .read_buffer_size(16 * 1024)
+        .max_message_size(Some(MESSAGE))
+        .max_frame_size(Some(MESSAGE));
+    let Ok(socket) = accept_hdr_with_config(connection, Handshake(&options.origins), Some(limits)) else {
+        return;
+    };
+    let (queue, channels) = feed.join();
+    Client::new(socket, feed, queue, options.patience).run(vec![options.info.encode(), channels]);
+}
+
+/// Checks who connects, and agrees on a subprotocol.
+struct Handshake<'a>(&'a [Origin]);
+
+impl Callback for Handshake<'_> {
+    fn on_request(self, request: &Request, mut response: Response) -> Result<Response, ErrorResponse> {
+        let agreed = check_origin(request.headers(), self.0).and_then(|()| agree(request.headers()));
+        match agreed {
+            Ok(subprotocol) => {
+                let agreed = HeaderValue::from_static(subprotocol);
+                response.headers_mut().insert(header::SEC_WEBSOCKET_PROTOCOL, agreed);
+                Ok(response)
+            }
+            Err((status, why)) => {
+                let mut response = ErrorResponse::new(Some(why));
+                *response.status_mut() = status;
+                Err(response)
+            }
+        }
+    }
+}
+
+/// Programs have no origin, pages of a browser always have one.
+fn check_origin(headers: &HeaderMap, origins: &[Origin]) -> Result<(), (StatusCode, String)> {
+    let foxglove = Origin::foxglove();
+    let is_allowed =
+        |origin: &&HeaderValue| origins.iter().chain([&foxglove]).any(|known| known.is(origin.as_bytes()));
+    match headers.get_all(header::ORIGIN).iter().find(|origin| !is_allowed(origin)) {
+        None => Ok(()),
+        Some(origin) => {
+            let origin = origin.to_str().unwrap_or("bytes that are no text");
+            let why = format!(
+                "pages of {origin} may not connect; to allow them, start with --live-origin ORIGIN\n"
+            );
+            Err((StatusCode::FORBIDDEN, why))
+        }
+    }
+}
+
+/// The subprotocol that both sides know.
+fn agree(headers: &HeaderMap) -> Result<&'static str, (StatusCode, String)> {
+    let asked = headers.get_all(header::SEC_WEBSOCKET_PROTOCOL).iter();
+    let asked: Vec<&str> =
+        asked.filter_map(|text| text.to_str().ok()).flat_map(|text| text.split(',')).map(str::trim).collect();
+    SUBPROTOCOLS.into_iter().find(|known| asked.contains(known)).ok_or_else(|| {
+        let why = format!("one of the subprotocols {} was expected\n", SUBPROTOCOLS.join(", "));
+        (StatusCode::BAD_REQUEST, why)
+    })
+}

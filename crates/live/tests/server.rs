@@ -1,0 +1,270 @@
+//! A server with clients, over real sockets: who may connect, what is refused, who is disconnected.
+
+use std::{
+    io::{ErrorKind, Read, Write},
+    net::{SocketAddr, TcpStream},
+    thread,
+    time::{Duration, Instant},
+};
+
+use live::{Feed, Options, Server, server::CLIENTS};
+use record::{Tap, tap::Channel};
+use serde_json::{Value, json};
+use tungstenite::{
+    Error, Message, WebSocket,
+    client::IntoClientRequest,
+    http::{HeaderValue, header},
+    protocol::frame::coding::CloseCode,
+};
+
+const STRING: Channel<'static> = Channel {
+    topic: "/robot_description",
+    encoding: "cdr",
+    schema_name: "std_msgs/msg/String",
+    schema_encoding: "ros2msg",
+    schema: b"string data",
+};
+
+/// A server with one channel, number 1.
+fn serve(options: Options) -> (Server, Box<dyn Tap>) {
+    let feed = Feed::default();
+    let mut tap = feed.tap();
+    tap.channel(1, &STRING);
+    (Server::start(Options { port: 0, ..options }, feed).unwrap(), tap)
+}
+
+/// Try a handshake; the status and body of a refusal.
+fn try_connect(
+    address: SocketAddr,
+    origin: Option<&str>,
+    protocols: &str,
+) -> Result<WebSocket<TcpStream>, (u16, String)> {
+    let mut request = format!("ws://{address}").into_client_request().unwrap();
+    let headers = request.headers_mut();
+    if !protocols.is_empty() {
+        headers.insert(header::SEC_WEBSOCKET_PROTOCOL, HeaderValue::from_str(protocols).unwrap());
+    }
+    if let Some(origin) = origin {
+        headers.insert(header::ORIGIN, HeaderValue::from_str(origin).unwrap());
+    }
+    let stream = TcpStream::connect(address).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+    match tungstenite::client(request, stream) {
+        Ok((socket, response)) => {
+            let agreed = response.headers()[header::SEC_WEBSOCKET_PROTOCOL].to_str().unwrap().to_owned();
+            assert!(protocols.contains(&agreed), "{agreed} was not asked for");
+            Ok(socket)
+        }
+        Err(tungstenite::HandshakeError::Failure(Error::Http(response))) => {
+            let body = response.body().clone().unwrap_or_default();
+            Err((response.status().as_u16(), String::from_utf8_lossy(&body).into_owned()))
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// A client that has read who serves and which channels there are.
+fn connect(address: SocketAddr) -> WebSocket<TcpStream> {
+    let mut socket = try_connect(address, None, "foxglove.sdk.v1").unwrap();
+    assert_eq!(text(&mut socket)["op"], "serverInfo");
+    assert_eq!(text(&mut socket)["op"], "advertise");
+    socket
+}
+
+/// The next message that is no ping.
+fn next(socket: &mut WebSocket<TcpStream>) -> Result<Message, Error> {
+    loop {
+        let message = socket.read()?;
+        if !message.is_ping() {
+            return Ok(message);
+        }
+    }
+}
+
+fn text(socket: &mut WebSocket<TcpStream>) -> Value {
+    serde_json::from_str(next(socket).unwrap().to_text().unwrap()).unwrap()
+}
+
+fn say(socket: &mut WebSocket<TcpStream>, message: Value) {
+    socket.send(Message::text(message.to_string())).unwrap();
+}
+
+/// The code with which the server closes.
+fn close_code(socket: &mut WebSocket<TcpStream>) -> CloseCode {
+    loop {
+        match socket.read() {
+            Ok(Message::Close(frame)) => return frame.unwrap().code,
+            Ok(_) => {}
+            Err(error) => panic!("a close was expected: {error}"),
+        }
+    }
+}
+
+#[test]
+fn programs_and_listed_pages_may_connect_and_others_get_403() {
+    let origins = vec!["http://localhost:8080".parse().unwrap()];
+    let (server, _tap) = serve(Options { origins, ..Options::default() });
+    let with = |origin| try_connect(server.address(), origin, "foxglove.websocket.v1, foxglove.sdk.v1");
+    for good in [None, Some("https://app.foxglove.dev"), Some("http://localhost:8080")] {
+        assert!(with(good).is_ok(), "{good:?}");
+    }
+    for foreign in [
+        "https://evil.example",
+        "http://localhost:8081",
+        "http://localhost",
+        "https://app.foxglove.dev.evil.example",
+        "http://app.foxglove.dev",
+        "file://",
+        "null",
+        "",
+    ] {
+        let (status, body) = with(Some(foreign)).map(|_| ()).unwrap_err();
+        assert_eq!(status, 403, "{foreign}");
+        assert!(body.contains("--live-origin"), "{body}");
+    }
+}
+
+#[test]
+fn a_client_without_a_known_subprotocol_is_refused() {
+    let (server, _tap) = serve(Options::default());
+    for wrong in ["", "foxglove.websocket.v0", "graphql-ws"] {
+        let (status, body) = try_connect(server.address(), None, wrong).map(|_| ()).unwrap_err();
+        assert_eq!(status, 400, "{wrong}");
+        assert!(body.contains("foxglove.sdk.v1"), "{body}");
+    }
+}
+
+#[test]
+fn what_comes_once_is_sent_again_to_each_subscriber() {
+    let (server, mut tap) = serve(Options::default());
+    tap.message(1, 5, b"<robot/>");
+    for _ in 0..2 {
+        let mut socket = connect(server.address());
+        say(&mut socket, json!({ "op": "subscribe", "subscriptions": [{ "id": 9, "channelId": 1 }] }));
+        let Message::Binary(bytes) = next(&mut socket).unwrap() else { panic!("a message was expected") };
+        assert_eq!(&bytes[..], [&[1, 9, 0, 0, 0, 5, 0, 0, 0, 0, 0, 0, 0][..], b"<robot/>"].concat());
+    }
+    let mut socket = connect(server.address());
+    tap.message(1, 300, b"other");
+    let Message::Binary(bytes) = next(&mut socket).unwrap() else { panic!("the time was expected") };
+    assert_eq!(&bytes[..], [2, 44, 1, 0, 0, 0, 0, 0, 0]);
+    drop(tap);
+    assert_eq!(close_code(&mut socket), CloseCode::Away);
+}
+
+#[test]
+fn wrong_messages_are_answered_and_end_the_session_at_last() {
+    let (server, _tap) = serve(Options::default());
+    let mut socket = connect(server.address());
+    for wrong in [Message::text("{"), Message::binary(vec![77, 1, 2]), Message::text("{\"op\":\"fly\"}")] {
+        socket.send(wrong).unwrap();
+        let status = text(&mut socket);
+        assert_eq!((&status["op"], &status["level"]), (&json!("status"), &json!(2)), "{status}");
+    }
+    for _ in 0..40 {
+        // The server may have closed in the meantime.
+        let _ = socket.send(Message::binary(vec![1]));
+    }
+    assert_eq!(close_code(&mut socket), CloseCode::Policy);
+}
+
+#[test]
+fn messages_that_are_too_long_and_frames_that_are_none_close_the_connection() {
+    let (server, _tap) = serve(Options::default());
+    let mut socket = connect(server.address());
+    // The server closes before it has read all of it.
+    let _ = socket.send(Message::text(" ".repeat(70_000)));
+    assert_eq!(close_code(&mut socket), CloseCode::Size);
+    // Reserved bits and codes, no mask, half a frame, text that is no text.
+    let frames: [&[u8]; 5] = [
+        &[0xff; 64],
+        &[0x81, 0x02, b'h', b'i'],
+        &[0x8f, 0x80, 0, 0, 0, 0],
+        &[0x81, 0xff],
+        &[0x81, 0x82, 0, 0, 0, 0, 0xff, 0xfe],
+    ];
+    for frame in frames {
+        let socket = connect(server.address());
+        let mut stream = socket.into_inner();
+        stream.write_all(frame).unwrap();
+        stream.shutdown(std::net::Shutdown::Write).unwrap();
+        ends(&mut stream);
+    }
+    connect(server.address());
+}
+
+/// The server ends a connection.
+fn ends(stream: &mut TcpStream) {
+    let mut rest = Vec::new();
+    if let Err(error) = stream.read_to_end(&mut rest) {
+        assert_eq!(error.kind(), ErrorKind::ConnectionReset, "{error}");
+    }
+}
+
+#[test]
+fn what_is_no_handshake_ends_the_connection() {
+    let (server, _tap) = serve(Options::default());
+    for wrong in [
+        "GET / HTTP/1.1\r\n\r\n",
+        "POST / HTTP/1.1\r\nUpgrade: websocket\r\n\r\n",
+        "\0\u{1}\u{2}\r\n\r\n",
+        "x",
+    ] {
+        let mut stream = TcpStream::connect(server.address()).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+        stream.write_all(wrong.as_bytes()).unwrap();
+        ends(&mut stream);
+    }
+    let mut endless = TcpStream::connect(server.address()).unwrap();
+    let sent = (0..).take(1000).try_for_each(|_| endless.write_all(&[b'a'; 4096]));
+    assert!(sent.is_err(), "four megabytes of a handshake were taken");
+    connect(server.address());
+}
+
+#[test]
+fn clients_are_counted_and_one_more_is_told_so() {
+    let (server, _tap) = serve(Options::default());
+    let mut clients: Vec<_> = (0..CLIENTS).map(|_| connect(server.address())).collect();
+    let (status, body) = try_connect(server.address(), None, "foxglove.sdk.v1").map(|_| ()).unwrap_err();
+    assert_eq!(status, 503);
+    assert!(body.contains("16 viewers are connected"), "{body}");
+    clients.pop().unwrap().close(None).unwrap();
+    let until = Instant::now() + Duration::from_secs(10);
+    while try_connect(server.address(), None, "foxglove.sdk.v1").is_err() {
+        assert!(Instant::now() < until, "the place of a client that has left is not free");
+        thread::sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
+fn clients_that_take_nothing_are_disconnected_and_others_stay() {
+    let patience = Duration::from_millis(400);
+    let (server, mut tap) = serve(Options { patience, ..Options::default() });
+    let mut reader = connect(server.address());
+    let subscribe = json!({ "op": "subscribe", "subscriptions": [{ "id": 1, "channelId": 1 }] });
+    say(&mut reader, subscribe.clone());
+    let mut silent: Vec<_> = (0..10).map(|_| connect(server.address())).collect();
+    // Half of them do not even have much to take.
+    silent.iter_mut().skip(5).for_each(|socket| say(socket, subscribe.clone()));
+    let reading = thread::spawn(move || {
+        let is_message = |message: &Message| message.is_binary() && message.len() > 9;
+        std::iter::from_fn(|| next(&mut reader).ok()).filter(is_message).count()
+    });
+    let message = vec![7; 100_000];
+    let begin = Instant::now();
+    let mut longest = Duration::ZERO;
+    for time in 1..=100 {
+        let before = Instant::now();
+        tap.message(1, time, &message);
+        longest = longest.max(before.elapsed());
+        thread::sleep(Duration::from_millis(20));
+    }
+    let sent = begin.elapsed();
+    drop(tap);
+    assert_eq!(reading.join().unwrap(), 100, "the client that reads gets all");
+    for socket in silent {
+        let mut stream = socket.into_inner();
+        ends(&mut stream);
+    }
+    assert!(longest < sent / 2, "a message took {longest:?} to be handed over");
+}

@@ -1,0 +1,26 @@
+//! Who else gets what a log gets, while it is written.
+
+/// Gets the channels and messages of a log as they are written, in the writer's thread and in the order of the
+/// file. It ends with the log, and the writer waits for it: what takes long delays the log, never the tick.
+pub trait Tap: Send {
+    /// A new channel.
+    fn channel(&mut self, id: u16, channel: &Channel<'_>);
+
+    /// A message of a channel, with its time in nanoseconds since 1970.
+    fn message(&mut self, channel: u16, time: u64, data: &[u8]);
+}
+
+/// What a log says of a channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Channel<'a> {
+    /// The topic.
+    pub topic: &'a str,
+    /// Encoding of the messages: `protobuf`, `cdr`.
+    pub encoding: &'a str,
+    /// Name of the schema.
+    pub schema_name: &'a str,
+    /// Encoding of the schema: `protobuf`, `ros2msg`.
+    pub schema_encoding: &'a str,
+    /// The schema.
+    pub schema: &'a [u8],
+}

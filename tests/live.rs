@@ -1,0 +1,243 @@
+//! The live view of a run: viewers get what the log gets, and change nothing.
+
+use std::{
+    collections::BTreeMap,
+    net::TcpStream,
+    path::Path,
+    sync::{Arc, Mutex},
+    thread,
+    time::Duration,
+};
+
+use record::Log;
+use runtime::{ClockKind, LogTarget, Observer, OperatorAccess, Run, RunConfig, RunOutcome, StartError};
+use serde_json::{Value, json};
+use tempfile::{TempDir, tempdir};
+use tungstenite::{
+    Message, WebSocket,
+    client::IntoClientRequest,
+    http::{HeaderValue, header},
+};
+
+/// Topics that are sent once, at the start.
+const ONCE: [&str; 2] = ["/robot_description", "/tf_static"];
+
+/// What a run says to its person.
+#[derive(Clone, Default)]
+struct Said(Arc<Mutex<Vec<String>>>);
+
+impl Observer for Said {
+    fn message(&mut self, text: &str) {
+        self.0.lock().unwrap().push(text.to_owned());
+    }
+}
+
+impl Said {
+    fn address(&self) -> String {
+        let lines = self.0.lock().unwrap();
+        let line = lines.iter().find_map(|line| line.split_once("viewers can connect at ws://"));
+        let (_, rest) = line.expect("the run says where viewers can connect");
+        rest.split([' ', ';']).next().unwrap().to_owned()
+    }
+}
+
+fn config(directory: &TempDir, ticks: u64) -> RunConfig {
+    RunConfig {
+        clock: ClockKind::Real,
+        speed: 20,
+        ticks: Some(ticks),
+        live: Some(0),
+        operator: OperatorAccess::None,
+        shared_memory: false,
+        log: LogTarget::File(directory.path().join("log.mcap")),
+        ..RunConfig::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("../data"), "linkbar")
+    }
+}
+
+/// A viewer, with the topics of the channels that it is told of.
+struct Viewer {
+    socket: WebSocket<TcpStream>,
+    info: Value,
+    topics: BTreeMap<u64, String>,
+}
+
+/// What a viewer gets: messages with topic and time, or only the time.
+enum Got {
+    Message(String, u64, Vec<u8>),
+    Time(u64),
+}
+
+impl Viewer {
+    fn connect(address: &str, subprotocol: &'static str) -> Self {
+        let mut request = format!("ws://{address}").into_client_request().unwrap();
+        let wanted = HeaderValue::from_static(subprotocol);
+        request.headers_mut().insert(header::SEC_WEBSOCKET_PROTOCOL, wanted);
+        let stream = TcpStream::connect(address).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+        let (socket, response) = tungstenite::client(request, stream).unwrap();
+        assert_eq!(response.headers()[header::SEC_WEBSOCKET_PROTOCOL], subprotocol);
+        let mut viewer = Self { socket, info: Value::Null, topics: BTreeMap::new() };
+        viewer.info = viewer.text();
+        let channels = viewer.text();
+        for channel in channels["channels"].as_array().unwrap() {
+            let topic = channel["topic"].as_str().unwrap().to_owned();
+            assert!(!channel["schema"].as_str().unwrap().is_empty(), "{topic}");
+            viewer.topics.insert(channel["id"].as_u64().unwrap(), topic);
+        }
+        viewer
+    }
+
+    fn text(&mut self) -> Value {
+        loop {
+            if let Message::Text(text) = self.socket.read().unwrap() {
+                return serde_json::from_str(&text).unwrap();
+            }
+        }
+    }
+
+    fn subscribe(&mut self, wanted: impl Fn(&str) -> bool) {
+        let channels = self.topics.iter().filter(|(_, topic)| wanted(topic));
+        let subscriptions: Vec<Value> =
+            channels.map(|(channel, _)| json!({ "id": channel + 1000, "channelId": channel })).collect();
+        let text = json!({ "op": "subscribe", "subscriptions": subscriptions }).to_string();
+        self.socket.send(Message::text(text)).unwrap();
+    }
+
+    /// What comes, up to the end of the run.
+    fn rest(&mut self) -> impl Iterator<Item = Got> {
+        std::iter::from_fn(|| {
+            loop {
+                match self.socket.read().expect("the run closes the connection") {
+                    Message::Binary(bytes) => return Some(self.read(&bytes)),
+                    Message::Text(text) => panic!("{text}"),
+                    Message::Close(_) => return None,
+                    _ => {}
+                }
+            }
+        })
+    }
+
+    fn read(&self, bytes: &[u8]) -> Got {
+        let time = |bytes: &[u8]| u64::from_le_bytes(bytes.try_into().unwrap());
+        match bytes[0] {
+            1 => {
+                let subscription = u32::from_le_bytes(bytes[1..5].try_into().unwrap());
+                let topic = &self.topics[&(u64::from(subscription) - 1000)];
+                Got::Message(topic.clone(), time(&bytes[5..13]), bytes[13..].to_vec())
+            }
+            2 => Got::Time(time(&bytes[1..])),
+            code => panic!("operation code {code}"),
+        }
+    }
+}
+
+fn digest_without_viewers(ticks: u64) -> String {
+    let directory = tempdir().unwrap();
+    let config = RunConfig { clock: ClockKind::Fast, speed: 1, live: None, ..config(&directory, ticks) };
+    Run::new(config, Box::new(())).unwrap().complete().result.digest
+}
+
+#[test]
+fn viewers_of_both_subprotocols_get_what_the_log_gets() {
+    let directory = tempdir().unwrap();
+    let said = Said::default();
+    let config = config(&directory, 400);
+    let run = Run::new(config, Box::new(said.clone())).unwrap();
+    let address = said.address();
+    let early = ["foxglove.sdk.v1", "foxglove.websocket.v1"].map(|subprotocol| {
+        let mut viewer = Viewer::connect(&address, subprotocol);
+        assert_eq!(viewer.info["op"], "serverInfo");
+        assert_eq!(
+            (&viewer.info["name"], &viewer.info["metadata"]["job"]),
+            (&json!("rcs-run linkbar"), &json!("linkbar"))
+        );
+        assert!(viewer.info["capabilities"].as_array().unwrap().contains(&json!("time")));
+        viewer.subscribe(|_| true);
+        thread::spawn(move || (viewer.rest().collect::<Vec<_>>(), viewer.topics))
+    });
+    // They are subscribed before the first tick.
+    thread::sleep(Duration::from_millis(300));
+    let late = thread::spawn(move || {
+        thread::sleep(Duration::from_millis(300));
+        let mut viewer = Viewer::connect(&address, "foxglove.sdk.v1");
+        viewer.subscribe(|topic| ONCE.contains(&topic) || topic == "/tf");
+        viewer.rest().collect::<Vec<_>>()
+    });
+    assert_eq!(run.complete().result.ticks, 400);
+    let log = Log::open(&directory.path().join("log.mcap")).unwrap();
+    let early = early.map(|viewer| viewer.join().unwrap());
+    let Some(Got::Time(start)) = early[0].0.first() else { panic!("the time comes first") };
+    for (got, topics) in &early {
+        let mut now = 0;
+        let mut by_topic: BTreeMap<String, Vec<Vec<u8>>> = BTreeMap::new();
+        for item in got {
+            match item {
+                Got::Time(time) => {
+                    assert!(*time > now, "time goes on");
+                    now = *time;
+                }
+                Got::Message(topic, time, data) => {
+                    assert!(*time <= now, "a message of {topic} comes before its time");
+                    by_topic.entry(topic.clone()).or_default().push(data.clone());
+                }
+            }
+        }
+        assert!(topics.len() > 40, "{topics:?}");
+        for topic in topics.values() {
+            let logged: Vec<Vec<u8>> = log.messages(topic).map(|(_, data)| data).collect();
+            let seen = by_topic.remove(topic).unwrap_or_default();
+            assert!(logged == seen, "{topic}: {} messages in the log, {} seen", logged.len(), seen.len());
+        }
+    }
+    let late = late.join().unwrap();
+    let first = |wanted: &str| {
+        late.iter().find_map(|item| match item {
+            Got::Message(topic, time, data) if topic == wanted => Some((*time, data.clone())),
+            _ => None,
+        })
+    };
+    for topic in ONCE {
+        let (_, logged) = log.messages(topic).next().unwrap();
+        let (time, seen) = first(topic).expect("what was sent once is sent again");
+        assert!(seen == logged, "{topic}");
+        assert!(time > *start, "{topic} comes with the present time");
+    }
+    let links = |data: &[u8]| record::proto::foxglove::take_transforms(data).len();
+    let (_, logged) = log.messages("/tf").next().unwrap();
+    assert_eq!(links(&first("/tf").unwrap().1), links(&logged), "the places of all links");
+}
+
+#[test]
+fn ten_viewers_that_read_nothing_change_no_bit() {
+    let directory = tempdir().unwrap();
+    let said = Said::default();
+    let config = RunConfig { clock: ClockKind::Fast, speed: 1, ..config(&directory, 3000) };
+    let run = Run::new(config, Box::new(said.clone())).unwrap();
+    let silent: Vec<Viewer> = (0..10)
+        .map(|_| {
+            let mut viewer = Viewer::connect(&said.address(), "foxglove.sdk.v1");
+            viewer.subscribe(|_| true);
+            viewer
+        })
+        .collect();
+    let outcome: RunOutcome = run.complete();
+    drop(silent);
+    assert_eq!(outcome.result.digest, digest_without_viewers(3000));
+    let log = Log::open(&directory.path().join("log.mcap")).unwrap();
+    assert_eq!((log.ticks().count(), log.complete), (3000, true));
+}
+
+#[test]
+fn a_view_needs_a_log_and_a_port() {
+    let directory = tempdir().unwrap();
+    let without = RunConfig { log: LogTarget::None, ..config(&directory, 1) };
+    let error = Run::new(without, Box::new(())).map(|_| ()).unwrap_err();
+    assert!(matches!(error, StartError::LiveWithoutLog), "{error}");
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port();
+    let error = Run::new(RunConfig { live: Some(port), ..config(&directory, 1) }, Box::new(()))
+        .map(|_| ())
+        .unwrap_err();
+    assert!(error.to_string().contains("--live PORT names another port"), "{error}");
+    assert!(!directory.path().join("log.mcap").exists(), "a run that cannot begin leaves no log");
+}
