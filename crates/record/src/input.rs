@@ -116,11 +116,37 @@ pub struct Link {
     pub parent: String,
 }
 
+/// What a link looks like.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Model {
+    /// Its name, unique among the models.
+    pub name: String,
+    /// The link that it moves with.
+    pub frame: String,
+    /// The file: glTF 2.0 in binary form, metres, Y up.
+    pub glb: Vec<u8>,
+}
+
+/// A name beside a thing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Name {
+    /// What is written.
+    pub text: String,
+    /// The link that it moves with.
+    pub frame: String,
+    /// Where, in the frame of the link, metres.
+    pub position: [f64; 3],
+}
+
 /// The cell as viewers need it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CellModel {
     /// Geometry of all links.
     pub urdf: String,
+    /// The looks of links and of what stands still.
+    pub models: Vec<Model>,
+    /// Names of things.
+    pub names: Vec<Name>,
     /// Links that move, in the order of [`CellFrame::transforms`].
     pub links: Vec<Link>,
     /// Links that do not, with their places in their parents. A viewer draws no link whose place it is not

@@ -46,7 +46,7 @@ pub mod writer;
 
 pub use error::{ReadError, RecordError, ReplayError};
 pub use file::LogFile;
-pub use input::{Attachment, CellFrame, CellModel, End, Epoch, Link, Setup};
+pub use input::{Attachment, CellFrame, CellModel, End, Epoch, Link, Model, Name, Setup};
 pub use operator::{OPERATOR, OperatorLine};
 pub use proto::foxglove::{Level, Transform};
 pub use reader::Log;

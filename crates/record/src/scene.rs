@@ -1,4 +1,4 @@
-//! The moving cell: `/tf`, `/tf_static`, `/joint_states` and `/robot_description`.
+//! The moving cell: `/tf`, `/tf_static`, `/joint_states`, `/robot_description`, `/meshes` and `/names`.
 //!
 //! Links travel relative to their parents in the URDF, so that a description and its transforms can never
 //! contradict each other in a viewer, and so that a link that only turns repeats its position.
@@ -14,6 +14,7 @@ use crate::{
     proto::{
         foxglove::{self, Transform},
         ros,
+        scene::{self, Colour, Entity, Primitive},
     },
 };
 
@@ -26,6 +27,16 @@ pub const TF: &str = "/tf";
 /// Topic of the links that do not.
 pub const TF_STATIC: &str = "/tf_static";
 
+/// Topic of what links look like: one message at the start of the log.
+pub const MESHES: &str = "/meshes";
+/// Topic of the names of things: one message at the start of the log.
+pub const NAMES: &str = "/names";
+
+/// Height of the letters of a name, metres.
+const LETTERS: f64 = 0.07;
+/// Their colour.
+const WHITE: Colour = [1.0, 1.0, 1.0, 1.0];
+
 /// Encoding of the definitions of ROS 2 messages, and of the messages.
 const ROS2: (&str, &str) = ("ros2msg", "cdr");
 
@@ -36,6 +47,8 @@ pub struct Scene {
     fixed: u16,
     joints: u16,
     description: u16,
+    meshes: u16,
+    names: u16,
     described: bool,
     last: Vec<Option<Transform>>,
     last_joints: Vec<f64>,
@@ -51,9 +64,12 @@ impl Scene {
         let joints = output.channel("/joint_states", ros::JOINT_STATE, ROS2.0, definition, ROS2.1)?;
         let definition = ros::STRING_DEFINITION.as_bytes();
         let description = output.channel("/robot_description", ros::STRING, ROS2.0, definition, ROS2.1)?;
+        let drawn = scene::descriptor();
+        let meshes = output.protobuf(MESHES, scene::SCENE_UPDATE, &drawn)?;
+        let names = output.protobuf(NAMES, scene::SCENE_UPDATE, &drawn)?;
         let last = vec![None; model.links.len()];
         let (described, last_joints) = (false, Vec::new());
-        Ok(Self { model, moving, fixed, joints, description, described, last, last_joints })
+        Ok(Self { model, moving, fixed, joints, description, meshes, names, described, last, last_joints })
     }
 
     /// Write what moved since the frame before, or everything that moves; before the first frame also what
@@ -101,7 +117,19 @@ impl Scene {
         for (link, place) in &self.model.fixed {
             foxglove::put_transform(time, &link.parent, &link.name, &rounded(place), &mut data);
         }
-        output.put(self.fixed, tick, &data)
+        output.put(self.fixed, tick, &data)?;
+        data.clear();
+        for model in &self.model.models {
+            let primitive = Primitive::Model(&model.glb);
+            scene::put_entity(time, &Entity { id: &model.name, frame: &model.frame, primitive }, &mut data);
+        }
+        output.put(self.meshes, tick, &data)?;
+        data.clear();
+        for name in &self.model.names {
+            let primitive = Primitive::Text(&name.text, name.position, LETTERS, WHITE);
+            scene::put_entity(time, &Entity { id: &name.text, frame: &name.frame, primitive }, &mut data);
+        }
+        output.put(self.names, tick, &data)
     }
 }
 

@@ -6,6 +6,7 @@
 //! | `/external/...`, `/task/...`, `/prim/...` ... | the buffers, by field | on change, and every ten seconds |
 //! | `/task/row`, `/prim/row` ... | `rcs.Row`: the row that fired, as text | on change, and every ten seconds |
 //! | `/tf`, `/joint_states`, `/robot_description` | the moving cell | on change, and every ten seconds |
+//! | `/meshes`, `/names` | what it looks like, and what things are called | at the start |
 //! | `/log` | `foxglove.Log` | when there is something to say |
 //! | `/operator` | `rcs.OperatorLine` | when an operator asks for something |
 //!

@@ -49,6 +49,7 @@ fn setup() -> Setup {
             links: vec![link("base", "world"), link("arm", "base")],
             fixed: vec![table],
             joints: vec!["turn".into()],
+            ..CellModel::default()
         }),
     }
 }

@@ -7,11 +7,11 @@ use depc::fault::{Counts, FaultKind};
 use executive::alloc::Section;
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::LadderState;
-use plant::{Cell, part_link};
+use plant::{Cell, convert::metres, part_link};
 use rcs_core::{digest::Digest, tick::Tick};
 use record::{
-    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, LogFile, OperatorLine, Pace, RecordError,
-    Recorder, Summary, Timing, Transform,
+    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, LogFile, Model, Name, OperatorLine, Pace,
+    RecordError, Recorder, Summary, Timing, Transform,
 };
 use taskdata::load::{
     Source,
@@ -74,6 +74,8 @@ impl Log {
         let joints = setup.cell.joint_states().into_iter().map(|(name, _)| name.to_owned());
         let model = CellModel {
             urdf: setup.cell.urdf_with(&coming),
+            models: models(setup, &coming),
+            names: look::labels(&setup.description).into_iter().map(name).collect(),
             links: links.collect(),
             fixed: fixed.collect(),
             joints: joints.collect(),
@@ -174,6 +176,17 @@ impl Log {
 
 fn transform(link: &plant::Link) -> Transform {
     Transform { position: link.position, rotation: link.rotation }
+}
+
+/// What everything looks like, with the parts that will come.
+fn models(setup: &Setup, coming: &[&str]) -> Vec<Model> {
+    let models = look::models(&setup.description, &setup.cell.part_kinds(coming));
+    let file = |model: look::Model| Model { glb: model.glb(), name: model.name, frame: model.frame };
+    models.into_iter().map(file).collect()
+}
+
+fn name(label: look::Label) -> Name {
+    Name { text: label.text, frame: label.frame.to_owned(), position: label.position.map(metres) }
 }
 
 /// The part that a step puts into the cell.

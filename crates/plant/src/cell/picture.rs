@@ -15,6 +15,7 @@ use super::Cell;
 use crate::{
     bodies::turret,
     convert::{metres, newtons, to_metres, to_pose},
+    description::PartType,
     linkage::{AXES, STARTS},
     scene::{Block, along_x, jaw_blocks},
     solid::along,
@@ -123,10 +124,7 @@ impl Cell {
             }
         }
         self.urdf_vise(&mut urdf);
-        let present = self.parts.iter().map(|part| (part.id, &part.kind));
-        let coming = coming.iter().filter_map(|name| self.description.part(name));
-        for (id, kind) in present.chain((self.next_part..).zip(coming)) {
-            let name = part_link(id);
+        for (name, kind) in self.part_kinds(coming) {
             urdf.begin_link(&name);
             match along(kind) {
                 Some((axis, radius, length)) => {
@@ -138,6 +136,15 @@ impl Cell {
             urdf.joint(&format!("{name}_free"), "floating", "world", &name, &Frame::identity(), None);
         }
         urdf.finish()
+    }
+
+    /// Links and kinds of the parts that are there, and of those that will be put down: see [`Cell::urdf_with`].
+    #[must_use]
+    pub fn part_kinds(&self, coming: &[&str]) -> Vec<(String, &PartType)> {
+        let present = self.parts.iter().map(|part| (part.id, &part.kind));
+        let coming = coming.iter().filter_map(|name| self.description.part(name));
+        let all = present.chain((self.next_part..).zip(coming));
+        all.map(|(id, kind)| (part_link(id), kind)).collect()
     }
 
     fn urdf_arm(&self, urdf: &mut Urdf) {

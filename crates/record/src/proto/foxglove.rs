@@ -57,17 +57,17 @@ impl Transform {
     pub const IDENTITY: Self = Self { position: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0] };
 }
 
-fn timestamp_file() -> FileDescriptorProto {
+pub(super) fn timestamp_file() -> FileDescriptorProto {
     let fields = vec![field("seconds", 1, Type::Int64), field("nanos", 2, Type::Int32)];
     let timestamp = message("Timestamp", fields);
     file("google/protobuf/timestamp.proto", "google.protobuf", &[], vec![timestamp])
 }
 
-fn timestamp_field() -> prost_types::FieldDescriptorProto {
+pub(super) fn timestamp_field() -> prost_types::FieldDescriptorProto {
     typed_field("timestamp", 1, Type::Message, "google.protobuf.Timestamp")
 }
 
-fn doubles(name: &str, fields: &[&str]) -> DescriptorProto {
+pub(super) fn doubles(name: &str, fields: &[&str]) -> DescriptorProto {
     let fields = (1..).zip(fields).map(|(number, name)| field(name, number, Type::Double));
     message(name, fields.collect())
 }
@@ -122,7 +122,7 @@ pub fn log_descriptor() -> Vec<u8> {
     encode_set(vec![timestamp_file(), file("foxglove/Log.proto", "foxglove", &imports, vec![log])])
 }
 
-fn timestamp(nanoseconds: u64, out: &mut Vec<u8>) {
+pub(super) fn timestamp(nanoseconds: u64, out: &mut Vec<u8>) {
     wire::nested(1, out, |out| {
         wire::unsigned(1, nanoseconds / 1_000_000_000, out);
         wire::unsigned(2, nanoseconds % 1_000_000_000, out);
@@ -140,7 +140,7 @@ pub fn put_transform(time: u64, parent: &str, child: &str, transform: &Transform
     });
 }
 
-fn put_doubles(values: &[f64], out: &mut Vec<u8>) {
+pub(super) fn put_doubles(values: &[f64], out: &mut Vec<u8>) {
     (1..).zip(values).for_each(|(number, value)| wire::double(number, *value, out));
 }
 

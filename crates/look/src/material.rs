@@ -1,0 +1,140 @@
+//! What things are made of: a few colours that part them at a glance.
+
+/// A material of the cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Material {
+    /// The robot's castings.
+    Orange,
+    /// Castings beside them.
+    Cream,
+    /// Motors, plates, gripper bodies.
+    Charcoal,
+    /// Hoses, glass, feet.
+    Rubber,
+    /// Piston rods, jaws, fingers.
+    Steel,
+    /// Ground faces, bolts.
+    Bright,
+    /// The machine tool.
+    White,
+    /// Its doors and skirts.
+    Petrol,
+    /// Trays.
+    Blue,
+    /// Rims and lines of trays.
+    PaleBlue,
+    /// Benches and stands.
+    Slate,
+    /// Their tops.
+    Maple,
+    /// Holsters, and what must not be run into.
+    Yellow,
+    /// The floor.
+    Concrete,
+    /// Pads of the fingers.
+    Pad,
+    /// Linkbars, and marks of the parts gripper.
+    Green,
+    /// Tools, and marks of the tool gripper.
+    Red,
+    /// Clevises.
+    Violet,
+    /// Shafts, and marks of the v-gripper.
+    Brass,
+    /// Cutting edges.
+    Gold,
+    /// Lamps and the ring of the camera.
+    Light,
+}
+
+/// Colour as it is seen, share of metal, roughness, light that it gives.
+struct Look {
+    colour: u32,
+    metal: f64,
+    rough: f64,
+    light: f64,
+}
+
+impl Material {
+    const fn look(self) -> Look {
+        let (colour, metal, rough, light) = match self {
+            Self::Orange => (0x00E8_6A1C, 0.0, 0.42, 0.0),
+            Self::Cream => (0x00EF_E6D2, 0.0, 0.45, 0.0),
+            Self::Charcoal => (0x0034_393F, 0.15, 0.50, 0.0),
+            Self::Rubber => (0x0017_191C, 0.0, 0.65, 0.0),
+            Self::Steel => (0x00A3_ABB3, 0.35, 0.38, 0.0),
+            Self::Bright => (0x00D2_D8DD, 0.40, 0.25, 0.0),
+            Self::White => (0x00E9_ECEE, 0.0, 0.40, 0.0),
+            Self::Petrol => (0x001F_5A6B, 0.0, 0.45, 0.0),
+            Self::Blue => (0x0037_6FB3, 0.0, 0.50, 0.0),
+            Self::PaleBlue => (0x00A9_C8E8, 0.0, 0.50, 0.0),
+            Self::Slate => (0x0063_707C, 0.0, 0.55, 0.0),
+            Self::Maple => (0x00C9_A06A, 0.0, 0.60, 0.0),
+            Self::Yellow => (0x00F5_C518, 0.0, 0.45, 0.0),
+            Self::Concrete => (0x00B9_BBB8, 0.0, 0.80, 0.0),
+            Self::Pad => (0x002B_2F33, 0.0, 0.80, 0.0),
+            Self::Green => (0x002F_9E57, 0.0, 0.45, 0.0),
+            Self::Red => (0x00D2_3B32, 0.0, 0.45, 0.0),
+            Self::Violet => (0x0079_51B8, 0.0, 0.45, 0.0),
+            Self::Brass => (0x00D9_A928, 0.30, 0.30, 0.0),
+            Self::Gold => (0x00F2_C84B, 0.40, 0.30, 0.0),
+            Self::Light => (0x00FF_F4D6, 0.0, 0.50, 0.6),
+        };
+        Look { colour, metal, rough, light }
+    }
+
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Orange => "orange",
+            Self::Cream => "cream",
+            Self::Charcoal => "charcoal",
+            Self::Rubber => "rubber",
+            Self::Steel => "steel",
+            Self::Bright => "bright",
+            Self::White => "white",
+            Self::Petrol => "petrol",
+            Self::Blue => "blue",
+            Self::PaleBlue => "pale-blue",
+            Self::Slate => "slate",
+            Self::Maple => "maple",
+            Self::Yellow => "yellow",
+            Self::Concrete => "concrete",
+            Self::Pad => "pad",
+            Self::Green => "green",
+            Self::Red => "red",
+            Self::Violet => "violet",
+            Self::Brass => "brass",
+            Self::Gold => "gold",
+            Self::Light => "light",
+        }
+    }
+
+    /// Its colour as the screen shows it: red, green, blue from 0 to 1.
+    #[must_use]
+    pub fn colour(self) -> [f64; 3] {
+        let Look { colour, .. } = self.look();
+        [16, 8, 0].map(|shift| f64::from(colour >> shift & 0xFF) / 255.0)
+    }
+
+    /// The material as glTF has it.
+    #[must_use]
+    pub fn gltf(self) -> String {
+        let Look { metal, rough, light, .. } = self.look();
+        // From the screen's brightness to light, as in sRGB.
+        let linear = |value: f64| {
+            let light =
+                if value <= 0.04045 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) };
+            (light * 1e4).round() / 1e4
+        };
+        let [r, g, b] = self.colour().map(linear);
+        format!(
+            r#"{{"name":"{}","pbrMetallicRoughness":{{"baseColorFactor":[{r},{g},{b},1],"metallicFactor":{metal},"roughnessFactor":{rough}}},"emissiveFactor":[{},{},{}]}}"#,
+            self.name(),
+            r * light,
+            g * light,
+            b * light
+        )
+    }
+}

@@ -1,0 +1,48 @@
+//! Parts and tools: the bodies with which they collide, coloured by kind.
+
+use plant::{description::PartType, solid::along};
+
+use crate::{
+    material::{
+        Material,
+        Material::{Brass, Bright, Gold, Green, Red, Steel, Violet},
+    },
+    mesh::{Mesh, ROUND, SMALL},
+};
+
+/// Edges of a part, in.
+const EDGE: f64 = 0.03;
+
+/// The colour of a kind of part: tools, round parts, large and small blocks each have their own.
+#[must_use]
+pub fn colour(kind: &PartType) -> Material {
+    match along(kind) {
+        _ if kind.tool => Red,
+        Some(_) => Brass,
+        None if kind.size[0] > 1.0 => Violet,
+        None => Green,
+    }
+}
+
+/// A part in its own frame: its middle at the origin, X down as it lies, Z along it.
+#[must_use]
+pub fn mesh(kind: &PartType) -> Mesh {
+    let mut mesh = Mesh::default();
+    let material = colour(kind);
+    let Some((axis, radius, length)) = along(kind) else {
+        mesh.block(material, [0.0; 3], kind.size, EDGE);
+        return mesh;
+    };
+    let at = |x: f64| axis.shifted(geometry::frame::Vector::new(x, 0.0, 0.0)).position.into();
+    let half = length / 2.0;
+    if !kind.tool {
+        mesh.rod(material, at(-half), at(half), radius, EDGE, ROUND);
+        return mesh;
+    }
+    // A tool in its holder: the flange and a ring in the colour of tools, the cutter ahead of it.
+    mesh.rod(Steel, at(-half), at(half), radius, EDGE, ROUND);
+    mesh.rod(material, at(-half + 0.5), at(-half + 1.3), radius + 0.02, 0.0, ROUND);
+    mesh.rod(Bright, at(half - 0.9), at(half - 0.6), radius + 0.015, 0.0, ROUND);
+    mesh.rod(Gold, at(-half - 1.3), at(-half + 0.1), 0.32, 0.1, SMALL);
+    mesh
+}
