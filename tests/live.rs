@@ -95,6 +95,11 @@ impl Viewer {
         }
     }
 
+    /// The next text about something that was asked for. The channel of operators begins with the first of them.
+    fn answer(&mut self) -> Value {
+        std::iter::repeat_with(|| self.text()).find(|text| text["op"] != "advertise").unwrap()
+    }
+
     fn subscribe(&mut self, wanted: impl Fn(&str) -> bool) {
         let channels = self.topics.iter().filter(|(_, topic)| wanted(topic));
         let subscriptions: Vec<Value> =
@@ -225,6 +230,128 @@ fn ten_viewers_that_read_nothing_change_no_bit() {
     assert_eq!(outcome.result.digest, digest_without_viewers(3000));
     let log = Log::open(&directory.path().join("log.mcap")).unwrap();
     assert_eq!((log.ticks().count(), log.complete), (3000, true));
+}
+
+impl Said {
+    fn token(&self) -> Option<String> {
+        let lines = self.0.lock().unwrap();
+        let line = lines.iter().find_map(|line| line.strip_prefix("requests of viewers need the token "));
+        line.map(str::to_owned)
+    }
+}
+
+/// Call a service: the answer, or why it was refused.
+fn call(viewer: &mut Viewer, service: u32, payload: &Value) -> Result<Value, String> {
+    let mut bytes = vec![2];
+    [service, 77, 4].iter().for_each(|number| bytes.extend(number.to_le_bytes()));
+    bytes.extend(b"json");
+    bytes.extend(payload.to_string().into_bytes());
+    viewer.socket.send(Message::binary(bytes)).unwrap();
+    loop {
+        match viewer.socket.read().unwrap() {
+            Message::Text(text) => {
+                let failure: Value = serde_json::from_str(&text).unwrap();
+                if failure["op"] == "advertise" {
+                    continue;
+                }
+                assert_eq!((&failure["op"], &failure["callId"]), (&json!("serviceCallFailure"), &json!(77)));
+                return Err(failure["message"].as_str().unwrap().to_owned());
+            }
+            Message::Binary(bytes) if bytes[0] == 3 => {
+                assert_eq!((&bytes[5..9], &bytes[13..17]), (&[77, 0, 0, 0][..], &b"json"[..]));
+                return Ok(serde_json::from_slice(&bytes[17..]).unwrap());
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Ask for what there is, with and without the token.
+fn operate(mut viewer: Viewer, token: &str) {
+    let services = viewer.answer();
+    assert_eq!(services["op"], "advertiseServices");
+    let number = |name: &str| {
+        let all = services["services"].as_array().unwrap();
+        let found = all.iter().find(|service| service["name"] == name).unwrap();
+        u32::try_from(found["id"].as_u64().unwrap()).unwrap()
+    };
+    let (pause, knob_to_zero) = (number("/operator/pause"), number("/operator/stop"));
+    let refused = call(&mut viewer, pause, &json!({})).unwrap_err();
+    assert!(refused.contains("the token"), "{refused}");
+    assert!(call(&mut viewer, pause, &json!({ "token": "0".repeat(32) })).is_err());
+    let say =
+        |viewer: &mut Viewer, message: Value| viewer.socket.send(Message::text(message.to_string())).unwrap();
+    let set = |name: &str, value: Value| json!({ "op": "setParameters", "parameters": [{ "name": name, "value": value }], "id": "set" });
+    say(&mut viewer, set("/operator/velocity", json!(400)));
+    assert_eq!(viewer.answer()["op"], "status", "without the token the knob stays");
+    // From here on with the token.
+    let answer = call(&mut viewer, pause, &json!({ "token": token })).unwrap();
+    assert!(answer["answer"].as_str().unwrap().contains("command"), "{answer}");
+    say(&mut viewer, set("/operator/token", json!(token)));
+    assert_eq!(viewer.answer()["parameters"][0], json!({ "name": "/operator/token", "value": "accepted" }));
+    say(&mut viewer, json!({ "op": "subscribeParameterUpdates", "parameterNames": ["/operator/velocity"] }));
+    say(&mut viewer, set("/operator/velocity", json!(400)));
+    let answers = [viewer.answer(), viewer.answer()];
+    for answer in &answers {
+        assert_eq!(
+            answer["parameters"][0],
+            json!({ "name": "/operator/velocity", "value": 400 }),
+            "{answers:?}"
+        );
+    }
+    assert_eq!(answers.iter().filter(|answer| answer["id"] == "set").count(), 1, "one answer, one change");
+    call(&mut viewer, knob_to_zero, &json!({ "token": token })).unwrap();
+    let refused = call(&mut viewer, number("/operator/request"), &json!({ "token": token, "line": "fly" }));
+    assert!(refused.is_err());
+}
+
+#[test]
+fn a_viewer_with_the_token_operates_the_run() {
+    let directory = tempdir().unwrap();
+    let said = Said::default();
+    let config = RunConfig {
+        operator: OperatorAccess::Owner,
+        shared_memory: true,
+        speed: 5,
+        ..config(&directory, 2000)
+    };
+    let stop = config.stop.clone();
+    let run = Run::new(config, Box::new(said.clone())).unwrap();
+    let token = said.token().expect("the run prints a token");
+    let viewer = Viewer::connect(&said.address(), "foxglove.sdk.v1");
+    let operating = thread::spawn(move || {
+        operate(viewer, &token);
+        thread::sleep(Duration::from_millis(200));
+        stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    });
+    let _ = run.complete();
+    operating.join().unwrap();
+    let log = Log::open(&directory.path().join("log.mcap")).unwrap();
+    let lines: Vec<_> = log.operator_lines().map(|line| (line.line, line.refused.is_some())).collect();
+    let expected = [
+        ("(connected)", false),
+        ("PAUSE", false),
+        ("joystick velocity 400", false),
+        ("stop", false),
+        ("fly", true),
+        ("(disconnected)", false),
+    ];
+    let lines: Vec<_> = lines.iter().map(|(line, refused)| (line.as_str(), *refused)).collect();
+    let said: Vec<_> = lines.into_iter().filter(|(line, _)| *line != "(silent)").collect();
+    assert_eq!(said, expected);
+}
+
+#[test]
+fn a_run_without_operators_prints_no_token_and_offers_no_service() {
+    let directory = tempdir().unwrap();
+    let said = Said::default();
+    let run = Run::new(config(&directory, 25), Box::new(said.clone())).unwrap();
+    assert_eq!(said.token(), None);
+    let mut viewer = Viewer::connect(&said.address(), "foxglove.sdk.v1");
+    assert!(!viewer.info["capabilities"].as_array().unwrap().contains(&json!("services")));
+    let refused = thread::spawn(move || call(&mut viewer, 4, &json!({ "token": "" })).unwrap_err());
+    assert!(refused.join().unwrap().contains("takes no requests of viewers"));
+    let _ = run.complete();
 }
 
 #[test]

@@ -8,6 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use operator::{Client as Operator, ClientError, Name};
 use tungstenite::{
     Error, Message, WebSocket,
     error::CapacityError,
@@ -15,9 +16,11 @@ use tungstenite::{
 };
 
 use crate::{
+    commands::Access,
     feed::{Feed, Item, Queue},
     protocol::{self, StatusLevel},
-    session::{Action, Session},
+    server::Options,
+    session::{Action, Rights, Session},
 };
 
 /// How long a thread sleeps when there is nothing to do: a quarter of a tick.
@@ -109,6 +112,12 @@ pub struct Client {
     feed: Feed,
     queue: Arc<Queue>,
     session: Session,
+    /// How the run takes requests.
+    access: Option<Access>,
+    /// The session with the run, from the first request on.
+    operator: Option<Operator>,
+    /// Name of that session.
+    name: Name,
     /// How long it may take nothing.
     patience: Duration,
     /// Number and time of the last ping.
@@ -120,14 +129,34 @@ pub struct Client {
 }
 
 impl Client {
-    pub fn new(socket: WebSocket<Connection>, feed: Feed, queue: Arc<Queue>, patience: Duration) -> Self {
+    pub fn new(
+        socket: WebSocket<Connection>,
+        feed: Feed,
+        queue: Arc<Queue>,
+        options: &Options,
+        name: Name,
+    ) -> Self {
         let now = Instant::now();
-        let session = Session::default();
-        Self { socket, feed, queue, session, patience, ping: (0, now), pong: (0, now), dropped: (0, now) }
+        let Options { knob, access, patience, .. } = options;
+        let token = access.as_ref().map(|access| access.token.clone());
+        Self {
+            socket,
+            feed,
+            queue,
+            session: Session::new(Rights { knob: knob.clone(), token }),
+            access: access.clone(),
+            operator: None,
+            name,
+            patience: *patience,
+            ping: (0, now),
+            pong: (0, now),
+            dropped: (0, now),
+        }
     }
 
     /// Serve the client until it is gone or nothing more comes. It is told `first` at first.
-    pub fn run(mut self, first: Vec<String>) {
+    pub fn run(mut self, mut first: Vec<String>) {
+        first.extend(self.session.services());
         if let Err(End::Told(code, reason)) = self.serve(first) {
             self.close(code, reason);
         }
@@ -181,9 +210,33 @@ impl Client {
                 self.feed.subscribe(&self.queue, channel, subscription);
             }
             Action::Unsubscribe { channel } => self.queue.unsubscribe(channel),
+            Action::Bytes(bytes) => {
+                self.write(Message::binary(bytes))?;
+            }
+            Action::Ask { line, reply } => {
+                let verdict = self.ask(&line);
+                for action in self.session.answered(reply, verdict) {
+                    self.act(action)?;
+                }
+            }
             Action::Close(reason) => return Err(End::Told(CloseCode::Policy, reason)),
         }
         Ok(())
+    }
+
+    /// Ask the run as an operator. It answers between two ticks.
+    fn ask(&mut self, line: &str) -> Result<String, String> {
+        let access = self.access.as_ref().ok_or("this run takes no requests")?;
+        let mut operator = match self.operator.take() {
+            Some(operator) => operator,
+            None => Operator::connect(&access.socket, &self.name).map_err(|error| error.to_string())?,
+        };
+        let answer = operator.ask(line);
+        // After any other error the session is over: the next request begins a new one.
+        if matches!(answer, Ok(_) | Err(ClientError::Line { .. } | ClientError::Silent)) {
+            self.operator = Some(operator);
+        }
+        answer.map_err(|error| error.to_string())?
     }
 
     /// Give the client what waits for it; true if there may be more.
@@ -215,6 +268,9 @@ impl Client {
         if self.ping.1.elapsed() > PING.min(self.patience / 4) && self.flush()? {
             self.ping = (self.ping.0.wrapping_add(1), Instant::now());
             self.write(Message::Ping(self.ping.0.to_le_bytes().to_vec().into()))?;
+        }
+        if let Some(text) = self.session.knob() {
+            self.write(Message::text(text))?;
         }
         let dropped = self.queue.dropped();
         if dropped > self.dropped.0 && self.dropped.1.elapsed() > COUNT && self.flush()? {

@@ -5,6 +5,7 @@
 //! ```
 //!
 //! * [`protocol`]: the messages of both subprotocols, to and from bytes;
+//! * [`commands`]: what a client may ask of the run;
 //! * [`session`]: what one client may ask for and what it gets, without I/O;
 //! * [`feed`]: channels, the newest message of each, and a queue a client;
 //! * [`server`]: listens on this machine, one thread a client.
@@ -20,6 +21,7 @@
 )]
 
 mod client;
+pub mod commands;
 pub mod feed;
 mod frames;
 pub mod origin;
@@ -30,4 +32,4 @@ pub mod session;
 pub use feed::Feed;
 pub use origin::Origin;
 pub use protocol::NoRandom;
-pub use server::{Options, Server};
+pub use server::{Options, Port, Server};

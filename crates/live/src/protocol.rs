@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use data_encoding::{BASE64, HEXLOWER};
 use record::tap::Channel;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// The subprotocols, the preferred one first.
 pub const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
@@ -19,6 +19,12 @@ const BINARY_SCHEMAS: [&str; 2] = ["protobuf", "flatbuffer"];
 mod to_client {
     pub const MESSAGE: u8 = 0x01;
     pub const TIME: u8 = 0x02;
+    pub const SERVICE_RESPONSE: u8 = 0x03;
+}
+
+/// Operation codes of binary messages from the client.
+mod from_client {
+    pub const SERVICE_REQUEST: u8 = 0x02;
 }
 
 /// What a client says in text.
@@ -36,6 +42,113 @@ pub enum Request {
         /// By the client's numbers.
         subscription_ids: Vec<u32>,
     },
+    /// Say what parameters are.
+    #[serde(rename_all = "camelCase")]
+    GetParameters {
+        /// Their names; all if there is none.
+        parameter_names: Vec<String>,
+        /// Stands in the answer.
+        id: Option<String>,
+    },
+    /// Change parameters.
+    SetParameters {
+        /// Which.
+        parameters: Vec<Parameter>,
+        /// Stands in the answer.
+        id: Option<String>,
+    },
+    /// Say it when parameters change.
+    #[serde(rename_all = "camelCase")]
+    SubscribeParameterUpdates {
+        /// Their names; all if there is none.
+        parameter_names: Vec<String>,
+    },
+    /// Say it no more.
+    #[serde(rename_all = "camelCase")]
+    UnsubscribeParameterUpdates {
+        /// Their names; all if there is none.
+        parameter_names: Vec<String>,
+    },
+}
+
+/// A parameter with its value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// Null if it has none.
+    #[serde(default)]
+    pub value: Value,
+}
+
+/// A service is called.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ServiceCall {
+    /// The service.
+    pub service: u32,
+    /// The client's number of the call.
+    pub call: u32,
+    /// Encoding of the payload.
+    pub encoding: String,
+    /// The request.
+    pub payload: Vec<u8>,
+}
+
+impl ServiceCall {
+    /// Read a binary message; none if it is something else.
+    #[must_use]
+    pub fn read(bytes: &[u8]) -> Option<Self> {
+        let (code, mut rest) = bytes.split_first()?;
+        let mut number = || {
+            let (number, left) = rest.split_first_chunk::<4>()?;
+            rest = left;
+            Some(u32::from_le_bytes(*number))
+        };
+        let (service, call, length) = (number()?, number()?, number()?);
+        let (encoding, payload) = rest.split_at_checked(usize::try_from(length).ok()?)?;
+        let encoding = String::from_utf8_lossy(encoding).into_owned();
+        (*code == from_client::SERVICE_REQUEST).then(|| Self {
+            service,
+            call,
+            encoding,
+            payload: payload.to_vec(),
+        })
+    }
+}
+
+/// The answer to a call.
+#[must_use]
+pub fn service_response(service: u32, call: u32, payload: &Value) -> Vec<u8> {
+    const ENCODING: &[u8; 4] = b"json";
+    let mut bytes = vec![to_client::SERVICE_RESPONSE];
+    bytes.extend(service.to_le_bytes());
+    bytes.extend(call.to_le_bytes());
+    bytes.extend(4_u32.to_le_bytes());
+    bytes.extend(ENCODING);
+    bytes.extend(payload.to_string().into_bytes());
+    bytes
+}
+
+/// A call was not carried out.
+#[must_use]
+pub fn service_failure(service: u32, call: u32, why: &str) -> String {
+    json!({ "op": "serviceCallFailure", "serviceId": service, "callId": call, "message": why }).to_string()
+}
+
+/// The message that names services.
+#[must_use]
+pub fn advertise_services(services: &[Value]) -> String {
+    json!({ "op": "advertiseServices", "services": services }).to_string()
+}
+
+/// What parameters are.
+#[must_use]
+pub fn parameter_values(parameters: &[Parameter], id: Option<&str>) -> String {
+    match id {
+        Some(id) => json!({ "op": "parameterValues", "parameters": parameters, "id": id }),
+        None => json!({ "op": "parameterValues", "parameters": parameters }),
+    }
+    .to_string()
 }
 
 /// A channel that a client wants to see.
@@ -89,12 +202,12 @@ pub struct ServerInfo {
 }
 
 impl ServerInfo {
-    /// With time, and a session id that no other one has.
+    /// With a session id that no other one has.
     ///
     /// # Errors
     /// [`NoRandom`] if the system has no random numbers.
     pub fn new() -> Result<Self, NoRandom> {
-        Ok(Self { capabilities: vec!["time"], session_id: random_word()?, ..Self::default() })
+        Ok(Self { session_id: random_word()?, ..Self::default() })
     }
 
     /// The message.
@@ -176,6 +289,19 @@ mod tests {
     fn binary_messages_are_little_endian_behind_their_code() {
         assert_eq!(message(0x0102, 3, &[9, 8]), [1, 2, 1, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 9, 8]);
         assert_eq!(time(258), [2, 2, 1, 0, 0, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn a_call_is_read_and_answered() {
+        let call = [&[2, 7, 0, 0, 0, 9, 1, 0, 0, 4, 0, 0, 0][..], b"json{}"].concat();
+        let expected =
+            ServiceCall { service: 7, call: 265, encoding: "json".into(), payload: b"{}".to_vec() };
+        assert_eq!(ServiceCall::read(&call), Some(expected));
+        for wrong in [&call[..12], &call[..16], &[], &[2], &[1; 20], &[2; 20]] {
+            assert_eq!(ServiceCall::read(wrong), None, "{wrong:?}");
+        }
+        let answer = service_response(7, 265, &json!({}));
+        assert_eq!(answer, [&[3, 7, 0, 0, 0, 9, 1, 0, 0, 4, 0, 0, 0][..], b"json{}"].concat());
     }
 
     #[test]

@@ -11,6 +11,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use operator::Name;
 use tungstenite::{
     accept_hdr_with_config,
     handshake::server::{Callback, ErrorResponse, Request, Response},
@@ -20,6 +21,7 @@ use tungstenite::{
 
 use crate::{
     client::{Client, Connection},
+    commands::{Access, Knob},
     feed::Feed,
     origin::Origin,
     protocol::{SUBPROTOCOLS, ServerInfo},
@@ -40,22 +42,39 @@ const LAST: Duration = Duration::from_secs(2);
 /// How long to wait after a connection that could not be accepted.
 const AGAIN: Duration = Duration::from_millis(100);
 
-/// Where to serve, and to whom.
+/// What to serve, and to whom.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The port on 127.0.0.1; 0 for any that is free.
-    pub port: u16,
     /// Pages that may connect, besides Foxglove's.
     pub origins: Vec<Origin>,
     /// What clients are told first.
     pub info: ServerInfo,
     /// How long a client may take nothing.
     pub patience: Duration,
+    /// The velocity knob, if there is one.
+    pub knob: Option<Knob>,
+    /// How the run takes requests, if it does.
+    pub access: Option<Access>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { port: PORT, origins: Vec::new(), info: ServerInfo::default(), patience: PATIENCE }
+        let (info, origins) = (ServerInfo::default(), Vec::new());
+        Self { origins, info, patience: PATIENCE, knob: None, access: None }
+    }
+}
+
+/// A port on 127.0.0.1 that is taken. Clients that connect wait for a [`Server`].
+#[derive(Debug)]
+pub struct Port(TcpListener);
+
+impl Port {
+    /// Take a port; 0 for any that is free.
+    ///
+    /// # Errors
+    /// Why it cannot be had.
+    pub fn take(port: u16) -> io::Result<Self> {
+        TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map(Self)
     }
 }
 
@@ -70,12 +89,21 @@ pub struct Server {
 }
 
 impl Server {
-    /// Listen on 127.0.0.1. The threads inherit the priority of the caller.
+    /// Serve who connects to a [`Port`]. The threads inherit the priority of the caller.
     ///
     /// # Errors
-    /// Why the port or the thread cannot be had.
-    pub fn start(options: Options, feed: Feed) -> io::Result<Self> {
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, options.port))?;
+    /// Why the thread cannot be had.
+    pub fn start(port: Port, mut options: Options, feed: Feed) -> io::Result<Self> {
+        let info = &mut options.info;
+        info.capabilities.push("time");
+        if options.knob.is_some() {
+            info.capabilities.extend(["parameters", "parametersSubscribe"]);
+        }
+        if options.access.is_some() {
+            info.capabilities.push("services");
+            info.supported_encodings.push("json");
+        }
+        let Port(listener) = port;
         let address = listener.local_addr()?;
         let (stop, open) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
         let accept = Accept {
@@ -84,6 +112,7 @@ impl Server {
             feed: feed.clone(),
             stop: stop.clone(),
             open: open.clone(),
+            clients: 0,
         };
         let thread = thread::Builder::new().name("live".into()).spawn(move || accept.run())?;
         Ok(Self { address, feed, stop, open, thread: Some(thread) })
@@ -118,32 +147,37 @@ struct Accept {
     feed: Feed,
     stop: Arc<AtomicBool>,
     open: Arc<AtomicUsize>,
+    /// Clients so far.
+    clients: u64,
 }
 
 impl Accept {
-    fn run(self) {
-        for stream in self.listener.incoming() {
+    fn run(mut self) {
+        loop {
+            let accepted = self.listener.accept();
             if self.stop.load(Ordering::Relaxed) {
                 return;
             }
-            match stream {
-                Ok(stream) => self.admit(stream),
+            match accepted {
+                Ok((stream, _)) => self.admit(stream),
                 // A client that has left again, or no more files: neither is a reason to end.
                 Err(_) => thread::sleep(AGAIN),
             }
         }
     }
 
-    fn admit(&self, stream: TcpStream) {
+    fn admit(&mut self, stream: TcpStream) {
         if self.open.load(Ordering::Acquire) >= CLIENTS {
             return refuse(stream);
         }
         self.open.fetch_add(1, Ordering::AcqRel);
+        self.clients = self.clients.saturating_add(1);
+        let Ok(name) = format!("viewer-{}", self.clients).parse() else { return };
         let (options, feed, open) = (self.options.clone(), self.feed.clone(), Open(self.open.clone()));
         // If the thread cannot be had, the client sees the end of its connection.
         let _ = thread::Builder::new().name("live client".into()).spawn(move || {
             let _open = open;
-            serve(stream, &options, feed);
+            serve(stream, &options, feed, name);
         });
     }
 }
@@ -168,7 +202,7 @@ fn refuse(mut stream: TcpStream) {
     }
 }
 
-fn serve(stream: TcpStream, options: &Options, feed: Feed) {
+fn serve(stream: TcpStream, options: &Options, feed: Feed, name: Name) {
     let Ok(connection) = Connection::new(stream, HANDSHAKE) else { return };
     let limits = WebSocketConfig::default()
         .read_buffer_size(16 * 1024)
@@ -178,7 +212,7 @@ fn serve(stream: TcpStream, options: &Options, feed: Feed) {
         return;
     };
     let (queue, channels) = feed.join();
-    Client::new(socket, feed, queue, options.patience).run(vec![options.info.encode(), channels]);
+    Client::new(socket, feed, queue, options, name).run(vec![options.info.encode(), channels]);
 }
 
 /// Checks who connects, and agrees on a subprotocol.

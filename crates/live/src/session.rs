@@ -5,20 +5,39 @@
 
 use std::collections::BTreeMap;
 
-use crate::protocol::{self, Request, StatusLevel, Subscription};
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use crate::{
+    commands::{Knob, SERVICES, Service, Token},
+    protocol::{self, Parameter, Request, ServiceCall, StatusLevel, Subscription},
+};
 
 /// Subscriptions at a time.
 pub const SUBSCRIPTIONS: usize = 512;
 /// Wrong messages after which a client is disconnected.
 pub const MISTAKES: u32 = 32;
+/// The parameter that is the velocity knob, 0 to 1000.
+pub const VELOCITY: &str = "/operator/velocity";
+/// The parameter that takes the token, and shows only whether it was accepted.
+pub const TOKEN: &str = "/operator/token";
+/// Full speed of the knob.
+const FULL: u16 = 1000;
 /// Characters of a client's message that stand in the answer.
 const QUOTED: usize = 60;
+/// Why nothing can be asked for.
+const NO_REQUESTS: &str =
+    "this run takes no requests of viewers: it needs --clock real and an operator (docs/operator.md)";
+/// Why something was not asked for.
+const NO_TOKEN: &str = "the token that the run has printed was expected";
 
 /// What is to be done for a client.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Send text.
     Text(String),
+    /// Send bytes.
+    Bytes(Vec<u8>),
     /// Send the messages of a channel, the newest one first.
     Subscribe {
         /// The channel.
@@ -31,19 +50,83 @@ pub enum Action {
         /// The channel.
         channel: u16,
     },
+    /// Ask the run for something, and say what it answers: [`Session::answered`].
+    Ask {
+        /// The line for the operator's socket.
+        line: String,
+        /// What waits for the answer.
+        reply: Reply,
+    },
     /// Disconnect.
     Close(String),
+}
+
+/// What waits for an answer of the run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reply {
+    /// A service was called.
+    Call {
+        /// The service.
+        service: u32,
+        /// The client's number of the call.
+        call: u32,
+    },
+    /// The knob was turned.
+    Knob {
+        /// To what.
+        velocity: u16,
+        /// The client's name of the request.
+        id: Option<String>,
+    },
+}
+
+/// What a session works with.
+#[derive(Clone, Debug, Default)]
+pub struct Rights {
+    /// The velocity knob; a log that is played has none.
+    pub knob: Option<Knob>,
+    /// What a request must hold; none if nothing can be asked for.
+    pub token: Option<Token>,
 }
 
 /// What a client has asked for so far.
 #[derive(Debug, Default)]
 pub struct Session {
+    rights: Rights,
     /// Channels by the client's numbers.
     subscriptions: BTreeMap<u32, u16>,
+    /// The token was given as a parameter.
+    has_token: bool,
+    /// Where the knob was when the client heard of it last; none if it does not want to hear of it.
+    knob: Option<u16>,
     mistakes: u32,
 }
 
+/// The payload of a call.
+#[derive(Deserialize)]
+struct Payload {
+    #[serde(default)]
+    token: String,
+    #[serde(default)]
+    line: String,
+}
+
 impl Session {
+    /// A client that has asked for nothing yet.
+    #[must_use]
+    pub fn new(rights: Rights) -> Self {
+        Self { rights, ..Self::default() }
+    }
+
+    /// What the client is told of services before anything else.
+    #[must_use]
+    pub fn services(&self) -> Option<String> {
+        self.rights.token.as_ref()?;
+        let services: Vec<Value> =
+            (1..).zip(SERVICES).map(|(number, service)| service.advertised(number)).collect();
+        Some(protocol::advertise_services(&services))
+    }
+
     /// A text has come. `is_known` tells whether there is a channel of a number.
     pub fn text(&mut self, text: &str, is_known: impl Fn(u16) -> bool) -> Vec<Action> {
         match serde_json::from_str(text) {
@@ -53,16 +136,130 @@ impl Session {
             Ok(Request::Unsubscribe { subscription_ids }) => {
                 subscription_ids.into_iter().flat_map(|id| self.unsubscribe(id)).collect()
             }
+            Ok(Request::GetParameters { parameter_names, id }) => {
+                vec![Action::Text(self.parameters(&parameter_names, id.as_deref()))]
+            }
+            Ok(Request::SetParameters { parameters, id }) => self.set(&parameters, id.as_deref()),
+            Ok(Request::SubscribeParameterUpdates { parameter_names }) => {
+                if is_wanted(&parameter_names, VELOCITY) {
+                    self.knob = self.rights.knob.as_ref().map(Knob::get);
+                }
+                Vec::new()
+            }
+            Ok(Request::UnsubscribeParameterUpdates { parameter_names }) => {
+                self.knob = self.knob.filter(|_| !is_wanted(&parameter_names, VELOCITY));
+                Vec::new()
+            }
             Err(error) => self.wrong(&format!("{error}, in {}", quoted(text))),
         }
     }
 
     /// Bytes have come.
     pub fn binary(&mut self, bytes: &[u8]) -> Vec<Action> {
-        match bytes.first() {
-            Some(code) => self.wrong(&format!("a binary message with operation code {code} is not served")),
-            None => self.wrong("a binary message has an operation code, this one is empty"),
+        match (ServiceCall::read(bytes), bytes.first()) {
+            (Some(call), _) => self.call(&call),
+            (None, Some(code)) => {
+                self.wrong(&format!("a call of a service was expected; found operation code {code}"))
+            }
+            (None, None) => self.wrong("a call of a service was expected; found no byte"),
         }
+    }
+
+    /// The run has answered.
+    #[must_use]
+    pub fn answered(&mut self, reply: Reply, verdict: Result<String, String>) -> Vec<Action> {
+        match (reply, verdict) {
+            (Reply::Call { service, call }, Ok(answer)) => {
+                vec![Action::Bytes(protocol::service_response(service, call, &json!({ "answer": answer })))]
+            }
+            (Reply::Call { service, call }, Err(why)) => {
+                vec![Action::Text(protocol::service_failure(service, call, &why))]
+            }
+            (Reply::Knob { velocity, id: Some(id) }, Ok(_)) => {
+                let value = json!(velocity);
+                let parameter = Parameter { name: VELOCITY.to_owned(), value };
+                vec![Action::Text(protocol::parameter_values(&[parameter], Some(&id)))]
+            }
+            (Reply::Knob { id: None, .. }, Ok(_)) => Vec::new(),
+            (Reply::Knob { velocity, .. }, Err(why)) => {
+                let why = format!("the velocity knob was not turned to {velocity}: {why}");
+                vec![Action::Text(protocol::status(StatusLevel::Error, &why, None))]
+            }
+        }
+    }
+
+    /// What is to be said if the knob was turned since the client heard of it.
+    pub fn knob(&mut self) -> Option<String> {
+        let (seen, now) = (self.knob?, self.rights.knob.as_ref()?.get());
+        self.knob = Some(now);
+        (seen != now).then(|| self.parameters(&[VELOCITY.to_owned()], None))
+    }
+
+    /// The parameters of some names, or all.
+    fn parameters(&self, names: &[String], id: Option<&str>) -> String {
+        let knob = self.rights.knob.as_ref().map(|knob| (VELOCITY, json!(knob.get())));
+        let accepted = if self.has_token { "accepted" } else { "" };
+        let token = self.rights.token.as_ref().map(|_| (TOKEN, json!(accepted)));
+        let all = knob.into_iter().chain(token).filter(|(name, _)| is_wanted(names, name));
+        let parameters: Vec<Parameter> =
+            all.map(|(name, value)| Parameter { name: name.to_owned(), value }).collect();
+        protocol::parameter_values(&parameters, id)
+    }
+
+    fn set(&mut self, parameters: &[Parameter], id: Option<&str>) -> Vec<Action> {
+        parameters.iter().flat_map(|parameter| self.set_one(parameter, id)).collect()
+    }
+
+    fn set_one(&mut self, Parameter { name, value }: &Parameter, id: Option<&str>) -> Vec<Action> {
+        let Some(token) = &self.rights.token else { return self.wrong(NO_REQUESTS) };
+        match name.as_str() {
+            TOKEN if value.as_str().is_some_and(|given| token.is(given)) => {
+                self.has_token = true;
+                id.map(|id| Action::Text(self.parameters(&[TOKEN.to_owned()], Some(id))))
+                    .into_iter()
+                    .collect()
+            }
+            TOKEN => self.wrong(NO_TOKEN),
+            VELOCITY if !self.has_token => {
+                self.wrong(&format!("{NO_TOKEN}: set it as the parameter {TOKEN} first"))
+            }
+            VELOCITY => match knob(value) {
+                Some(velocity) => {
+                    let reply = Reply::Knob { velocity, id: id.map(str::to_owned) };
+                    vec![Action::Ask { line: format!("joystick velocity {velocity}"), reply }]
+                }
+                None => self.wrong(&format!("{VELOCITY} is a whole number from 0 to {FULL}")),
+            },
+            _ => self.wrong(&format!("{VELOCITY} or {TOKEN} was expected; found {}", quoted(name))),
+        }
+    }
+
+    fn call(&mut self, asked: &ServiceCall) -> Vec<Action> {
+        let (service, call) = (asked.service, asked.call);
+        match self.line(asked) {
+            Ok(line) => vec![Action::Ask { line, reply: Reply::Call { service, call } }],
+            Err(why) => {
+                let answer = Action::Text(protocol::service_failure(service, call, &why));
+                [answer].into_iter().chain(self.counted(&why)).collect()
+            }
+        }
+    }
+
+    /// What a call asks of the run, or why it may not.
+    fn line(&self, asked: &ServiceCall) -> Result<String, String> {
+        let token = self.rights.token.as_ref().ok_or(NO_REQUESTS)?;
+        let wanted =
+            Service::of(asked.service).ok_or_else(|| format!("there is no service {}", asked.service))?;
+        if asked.encoding != "json" {
+            return Err("a request in JSON was expected".to_owned());
+        }
+        let payload = serde_json::from_slice(&asked.payload);
+        let Payload { token: given, line } =
+            payload.map_err(|_| "an object with the field `token` was expected".to_owned())?;
+        if !token.is(&given) {
+            return Err(format!("{NO_TOKEN} in the field `token`"));
+        }
+        Ok(wanted.line.map_or(line, str::to_owned))
     }
 
     fn subscribe(&mut self, wanted: Subscription, is_known: impl Fn(u16) -> bool) -> Vec<Action> {
@@ -93,14 +290,29 @@ impl Session {
         }
     }
 
+    /// Something that cannot be done.
     fn wrong(&mut self, why: &str) -> Vec<Action> {
-        self.mistakes = self.mistakes.saturating_add(1);
-        match self.mistakes {
-            ..MISTAKES => vec![Action::Text(protocol::status(StatusLevel::Error, why, None))],
-            MISTAKES => vec![Action::Close(format!("{MISTAKES} wrong messages, at last: {why}"))],
-            _ => Vec::new(),
-        }
+        let status = Action::Text(protocol::status(StatusLevel::Error, why, None));
+        self.counted(why).map_or_else(|| vec![status], |close| vec![close])
     }
+
+    /// A mistake more: the client may have come to the end of the session.
+    fn counted(&mut self, why: &str) -> Option<Action> {
+        self.mistakes = self.mistakes.saturating_add(1);
+        let close = || Action::Close(format!("{MISTAKES} wrong messages, at last: {why}"));
+        (self.mistakes >= MISTAKES).then(close)
+    }
+}
+
+/// An empty list means all.
+fn is_wanted(names: &[String], name: &str) -> bool {
+    names.is_empty() || names.iter().any(|wanted| wanted == name)
+}
+
+/// A number that the knob can be turned to; viewers may send it as a decimal number.
+fn knob(value: &Value) -> Option<u16> {
+    let number = value.as_f64()?;
+    (0..=FULL).find(|velocity| f64::from(*velocity) == number)
 }
 
 /// The beginning of a client's message, without control characters.
@@ -170,7 +382,97 @@ mod tests {
         status_of(&session.text(&deep, |_| true));
         let rest = (10..MISTAKES).map(|_| session.binary(&[9])).last().unwrap();
         assert!(matches!(&rest[..], [Action::Close(why)] if why.contains("32 wrong messages")), "{rest:?}");
-        assert_eq!(session.binary(&[9]), []);
+    }
+
+    const SECRET: &str = "/operator/token";
+
+    fn permitted() -> (Session, String, Knob) {
+        let (token, knob) = (Token::random().unwrap(), Knob::default());
+        knob.set(1000);
+        let word = token.reveal().to_owned();
+        (Session::new(Rights { knob: Some(knob.clone()), token: Some(token) }), word, knob)
+    }
+
+    fn call(session: &mut Session, service: u32, payload: &Value) -> Vec<Action> {
+        let head =
+            [2_u32.to_le_bytes()[0]].into_iter().chain(service.to_le_bytes()).chain(5_u32.to_le_bytes());
+        let bytes = head.chain(4_u32.to_le_bytes()).chain(*b"json").chain(payload.to_string().into_bytes());
+        session.binary(&bytes.collect::<Vec<_>>())
+    }
+
+    fn failure_of(actions: &[Action]) -> String {
+        let [Action::Text(text)] = actions else { panic!("a failure was expected, found {actions:?}") };
+        let failure: Value = serde_json::from_str(text).unwrap();
+        assert_eq!((&failure["op"], &failure["callId"]), (&json!("serviceCallFailure"), &json!(5)));
+        failure["message"].as_str().unwrap().to_owned()
+    }
+
+    #[test]
+    fn a_call_needs_the_token() {
+        let (mut session, token, _) = permitted();
+        assert!(session.services().unwrap().contains("/operator/pause"));
+        for payload in [json!({}), json!({ "token": "" }), json!({ "token": "0".repeat(32) })] {
+            assert!(failure_of(&call(&mut session, 4, &payload)).contains("in the field `token`"));
+        }
+        for payload in [json!([1]), json!(null), json!({ "token": 1 })] {
+            assert!(failure_of(&call(&mut session, 4, &payload)).contains("an object"), "{payload}");
+        }
+        assert!(failure_of(&call(&mut session, 99, &json!({ "token": token }))).contains("no service 99"));
+        let reply = Reply::Call { service: 4, call: 5 };
+        let asked = call(&mut session, 4, &json!({ "token": token, "line": "estop" }));
+        assert_eq!(asked, [Action::Ask { line: "PAUSE".into(), reply: reply.clone() }]);
+        let asked = call(&mut session, 9, &json!({ "token": token, "line": "job go" }));
+        assert!(matches!(&asked[..], [Action::Ask { line, .. }] if line == "job go"));
+        assert!(failure_of(&session.answered(reply.clone(), Err("no".into()))).contains("no"));
+        let answer = session.answered(reply, Ok("tick 7".into()));
+        assert!(
+            matches!(&answer[..], [Action::Bytes(bytes)] if bytes.ends_with(b"json{\"answer\":\"tick 7\"}"))
+        );
+    }
+
+    #[test]
+    fn a_run_without_operators_takes_no_calls() {
+        let mut session = Session::new(Rights { knob: Some(Knob::default()), token: None });
+        assert_eq!(session.services(), None);
+        assert!(failure_of(&call(&mut session, 4, &json!({ "token": "" }))).contains("takes no requests"));
+        assert!(status_of(&set(&mut session, VELOCITY, json!(5))).contains("takes no requests"));
+    }
+
+    fn set(session: &mut Session, name: &str, value: Value) -> Vec<Action> {
+        let text =
+            json!({ "op": "setParameters", "parameters": [{ "name": name, "value": value }], "id": "a" });
+        session.text(&text.to_string(), |_| true)
+    }
+
+    #[test]
+    fn the_knob_is_turned_by_a_client_with_the_token() {
+        let (mut session, token, knob) = permitted();
+        assert!(status_of(&set(&mut session, VELOCITY, json!(5))).contains("set it as the parameter"));
+        assert!(status_of(&set(&mut session, SECRET, json!("wrong"))).contains("the token"));
+        assert!(status_of(&set(&mut session, "/x", json!(1))).contains("found /x"));
+        let [Action::Text(accepted)] = &set(&mut session, SECRET, json!(token))[..] else { panic!() };
+        assert!(accepted.contains("\"accepted\"") && !accepted.contains(&token), "{accepted}");
+        let asked = set(&mut session, VELOCITY, json!(500.0));
+        let reply = Reply::Knob { velocity: 500, id: Some("a".into()) };
+        assert_eq!(asked, [Action::Ask { line: "joystick velocity 500".into(), reply: reply.clone() }]);
+        for wrong in [json!(1001), json!(-1), json!(0.5), json!("500"), json!(null)] {
+            assert!(status_of(&set(&mut session, VELOCITY, wrong)).contains("from 0 to 1000"));
+        }
+        let [Action::Text(set)] = &session.answered(reply, Ok(String::new()))[..] else { panic!() };
+        assert!(set.contains("500") && set.contains("\"id\":\"a\""), "{set}");
+        assert_eq!(session.knob(), None);
+        session.text(r#"{"op":"subscribeParameterUpdates","parameterNames":[]}"#, |_| true);
+        assert_eq!(session.knob(), None);
+        knob.set(500);
+        assert!(session.knob().unwrap().contains("500"));
+        assert_eq!(session.knob(), None);
+        let text = json!({ "op": "getParameters", "parameterNames": [], "id": "b" }).to_string();
+        let [Action::Text(values)] = &session.text(&text, |_| true)[..] else { panic!() };
+        let values: Value = serde_json::from_str(values).unwrap();
+        assert_eq!(values["parameters"][0], json!({ "name": VELOCITY, "value": 500 }));
+        session.text(r#"{"op":"unsubscribeParameterUpdates","parameterNames":[]}"#, |_| true);
+        knob.set(7);
+        assert_eq!(session.knob(), None);
     }
 
     proptest::proptest! {
@@ -179,6 +481,9 @@ mod tests {
             let mut session = Session::default();
             session.text(&text, |_| known);
             session.binary(&bytes);
+            let (mut session, _, _) = permitted();
+            let call: Vec<u8> = [2].into_iter().chain(bytes).collect();
+            session.binary(&call);
         }
     }
 }

@@ -7,7 +7,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use live::{Feed, Options, Server, server::CLIENTS};
+use live::{Feed, Options, Port, Server, server::CLIENTS};
 use record::{Tap, tap::Channel};
 use serde_json::{Value, json};
 use tungstenite::{
@@ -30,7 +30,7 @@ fn serve(options: Options) -> (Server, Box<dyn Tap>) {
     let feed = Feed::default();
     let mut tap = feed.tap();
     tap.channel(1, &STRING);
-    (Server::start(Options { port: 0, ..options }, feed).unwrap(), tap)
+    (Server::start(Port::take(0).unwrap(), options, feed).unwrap(), tap)
 }
 
 /// Try a handshake; the status and body of a refusal.

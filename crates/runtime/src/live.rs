@@ -1,8 +1,12 @@
 //! The live view of a run: what its log gets, for viewers on this machine (`docs/live.md`).
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, path::Path};
 
-use ::live::{Feed, Options, Server, protocol::ServerInfo, server::PATIENCE};
+use ::live::{
+    Feed, NoRandom, Options, Port, Server,
+    commands::{Access, Knob, Token},
+    protocol::ServerInfo,
+};
 use record::Tap;
 
 use crate::{
@@ -14,44 +18,24 @@ use crate::{
 /// A live view, as long as it lives.
 pub struct Live {
     feed: Feed,
-    _server: Server,
+    knob: Knob,
+    /// Where viewers wait until they are served.
+    port: Option<Port>,
+    server: Option<Server>,
 }
 
 impl Live {
-    /// Let viewers connect, if a configuration asks for it.
+    /// Take the port, if a configuration asks for a live view.
     ///
     /// # Errors
     /// [`StartError`] if there is no log to show, or the port cannot be had.
-    pub fn open(
-        config: &RunConfig,
-        job: &str,
-        observer: &mut dyn Observer,
-    ) -> Result<Option<Self>, StartError> {
+    pub fn prepare(config: &RunConfig) -> Result<Option<Self>, StartError> {
         let Some(port) = config.live else { return Ok(None) };
         if config.log == LogTarget::None {
             return Err(StartError::LiveWithoutLog);
         }
-        let facts = [
-            ("job", job.to_owned()),
-            ("seed", config.seed.to_string()),
-            ("robot", config.robot.to_string()),
-            ("clock", config.clock.text().to_owned()),
-            ("version", env!("CARGO_PKG_VERSION").to_owned()),
-            ("commit", crate::COMMIT.to_owned()),
-        ];
-        let metadata: BTreeMap<String, String> =
-            facts.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-        let info = ServerInfo { name: format!("rcs-run {job}"), metadata, ..ServerInfo::new()? };
-        let options = Options { port, origins: config.live_origins.clone(), info, patience: PATIENCE };
-        let feed = Feed::default();
-        let server =
-            Server::start(options, feed.clone()).map_err(|source| StartError::Live { port, source })?;
-        let hint = match config.clock {
-            ClockKind::Fast => "; the run does not wait for viewers, --clock real is for people",
-            ClockKind::Real => "",
-        };
-        observer.message(&format!("viewers can connect at ws://{}{hint}", server.address()));
-        Ok(Some(Self { feed, _server: server }))
+        let taken = Port::take(port).map_err(|source| StartError::Live { port, source })?;
+        Ok(Some(Self { feed: Feed::default(), knob: Knob::default(), port: Some(taken), server: None }))
     }
 
     /// What the log is to be given.
@@ -59,4 +43,59 @@ impl Live {
     pub fn tap(&self) -> Box<dyn Tap> {
         self.feed.tap()
     }
+
+    /// Serve viewers. They can ask the run for something if there is a socket for operators.
+    ///
+    /// # Errors
+    /// [`StartError`] if the system has no random numbers, or no thread.
+    pub fn start(
+        &mut self,
+        config: &RunConfig,
+        job: &str,
+        operators: Option<&Path>,
+        observer: &mut dyn Observer,
+    ) -> Result<(), StartError> {
+        let Some(port) = self.port.take() else { return Ok(()) };
+        let access = operators.map(access).transpose()?;
+        let token = access.as_ref().map(|access| access.token.clone());
+        let info =
+            ServerInfo { name: format!("rcs-run {job}"), metadata: facts(config, job), ..ServerInfo::new()? };
+        let origins = config.live_origins.clone();
+        let options = Options { origins, info, knob: Some(self.knob.clone()), access, ..Options::default() };
+        let server = Server::start(port, options, self.feed.clone());
+        let server =
+            server.map_err(|source| StartError::Live { port: config.live.unwrap_or_default(), source })?;
+        let hint = match config.clock {
+            ClockKind::Fast => "; the run does not wait for viewers, --clock real is for people",
+            ClockKind::Real => "",
+        };
+        observer.message(&format!("viewers can connect at ws://{}{hint}", server.address()));
+        if let Some(token) = token {
+            observer.message(&format!("requests of viewers need the token {}", token.reveal()));
+        }
+        self.server = Some(server);
+        Ok(())
+    }
+
+    /// Where the velocity knob is. This does not wait.
+    pub fn knob(&self, velocity: u16) {
+        self.knob.set(velocity);
+    }
+}
+
+fn access(socket: &Path) -> Result<Access, NoRandom> {
+    Ok(Access { socket: socket.to_owned(), token: Token::random()? })
+}
+
+/// What viewers are told of the run.
+fn facts(config: &RunConfig, job: &str) -> BTreeMap<String, String> {
+    let facts = [
+        ("job", job.to_owned()),
+        ("seed", config.seed.to_string()),
+        ("robot", config.robot.to_string()),
+        ("clock", config.clock.text().to_owned()),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("commit", crate::COMMIT.to_owned()),
+    ];
+    facts.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }

@@ -209,13 +209,16 @@ impl Run {
         let log_path = file.as_ref().map(|file| file.path().to_owned());
         let log = file.map(|file| Log::start(file, &config, &setup)).transpose()?;
         let publisher = publisher(&config, &name, &mut *observer);
-        let Setup { store, job, description, cell, robot, neighbours, live, .. } = setup;
+        let Setup { store, job, description, cell, robot, neighbours, mut live, .. } = setup;
         let workstation = SimulatedWorkstation::new(cell);
         let workstation = if robot.is_elsewhere() { workstation.with_robot_elsewhere() } else { workstation };
         let workstation = if neighbours.can_switch() { workstation.with_hand_over() } else { workstation };
         let operator = Operator::new(robot.is_elsewhere());
         let runner = Runner::new(controller, publisher);
         let asked = Inputs::of(&config, &name, &mut *observer)?;
+        if let Some(live) = &mut live {
+            live.start(&config, &job.name, asked.socket(), &mut *observer)?;
+        }
         let mirror = runner.publisher().and_then(|publisher| mirror(publisher, &mut *observer));
         Ok(Self {
             runner,
@@ -401,6 +404,9 @@ impl Run {
         self.robot.receive(&mut self.inputs);
         let external = self.external();
         self.external = external;
+        if let Some(live) = &self.live {
+            live.knob(external.devices.joystick.velocity);
+        }
         let tick = self.runner.tick().next();
         let data = self.generations.current().view();
         let memory = loop {

@@ -96,7 +96,7 @@ impl Setup {
         let cell = Cell::with_faults(&description, config.seed, &faults.cell)?;
         let sees_elsewhere = config.outside.contains(&Role::Vision);
         let cell = if sees_elsewhere { cell.with_vision_elsewhere() } else { cell };
-        let live = Live::open(config, &job.name, observer)?;
+        let live = Live::prepare(config)?;
         let log = match &config.log {
             LogTarget::None => None,
             LogTarget::File(path) => Some(LogFile::claim(path)?),

@@ -114,6 +114,15 @@ impl Inputs {
         Ok(Self::Recorded(log.operator_lines().collect()))
     }
 
+    /// Where operators connect, if they can.
+    #[must_use]
+    pub fn socket(&self) -> Option<&Path> {
+        match self {
+            Self::Sessions(listener) => Some(listener.path()),
+            Self::None | Self::Recorded(_) => None,
+        }
+    }
+
     /// The next input that `tick` is the first to see.
     pub fn next(&mut self, tick: Tick) -> Option<Input> {
         match self {
