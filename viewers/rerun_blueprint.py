@@ -3,14 +3,11 @@
 
     pip install rerun-sdk
     python3 viewers/rerun_blueprint.py          # writes viewers/cell.rbl
-    rerun runs/linkbar.mcap viewers/cell.rbl
 
-The cell moves on the left; beside it are the curves of the joints and the lines of the log. Everything else in the log can be
-dragged in from the list of streams. Rerun takes an arrangement for the logs of one name: cell.rbl is for linkbar.mcap, and
-
-    python3 viewers/rerun_blueprint.py --application shift --output shift.rbl
-
-makes one for shift.mcap. Without an arrangement Rerun shows the same views, but not beside each other.
+The cell moves on the left; beside it are the curves of the joints and of the gripper, and the lines of the log. Everything else
+in the log can be dragged in from the list of streams. Rerun takes an arrangement for recordings of one application: cell.rbl is
+for `linkbar`. viewers/rerun.sh converts a log, adds its meshes and opens it with an arrangement for its name; `rerun LOG
+viewers/cell.rbl` shows Rerun's own views instead.
 """
 
 import argparse
@@ -20,14 +17,14 @@ import rerun.blueprint as rrb
 
 EYE = rrb.EyeControls3D(
     kind=rrb.Eye3DKind.Orbital,
-    position=(1.6, -4.2, 2.0),
-    look_target=(0.2, 0.0, -0.5),
+    position=(0.6, -4.6, 1.4),
+    look_target=(0.2, -0.35, -0.35),
     eye_up=(0.0, 0.0, 1.0),
 )
 
 
-def blueprint() -> rrb.Blueprint:
-    """The cell, the log, and curves."""
+def blueprint(meshes: bool) -> rrb.Blueprint:
+    """The cell, the log, and curves; boxes and cylinders are left out where there are meshes."""
     curves = rrb.Vertical(
         rrb.TimeSeriesView(
             origin="/joint_states/position",
@@ -38,8 +35,10 @@ def blueprint() -> rrb.Blueprint:
     )
     cell = rrb.Spatial3DView(
         origin="/",
-        contents="/**",
+        contents=["/meshes/**", "/names/**", "/tf/**", "/tf_static/**"] if meshes else "/**",
         name="Cell",
+        background=rrb.Background(color=(205, 214, 222)),
+        line_grid=rrb.LineGrid3D(visible=False),
         eye_controls=EYE,
         spatial_information=rrb.SpatialInformation(target_frame="world"),
     )
@@ -58,8 +57,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--output", type=Path, default=Path(__file__).with_name("cell.rbl"))
     parser.add_argument("--application", default="linkbar", help="the name of the log without .mcap")
+    parser.add_argument("--meshes", action="store_true", help="for a recording with those of rerun_meshes.py")
     arguments = parser.parse_args()
-    blueprint().save(arguments.application, str(arguments.output))
+    blueprint(arguments.meshes).save(arguments.application, str(arguments.output))
 
 
 if __name__ == "__main__":

@@ -97,9 +97,10 @@ pub fn labels(cell: &CellDescription) -> Vec<Label> {
         Some(label(text, WORLD, [x, y, z + fixture.size[2] / 2.0 + 10.0]))
     };
     let mut labels = vec![label("T3", "turret", [0.0, 0.0, 2.0 * cell.robot.upper_arm_radius + 6.0])];
-    for tray in &cell.tray {
-        let [x, y] = tray.centre;
-        labels.push(label(&format!("tray {}", tray.unit), WORLD, [x, y, tray.floor + 12.0]));
+    for (tray, number) in cell.tray.iter().zip(1..) {
+        // One above the other: they stand side by side.
+        let ([x, y], up) = (tray.centre, 7.0 * f64::from(number));
+        labels.push(label(&format!("tray {}", tray.unit), WORLD, [x, y, tray.floor + up]));
     }
     let [_, _, up] = cell.vise.jaw;
     labels.push(label("vise", "vise", [cell.vise.jaw[0], 0.0, 2.0 * up]));

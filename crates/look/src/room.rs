@@ -18,6 +18,8 @@ use crate::{
 const EDGE: f64 = 0.03;
 /// Edges of what nothing should touch, in.
 const BEVEL: f64 = 0.25;
+/// What a cover stands over the body under it, in: two faces in one plane would flicker.
+const PAINT: f64 = 0.015;
 /// Height of the spindle over the top of the jaws, in.
 const SPINDLE: f64 = 10.0;
 /// Shares of half the floor that the fence leaves to the left, to the right, behind and in front.
@@ -125,7 +127,7 @@ fn bench(block: &Block) -> Mesh {
     let [x, y, z] = (block.size / 2.0).into();
     mesh.cuboid(Slate, [-x, -y, -z], [x, y, z], 0.15);
     mesh.cuboid(Charcoal, [-x - 0.2, -y - 0.2, -z], [x + 0.2, y + 0.2, -z + 3.0], 0.15);
-    mesh.cuboid(Maple, [-x - 0.7, -y - 0.7, z - 1.8], [x + 0.7, y + 0.7, z], 0.2);
+    mesh.cuboid(Maple, [-x - 0.7, -y - 0.7, z - 1.8], [x + 0.7, y + 0.7, z + PAINT], 0.2);
     let mut front = |from: f64, to: f64, along_y: bool| {
         let rows = 4;
         let high = (2.0 * z - 6.5) / count(rows);
@@ -163,8 +165,8 @@ fn stand(block: &Block) -> Mesh {
     let [x, y, z] = (block.size / 2.0).into();
     mesh.cuboid(Slate, [-x, -y, -z], [x, y, z], 0.12);
     mesh.cuboid(Charcoal, [-x - 2.0, -y - 2.0, -z], [x + 2.0, y + 2.0, -z + 1.2], 0.3);
-    mesh.cuboid(Steel, [-x - 0.5, -y - 0.5, z - 1.6], [x + 0.5, y + 0.5, z], 0.15);
-    mesh.rod(Charcoal, [0.0, 0.0, z - 1.5], [0.0, 0.0, z + 0.02], x.min(y) + 0.4, 0.02, ROUND);
+    mesh.cuboid(Steel, [-x - 0.5, -y - 0.5, z - 1.6], [x + 0.5, y + 0.5, z + PAINT], 0.15);
+    mesh.rod(Charcoal, [0.0, 0.0, z - 1.5], [0.0, 0.0, z + 2.0 * PAINT], x.min(y) + 0.4, 0.02, ROUND);
     mesh.cuboid(Yellow, [-x - 0.05, -y - 0.05, z - 5.0], [x + 0.05, y + 0.05, z - 4.0], 0.0);
     mesh.rod(Charcoal, [x - 0.2, 0.0, z - 7.5], [x + 3.6, 0.0, z - 7.5], 1.9, 0.3, ROUND);
     mesh.rod(Bright, [x + 3.4, 0.0, z - 7.5], [x + 3.9, 0.0, z - 7.5], 1.0, 0.1, SMALL);

@@ -47,9 +47,10 @@ fn named<'v>(value: &'v Value, found: &mut Vec<(&'v str, &'v str)>) {
         Value::Object(map) => {
             for (key, value) in map {
                 match (key.as_str(), value) {
-                    ("value" | "topicToRender" | "first" | "second", Value::String(text)) => {
-                        found.push((key, text))
-                    }
+                    (
+                        "value" | "topicToRender" | "topicPath" | "first" | "second" | "layout",
+                        Value::String(text),
+                    ) => found.push((key, text)),
                     ("topics", Value::Object(topics)) => {
                         found.extend(topics.keys().map(|t| ("topic", t.as_str())))
                     }
@@ -72,7 +73,7 @@ fn the_foxglove_layout_names_channels_and_fields_that_a_log_has() {
     named(&layout, &mut names);
     let mut panels = 0;
     for (key, name) in &names {
-        if matches!(*key, "first" | "second") {
+        if matches!(*key, "first" | "second" | "layout") {
             assert!(layout["configById"].get(name).is_some(), "the panel {name} has no settings");
             panels += 1;
             continue;

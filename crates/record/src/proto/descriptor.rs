@@ -13,7 +13,8 @@
 //! | option                   | `optional`; an absent value is not written                           |
 //! | option in an array       | message `OptionOfType` with the field `value`                        |
 //! | union                    | message of the same name: `kind` is an enum of the variants by their |
-//! |                          | text, and an optional field for what each carries, number code + 2   |
+//! |                          | text, and an optional field for what each carries, number code + 2.  |
+//! |                          | The enum is in a nested message: a variant and its field are alike   |
 //!
 //! The wrapping message gives each enum a scope of its own: protobuf forbids two enums of one scope to share
 //! a variant. A field of a union is named after its variant, so that a reader finds `goal.at_a_place.x` under
@@ -181,10 +182,13 @@ fn add_union(of: &'static UnionSchema, messages: &mut Vec<DescriptorProto>) {
         let number = payload_number(variant.code).into();
         Some(optional(schema_field(&name, number, variant.payload.as_ref()?)))
     });
-    let kind = typed_field(KIND, 1, Type::Enum, &format!("{PACKAGE}.{}.Kind", of.name));
+    let kind = typed_field(KIND, 1, Type::Enum, &format!("{PACKAGE}.{}.Kind.Value", of.name));
     let texts = of.variants.iter().map(|variant| (variant.code, variant.text));
     messages.push(DescriptorProto {
-        enum_type: vec![enumeration("Kind", identifiers(texts))],
+        nested_type: vec![DescriptorProto {
+            enum_type: vec![enumeration("Value", identifiers(texts))],
+            ..message("Kind", Vec::new())
+        }],
         ..message(of.name, std::iter::once(kind).chain(carried).collect())
     });
     payloads().for_each(|payload| add_schema(payload, messages));
@@ -265,7 +269,7 @@ mod tests {
     use super::*;
     use interfaces::{CommonMemory, ExternalInputs, emove::EmoveCommand};
     use rcs_core::{Plain, plain::VariantSchema};
-    use std::collections::BTreeMap;
+    use std::collections::{BTreeMap, BTreeSet};
 
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
     enum Light {
@@ -330,7 +334,15 @@ mod tests {
                     assert!(field.proto3_optional() && oneof.name() == format!("_{}", field.name()));
                     assert!(fields.next().is_none(), "protobuf wants an oneof for each optional field");
                 }
-                for value in message.enum_type.iter().flat_map(|of| &of.value) {
+                // Fields, types, and the values of enums share the scope of their message.
+                let nested = message.nested_type.iter().map(DescriptorProto::name);
+                let enums = message.enum_type.iter().flat_map(|of| of.value.iter().map(|value| value.name()));
+                let mut names: Vec<&str> = message.field.iter().map(|field| field.name()).collect();
+                names.extend(nested.chain(enums));
+                let unique: BTreeSet<&str> = names.iter().copied().collect();
+                assert_eq!(unique.len(), names.len(), "{} has a name twice: {names:?}", message.name());
+                let own = std::iter::once(message).chain(&message.nested_type);
+                for value in own.flat_map(|message| &message.enum_type).flat_map(|of| &of.value) {
                     let name = value.name();
                     assert!(!name.starts_with(|c: char| c.is_ascii_digit()), "{name}");
                     assert!(name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'), "{name}");
@@ -403,13 +415,13 @@ mod tests {
         let file = decoded(Order::STRUCT);
         let goal = file.message_type.iter().find(|message| message.name() == "Goal").unwrap();
         let expected = [
-            ("kind", 1, ".rcs.Goal.Kind", ""),
+            ("kind", 1, ".rcs.Goal.Kind.Value", ""),
             ("at_a_spot", 3, ".rcs.Spot", ""),
             ("kind_2", 4, ".rcs.Light.Value", "optional"),
             ("path", 5, "TYPE_DOUBLE", "repeated"),
         ];
         assert_eq!(fields(goal), expected);
-        let kinds: Vec<_> = goal.enum_type[0].value.iter().map(|value| value.name()).collect();
+        let kinds: Vec<_> = goal.nested_type[0].enum_type[0].value.iter().map(|value| value.name()).collect();
         assert_eq!(kinds, ["nowhere", "at_a_spot", "kind", "path"]);
     }
 

@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""Takes the meshes and names of a log and writes them as a recording of Rerun.
+
+    pip install rerun-sdk mcap mcap-protobuf-support
+    python3 viewers/rerun_meshes.py runs/linkbar.mcap meshes.rrd
+
+Rerun draws neither the models nor the texts of foxglove.SceneUpdate. viewers/rerun.sh merges the recording with the log
+itself and opens both. A glTF file has Y up, a link has Z up: each mesh is turned by 90 degrees about X.
+"""
+
+import argparse
+from pathlib import Path
+
+import rerun as rr
+
+import cell_log
+
+WHITE = (255, 255, 255)
+
+
+def main():
+    """Write the recording."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("log", type=Path)
+    parser.add_argument("output", type=Path)
+    parser.add_argument("--application", help="the name that the log is converted with; its own without .mcap if not given")
+    parser.add_argument("--recording", required=True, help="the recording id that the log is converted with")
+    arguments = parser.parse_args()
+    log = cell_log.read(arguments.log)
+    rr.init(arguments.application or arguments.log.stem, recording_id=arguments.recording)
+    rr.save(str(arguments.output))
+    upright = rr.RotationAxisAngle(axis=(1, 0, 0), degrees=90)
+    for name, frame, data in log.models:
+        path = f"meshes/{name}"
+        rr.log(path, rr.CoordinateFrame(frame), static=True)
+        rr.log(path, rr.InstancePoses3D(rotation_axis_angles=[upright]), static=True)
+        rr.log(path, rr.Asset3D(contents=data, media_type="model/gltf-binary"), static=True)
+    for number, label in enumerate(log.labels):
+        path = f"names/{number}"
+        rr.log(path, rr.CoordinateFrame(label.frame), static=True)
+        point = rr.Points3D([label.position], labels=[label.text], colors=[WHITE], radii=[0.004])
+        rr.log(path, point, static=True)
+
+
+if __name__ == "__main__":
+    main()
