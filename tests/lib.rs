@@ -57,6 +57,26 @@ pub fn rcs_neighbour() -> &'static Path {
     program("rcs-neighbour", &PROGRAM)
 }
 
+/// The program `rcs-console`, brought up to date.
+///
+/// # Panics
+/// If it does not build.
+#[must_use]
+pub fn rcs_console() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    program("rcs-console", &PROGRAM)
+}
+
+/// The program `rcs-cell`, brought up to date.
+///
+/// # Panics
+/// If it does not build.
+#[must_use]
+pub fn rcs_cell() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    program("rcs-cell", &PROGRAM)
+}
+
 fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
     built.get_or_init(|| {
         // Tests lie in <target>/release/deps, programs in <target>/release.

@@ -2,7 +2,10 @@
 
 use std::{path::PathBuf, str::FromStr};
 
-use clap::Parser;
+use clap::{
+    Parser,
+    builder::{PathBufValueParser, TypedValueParser as _},
+};
 use depc::Limits;
 use egm_robot::EgmOptions;
 
@@ -50,7 +53,7 @@ pub struct Cli {
     #[arg(long, value_name = "egm:PORT", conflicts_with_all = ["link", "auto", "faults"])]
     pub emulate: Option<EgmTarget>,
     /// Directory with robots/NAME.toml
-    #[arg(long, value_name = "DIR", default_value = "data")]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
     pub data: PathBuf,
     /// Go through the start-up without a person, and answer ENTER when a host comes
     #[arg(long)]

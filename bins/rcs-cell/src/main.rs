@@ -29,8 +29,7 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
 };
 
-use clap::Parser;
-use depc::fault::{FaultKind, Plan, Rule, text};
+use depc::fault::{FaultKind, Plan, Rule};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::{cli::Cli, emulate::Emulation, gateway::Gateway, pty::Pty, shell::Shell};
@@ -41,7 +40,8 @@ const FAILED: u8 = 1;
 const UNUSABLE: u8 = 2;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    shipped::carry();
+    let cli: Cli = cli_pages::parse();
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGHUP] {
         if let Err(error) = signal_hook::flag::register(signal, Arc::clone(&stop)) {
@@ -84,13 +84,13 @@ fn emulate(cli: &Cli, stop: &Arc<AtomicBool>) -> ExitCode {
 
 /// The fault plan in a file, if a pseudo-terminal can do what it says.
 fn plan(path: &Path) -> Result<Plan, String> {
-    let plan = text::load(path).map_err(|error| error.to_string())?;
+    let refused = |why: String| format!("{}: {why}", path.display());
+    let text = os_io::files::read_text(path).map_err(|error| refused(error.to_string()))?;
+    let plan = plant::fault::text::parse_line(&text).map_err(|mistakes| refused(mistakes.to_string()))?;
     let useless = |rule: &Rule| rule.kind == FaultKind::CtsLow && !rule.to_controller;
     if plan.rules().iter().any(useless) {
-        return Err(format!(
-            "{}: cts-low to-host has no effect, a pseudo-terminal has no modem lines: use to-controller",
-            path.display()
-        ));
+        let why = "cts-low to-host has no effect, a pseudo-terminal has no modem lines: use to-controller";
+        return Err(refused(why.to_owned()));
     }
     Ok(plan)
 }

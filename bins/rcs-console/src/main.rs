@@ -2,14 +2,13 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use rcs_console::{cli::Cli, once, terminal};
 
 /// Exit status of a usage or file error.
 const UNUSABLE: u8 = 2;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli: Cli = cli_pages::parse();
     let ended = match cli.once {
         Some(screen) => once::print(&cli, screen),
         None => terminal::show(&cli),

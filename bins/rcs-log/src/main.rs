@@ -191,7 +191,9 @@ enum Error {
 }
 
 fn main() -> ExitCode {
-    let outcome = match Cli::parse().command {
+    shipped::carry();
+    let cli: Cli = cli_pages::parse();
+    let outcome = match cli.command {
         Command::Info(arguments) => info::info(&arguments),
         Command::Why(arguments) => why::why(&arguments),
         Command::Replay(arguments) => replay::replay(&arguments),

@@ -16,7 +16,6 @@ use std::{
     time::{Duration, Instant},
 };
 
-use clap::Parser as _;
 use neighbours::{
     data_system::StoreError,
     network::{AttachError, KeysError, NeighbourKeys, Peer, PeerError, Role, address::AddressError},
@@ -96,7 +95,9 @@ impl Error {
 }
 
 fn main() -> ExitCode {
-    let outcome = match Cli::parse().command {
+    shipped::carry();
+    let cli: Cli = cli_pages::parse();
+    let outcome = match cli.command {
         Command::Workstation(arguments) => workstation::play(&arguments),
         Command::DataSystem(arguments) => data_system::serve(&arguments),
         Command::Pedestal(arguments) => pedestal::serve(&arguments),

@@ -14,6 +14,7 @@ use neighbours::{
         status,
     },
 };
+use os_io::files;
 use rcs_core::tick::Tick;
 use taskdata::load::{Job, Store, job::Workstation as Action};
 
@@ -73,7 +74,7 @@ fn job(arguments: &WorkstationArguments) -> Result<Job, Error> {
     let (store, _) =
         Store::load(data).map_err(unusable(format!("the task data under {}", data.display())))?;
     let named = data.join("jobs").join(&arguments.job).with_added_extension("job");
-    let path = if named.is_file() { named } else { PathBuf::from(&arguments.job) };
+    let path = if files::is_file(&named) { named } else { PathBuf::from(&arguments.job) };
     let (job, _) = Job::load(&path, &store).map_err(unusable(format!("the job {}", path.display())))?;
     Ok(job)
 }

@@ -11,11 +11,12 @@ mod variants;
 use std::{
     collections::HashMap,
     fs, io,
-    path::Path,
+    path::{Path, PathBuf},
     process::ExitCode,
     sync::{Arc, Mutex, PoisonError},
 };
 
+use egm_robot::Placement;
 use os_io::{console, files};
 use paths::known::Known;
 use plant::{Cell, CellDescription};
@@ -29,7 +30,7 @@ use taskdata::load::{
 use runtime::{
     StartError,
     agreement::{self, cell_report, source},
-    setup::{CELL, jobs},
+    setup::{CELL, fault_file, jobs},
 };
 
 use crate::{
@@ -79,7 +80,7 @@ struct Outcome {
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     let named = arguments.directory.clone().unwrap_or_else(|| arguments.data.clone());
     let arguments = &CheckArguments { data: named, ..arguments.clone() };
-    if !arguments.data.is_dir() {
+    if !files::is_directory(&arguments.data) {
         return Err(StartError::NoData(arguments.data.clone()).into());
     }
     if let Some(command) = &arguments.explain {
@@ -117,7 +118,7 @@ impl Flights {
 
 /// A data directory, looked at.
 struct Checked {
-    /// The reports, each with what it is about: task data, the jobs, the cell description.
+    /// The reports, each with what it is about: task data, the jobs, the cell description, faults and robots.
     reports: Vec<(String, Diagnostics)>,
     jobs: Vec<String>,
     /// The cell, if its description is sound.
@@ -170,6 +171,10 @@ impl Checked {
             Diagnostics::tell_once(&mut jobs.iter_mut().map(|(_, report)| report).collect::<Vec<_>>());
         }
         reports.push(("cell description".to_owned(), of_cell));
+        if let Some((cell, _)) = &cell {
+            reports.push(("faults".to_owned(), faults(data, cell.description())));
+        }
+        reports.push(("robots".to_owned(), robots(data)));
         Self { reports, jobs: names, cell: cell.map(|(cell, _)| cell) }
     }
 
@@ -220,6 +225,46 @@ fn cell(path: &Path, store: Option<&Store>) -> (Option<(Cell, Source)>, Diagnost
         None => report,
     };
     (cell.ok().map(|cell| (cell, source)), report)
+}
+
+/// What is wrong with the files of faults in a data directory.
+fn faults(data: &Path, cell: &CellDescription) -> Diagnostics {
+    let mut all = Diagnostics::default();
+    for path in toml_files(&data.join("faults")) {
+        all.files += 1;
+        match fault_file(&path, cell) {
+            Ok(_) => {}
+            Err(StartError::Data { report, .. }) => all = all.with(*report),
+            Err(error) => all = all.with(one(&path, &error)),
+        }
+    }
+    all
+}
+
+/// What is wrong with the files of robots in a data directory.
+fn robots(data: &Path) -> Diagnostics {
+    let mut all = Diagnostics::default();
+    for path in toml_files(&data.join("robots")) {
+        all.files += 1;
+        if let Err(error) = Placement::load(&path) {
+            all = all.with(one(&path, &error));
+        }
+    }
+    all
+}
+
+/// The files of TOML in a directory, which need not be there.
+fn toml_files(directory: &Path) -> Vec<PathBuf> {
+    let mut paths = files::list(directory).unwrap_or_default();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    paths
+}
+
+/// A report that says one thing of a file.
+fn one(path: &Path, error: &dyn std::error::Error) -> Diagnostics {
+    let mut problems = Problems::default();
+    problems.general("file", format!("{}: {error}", path.display()));
+    Diagnostics::new(problems, Places::in_lines(&[]), 0, Vec::new())
 }
 
 fn finding(diagnostic: &Diagnostic) -> Finding {

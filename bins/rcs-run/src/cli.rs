@@ -3,10 +3,14 @@
 use std::{path::PathBuf, str::FromStr};
 
 use crate::campaign::CampaignArguments;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{
+    Args, Parser, Subcommand, ValueEnum,
+    builder::{ArgPredicate, PathBufValueParser, TypedValueParser as _},
+};
 use executive::{boards::Board, memory::RunName, overrun::Policy};
 use live::Origin;
 use neighbours::network::{Address, Role};
+use rcs_core::name::Name10;
 use runtime::{Boards, ClockKind, LogTarget, OperatorAccess, RobotConfig, RunConfig, setup::MOST_SPEED};
 
 /// The RCS-II/T3 controller: runs jobs in the simulated cell, with a robot at a serial port, or with one by EGM.
@@ -69,6 +73,10 @@ pub enum Command {
     Send(SendArguments),
     /// Interrupt a job at many ticks, let an operator recover it, and judge what became of each branch
     Campaign(CampaignArguments),
+    /// Print the nine numbers of a pose, whether the arm can take it, and write its form
+    Pose(PoseArguments),
+    /// Write the data that comes with the program into DIR/data, to be changed
+    Init(InitArguments),
     /// Remove what killed runs left in shared memory
     Clean,
 }
@@ -80,10 +88,15 @@ pub struct RunArguments {
     #[arg(default_value = "linkbar")]
     pub job: String,
     /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data")]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
     pub data: PathBuf,
     /// Run ticks at once: fast; one every 40 ms: real; or N in that time, with the simulated robot: Nx, such as 5x
-    #[arg(long, value_name = "CLOCK", default_value = "fast")]
+    #[arg(
+        long,
+        value_name = "CLOCK",
+        default_value = "fast",
+        default_value_if("console", ArgPredicate::IsPresent, "real")
+    )]
     pub clock: Clock,
     /// What to do about slots of the 40 ms grid that are skipped: count, hold, hold:SLOTS, stop or
     /// stop:SLOTS
@@ -108,7 +121,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "ROBOT", default_value = "sim")]
     pub robot: RobotConfig,
     /// Faults of the cell and of the line to the simulated robot, on schedule or by chance (TOML; data/README.md)
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().map(shipped::resolve))]
     pub faults: Option<PathBuf>,
     /// How the control processes are spread over boards
     #[arg(long, value_enum, default_value_t = Boards::One)]
@@ -159,6 +172,11 @@ pub struct RunArguments {
     /// Who may operate the run while it goes on, by rcs-console --operate or rcs-run send; needs --clock real
     #[arg(long, value_enum, default_value_t = OperatorAccess::Owner)]
     pub operator: OperatorAccess,
+    /// Show the operator's console on this terminal; with the real clock unless --clock says otherwise
+    ///
+    /// When you leave it the robot ramps to rest and the run ends.
+    #[arg(long, conflicts_with_all = ["json", "inputs"])]
+    pub console: bool,
     /// Wait for an operator before the first line of the job
     #[arg(long, conflicts_with = "inputs")]
     pub stand_by: bool,
@@ -197,7 +215,7 @@ pub struct BoardArguments {
     #[arg(long, value_name = "NAME")]
     pub run: RunName,
     /// Task data and jobs; they must be those of the run
-    #[arg(long, value_name = "DIR", default_value = "data")]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
     pub data: PathBuf,
     /// The core to run on if ticks come every 40 ms [default: the highest that is allowed]
     #[arg(long, value_name = "N")]
@@ -315,14 +333,64 @@ pub struct SendArguments {
     pub name: operator::Name,
 }
 
+/// Arguments of `pose`.
+#[derive(Clone, Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub struct PoseArguments {
+    /// The tool point, inches; without it and without --of the pose that was recorded in a run
+    #[arg(value_names = ["X", "Y", "Z"], num_args = 3)]
+    pub point: Vec<f64>,
+    /// Where the tool leans, degrees from the X axis of the world; the finger point lies level, 90 degrees further
+    #[arg(long, value_name = "DEGREES", default_value_t = -90.0, requires = "point")]
+    pub azimuth: f64,
+    /// How far the tool leans from straight down, degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "point")]
+    pub tilt: f64,
+    /// Turn of the finger point about the axis of the tool, degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "point")]
+    pub roll: f64,
+    /// A pose of the task data
+    #[arg(long, value_name = "POSE", conflicts_with = "point")]
+    pub of: Option<String>,
+    /// The run in which the pose was recorded; may be left out if there is only one
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["point", "of"])]
+    pub run: Option<RunName>,
+    /// Write the form into this file: in the place of the form of that name, or at the end of --block
+    #[arg(long, value_name = "FILE", requires = "name")]
+    pub write: Option<PathBuf>,
+    /// The block of a new form
+    #[arg(long, value_name = "NUMBER", requires = "write")]
+    pub block: Option<u32>,
+    /// Name of the pose in the form
+    #[arg(long, value_name = "POSE", requires = "write")]
+    pub name: Option<Name10>,
+    /// Movetable of the form
+    #[arg(long, value_name = "NAME", default_value = "...", requires = "write")]
+    pub movetable: String,
+    /// Task data and cell description
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
+    pub data: PathBuf,
+    /// Print one JSON object on standard output, and nothing else there
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `init`.
+#[derive(Clone, Debug, Args)]
+pub struct InitArguments {
+    /// Directory that gets data/, such as the present one, `.`; it is made if it is not there
+    #[arg(value_name = "DIR")]
+    pub directory: PathBuf,
+}
+
 /// Arguments of `check`.
 #[derive(Clone, Debug, Args)]
 pub struct CheckArguments {
     /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data")]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
     pub data: PathBuf,
     /// The same as --data DIR
-    #[arg(value_name = "DIR", conflicts_with = "data")]
+    #[arg(value_name = "DIR", conflicts_with = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
     pub directory: Option<PathBuf>,
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
@@ -415,6 +483,14 @@ mod tests {
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("--boards split"), "{error}");
         assert!(board("3").is_err());
+    }
+
+    #[test]
+    fn the_console_is_for_eyes() {
+        let clock = |words: &[&str]| Cli::parse_from(words).run.clock;
+        assert_eq!(clock(&["rcs-run", "--console"]).kind, ClockKind::Real);
+        assert_eq!(clock(&["rcs-run", "--console", "--clock", "5x"]).speed, 5);
+        assert_eq!(clock(&["rcs-run"]).kind, ClockKind::Fast);
     }
 
     #[test]

@@ -28,6 +28,9 @@ pub enum Error {
     /// A command cannot be explained.
     #[error("nothing can be explained: {0}")]
     Explain(String),
+    /// A pose cannot be shown or written.
+    #[error("no pose: {0}")]
+    Pose(String),
     /// A file that was asked for cannot be written.
     #[error("{} cannot be written: {source}", path.display())]
     Write {
@@ -60,6 +63,12 @@ pub enum Error {
     /// A board cannot take part in a run.
     #[error(transparent)]
     Board(#[from] MemberError),
+    /// The console is not installed.
+    #[error("the console is not there: {} was expected; cargo build --release -p rcs-console makes it", .0.display())]
+    NoConsole(PathBuf),
+    /// The console cannot be started.
+    #[error("the console cannot be started: {0}")]
+    Console(io::Error),
     /// The result cannot be written.
     #[error("the result cannot be written: {0}")]
     Output(#[from] io::Error),

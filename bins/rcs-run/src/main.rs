@@ -12,13 +12,16 @@ mod campaign;
 mod check;
 mod clean;
 mod cli;
+mod console;
 mod error;
 mod explain;
+mod init;
 mod interrupt;
 mod latency;
 mod link_test;
 mod memory_fault;
 mod page;
+mod pose;
 mod progress;
 mod run;
 mod send;
@@ -27,8 +30,6 @@ mod tables;
 mod ways;
 
 use std::process::ExitCode;
-
-use clap::Parser;
 
 use crate::{
     cli::{Cli, Command},
@@ -41,7 +42,8 @@ use os_io::stderr_line;
 static ALLOCATOR: executive::alloc::Counting = executive::alloc::Counting;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    shipped::carry();
+    let cli: Cli = cli_pages::parse();
     let outcome =
         memory_fault::explain().and_then(|()| memory_fault::survive_file_limit()).and_then(|()| execute(cli));
     match outcome {
@@ -85,6 +87,8 @@ fn execute(cli: Cli) -> Result<ExitCode, Error> {
         Some(Command::Status(arguments)) => status::status(&arguments),
         Some(Command::Campaign(arguments)) => campaign::campaign(&arguments),
         Some(Command::Send(arguments)) => send::send(&arguments),
+        Some(Command::Pose(arguments)) => pose::pose(&arguments),
+        Some(Command::Init(arguments)) => init::init(&arguments),
         Some(Command::Clean) => clean::clean(),
     }
 }

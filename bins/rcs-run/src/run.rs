@@ -1,19 +1,23 @@
 //! `rcs-run run`: a job, from the first tick to the result.
 
-use std::{env, io, process::ExitCode};
+use std::{env, io, process::ExitCode, sync::Arc};
 
-use executive::memory::OnStuck;
-use os_io::{console, stderr_line};
-use runtime::{Ending, Run, RunConfig, RunOutcome, result::FailureResult};
+use executive::memory::{OnStuck, RunName};
+use os_io::stderr_line;
+use runtime::{Ending, Observer, Run, RunConfig, RunOutcome, result::FailureResult};
 
 use crate::{
     cli::RunArguments,
+    console::Console,
     error::{Error, FAILED, STOPPED},
     interrupt::interruption,
     memory_fault,
     page::Page,
     progress::Progress,
 };
+
+/// Name of a run that is shown on the console, before the number of the process.
+const CONSOLE: &str = "console";
 
 /// Run a job and print its result.
 ///
@@ -22,8 +26,21 @@ use crate::{
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let stop = interruption()?;
     let on_stuck = Some(memory_fault::stuck as OnStuck);
-    let config = RunConfig { stop, on_stuck, program: env::current_exe()?, ..arguments.config() };
-    let outcome = Run::new(config, Box::new(Progress::default()))?.complete();
+    let console = arguments.console.then(Console::program).transpose()?;
+    let name = arguments.run.clone().or_else(|| console.as_ref().map(|_| RunName::unique(CONSOLE)));
+    let program = env::current_exe()?;
+    let config =
+        RunConfig { stop: Arc::clone(&stop), on_stuck, program, name: name.clone(), ..arguments.config() };
+    // The console has the terminal: what a run says while it goes on stands in its log, too.
+    let observer: Box<dyn Observer> =
+        if console.is_some() { Box::new(()) } else { Box::new(Progress::default()) };
+    let run = Run::new(config, observer)?;
+    let console =
+        console.zip(name).map(|(program, name)| Console::start(program, &name, stop)).transpose()?;
+    let outcome = run.complete();
+    if let Some(console) = console {
+        console.wait();
+    }
     print(&outcome, arguments.json)?;
     Ok(ExitCode::from(status(&outcome)))
 }
@@ -34,7 +51,7 @@ fn print(outcome: &RunOutcome, json: bool) -> Result<(), Error> {
     } else {
         Page(outcome).to_string()
     };
-    Ok(console::answer(&text)?)
+    Ok(os_io::console::answer(&text)?)
 }
 
 /// The exit status; the reason is the last line on standard error.

@@ -36,9 +36,6 @@
     )
 )]
 
-#[cfg(feature = "plan")]
-extern crate std;
-
 pub mod controller;
 pub mod error;
 pub mod exact;

@@ -9,6 +9,7 @@ use std::{
 };
 
 use egm::host::Settings;
+use os_io::files;
 
 use crate::{
     Placement,
@@ -191,7 +192,7 @@ impl EgmOptions {
     pub fn placement(&self, data: &Path) -> Result<Placement, PlacementError> {
         let Some(robot) = &self.robot else { return Ok(Placement::default()) };
         let named = data.join(ROBOTS).join(robot).with_added_extension("toml");
-        let path = if named.is_file() { named } else { PathBuf::from(robot) };
+        let path = if files::is_file(&named) { named } else { PathBuf::from(robot) };
         Placement::load(&path)
     }
 

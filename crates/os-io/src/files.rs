@@ -1,16 +1,19 @@
 //! Reading files that a person or another program names.
 //!
 //! A FIFO keeps a reader waiting until another program writes into it, a terminal until a key is pressed, and
-//! `/dev/zero` has no end. So only regular files are read, and no more of them than the reader can use.
+//! `/dev/zero` has no end. So only regular files are read, and no more of them than the reader can use. Files that the
+//! program carries in itself ([`carried`](crate::carried)) are read likewise.
 
 use std::{
     fs::{self, File, FileType, OpenOptions},
     io::{self, ErrorKind, Read},
     os::unix::fs::{FileTypeExt, OpenOptionsExt},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 use rustix::fs::OFlags;
+
+use crate::carried;
 
 /// Largest text that a program reads, bytes: task data, jobs, cell descriptions and fault plans have some kilobytes.
 pub const TEXT: u64 = 16 << 20;
@@ -22,6 +25,11 @@ pub const TEXT: u64 = 16 << 20;
 /// [`ErrorKind::FileTooLarge`] if it is larger, [`ErrorKind::OutOfMemory`] if there is no memory for it; else
 /// what the system says.
 pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
+    if let Some(inside) = carried::inside(path) {
+        let bytes = carried::read(inside)?;
+        within(bytes.len(), limit)?;
+        return Ok(bytes.to_vec());
+    }
     let file = open(path)?;
     let length = file.metadata()?.len();
     let mut bytes = Vec::new();
@@ -29,12 +37,44 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
         // One byte more: a file can grow while it is read.
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
     }
-    let found = length.max(u64::try_from(bytes.len()).unwrap_or(u64::MAX));
-    if found > limit {
-        let why = format!("a file of at most {limit} bytes was expected, found {found} bytes");
-        return Err(io::Error::new(ErrorKind::FileTooLarge, why));
-    }
+    within(bytes.len().max(usize::try_from(length).unwrap_or(usize::MAX)), limit)?;
     Ok(bytes)
+}
+
+fn within(length: usize, limit: u64) -> io::Result<()> {
+    if u64::try_from(length).is_ok_and(|length| length <= limit) {
+        return Ok(());
+    }
+    let why = format!("a file of at most {limit} bytes was expected, found {length} bytes");
+    Err(io::Error::new(ErrorKind::FileTooLarge, why))
+}
+
+/// Whether a path names a directory.
+#[must_use]
+pub fn is_directory(path: &Path) -> bool {
+    carried::inside(path).map_or_else(|| path.is_dir(), |inside| !carried::list(inside).is_empty())
+}
+
+/// Whether a path names a regular file.
+#[must_use]
+pub fn is_file(path: &Path) -> bool {
+    carried::inside(path).map_or_else(|| path.is_file(), |inside| carried::read(inside).is_ok())
+}
+
+/// The paths of what is in a directory, sorted.
+///
+/// # Errors
+/// What the system says; [`ErrorKind::NotFound`] if the program carries nothing there.
+pub fn list(directory: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut paths = match carried::inside(directory) {
+        Some(inside) => carried::list(inside),
+        None => fs::read_dir(directory)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?,
+    };
+    if paths.is_empty() && carried::inside(directory).is_some() {
+        return Err(io::Error::new(ErrorKind::NotFound, "this program carries no such directory"));
+    }
+    paths.sort();
+    Ok(paths)
 }
 
 /// Read a regular file of at most [`TEXT`] bytes of UTF-8, with or without a byte order mark; lines end with

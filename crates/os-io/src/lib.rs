@@ -7,5 +7,6 @@
 
 #![forbid(unsafe_code)]
 
+pub mod carried;
 pub mod console;
 pub mod files;

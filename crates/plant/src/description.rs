@@ -1,15 +1,13 @@
 //! The cell description: one TOML file that says where things stand, how large and how strong they are.
 //!
 //! Everything in the file is in inches, degrees, pounds and seconds, in world coordinates. Reading finds all
-//! faults at once: what is no TOML, keys that are missing, unknown or misspelt, values of another kind, and
+//! mistakes at once: what is no TOML, keys that are missing, unknown or misspelt, values of another kind, and
 //! numbers and names that [`CellDescription::validate`] does not accept. Each has its entry, its place in the
 //! text, what was expected and what was found.
 
 mod check;
 mod contact;
-mod fault;
 mod hydraulics;
-mod reading;
 mod sensing;
 mod tooling;
 
@@ -22,11 +20,12 @@ use geometry::{
 };
 use serde::{Deserialize, Serialize};
 
-use reading::{Document, Found, above_zero};
+use crate::{
+    mistake::{Mistakes, TextSpan},
+    reading::{CELL, Document, Found, above_zero},
+};
 
 pub use contact::{Kind, Pattern, Permit, Permits, commands, known};
-pub(crate) use fault::nearest;
-pub use fault::{Fault, Faults, TextSpan};
 pub use hydraulics::{Actuators, Hydraulics};
 pub use sensing::SensorModels;
 pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChange};
@@ -42,9 +41,9 @@ pub enum DescriptionError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// The file or the description has faults.
+    /// The file or the description has mistakes.
     #[error("cell description: {0}")]
-    Faults(Faults),
+    Mistakes(Mistakes),
 }
 
 /// The whole cell.
@@ -487,27 +486,27 @@ impl CellDescription {
     /// Read a description from TOML text and check it.
     ///
     /// # Errors
-    /// [`DescriptionError::Faults`] with all faults of the text and their places.
+    /// [`DescriptionError::Mistakes`] with all mistakes of the text and their places.
     pub fn from_toml(text: &str) -> Result<Self, DescriptionError> {
-        let (document, mut found) = Document::parse(text);
+        let (document, mut found) = Document::parse(text, CELL);
         // What stands behind a place that is no TOML may be anything.
         let reading = found.is_empty().then(|| document.read::<Self>());
         let mut value = None;
         if let Some(reading) = reading {
-            found = reading.faults;
+            found = reading.mistakes;
             value = reading.value;
             if let Some(description) = &value {
-                let (unfit, positive) = description.faults(&reading.stand_ins);
-                let refine = |(fault, at): Found| {
-                    (if positive.contains(&fault.entry) { above_zero(fault) } else { fault }, at)
+                let (unfit, positive) = description.mistakes(&reading.stand_ins);
+                let refine = |(mistake, at): Found| {
+                    (if positive.contains(&mistake.entry) { above_zero(mistake) } else { mistake }, at)
                 };
                 found = found.into_iter().map(refine).collect();
-                found.extend(unfit.into_iter().map(|fault| (fault, None)));
+                found.extend(unfit.into_iter().map(|mistake| (mistake, None)));
             }
         }
         match value {
             Some(description) if found.is_empty() => Ok(description),
-            _ => Err(DescriptionError::Faults(document.placed(text, found))),
+            _ => Err(DescriptionError::Mistakes(document.placed(text, found))),
         }
     }
 
@@ -515,7 +514,7 @@ impl CellDescription {
     /// is not there, the nearest table around it.
     #[must_use]
     pub fn place(text: &str, entry: &str) -> TextSpan {
-        let Range { start, end } = Document::parse(text).0.place(entry);
+        let Range { start, end } = Document::parse(text, CELL).0.place(entry);
         TextSpan::of(text, start, end)
     }
 

@@ -1,14 +1,11 @@
 //! What is said of a mistyped cell description: every fault, with the text that is to blame, at once.
 
-use plant::{
-    Cell, CellDescription,
-    description::{DescriptionError, Fault},
-};
+use plant::{Cell, CellDescription, description::DescriptionError, mistake::Mistake};
 
 const TEXT: &str = include_str!("../../../data/cell.toml");
 
 /// The faults of the description of the project with some texts replaced.
-fn faults(edits: &[(&str, &str)]) -> (String, Vec<Fault>) {
+fn faults(edits: &[(&str, &str)]) -> (String, Vec<Mistake>) {
     let mut text = TEXT.to_owned();
     for (from, to) in edits {
         assert!(text.contains(from), "the description has no {from:?}");
@@ -16,7 +13,7 @@ fn faults(edits: &[(&str, &str)]) -> (String, Vec<Fault>) {
     }
     match CellDescription::from_toml(&text) {
         Ok(_) => (text, Vec::new()),
-        Err(DescriptionError::Faults(faults)) => (text, faults.all().to_vec()),
+        Err(DescriptionError::Mistakes(faults)) => (text, faults.all().to_vec()),
         Err(error) => panic!("{error}"),
     }
 }

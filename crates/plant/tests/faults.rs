@@ -10,7 +10,7 @@ use plant::{
 use rig::{Rig, description};
 
 fn plan(text: &str) -> FaultPlan {
-    parse("test.toml", text, &description()).unwrap().cell
+    parse(text, &description()).unwrap().cell
 }
 
 fn cell(text: &str) -> Cell {

@@ -7,7 +7,7 @@ use neighbours::{
     data_system::{OutboxError, StoreError},
     network::{KeysError, address::AddressError, listener::ListenError},
 };
-use plant::{CellError, fault::text::FaultFileError};
+use plant::CellError;
 use record::RecordError;
 use taskdata::load::{Diagnostics, report::amount};
 
@@ -58,9 +58,6 @@ pub enum StartError {
         "the file has faults of the line to the simulated robot; a robot elsewhere has faults of its own"
     )]
     FaultsAtPort,
-    /// The file of faults cannot be used.
-    #[error("the faults cannot be injected: {0}")]
-    Faults(#[from] FaultFileError),
     /// The port cannot be opened.
     #[error("the robot cannot be reached: {0}")]
     Port(#[from] OpenError),

@@ -143,7 +143,7 @@ impl TaskFiles {
     /// # Errors
     /// [`StartError`], with all errors of the data.
     pub fn load(data: &Path, job: Option<&str>) -> Result<Self, StartError> {
-        if !data.is_dir() {
+        if !files::is_directory(data) {
             return Err(StartError::NoData(data.to_owned()));
         }
         let unusable = |what: String| move |report| StartError::Data { what, report };
@@ -268,12 +268,27 @@ fn outbox(config: &RunConfig) -> Result<Outbox, StartError> {
 /// The faults of `--faults`, none without it, with their text.
 fn faults(config: &RunConfig, cell: &CellDescription) -> Result<(FaultFile, String), StartError> {
     let Some(path) = &config.faults else { return Ok(Default::default()) };
-    let text = files::read_text(path).map_err(|source| StartError::Read { path: path.clone(), source })?;
-    let faults = text::parse(&path.display().to_string(), &text, cell)?;
+    let (faults, text) = fault_file(path, cell)?;
     if config.robot.kind != RobotKind::Sim && faults.line.is_some() {
         return Err(StartError::FaultsAtPort);
     }
     Ok((faults, text))
+}
+
+/// Read a file of faults; also its text.
+///
+/// # Errors
+/// [`StartError`], with all mistakes of the file.
+pub fn fault_file(path: &Path, cell: &CellDescription) -> Result<(FaultFile, String), StartError> {
+    let text = files::read_text(path).map_err(|source| StartError::Read { path: path.to_owned(), source })?;
+    let name = path.display().to_string();
+    match text::parse(&text, cell) {
+        Ok(faults) => Ok((faults, text)),
+        Err(mistakes) => {
+            let report = agreement::toml_report(Source { name: name.clone(), text: text.into() }, &mistakes);
+            Err(StartError::Data { what: format!("the faults of {name}"), report: Box::new(report) })
+        }
+    }
 }
 
 /// Warnings do not keep a run from beginning; one line says that there are some.
@@ -289,10 +304,10 @@ fn warning(report: &Diagnostics, what: &str) -> Option<String> {
 pub fn job_path(job: &str, data: &Path) -> Result<PathBuf, StartError> {
     let path = PathBuf::from(job);
     let named = data.join(JOBS).join(job).with_added_extension(EXTENSION);
-    if named.is_file() {
+    if files::is_file(&named) {
         return Ok(named);
     }
-    if path.is_file() {
+    if files::is_file(&path) {
         return Ok(path);
     }
     let known = jobs(data);
@@ -304,11 +319,7 @@ pub fn job_path(job: &str, data: &Path) -> Result<PathBuf, StartError> {
 /// All jobs of a data directory.
 #[must_use]
 pub fn jobs(data: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(data.join(JOBS)).into_iter().flatten().flatten();
-    let mut jobs: Vec<PathBuf> = entries
-        .map(|entry| entry.path())
-        .filter(|path| path.extension().is_some_and(|e| e == EXTENSION))
-        .collect();
-    jobs.sort();
+    let mut jobs = files::list(&data.join(JOBS)).unwrap_or_default();
+    jobs.retain(|path| path.extension().is_some_and(|e| e == EXTENSION));
     jobs
 }

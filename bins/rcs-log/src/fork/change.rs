@@ -9,7 +9,8 @@ use std::{
 use os_io::files;
 use plant::{
     CellDescription,
-    fault::text::{self, FaultFile, FaultFileError},
+    fault::text::{self, FaultFile},
+    mistake::Mistakes,
 };
 use runtime::{ChangeError, Run, setup::CELL};
 use taskdata::load::{Job, Source, Step, Store, Workstation, job::JobLine};
@@ -106,8 +107,13 @@ pub enum RefusedChange {
         source: io::Error,
     },
     /// Nor understood.
-    #[error(transparent)]
-    Faults(#[from] FaultFileError),
+    #[error("{}: {mistakes}", path.display())]
+    Faults {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong in it.
+        mistakes: Mistakes,
+    },
     /// There is no such value in the cell description.
     #[error("cell.toml has no value {key}: {known}")]
     Key {
@@ -229,7 +235,9 @@ pub fn deeds(changes: &[Change], store: &Store, cell: &CellDescription) -> Resul
 fn faults(path: &Path, cell: &CellDescription) -> Result<Deed, RefusedChange> {
     let text =
         files::read_text(path).map_err(|source| RefusedChange::Read { path: path.to_owned(), source })?;
-    Ok(Deed::Faults(Box::new(text::parse(&path.display().to_string(), &text, cell)?)))
+    let faults = text::parse(&text, cell)
+        .map_err(|mistakes| RefusedChange::Faults { path: path.to_owned(), mistakes })?;
+    Ok(Deed::Faults(Box::new(faults)))
 }
 
 /// The line of a job that a text is.

@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{
+    Args,
+    builder::{PathBufValueParser, TypedValueParser as _},
+};
 
 use super::{operator::Recovery, trial::Until};
 
@@ -13,7 +16,7 @@ pub struct CampaignArguments {
     #[arg(default_value = "linkbar")]
     pub jobs: Vec<String>,
     /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data")]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
     pub data: PathBuf,
     /// Seed of the cell's noise and of where parts are delivered
     #[arg(long, value_name = "N", default_value_t = 1)]

@@ -7,15 +7,11 @@ use interfaces::device::{KNOB_FULL, joystick_frame, single_step};
 use levels::ladder::ProcessId;
 use plant::{
     BoxAction, BoxButton, CellDescription, EStop, Key, WorkstationAction,
-    fault::{
-        FaultPlan, What, When,
-        text::{self, FaultFile},
-    },
+    fault::{FaultPlan, What, When, text::FaultFile},
     t3::Stage,
 };
 use rcs_core::tick::Tick;
-
-use runtime::StartError;
+use runtime::{StartError, setup::fault_file};
 
 use super::branch::Branch;
 use crate::error::Error;
@@ -241,18 +237,14 @@ fn words() -> String {
 fn faults(data: &Path, cell: &CellDescription) -> Result<Vec<Kind>, Error> {
     let directory = data.join("faults");
     let unreadable = |source| StartError::Read { path: directory.clone(), source };
-    let entries = std::fs::read_dir(&directory).map_err(unreadable)?;
-    let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    let mut paths = os_io::files::list(&directory).map_err(unreadable)?;
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-    paths.sort();
     paths.iter().filter_map(|path| fault(path, cell).transpose()).collect()
 }
 
 /// The faults of a file; none if it has none that can be switched on for a time.
 fn fault(path: &Path, cell: &CellDescription) -> Result<Option<Kind>, Error> {
-    let text =
-        os_io::files::read_text(path).map_err(|source| StartError::Read { path: path.to_owned(), source })?;
-    let file = text::parse(&path.display().to_string(), &text, cell).map_err(StartError::from)?;
+    let (file, _) = fault_file(path, cell)?;
     let lasting = |what: &What| !what.is_delivery() && !matches!(what, What::PedestalMoved { .. });
     let switchable = file.line.is_some() || file.cell.faults.iter().any(|fault| lasting(&fault.what));
     let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();

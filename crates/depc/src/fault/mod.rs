@@ -19,13 +19,9 @@
 //! without a rate it acts on every byte or tick. A serial line does not reorder, and neither does the
 //! injector. In one tick the order is: truncate, then for each byte drop, flip, delay, duplicate, then
 //! insert, then stall.
-//!
-//! With the feature `plan`, [`text`] reads a plan from a file.
 
 mod inject;
 mod numbers;
-#[cfg(feature = "plan")]
-pub mod text;
 
 use core::fmt;
 

@@ -5,7 +5,10 @@
 use geometry::frame::Frame;
 
 use super::{WorkstationAction, WorkstationError};
-use crate::description::{CellDescription, Nest, PartType, nearest};
+use crate::{
+    description::{CellDescription, Nest, PartType},
+    mistake::nearest,
+};
 
 /// Where a part can be put down.
 pub(super) enum Spot<'c> {

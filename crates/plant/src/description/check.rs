@@ -9,9 +9,10 @@ use rcs_core::name::Name16;
 
 use super::{
     CellDescription, DescriptionError, Gripper, Kind, Nest, PartType, Pattern, Points, Shape, ViseProgram,
-    commands,
-    fault::{Fault, Faults},
-    known,
+    commands, known,
+};
+use crate::{
+    mistake::{Mistake, Mistakes},
     reading::{Path, element, join},
 };
 
@@ -22,15 +23,15 @@ impl CellDescription {
     /// Check all numbers and names.
     ///
     /// # Errors
-    /// [`DescriptionError::Faults`] with all faults, without their places.
+    /// [`DescriptionError::Mistakes`] with all mistakes, without their places.
     pub fn validate(&self) -> Result<(), DescriptionError> {
-        let (faults, _) = self.faults(&BTreeSet::new());
-        if faults.is_empty() { Ok(()) } else { Err(DescriptionError::Faults(Faults(faults))) }
+        let (mistakes, _) = self.mistakes(&BTreeSet::new());
+        if mistakes.is_empty() { Ok(()) } else { Err(DescriptionError::Mistakes(Mistakes(mistakes))) }
     }
 
-    /// All faults of the entries that have no stand-ins, and the entries that must be more than 0.
-    pub(super) fn faults(&self, stand_ins: &BTreeSet<Path>) -> (Vec<Fault>, BTreeSet<Path>) {
-        let mut check = Check { faults: Vec::new(), positive: BTreeSet::new(), stand_ins };
+    /// All mistakes of the entries that have no stand-ins, and the entries that must be more than 0.
+    pub(super) fn mistakes(&self, stand_ins: &BTreeSet<Path>) -> (Vec<Mistake>, BTreeSet<Path>) {
+        let mut check = Check { mistakes: Vec::new(), positive: BTreeSet::new(), stand_ins };
         self.check_physics_and_robot(&mut check);
         self.check_hydraulics(&mut check);
         self.check_sensors(&mut check);
@@ -45,7 +46,7 @@ impl CellDescription {
         self.check_parts_and_boxes(&mut check);
         self.check_nests(&mut check);
         self.check_contacts(&mut check);
-        (check.faults, check.positive)
+        (check.mistakes, check.positive)
     }
 
     fn check_physics_and_robot(&self, check: &mut Check<'_>) {
@@ -490,9 +491,9 @@ fn check_gripper(name: &str, gripper: &Gripper, check: &mut Check<'_>) {
     check.within(&path("sensors.noise"), sensors.noise, 0.0, 100.0);
 }
 
-/// Collects faults.
+/// Collects mistakes.
 struct Check<'s> {
-    faults: Vec<Fault>,
+    mistakes: Vec<Mistake>,
     /// Entries that must be more than 0: radii, lengths, weights.
     positive: BTreeSet<Path>,
     stand_ins: &'s BTreeSet<Path>,
@@ -509,7 +510,7 @@ impl Check<'_> {
 
     fn that(&mut self, holds: bool, path: &str, expected: &str, found: impl FnOnce() -> String) {
         if !holds && self.trusts(path) {
-            self.faults.push(Fault::unlike("cell.value", path, expected, found()));
+            self.mistakes.push(Mistake::unlike("cell.value", path, expected, found()));
         }
     }
 
@@ -566,7 +567,7 @@ impl Check<'_> {
         let names_are_read =
             !self.stand_ins.iter().any(|path| path.ends_with("name") || path.ends_with("unit"));
         if !known.contains(&name) && names_are_read && self.trusts(path) {
-            self.faults.push(Fault::unlike("cell.name", path, expected, name).near(name, known));
+            self.mistakes.push(Mistake::unlike("cell.name", path, expected, name).near(name, known));
         }
     }
 }

@@ -8,7 +8,6 @@
 //! stand in the same file, are [`depc::fault`]'s.
 
 mod inject;
-mod problem;
 pub mod text;
 mod valve;
 

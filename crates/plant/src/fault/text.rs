@@ -1,4 +1,4 @@
-//! Faults of the cell as files: the same TOML that has the faults of the line ([`depc::fault::text`]).
+//! Faults as files of TOML, one table a fault: of the cell, and of the line to the robot controller.
 //!
 //! ```toml
 //! seed = 7                        # one for all faults of the file, and the run's beside it; 1 if it is not given
@@ -26,25 +26,33 @@
 //! kind = "wrong-part"             # missing misplaced turned wrong-part: a delivery to a tray
 //! object = "LINKBAR1_BH"          # of this part; of any if it is not given
 //! part = "LCLEVIS_BH"
+//!
+//! [[fault]]
+//! kind = "flip"                   # drop flip duplicate delay insert truncate stall cts-low: the line ([`depc::fault`])
+//! direction = "to-host"           # to-host, to-controller, or both (if it is not given)
+//! rate = 0.001                    # chance of each byte (drop flip duplicate delay) or of each tick (the others)
 //! ```
 //!
-//! Others: `stuck` with `device = "lock-ring"` or `"vise-jaw"`, `air-lost`, `hydraulics-lost`,
-//! `camera-blind`, `pedestal-moved`. A fault that does not say when is there all the time.
+//! Of the line also `byte = 0x06` (insert) and, before the faults, `most_per_tick`: at most so many faults in a tick and
+//! direction. Others of the cell: `stuck` with `device = "lock-ring"` or `"vise-jaw"`, `air-lost`, `hydraulics-lost`,
+//! `camera-blind`, `pedestal-moved`. One that does not say when is there all the time; one of the line needs a rate, a tick or a range of ticks.
+//!
+//! All mistakes of a file are found at once.
 
-use std::path::Path;
+mod cell;
+mod line;
 
-use depc::fault::{
-    Plan,
-    text::{Entry, Sheet},
+use std::fmt;
+
+use depc::fault::Plan;
+use serde::{Deserialize, Deserializer, de};
+
+use super::FaultPlan;
+use crate::{
+    description::CellDescription,
+    mistake::{Mistake, Mistakes},
+    reading::{Document, FAULTS, element, join},
 };
-use os_io::files;
-use rcs_core::tick::TICK_S;
-use serde::Deserialize;
-use toml::{Spanned, Value};
-
-pub use super::problem::{FaultFileError, Problem};
-use super::{Disorder, Fault, FaultPlan, Mishap, Valve, What, When};
-use crate::{description::CellDescription, sensor::Sensor};
 
 /// A file of faults.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,463 +63,254 @@ pub struct FaultFile {
     pub cell: FaultPlan,
 }
 
-/// A kind: its name, and the keys that it takes beside those that say when.
-type Kind = (&'static str, &'static [&'static str]);
+/// The faults in `text` for a cell.
+///
+/// # Errors
+/// All mistakes in it.
+pub fn parse(text: &str, cell: &CellDescription) -> Result<FaultFile, Mistakes> {
+    sheet(text, Some(cell))
+}
 
-/// Kinds of faults of the cell.
-const KINDS: [Kind; 15] = [
-    ("off", &["sensor"]),
-    ("stuck", &["sensor", "valve", "device", "value"]),
-    ("noisy", &["sensor", "by"]),
-    ("slow", &["sensor", "by"]),
-    ("intermittent", &["sensor"]),
-    ("offset", &["sensor", "by"]),
-    ("drift", &["sensor", "by"]),
-    ("air-lost", &[]),
-    ("hydraulics-lost", &[]),
-    ("camera-blind", &[]),
-    ("missing", &["object"]),
-    ("misplaced", &["object", "x", "y"]),
-    ("turned", &["object", "angle"]),
-    ("wrong-part", &["object", "part"]),
-    ("pedestal-moved", &["x", "y", "angle"]),
-];
-/// Keys that say when, of a fault that lasts.
-const WHEN: [&str; 6] = ["at", "from", "after", "until", "rate", "ticks"];
-/// Devices that can be stuck, beside sensors and valves.
-const DEVICES: [&str; 2] = ["lock-ring", "vise-jaw"];
-/// The longest time of a fault with a rate, and the longest delay, ticks.
-const MOST_TICKS: i64 = 100_000;
-/// The longest delay of a sensor, ticks.
-const MOST_LATE: f64 = 1000.0;
-/// The greatest noise, offset or drift, counts: beyond every converter.
-const MOST_COUNTS: f64 = 200_000.0;
-/// The greatest displacement, in.
-const MOST_ASIDE: f64 = 100.0;
+/// The faults in `text`, which has faults of the line only.
+///
+/// # Errors
+/// All mistakes in it, faults of the cell among them.
+pub fn parse_line(text: &str) -> Result<Plan, Mistakes> {
+    let read = sheet(text, None)?;
+    Ok(read.line.unwrap_or_else(|| Plan::new(read.cell.seed)))
+}
 
-/// All keys with their types.
+/// The whole file.
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Sheet {
+    #[serde(default = "first_seed")]
+    seed: u64,
+    most_per_tick: Option<u8>,
+    #[serde(default)]
+    fault: Vec<Form>,
+}
+
+const fn first_seed() -> u64 {
+    1
+}
+
+/// All keys of a fault.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Form {
-    sensor: Option<Spanned<String>>,
-    valve: Option<Spanned<String>>,
-    device: Option<Spanned<String>>,
-    value: Option<Spanned<Value>>,
-    by: Option<Spanned<f64>>,
-    object: Option<Spanned<String>>,
-    part: Option<Spanned<String>>,
-    x: Option<Spanned<f64>>,
-    y: Option<Spanned<f64>>,
-    angle: Option<Spanned<f64>>,
-    at: Option<Spanned<i64>>,
-    from: Option<Spanned<i64>>,
-    after: Option<Spanned<f64>>,
-    until: Option<Spanned<i64>>,
-    rate: Option<Spanned<f64>>,
-    ticks: Option<Spanned<i64>>,
+    kind: String,
+    direction: Option<String>,
+    sensor: Option<String>,
+    valve: Option<String>,
+    device: Option<String>,
+    value: Option<Value>,
+    by: Option<f64>,
+    byte: Option<u8>,
+    object: Option<String>,
+    part: Option<String>,
+    x: Option<f64>,
+    y: Option<f64>,
+    angle: Option<f64>,
+    at: Option<u64>,
+    from: Option<u64>,
+    after: Option<f64>,
+    until: Option<u64>,
+    rate: Option<f64>,
+    ticks: Option<u32>,
 }
 
-/// What is wrong, and where if that is not the whole fault.
-type Wrong = (Problem, Option<usize>);
-
-/// Read a file of faults for a cell.
-///
-/// # Errors
-/// [`FaultFileError`] with the file, the line, what was expected and what was found.
-pub fn load(path: &Path, cell: &CellDescription) -> Result<FaultFile, FaultFileError> {
-    let file = path.display().to_string();
-    match files::read_text(path) {
-        Ok(text) => parse(&file, &text, cell),
-        Err(source) => Err(FaultFileError::Read { file, source }),
+impl Form {
+    /// The keys beside `kind` that are there.
+    fn keys(&self) -> impl Iterator<Item = &'static str> {
+        let there = [
+            ("direction", self.direction.is_some()),
+            ("sensor", self.sensor.is_some()),
+            ("valve", self.valve.is_some()),
+            ("device", self.device.is_some()),
+            ("value", self.value.is_some()),
+            ("by", self.by.is_some()),
+            ("byte", self.byte.is_some()),
+            ("object", self.object.is_some()),
+            ("part", self.part.is_some()),
+            ("x", self.x.is_some()),
+            ("y", self.y.is_some()),
+            ("angle", self.angle.is_some()),
+            ("at", self.at.is_some()),
+            ("from", self.from.is_some()),
+            ("after", self.after.is_some()),
+            ("until", self.until.is_some()),
+            ("rate", self.rate.is_some()),
+            ("ticks", self.ticks.is_some()),
+        ];
+        there.into_iter().filter(|(_, is_there)| *is_there).map(|(key, _)| key)
     }
 }
 
-/// The faults in `text` for a cell; `file` names it in errors.
-///
-/// # Errors
-/// [`FaultFileError`] with the file, the line, what was expected and what was found.
-pub fn parse(file: &str, text: &str, cell: &CellDescription) -> Result<FaultFile, FaultFileError> {
-    let sheet = Sheet::read(file, text)?;
-    let mut plan = FaultPlan { seed: sheet.seed(), faults: Vec::new() };
-    for entry in sheet.entries().iter().filter(|entry| !entry.is_of_line()) {
-        let fault = fault(entry, cell).map_err(|(problem, place)| FaultFileError::Fault {
-            file: file.into(),
-            line: sheet.line(place.unwrap_or_else(|| entry.place())),
-            number: entry.number,
-            problem,
-        })?;
-        plan.faults.push(fault);
-    }
-    let of_line = sheet.entries().iter().any(Entry::is_of_line);
-    let line = of_line.then(|| sheet.plan(|entry| entry.is_of_line())).transpose()?;
-    Ok(FaultFile { line, cell: plan })
+/// What something is stuck at.
+#[derive(Clone, Debug)]
+enum Value {
+    Count(i64),
+    Word(String),
 }
 
-/// The fault of an entry.
-fn fault(entry: &Entry<'_>, cell: &CellDescription) -> Result<Fault, Wrong> {
-    let found = entry.kind.get_ref();
-    let kind = KINDS.iter().find(|(known, _)| known == found).ok_or_else(|| {
-        let line = depc::fault::FaultKind::ALL.iter().map(|kind| kind.text());
-        let known = KINDS.iter().map(|(kind, _)| *kind).chain(line).collect();
-        let problem = Problem::Unknown { what: "kind of fault", found: found.clone(), known };
-        (problem, Some(entry.kind.span().start))
-    })?;
-    let (name, own) = kind;
-    let when = match *name {
-        "pedestal-moved" => &[][..],
-        "missing" | "misplaced" | "turned" | "wrong-part" => &WHEN[..5],
-        _ => &WHEN[..],
-    };
-    let takes: Vec<&'static str> = ["kind"].iter().chain(*own).chain(when).copied().collect();
-    if let Some((key, place)) = entry.keys().find(|(key, _)| !takes.contains(key)) {
-        return Err((Problem::Key { kind: name, key: key.into(), takes }, Some(place)));
-    }
-    let form: Form = entry
-        .read()
-        .map_err(|error| (Problem::Type(error.message().into()), error.span().map(|span| span.start)))?;
-    let what = what(name, &form, cell)?;
-    Ok(Fault { number: entry.number, when: self::when(name, &form)?, what })
-}
-
-/// What happens.
-fn what(kind: &'static str, form: &Form, cell: &CellDescription) -> Result<What, Wrong> {
-    let needs = |needs| (Problem::Needs { kind, needs }, None);
-    let by = |expected: &str, range: core::ops::RangeInclusive<f64>| {
-        let by = form.by.as_ref().ok_or_else(|| needs("`by`: how much"))?;
-        within("by", by, expected, range)
-    };
-    let aside = |key, value: &Option<Spanned<f64>>| match value {
-        Some(value) => within(key, value, "-100 to 100 in", -MOST_ASIDE..=MOST_ASIDE),
-        None => Ok(0.0),
-    };
-    let angle = || match &form.angle {
-        Some(angle) => within("angle", angle, "-360 to 360 degrees", -360.0..=360.0),
-        None => Ok(0.0),
-    };
-    let object = || form.object.as_ref().map(|object| part(object, cell)).transpose();
-    let disorder = match kind {
-        "off" | "intermittent" => Disorder::Off,
-        "stuck" if form.sensor.is_none() => return stuck(kind, form),
-        "stuck" => Disorder::Stuck(form.value.as_ref().map(|value| counts(form, value)).transpose()?),
-        "noisy" => Disorder::Noisy(by("counts, more than 0", f64::MIN_POSITIVE..=MOST_COUNTS)?),
-        "slow" => Disorder::Slow(by("1 to 1000 ticks", 1.0..=MOST_LATE)? as u16),
-        "offset" => Disorder::Offset(by("counts", -MOST_COUNTS..=MOST_COUNTS)?),
-        "drift" => Disorder::Drift(by("counts a second", -MOST_COUNTS..=MOST_COUNTS)?),
-        "air-lost" => return Ok(What::AirLost),
-        "hydraulics-lost" => return Ok(What::HydraulicsLost),
-        "camera-blind" => return Ok(What::CameraBlind),
-        "missing" => return Ok(What::Delivery(object()?, Mishap::Missing)),
-        "misplaced" => {
-            let (x, y) = (aside("x", &form.x)?, aside("y", &form.y)?);
-            return Ok(What::Delivery(object()?, Mishap::Misplaced { x, y }));
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Count(count) => write!(f, "{count}"),
+            Self::Word(word) => write!(f, "{word:?}"),
         }
-        "turned" => {
-            form.angle.as_ref().ok_or_else(|| needs("`angle`: how far, degrees"))?;
-            return Ok(What::Delivery(object()?, Mishap::Turned(angle()?)));
-        }
-        "wrong-part" => {
-            let other = form.part.as_ref().ok_or_else(|| needs("`part`: what comes instead"))?;
-            return Ok(What::Delivery(object()?, Mishap::WrongPart(part(other, cell)?)));
-        }
-        _ => {
-            let (x, y) = (aside("x", &form.x)?, aside("y", &form.y)?);
-            return Ok(What::PedestalMoved { x, y, angle: angle()? });
-        }
-    };
-    let name = form.sensor.as_ref().ok_or_else(|| needs("`sensor`: which"))?;
-    if form.valve.is_some() || form.device.is_some() {
-        return Err(needs("one of `sensor`, `valve` and `device`"));
     }
-    let sensor = sensor(name)?;
-    if sensor.is_camera() && disorder != Disorder::Off {
-        return Err((Problem::Camera, Some(name.span().start)));
-    }
-    Ok(What::Sensor(sensor, disorder))
 }
 
-/// What is stuck, if it is no sensor.
-fn stuck(kind: &'static str, form: &Form) -> Result<What, Wrong> {
-    match (&form.valve, &form.device) {
-        (Some(valve), None) => {
-            let named = Valve::named(valve.get_ref())
-                .ok_or_else(|| unknown("valve", valve, Valve::all().map(Valve::name).collect()))?;
-            let expected = || "\"open\" or \"closed\"".to_owned();
-            let value = form.value.as_ref();
-            match value.map(|value| (value.get_ref().as_str(), value)) {
-                Some((Some("open"), _)) => Ok(What::Valve(named, true)),
-                Some((Some("closed"), _)) => Ok(What::Valve(named, false)),
-                Some((_, value)) => {
-                    let found = value.get_ref().to_string();
-                    let problem = Problem::Value { key: "value", expected: expected(), found };
-                    Err((problem, Some(value.span().start)))
-                }
-                None => {
-                    Err((Problem::Needs { kind, needs: "`value`: \"open\" or \"closed\" for a valve" }, None))
-                }
+impl<'de> Deserialize<'de> for Value {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl de::Visitor<'_> for Either {
+            type Value = Value;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a whole number, or a text in quotes")
+            }
+
+            fn visit_i64<E: de::Error>(self, count: i64) -> Result<Value, E> {
+                Ok(Value::Count(count))
+            }
+
+            fn visit_str<E: de::Error>(self, word: &str) -> Result<Value, E> {
+                Ok(Value::Word(word.to_owned()))
             }
         }
-        (None, Some(device)) => match device.get_ref().as_str() {
-            _ if form.value.is_some() => {
-                let takes = vec!["kind", "device"];
-                Err((Problem::Key { kind: "stuck with a device", key: "value".into(), takes }, None))
-            }
-            "lock-ring" => Ok(What::RingStuck),
-            "vise-jaw" => Ok(What::JawStuck),
-            _ => Err(unknown("device", device, DEVICES.to_vec())),
-        },
-        _ => Err((Problem::Needs { kind, needs: "one of `sensor`, `valve` and `device`" }, None)),
+        deserializer.deserialize_any(Either)
     }
 }
 
-fn unknown(what: &'static str, found: &Spanned<String>, known: Vec<&'static str>) -> Wrong {
-    let problem = Problem::Unknown { what, found: found.get_ref().clone(), known };
-    (problem, Some(found.span().start))
+/// A fault of a file.
+struct Entry<'f> {
+    form: &'f Form,
+    /// The way to it: `fault[0]`.
+    path: String,
+    /// Which one, from 1.
+    number: usize,
 }
 
-fn sensor(name: &Spanned<String>) -> Result<Sensor, Wrong> {
-    Sensor::named(name.get_ref())
-        .ok_or_else(|| unknown("sensor", name, Sensor::all().map(Sensor::name).collect()))
-}
-
-fn part(name: &Spanned<String>, cell: &CellDescription) -> Result<String, Wrong> {
-    match cell.part(name.get_ref()) {
-        Some(part) => Ok(part.name.clone()),
-        None => {
-            let known = cell.part.iter().map(|part| part.name.as_str()).collect::<Vec<_>>().join(", ");
-            let problem = Problem::UnknownPart { found: name.get_ref().clone(), known };
-            Err((problem, Some(name.span().start)))
-        }
+impl Entry<'_> {
+    /// A value that is something else than expected.
+    fn unlike(&self, key: &str, expected: impl fmt::Display, found: impl fmt::Display) -> Box<Mistake> {
+        Box::new(Mistake::unlike("fault.value", &join(&self.path, key), expected, found))
     }
-}
 
-/// The count at which a sensor is stuck.
-fn counts(form: &Form, value: &Spanned<Value>) -> Result<i64, Wrong> {
-    let range = match &form.sensor {
-        Some(name) => sensor(name)?.range(),
-        None => 0..=0,
-    };
-    let found = value.get_ref().as_integer().filter(|found| range.contains(found));
-    found.ok_or_else(|| {
-        let expected = format!("{} to {}", range.start(), range.end());
-        let problem = Problem::Value { key: "value", expected, found: value.get_ref().to_string() };
-        (problem, Some(value.span().start))
-    })
-}
-
-fn within(
-    key: &'static str,
-    value: &Spanned<f64>,
-    expected: &str,
-    range: core::ops::RangeInclusive<f64>,
-) -> Result<f64, Wrong> {
-    let found = *value.get_ref();
-    if range.contains(&found) {
-        return Ok(found);
+    /// A name that there is not.
+    fn unknown(&self, key: &str, found: &str, known: &[&str]) -> Box<Mistake> {
+        let expected = format!("one of {}", known.join(", "));
+        let mistake = Mistake::unlike("fault.name", &join(&self.path, key), expected, format!("{found:?}"));
+        Box::new(mistake.near(found, known))
     }
-    let problem = Problem::Value { key, expected: expected.into(), found: found.to_string() };
-    Err((problem, Some(value.span().start)))
-}
 
-/// When it happens.
-fn when(kind: &'static str, form: &Form) -> Result<When, Wrong> {
-    let tick = |key, value: &Spanned<i64>| {
-        u64::try_from(*value.get_ref()).map_err(|_| {
-            let problem =
-                Problem::Value { key, expected: "a tick".into(), found: value.get_ref().to_string() };
-            (problem, Some(value.span().start))
+    /// What does not fit together.
+    fn says(&self, message: impl fmt::Display) -> Box<Mistake> {
+        let (path, kind) = (&self.path, &self.form.kind);
+        Box::new(Mistake::new("fault.value", path, format!("{path}: {kind} {message}")))
+    }
+
+    /// A number within a range, which `expected` names.
+    fn within(
+        &self,
+        key: &str,
+        found: f64,
+        expected: &str,
+        range: core::ops::RangeInclusive<f64>,
+    ) -> Result<f64, Box<Mistake>> {
+        if range.contains(&found) { Ok(found) } else { Err(self.unlike(key, expected, found)) }
+    }
+
+    /// Keys that a kind does not take.
+    fn untaken(&self, takes: &[&str]) -> impl Iterator<Item = Mistake> {
+        self.form.keys().filter(|key| !takes.contains(key)).map(|key| {
+            let message =
+                format!("{}: {} takes no {key}; it takes {}", self.path, self.form.kind, takes.join(", "));
+            Mistake::new("fault.key", &join(&self.path, key), message)
         })
-    };
-    let at = form.at.as_ref().map(|at| tick("at", at)).transpose()?;
-    let from = form.from.as_ref().map(|from| tick("from", from)).transpose()?;
-    let until = form.until.as_ref().map(|until| tick("until", until)).transpose()?;
-    let after = form.after.as_ref().map(|after| within("after", after, "seconds", 0.0..=1e6)).transpose()?;
-    let after = after.map(|seconds| libm::round(seconds / TICK_S) as u64);
-    let rate = form
-        .rate
-        .as_ref()
-        .map(|rate| within("rate", rate, "a chance of 0.000001 to 1", 1e-6..=1.0))
-        .transpose()?;
-    let ticks = match &form.ticks {
-        Some(ticks) if !(1..=MOST_TICKS).contains(ticks.get_ref()) => {
-            let expected = format!("1 to {MOST_TICKS}");
-            let problem = Problem::Value { key: "ticks", expected, found: ticks.get_ref().to_string() };
-            return Err((problem, Some(ticks.span().start)));
+    }
+}
+
+/// Read a file, with all its mistakes. Without a cell faults of the cell are mistakes.
+fn sheet(text: &str, cell: Option<&CellDescription>) -> Result<FaultFile, Mistakes> {
+    let (document, mut found) = Document::parse(text, FAULTS);
+    // What stands behind a place that is no TOML may be anything.
+    let reading = found.is_empty().then(|| document.read::<Sheet>());
+    let mut file = FaultFile::default();
+    if let Some(reading) = reading {
+        found = reading.mistakes;
+        let sound = |path: &str| !reading.stand_ins.iter().any(|stand_in| stand_in.starts_with(path));
+        if let Some(sheet) = reading.value {
+            let mut mistakes = Vec::new();
+            if sheet.fault.is_empty() && sound("fault") {
+                mistakes.push(Mistake::new(
+                    "fault.missing",
+                    "",
+                    "expected at least one [[fault]], found none".into(),
+                ));
+            }
+            if sheet.most_per_tick == Some(0) {
+                mistakes.push(Mistake::unlike("fault.value", "most_per_tick", "1 to 255 faults", 0));
+            }
+            file.cell.seed = sheet.seed;
+            for (index, form) in sheet.fault.iter().enumerate() {
+                let entry = Entry { form, path: element("fault", index), number: index + 1 };
+                if sound(&entry.path) {
+                    take(&entry, cell, &sheet, &mut file, &mut mistakes);
+                }
+            }
+            found.extend(mistakes.into_iter().map(|mistake| (mistake, None)));
         }
-        Some(ticks) => Some(tick("ticks", ticks)?),
-        None => None,
-    };
-    if kind == "intermittent" && rate.is_none() {
-        return Err((Problem::Needs { kind, needs: "`rate`: the chance of failing in a tick" }, None));
     }
-    if [at, from, after].iter().flatten().count() > 1 {
-        return Err((Problem::Beginnings, None));
-    }
-    let length = ticks.unwrap_or(1);
-    if let Some(at) = at {
-        if until.is_some() {
-            return Err((Problem::AtAndUntil, None));
+    if found.is_empty() { Ok(file) } else { Err(document.placed(text, found)) }
+}
+
+/// Take an entry into the file, or say what is wrong with it.
+fn take(
+    entry: &Entry<'_>,
+    cell: Option<&CellDescription>,
+    sheet: &Sheet,
+    file: &mut FaultFile,
+    mistakes: &mut Vec<Mistake>,
+) {
+    let before = mistakes.len();
+    if let Some(kind) = line::kind(&entry.form.kind) {
+        mistakes.extend(entry.untaken(&line::KEYS));
+        let plan = file.line.get_or_insert_with(|| line::empty(sheet.seed, sheet.most_per_tick));
+        match line::rule(entry, kind) {
+            Ok(rule) if mistakes.len() == before => {
+                mistakes.extend(
+                    plan.add(rule).err().map(|refusal| *entry.says(format_args!("is refused: {refusal}"))),
+                );
+            }
+            Ok(_) => {}
+            Err(mistake) => mistakes.push(*mistake),
         }
-        let until = at.saturating_add(if rate.is_some() { 1 } else { length });
-        return Ok(When { from: at, until, rate, ticks: length });
+        return;
     }
-    if ticks.is_some() && rate.is_none() {
-        return Err((Problem::TwoLengths, None));
+    let (Some(cell), Some(kind)) = (cell, cell::kind(&entry.form.kind)) else {
+        let kinds = line::kinds().chain(cell.iter().flat_map(|_| cell::kinds()));
+        let unknown = entry.unknown("kind", &entry.form.kind, &kinds.collect::<Vec<_>>());
+        let elsewhere = cell.is_none() && cell::kind(&entry.form.kind).is_some();
+        let mistake = if elsewhere {
+            entry.says("is a fault of the cell: such faults are for rcs-run")
+        } else {
+            unknown
+        };
+        mistakes.push(*mistake);
+        return;
+    };
+    mistakes.extend(entry.untaken(&kind.takes()));
+    match cell::fault(entry, kind, cell) {
+        Ok(fault) => file.cell.faults.push(fault),
+        Err(mistake) if mistakes.len() == before => mistakes.push(*mistake),
+        // A key that is not taken may be the one that is missing by another name.
+        Err(_) => {}
     }
-    let (from, until) = (from.or(after).unwrap_or(0), until.unwrap_or(u64::MAX));
-    if from >= until {
-        return Err((Problem::EmptyWindow { from, until }, None));
-    }
-    Ok(When { from, until, rate, ticks: length })
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn cell() -> CellDescription {
-        CellDescription::from_toml(include_str!("../../../../data/cell.toml")).unwrap()
-    }
-
-    fn faults(text: &str) -> Vec<(String, When)> {
-        let read = parse("f.toml", text, &cell()).unwrap();
-        read.cell.faults.into_iter().map(|fault| (fault.what.to_string(), fault.when)).collect()
-    }
-
-    #[test]
-    fn every_kind_is_read() {
-        let text = "seed = 7\n\
-            [[fault]]\nkind = \"off\"\nsensor = \"beam.3\"\nfrom = 200\nuntil = 500\n\
-            [[fault]]\nkind = \"stuck\"\nsensor = \"grip.potentiometer\"\nvalue = 900\nat = 10\nticks = 5\n\
-            [[fault]]\nkind = \"stuck\"\nsensor = \"resolver.shoulder\"\nafter = 8.0\n\
-            [[fault]]\nkind = \"noisy\"\nsensor = \"force.z\"\nby = 40\nrate = 0.01\nticks = 25\n\
-            [[fault]]\nkind = \"slow\"\nsensor = \"grip.strain-left\"\nby = 3\n\
-            [[fault]]\nkind = \"intermittent\"\nsensor = \"quick-change.id\"\nrate = 0.5\n\
-            [[fault]]\nkind = \"offset\"\nsensor = \"table.potentiometer\"\nby = -12\n\
-            [[fault]]\nkind = \"drift\"\nsensor = \"force.x\"\nby = 2.5\n\
-            [[fault]]\nkind = \"stuck\"\nvalve = \"grip.close-fine\"\nvalue = \"open\"\n\
-            [[fault]]\nkind = \"stuck\"\nvalve = \"quick-change.port\"\nvalue = \"closed\"\n\
-            [[fault]]\nkind = \"stuck\"\ndevice = \"lock-ring\"\n\
-            [[fault]]\nkind = \"stuck\"\ndevice = \"vise-jaw\"\n\
-            [[fault]]\nkind = \"air-lost\"\nat = 7\n\
-            [[fault]]\nkind = \"hydraulics-lost\"\nfrom = 9\n\
-            [[fault]]\nkind = \"camera-blind\"\n\
-            [[fault]]\nkind = \"missing\"\n\
-            [[fault]]\nkind = \"misplaced\"\nobject = \"LINKBAR1_BH\"\nx = 1.5\n\
-            [[fault]]\nkind = \"turned\"\nangle = 30\nrate = 0.5\n\
-            [[fault]]\nkind = \"wrong-part\"\nobject = \"LINKBAR1_BH\"\npart = \"LCLEVIS_BH\"\n\
-            [[fault]]\nkind = \"pedestal-moved\"\nx = 0.5\ny = -0.25\nangle = 2\n\
-            [[fault]]\nkind = \"flip\"\nrate = 0.001\n";
-        let read = faults(text);
-        let window = |from, until| When { from, until, ..When::ALWAYS };
-        let expected = [
-            ("beam.3 is off", window(200, 500)),
-            ("grip.potentiometer is stuck at 900", When { ticks: 5, ..window(10, 15) }),
-            ("resolver.shoulder is stuck", window(200, u64::MAX)),
-            ("force.z is noisy by 40 counts", When { rate: Some(0.01), ticks: 25, ..When::ALWAYS }),
-            ("grip.strain-left is 0.12 s late", When::ALWAYS),
-            ("quick-change.id is off", When { rate: Some(0.5), ..When::ALWAYS }),
-            ("table.potentiometer is off by -12 counts", When::ALWAYS),
-            ("force.x drifts by +2.5 counts a second", When::ALWAYS),
-            ("valve grip.close-fine is stuck open", When::ALWAYS),
-            ("valve quick-change.port is stuck closed", When::ALWAYS),
-            ("the locking ring is stuck", When::ALWAYS),
-            ("the jaw of the vise is stuck", When::ALWAYS),
-            ("the air is lost", window(7, 8)),
-            ("the hydraulics are lost", window(9, u64::MAX)),
-            ("the camera is blind", When::ALWAYS),
-            ("what is delivered does not come", When::ALWAYS),
-            ("LINKBAR1_BH lies 1.5 in, 0 in beside its place", When::ALWAYS),
-            ("what is delivered is turned by 30 degrees", When { rate: Some(0.5), ..When::ALWAYS }),
-            ("LCLEVIS_BH comes instead of LINKBAR1_BH", When::ALWAYS),
-            ("the pedestal stands 0.5 in, -0.25 in, 2 degrees beside its mark", When::ALWAYS),
-        ];
-        for (read, (text, when)) in read.iter().zip(expected) {
-            assert_eq!(*read, (text.to_owned(), when));
-        }
-        assert_eq!(read.len(), expected.len());
-        let read = parse("f.toml", text, &cell()).unwrap();
-        assert_eq!((read.cell.seed, read.line.map(|plan| plan.rules().len())), (7, Some(1)));
-    }
-
-    #[test]
-    fn errors_say_where_what_was_expected_and_what_was_found() {
-        for (entry, expected) in [
-            (
-                "kind = \"stuk\"",
-                "line 5, fault 2: there is no kind of fault \"stuk\"; did you mean \"stuck\"?",
-            ),
-            (
-                "kind = \"off\"\nsensor = \"grip.potentimeter\"",
-                "line 6, fault 2: there is no sensor \"grip.potentimeter\"; did you mean \"grip.potentiometer\"?",
-            ),
-            (
-                "kind = \"stuck\"\nvalve = \"grip.shut\"\nvalue = \"open\"",
-                "line 6, fault 2: there is no valve",
-            ),
-            (
-                "kind = \"stuck\"\nvalve = \"grip.vent\"\nvalue = \"ajar\"",
-                "line 7, fault 2: `value`: expected \"open\" or \"closed\", found \"ajar\"",
-            ),
-            ("kind = \"stuck\"\nvalve = \"grip.vent\"", "line 4, fault 2: stuck needs `value`"),
-            ("kind = \"stuck\"\ndevice = \"door\"", "line 6, fault 2: there is no device \"door\""),
-            ("kind = \"stuck\"", "line 4, fault 2: stuck needs one of `sensor`, `valve` and `device`"),
-            (
-                "kind = \"stuck\"\nsensor = \"beam.1\"\nvalue = 2",
-                "line 7, fault 2: `value`: expected 0 to 1, found 2",
-            ),
-            (
-                "kind = \"off\"\nsensor = \"beam.1\"\nvalues = 2",
-                "line 7, fault 2: off takes no `values`; it takes kind, sensor, at, from, after, until, rate, ticks",
-            ),
-            ("kind = \"noisy\"\nsensor = \"beam.1\"", "line 4, fault 2: noisy needs `by`: how much"),
-            (
-                "kind = \"slow\"\nsensor = \"beam.1\"\nby = 0",
-                "line 7, fault 2: `by`: expected 1 to 1000 ticks, found 0",
-            ),
-            ("kind = \"noisy\"\nsensor = \"beam.1\"\nby = nan", "line 7, fault 2: `by`: expected counts"),
-            ("kind = \"slow\"\nsensor = \"camera\"\nby = 3", "line 6, fault 2: the camera is no converter"),
-            (
-                "kind = \"intermittent\"\nsensor = \"beam.1\"",
-                "line 4, fault 2: intermittent needs `rate`: the chance of failing in a tick",
-            ),
-            (
-                "kind = \"air-lost\"\nrate = 1.5",
-                "line 6, fault 2: `rate`: expected a chance of 0.000001 to 1, found 1.5",
-            ),
-            ("kind = \"air-lost\"\nat = -1", "line 6, fault 2: `at`: expected a tick, found -1"),
-            (
-                "kind = \"air-lost\"\nat = 1\nafter = 2.0",
-                "line 4, fault 2: expected one of `at`, `from` and `after`",
-            ),
-            ("kind = \"air-lost\"\nat = 1\nuntil = 2", "line 4, fault 2: `at` is one moment"),
-            (
-                "kind = \"air-lost\"\nfrom = 9\nuntil = 9",
-                "line 4, fault 2: expected `until` behind the beginning",
-            ),
-            ("kind = \"air-lost\"\nfrom = 9\nticks = 9", "line 4, fault 2: a range of ticks without a rate"),
-            ("kind = \"air-lost\"\nat = \"soon\"", "line 6, fault 2: invalid type: string \"soon\""),
-            (
-                "kind = \"air-lost\"\nrate = 0.1\nticks = 0",
-                "line 7, fault 2: `ticks`: expected 1 to 100000, found 0",
-            ),
-            ("kind = \"turned\"", "line 4, fault 2: turned needs `angle`"),
-            ("kind = \"missing\"\nobject = \"BAR\"", "line 6, fault 2: there is no part \"BAR\" in the cell"),
-            ("kind = \"wrong-part\"", "line 4, fault 2: wrong-part needs `part`: what comes instead"),
-            ("kind = \"pedestal-moved\"\nat = 3", "line 6, fault 2: pedestal-moved takes no `at`"),
-            ("kind = \"misplaced\"\nx = 101", "line 6, fault 2: `x`: expected -100 to 100 in, found 101"),
-            ("kind = \"flip\"\nrate = 2", "line 6, fault 2: expected a rate of 0.000001 to 1, found 2"),
-        ] {
-            let text = format!("[[fault]]\nkind = \"flip\"\nrate = 0.1\n[[fault]]\n{entry}\n");
-            let said = parse("f.toml", &text, &cell()).unwrap_err().to_string();
-            assert!(
-                said.starts_with(&format!("f.toml, {expected}")),
-                "{entry}\n  says     {said}\n  expected {expected}"
-            );
-        }
-    }
-
-    #[test]
-    fn a_missing_file_is_named() {
-        let said = load(Path::new("no/such/file.toml"), &cell()).unwrap_err().to_string();
-        assert!(said.starts_with("no/such/file.toml: cannot be read: "), "{said}");
-    }
-}
+mod tests;

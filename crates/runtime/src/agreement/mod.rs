@@ -28,7 +28,7 @@ use taskdata::{
 };
 
 use self::report::at;
-pub use self::report::{cell_report, source};
+pub use self::report::{cell_report, source, toml_report};
 use crate::workstation::orders;
 
 /// What the lines `**` of a job ask of a cell that does not have it. `source` is the text of the description,

@@ -1,6 +1,9 @@
-//! What is wrong with a cell description, told as what is wrong with task data is.
+//! What is wrong with a cell description or a file of faults, told as what is wrong with task data is.
 
-use plant::description::{DescriptionError, TextSpan};
+use plant::{
+    description::DescriptionError,
+    mistake::{Mistakes, TextSpan},
+};
 use taskdata::load::{Diagnostics, Source, places::Places, report::Problems, source::At};
 
 use crate::setup::CELL;
@@ -14,26 +17,34 @@ pub fn source(text: String) -> Source {
 /// The mistakes in a cell description.
 #[must_use]
 pub fn cell_report(text: String, error: &DescriptionError) -> Diagnostics {
-    let mut problems = Problems::default();
     match error {
-        DescriptionError::Faults(faults) => {
-            for fault in faults.all() {
-                let (message, place) = (fault.message.clone(), fault.place);
-                match place {
-                    Some(place) => problems.error(fault.code, at(&place), message),
-                    None => problems.general(fault.code, message),
-                }
-                if let Some(expected) = &fault.expected {
-                    problems.expected(expected);
-                }
-                if let Some(nearest) = &fault.nearest {
-                    problems.nearest("one", nearest);
-                }
-            }
+        DescriptionError::Mistakes(mistakes) => toml_report(source(text), mistakes),
+        DescriptionError::Unreadable { .. } => {
+            let mut problems = Problems::default();
+            problems.general("file", error.to_string());
+            Diagnostics::new(problems, Places::in_lines(&[source(text)]), 0, Vec::new())
         }
-        DescriptionError::Unreadable { .. } => problems.general("file", error.to_string()),
     }
-    Diagnostics::new(problems, Places::in_lines(&[source(text)]), 0, Vec::new())
+}
+
+/// The mistakes in a file of TOML.
+#[must_use]
+pub fn toml_report(source: Source, mistakes: &Mistakes) -> Diagnostics {
+    let mut problems = Problems::default();
+    for mistake in mistakes.all() {
+        let message = mistake.message.clone();
+        match &mistake.place {
+            Some(place) => problems.error(mistake.code, at(place), message),
+            None => problems.general(mistake.code, message),
+        }
+        if let Some(expected) = &mistake.expected {
+            problems.expected(expected);
+        }
+        if let Some(nearest) = &mistake.nearest {
+            problems.nearest("one", nearest);
+        }
+    }
+    Diagnostics::new(problems, Places::in_lines(&[source]), 0, Vec::new())
 }
 
 /// A piece of a file without blocks.

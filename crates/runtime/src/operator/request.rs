@@ -73,7 +73,7 @@ impl Request {
         }
     }
 
-    /// It can only bring something to rest: every operator may ask for it, whoever commands.
+    /// It can only bring something to rest: every operator may ask for it, also while another commands.
     pub const fn is_stop(&self) -> bool {
         match self {
             Self::Status | Self::Stop | Self::Leave | Self::Wait | Self::Box(BoxAction::Hold(_)) => true,

@@ -130,25 +130,23 @@ pub fn read_blocks_under(directory: &Path) -> (Vec<Source>, Vec<Unreadable>) {
     // A symbolic link can lead back: each directory is read once.
     let mut seen = BTreeSet::new();
     while let Some(folder) = open.pop() {
-        let listed = fs::metadata(&folder).and_then(|found| {
-            let is_new = seen.insert((found.dev(), found.ino()));
-            is_new.then(|| fs::read_dir(&folder)).transpose()
-        });
-        let entries = match listed {
-            Ok(entries) => entries.into_iter().flatten(),
-            Err(error) => {
-                unreadable.push((folder.display().to_string(), error));
-                continue;
+        // What the program carries has no links.
+        let identity = fs::metadata(&folder).map(|found| (found.dev(), found.ino()));
+        if identity.is_ok_and(|identity| !seen.insert(identity)) {
+            continue;
+        }
+        match files::list(&folder) {
+            Ok(listed) => {
+                for path in listed {
+                    if path.extension().is_some_and(|e| e == "blk") {
+                        paths.push(path);
+                    } else if files::is_directory(&path) {
+                        open.push(path);
+                    }
+                }
             }
-        };
-        // What cannot be listed is named by its folder.
-        for entry in entries {
-            match entry.map(|entry| entry.path()) {
-                Ok(path) if path.extension().is_some_and(|e| e == "blk") => paths.push(path),
-                Ok(path) if path.is_dir() => open.push(path),
-                Ok(_) => {}
-                Err(error) => unreadable.push((folder.display().to_string(), error)),
-            }
+            // What cannot be listed is named by its folder.
+            Err(error) => unreadable.push((folder.display().to_string(), error)),
         }
     }
     paths.sort();

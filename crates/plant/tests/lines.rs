@@ -1,10 +1,11 @@
-//! The example plans of `data/faults` are plans, and the link survives each.
+//! The link survives each example of `data/faults` that is about the line alone.
 
+#[path = "../../depc/tests/session/mod.rs"]
 mod session;
 
 use std::{fs, path::Path};
 
-use depc::fault::text::{self, Entry, Sheet};
+use plant::fault::text::parse_line;
 use session::Session;
 
 #[test]
@@ -15,11 +16,8 @@ fn the_link_survives_every_example() {
         let path = entry.unwrap().path();
         assert_eq!(path.extension().and_then(|e| e.to_str()), Some("toml"), "{}", path.display());
         let text = fs::read_to_string(&path).unwrap();
-        if !Sheet::read("example", &text).unwrap().entries().iter().all(Entry::is_of_line) {
-            // Faults of the rest of the cell: tests/faults.rs plays them.
-            continue;
-        }
-        let plan = text::load(&path).unwrap();
+        // Faults of the rest of the cell: tests/faults.rs plays them.
+        let Ok(plan) = parse_line(&text) else { continue };
         let mut session = Session::new(1, &plan);
         for tick in 0..2000 {
             if tick % 60 == 0 {

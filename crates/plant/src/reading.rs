@@ -1,4 +1,4 @@
-//! Reads TOML text into the structures of a description, and finds at once everything in it that does not fit.
+//! Reads TOML text into structures, such as a cell description, and finds at once everything in it that does not fit.
 //!
 //! The structures derive serde's `Deserialize`, which gives up at the first value that does not fit. This
 //! deserializer does not let it: a value of another kind is noted with its place and replaced by one that
@@ -19,48 +19,77 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-use super::fault::{Fault, Faults, TextSpan, nearest};
+use crate::mistake::{Mistake, Mistakes, TextSpan, nearest};
 
 /// The way to an entry: `gripper.parts.body[0]`.
-pub(super) type Path = String;
+pub(crate) type Path = String;
 
 /// The way to a key of a table.
-pub(super) fn join(path: &str, key: &str) -> Path {
+pub(crate) fn join(path: &str, key: &str) -> Path {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
 /// The way to an element of an array.
-pub(super) fn element(path: &str, index: usize) -> Path {
+pub(crate) fn element(path: &str, index: usize) -> Path {
     format!("{path}[{index}]")
 }
 
-/// A text with its tables.
-pub(super) struct Document<'a> {
-    root: Spanned<DeTable<'a>>,
+/// What messages call the whole of a file and its kinds of mistakes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Words {
+    pub whole: &'static str,
+    pub syntax: &'static str,
+    pub key: &'static str,
+    pub missing: &'static str,
+    pub value: &'static str,
 }
 
-/// A fault, and the bytes that are to blame where those are not the entry's.
-pub(super) type Found = (Fault, Option<Range<usize>>);
+/// Of a cell description.
+pub(crate) const CELL: Words = Words {
+    whole: "the description",
+    syntax: "cell.syntax",
+    key: "cell.key",
+    missing: "cell.missing",
+    value: "cell.value",
+};
+
+/// Of a file of faults.
+pub(crate) const FAULTS: Words = Words {
+    whole: "the file",
+    syntax: "fault.syntax",
+    key: "fault.key",
+    missing: "fault.missing",
+    value: "fault.value",
+};
+
+/// A text with its tables.
+pub(crate) struct Document<'a> {
+    root: Spanned<DeTable<'a>>,
+    words: Words,
+}
+
+/// A mistake, and the bytes that are to blame where those are not the entry's.
+pub(crate) type Found = (Mistake, Option<Range<usize>>);
 
 /// What was read.
-pub(super) struct Reading<T> {
+pub(crate) struct Reading<T> {
     /// The structure; `None` if not even stand-ins make one.
     pub value: Option<T>,
     /// What did not fit.
-    pub faults: Vec<Found>,
+    pub mistakes: Vec<Found>,
     /// The entries that have stand-ins.
     pub stand_ins: BTreeSet<Path>,
 }
 
 impl<'a> Document<'a> {
     /// Take a text apart; also what is wrong with it as TOML.
-    pub fn parse(text: &'a str) -> (Self, Vec<Found>) {
+    pub fn parse(text: &'a str, words: Words) -> (Self, Vec<Found>) {
         let (root, errors) = DeTable::parse_recoverable(text);
-        let faults = errors.into_iter().map(|error| {
+        let mistakes = errors.into_iter().map(|error| {
             let message = format!("this is not TOML: {}", error.message().replace('\n', ", "));
-            (Fault::new("cell.syntax", "", message), Some(error.span().unwrap_or(0..0)))
+            (Mistake::new(words.syntax, "", message), Some(error.span().unwrap_or(0..0)))
         });
-        (Self { root }, faults.collect())
+        (Self { root, words }, mistakes.collect())
     }
 
     /// The bytes of an entry: of its value if that stands on one place, else of its key, else those of the
@@ -83,17 +112,17 @@ impl<'a> Document<'a> {
         at
     }
 
-    /// The faults with their places, in the order of the text.
-    pub fn placed(&self, text: &str, found: Vec<Found>) -> Faults {
-        let mut faults: Vec<Fault> = found
+    /// The mistakes with their places, in the order of the text.
+    pub fn placed(&self, text: &str, found: Vec<Found>) -> Mistakes {
+        let mut mistakes: Vec<Mistake> = found
             .into_iter()
-            .map(|(fault, at)| {
-                let Range { start, end } = at.unwrap_or_else(|| self.place(&fault.entry));
-                Fault { place: Some(TextSpan::of(text, start, end)), ..fault }
+            .map(|(mistake, at)| {
+                let Range { start, end } = at.unwrap_or_else(|| self.place(&mistake.entry));
+                Mistake { place: Some(TextSpan::of(text, start, end)), ..mistake }
             })
             .collect();
-        faults.sort_by_key(|fault| fault.place.map(|place| place.start));
-        Faults(faults)
+        mistakes.sort_by_key(|mistake| mistake.place.map(|place| place.start));
+        Mistakes(mistakes)
     }
 
     /// Read a structure.
@@ -103,24 +132,28 @@ impl<'a> Document<'a> {
     {
         let mut missing = BTreeSet::new();
         loop {
-            let notes =
-                Notes { missing: &missing, faults: RefCell::default(), stand_ins: RefCell::default() };
+            let notes = Notes {
+                words: self.words,
+                missing: &missing,
+                mistakes: RefCell::default(),
+                stand_ins: RefCell::default(),
+            };
             let result = T::deserialize(Reader {
                 notes: &notes,
                 node: Node::Table(self.root.get_ref()),
                 path: String::new(),
             });
-            let Notes { faults, stand_ins, .. } = notes;
-            let (faults, stand_ins) = (faults.into_inner(), stand_ins.into_inner());
+            let Notes { mistakes, stand_ins, .. } = notes;
+            let (mistakes, stand_ins) = (mistakes.into_inner(), stand_ins.into_inner());
             match result {
                 Err(Stop::Missing(path)) if !missing.contains(&path) => {
                     missing.insert(path);
                 }
-                Err(stop) if faults.is_empty() => {
-                    let faults = vec![(Fault::new("cell.value", "", stop.to_string()), None)];
-                    return Reading { value: None, faults, stand_ins };
+                Err(stop) if mistakes.is_empty() => {
+                    let mistakes = vec![(Mistake::new(self.words.value, "", stop.to_string()), None)];
+                    return Reading { value: None, mistakes, stand_ins };
                 }
-                result => return Reading { value: result.ok(), faults, stand_ins },
+                result => return Reading { value: result.ok(), mistakes, stand_ins },
             }
         }
     }
@@ -170,16 +203,17 @@ impl de::Error for Stop {
 
 /// What is noted on one way through the text.
 struct Notes<'n> {
+    words: Words,
     missing: &'n BTreeSet<Path>,
-    faults: RefCell<Vec<Found>>,
+    mistakes: RefCell<Vec<Found>>,
     stand_ins: RefCell<BTreeSet<Path>>,
 }
 
 impl Notes<'_> {
-    /// An entry that is not used, since it has a fault.
-    fn fault(&self, fault: Fault, at: Option<Range<usize>>) {
-        self.stand_ins.borrow_mut().insert(fault.entry.clone());
-        self.faults.borrow_mut().push((fault, at));
+    /// An entry that is not used, since it has a mistake.
+    fn mistake(&self, mistake: Mistake, at: Option<Range<usize>>) {
+        self.stand_ins.borrow_mut().insert(mistake.entry.clone());
+        self.mistakes.borrow_mut().push((mistake, at));
     }
 }
 
@@ -229,12 +263,13 @@ impl<'n, 'a> Reader<'n, 'a> {
             Node::StandIn => return,
         };
         let wanted = self.value().and_then(DeValue::as_str).unwrap_or_default();
-        self.notes.fault(Fault::unlike("cell.value", &self.path, expected, found).near(wanted, known), None);
+        let mistake = Mistake::unlike(self.notes.words.value, &self.path, expected, found);
+        self.notes.mistake(mistake.near(wanted, known), None);
     }
 
     /// The table, as a message calls it.
     fn whose(&self) -> &str {
-        if self.path.is_empty() { "the description" } else { &self.path }
+        if self.path.is_empty() { self.notes.words.whole } else { &self.path }
     }
 
     /// A whole number of a type, or 1 in its place.
@@ -288,9 +323,10 @@ impl<'n, 'a> Reader<'n, 'a> {
             let name = key.get_ref();
             let expected = format!("one of {}", fields.join(", "));
             let message = format!("{} has no key {name}; expected {expected}", self.whose());
-            let fault = Fault::new("cell.key", &join(&self.path, name), message).near(name, fields);
-            let fault = Fault { expected: Some(expected), found: Some(name.to_string()), ..fault };
-            self.notes.faults.borrow_mut().push((fault, Some(key.span())));
+            let mistake =
+                Mistake::new(self.notes.words.key, &join(&self.path, name), message).near(name, fields);
+            let mistake = Mistake { expected: Some(expected), found: Some(name.to_string()), ..mistake };
+            self.notes.mistakes.borrow_mut().push((mistake, Some(key.span())));
         }
     }
 
@@ -319,7 +355,7 @@ impl<'n, 'a> Reader<'n, 'a> {
                 self.notes.stand_ins.borrow_mut().insert(path);
             } else {
                 let message = format!("{} has no key {field}, which it needs", self.whose());
-                self.notes.fault(Fault::new("cell.missing", &path, message), None);
+                self.notes.mistake(Mistake::new(self.notes.words.missing, &path, message), None);
             }
         }
         entries
@@ -335,14 +371,14 @@ fn any_number() -> String {
     format!("0, or a number from {SMALLEST} to {LARGEST} or from -{LARGEST} to -{SMALLEST}")
 }
 
-/// The fault of a number of a wrong magnitude with the range of an entry that must be more than 0; any other as it is.
-pub(super) fn above_zero(fault: Fault) -> Fault {
-    match (&fault.expected, &fault.found) {
+/// The mistake of a number of a wrong magnitude with the range of an entry that must be more than 0; any other as it is.
+pub(crate) fn above_zero(mistake: Mistake) -> Mistake {
+    match (&mistake.expected, &mistake.found) {
         (Some(expected), Some(found)) if *expected == any_number() => {
             let expected = format!("a number from {SMALLEST} to {LARGEST}");
-            Fault::unlike(fault.code, &fault.entry, expected, found)
+            Mistake::unlike(mistake.code, &mistake.entry, expected, found)
         }
-        _ => fault,
+        _ => mistake,
     }
 }
 
@@ -462,8 +498,16 @@ impl<'de> de::Deserializer<'de> for Reader<'_, 'de> {
         visitor.visit_enum(StrDeserializer::new(word.copied().unwrap_or(STAND_IN)))
     }
 
-    fn deserialize_any<V: Visitor<'de>>(self, _visitor: V) -> Result<V::Value, Stop> {
-        Err(Stop::Other(format!("{}: a description says of each entry what it is", self.path)))
+    /// An entry that is a whole number or a word.
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
+        match self.value() {
+            Some(DeValue::String(text)) => visitor.visit_str(text),
+            Some(DeValue::Integer(_)) => visitor.visit_i64(self.whole(i64::MIN, i64::MAX)),
+            _ => {
+                self.unfit("a whole number, or a text in quotes", &[]);
+                visitor.visit_i64(1)
+            }
+        }
     }
 
     forward_to_deserialize_any! {

@@ -1,11 +1,12 @@
-//! What is wrong with a cell description: each fault with its entry, its place in the text, and what would be right.
+//! What is wrong in a file of TOML: each mistake with its entry, its place in the text, and what would be right.
 
 use std::fmt;
 
 /// Something that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
-    /// Stable short name of the kind of fault: `cell.syntax`, `cell.key`, `cell.missing`, `cell.value`, `cell.name`.
+pub struct Mistake {
+    /// Stable short name of its kind: `cell.syntax`, `cell.key`, `cell.missing`, `cell.value`, `cell.name`, and the same
+    /// with `fault` for a file of faults.
     pub code: &'static str,
     /// The way to the entry: `gripper.parts.body[0]`; lists count from 0.
     pub entry: String,
@@ -17,7 +18,7 @@ pub struct Fault {
     pub found: Option<String>,
     /// The nearest known key or name.
     pub nearest: Option<String>,
-    /// Where it stands; `None` if the description does not come from a text.
+    /// Where it stands; `None` if the entries do not come from a text.
     pub place: Option<TextSpan>,
 }
 
@@ -34,15 +35,15 @@ pub struct TextSpan {
     pub length: usize,
 }
 
-impl Fault {
-    /// A fault that its sentence says it all of.
-    pub(super) fn new(code: &'static str, entry: &str, message: String) -> Self {
+impl Mistake {
+    /// One that its sentence says it all of.
+    pub(crate) fn new(code: &'static str, entry: &str, message: String) -> Self {
         let entry = entry.to_owned();
         Self { code, entry, message, expected: None, found: None, nearest: None, place: None }
     }
 
     /// Something else was found than was expected.
-    pub(super) fn unlike(
+    pub(crate) fn unlike(
         code: &'static str,
         entry: &str,
         expected: impl fmt::Display,
@@ -55,12 +56,12 @@ impl Fault {
     }
 
     /// The same with the nearest of the known names.
-    pub(super) fn near(self, wanted: &str, known: &[&str]) -> Self {
+    pub(crate) fn near(self, wanted: &str, known: &[&str]) -> Self {
         Self { nearest: nearest(wanted, known).map(str::to_owned), ..self }
     }
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for Mistake {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(place) = &self.place {
             write!(f, "line {}, column {}: ", place.line, place.column)?;
@@ -72,7 +73,7 @@ impl fmt::Display for Fault {
 
 impl TextSpan {
     /// Where some bytes of a text stand. What goes over several lines is underlined in the first.
-    pub(super) fn of(text: &str, start: usize, end: usize) -> Self {
+    pub(crate) fn of(text: &str, start: usize, end: usize) -> Self {
         let start = (0..=start.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
         let before = &text[..start];
         let line_start = before.rfind('\n').map_or(0, |at| at + 1);
@@ -86,23 +87,23 @@ impl TextSpan {
     }
 }
 
-/// All faults of a description.
+/// All mistakes in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Faults(pub(super) Vec<Fault>);
+pub struct Mistakes(pub(crate) Vec<Mistake>);
 
-impl Faults {
-    /// The faults in the order of the text, if there is one.
+impl Mistakes {
+    /// The mistakes in the order of the text, if there is one.
     #[must_use]
-    pub fn all(&self) -> &[Fault] {
+    pub fn all(&self) -> &[Mistake] {
         &self.0
     }
 }
 
-impl fmt::Display for Faults {
+impl fmt::Display for Mistakes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (number, fault) in self.0.iter().enumerate() {
+        for (number, mistake) in self.0.iter().enumerate() {
             let separator = if number == 0 { "" } else { "; " };
-            write!(f, "{separator}{fault}")?;
+            write!(f, "{separator}{mistake}")?;
         }
         Ok(())
     }

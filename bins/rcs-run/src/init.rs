@@ -1,0 +1,23 @@
+//! `rcs-run init`: an editable copy of the data that comes with the program.
+
+use std::process::ExitCode;
+
+use os_io::console;
+
+use crate::{cli::InitArguments, error::Error};
+
+/// Write the copy.
+///
+/// # Errors
+/// [`Error::Write`] if a file is there already, or cannot be written.
+pub fn init(arguments: &InitArguments) -> Result<ExitCode, Error> {
+    let directory = &arguments.directory;
+    let count =
+        shipped::write(directory).map_err(|source| Error::Write { path: directory.clone(), source })?;
+    let is_here = directory.as_os_str() == ".";
+    let data = if is_here { "data".into() } else { directory.join("data") };
+    let data = data.display();
+    let option = if is_here { String::new() } else { format!(" --data {data}") };
+    console::answer(&format!("{count} files written into {data}; check them with rcs-run check{option}\n"))?;
+    Ok(ExitCode::SUCCESS)
+}

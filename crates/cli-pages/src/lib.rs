@@ -1,0 +1,112 @@
+//! Version, manual pages, shell completions and reference page of a program, from its definition of the command line.
+
+#![forbid(unsafe_code)]
+
+mod markdown;
+
+use std::{env, fs, io, path::Path, process};
+
+use clap::{Arg, Command, Parser, ValueEnum};
+use clap_complete::{Generator, Shell};
+
+pub use markdown::markdown;
+
+/// The version, and the commit that the program was built from if that is known.
+pub const VERSION: &str = if env!("RCS_COMMIT").is_empty() {
+    env!("CARGO_PKG_VERSION")
+} else {
+    concat!(env!("CARGO_PKG_VERSION"), " (", env!("RCS_COMMIT"), ")")
+};
+
+/// The option that writes the pages; it stands first and alone.
+const GENERATE: &str = "generate";
+
+/// Read the command line; with `--generate DIR` write the pages there and end the process.
+#[must_use]
+pub fn parse<P: Parser>() -> P {
+    let arguments: Vec<_> = env::args_os().collect();
+    let mut command = command::<P>();
+    if let [_, option, directory] = arguments.as_slice()
+        && option.to_str() == Some("--generate")
+    {
+        process::exit(match generate(&command, Path::new(directory)) {
+            Ok(()) => 0,
+            Err(error) => {
+                os_io::stderr_line!("{}: {}: {error}", command.get_name(), Path::new(directory).display());
+                2
+            }
+        });
+    }
+    let mut matches = command.get_matches_mut();
+    P::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| error.format(&mut command).exit())
+}
+
+/// The definition of a program with its version and `--generate`.
+#[must_use]
+pub fn command<P: Parser>() -> Command {
+    let generate = Arg::new(GENERATE)
+        .long(GENERATE)
+        .value_name("DIR")
+        .exclusive(true)
+        .help("Write manual pages, shell completions and the reference page into a directory, and end");
+    P::command().version(VERSION).arg(generate)
+}
+
+/// Write `man/*.1`, `completions/*` and `PROGRAM.md` into a directory.
+///
+/// # Errors
+/// What the system says.
+pub fn generate(command: &Command, directory: &Path) -> io::Result<()> {
+    let name = command.get_name().to_owned();
+    let (manual, completions) = (directory.join("man"), directory.join("completions"));
+    fs::create_dir_all(&manual)?;
+    fs::create_dir_all(&completions)?;
+    clap_mangen::generate_to(command.clone(), &manual)?;
+    for shell in Shell::value_variants() {
+        let mut text = Vec::new();
+        clap_complete::generate(*shell, &mut command.clone(), &name, &mut text);
+        fs::write(completions.join(shell.file_name(&name)), text)?;
+    }
+    fs::write(directory.join(format!("{name}.md")), markdown(command))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A program.
+    #[derive(Debug, Parser)]
+    #[command(name = "program", after_help = "Examples:\n  program one")]
+    struct Program {
+        #[command(subcommand)]
+        command: Sub,
+    }
+
+    #[derive(Debug, clap::Subcommand)]
+    enum Sub {
+        /// Do one thing | or another
+        One {
+            /// How often
+            ///
+            /// More than once is unusual.
+            #[arg(long, value_name = "N", default_value_t = 1)]
+            times: u8,
+        },
+    }
+
+    #[test]
+    fn the_pages_come_from_the_definition() {
+        let place = tempfile::tempdir().unwrap();
+        generate(&command::<Program>(), place.path()).unwrap();
+        let read = |name: &str| fs::read_to_string(place.path().join(name)).unwrap();
+        assert!(read("man/program-one.1").contains("How often"));
+        assert!(read("completions/program.bash").contains("--times"));
+        let page = read("program.md");
+        assert!(page.starts_with("# program\n\nA program.\n"), "{page}");
+        assert!(
+            page.contains("- `--times <N>` (default `1`): How often. More than once is unusual."),
+            "{page}"
+        );
+        assert!(page.contains("```text\nExamples:\n  program one\n```"), "{page}");
+    }
+}

@@ -1,0 +1,87 @@
+//! The reference page of a program.
+
+use std::fmt::Write as _;
+
+use clap::{Arg, Command};
+
+/// The page: a section for the program and one for each subcommand, with the usage, the arguments and the options.
+#[must_use]
+pub fn markdown(command: &Command) -> String {
+    let mut command = command.clone();
+    command.build();
+    let mut page = String::new();
+    section(&command, 1, &mut page);
+    page
+}
+
+fn section(command: &Command, depth: usize, page: &mut String) {
+    let name = command.get_bin_name().unwrap_or(command.get_name());
+    let usage = command.clone().render_usage().to_string();
+    let about = command.get_long_about().or(command.get_about()).map(ToString::to_string).unwrap_or_default();
+    add(page, format_args!("{} {name}\n\n{}\n", "#".repeat(depth), escaped(&sentence(&about))));
+    let usage: Vec<_> = usage.trim_start_matches("Usage: ").lines().map(str::trim).collect();
+    add(page, format_args!("```text\n{}\n```\n", usage.join("\n")));
+    let shown = |argument: &&Arg| {
+        !argument.is_hide_set() && !matches!(argument.get_id().as_str(), "help" | "version")
+    };
+    for argument in command.get_arguments().filter(shown) {
+        let what = format!("{}: {}", label(argument), escaped(&text(argument)));
+        add(page, format_args!("- {}", what.trim_end_matches([':', ' '])));
+    }
+    if command.get_arguments().any(|argument| shown(&argument)) {
+        page.push('\n');
+    }
+    if let Some(after) = command.get_after_help() {
+        add(page, format_args!("```text\n{after}\n```\n"));
+    }
+    let visible = |below: &&Command| !below.is_hide_set() && below.get_name() != "help";
+    command.get_subcommands().filter(visible).for_each(|below| section(below, depth + 1, page));
+}
+
+/// The argument as it is typed, and what is taken without it.
+fn label(argument: &Arg) -> String {
+    let values = argument.get_value_names().unwrap_or_default();
+    let values = if argument.get_action().takes_values() {
+        values.iter().map(|value| format!("<{value}>")).collect::<Vec<_>>().join(" ")
+    } else {
+        String::new()
+    };
+    let option = argument.get_long().map(|long| format!("--{long}"));
+    let typed =
+        option.into_iter().chain((!values.is_empty()).then_some(values)).collect::<Vec<_>>().join(" ");
+    let default: Vec<_> = argument.get_default_values().iter().map(|value| value.to_string_lossy()).collect();
+    let taken = argument.get_action().takes_values() && !default.is_empty();
+    if taken { format!("`{typed}` (default `{}`)", default.join(",")) } else { format!("`{typed}`") }
+}
+
+/// The help of an argument on one line, with its possible values.
+fn text(argument: &Arg) -> String {
+    let help = argument.get_long_help().or(argument.get_help()).map(ToString::to_string).unwrap_or_default();
+    let mut text = sentence(&help.split("\n\n").map(sentence).collect::<Vec<_>>().join(" "));
+    let values = argument.get_possible_values();
+    if argument.get_action().takes_values() && !values.is_empty() {
+        let value = |value: &clap::builder::PossibleValue| {
+            let help = value.get_help().map(|help| format!(" ({help})")).unwrap_or_default();
+            format!("`{}`{help}", value.get_name())
+        };
+        let values = values.iter().filter(|value| !value.is_hide_set()).map(value).collect::<Vec<_>>();
+        let _ = write!(text, " Values: {}.", values.join(", "));
+    }
+    text
+}
+
+/// A text that a page of Markdown shows as it is.
+fn escaped(text: &str) -> String {
+    text.replace('<', "\\<").replace('|', "\\|")
+}
+
+/// A text on one line that ends like a sentence.
+fn sentence(text: &str) -> String {
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    if line.is_empty() || line.ends_with(['.', ')', ':']) { line } else { line + "." }
+}
+
+fn add(page: &mut String, line: std::fmt::Arguments<'_>) {
+    // Writing into a string cannot fail.
+    let _ = writeln!(page, "{line}");
+}

@@ -1,0 +1,85 @@
+//! Files that a program carries in itself.
+//!
+//! A program that was installed runs in any directory: what it needs to read comes with it. A path that begins with
+//! [`PREFIX`] names such a file, for example `shipped:data/cell.toml`; [`files`](crate::files) reads it as any other.
+
+use std::{
+    collections::BTreeSet,
+    io::{self, ErrorKind},
+    path::{Path, PathBuf},
+    sync::OnceLock,
+};
+
+/// What the path of a carried file begins with.
+pub const PREFIX: &str = "shipped:";
+
+/// A file that the program carries.
+#[derive(Clone, Copy, Debug)]
+pub struct Carried {
+    /// Its path, without the prefix.
+    pub path: &'static str,
+    /// What is in it.
+    pub bytes: &'static [u8],
+}
+
+static CARRIED: OnceLock<&'static [Carried]> = OnceLock::new();
+
+/// Make files readable under [`PREFIX`], for the whole process. The first call counts.
+pub fn carry(files: &'static [Carried]) {
+    let _ = CARRIED.set(files);
+}
+
+/// The path of a carried file or directory without the prefix; none if the path is one of the file system.
+pub(crate) fn inside(path: &Path) -> Option<&str> {
+    path.to_str()?.strip_prefix(PREFIX)
+}
+
+/// The bytes of a carried file.
+pub(crate) fn read(path: &str) -> io::Result<&'static [u8]> {
+    let found = all().iter().find(|file| file.path == path).map(|file| file.bytes);
+    found.ok_or_else(|| {
+        let why = format!("this program carries no file {path}");
+        io::Error::new(ErrorKind::NotFound, why)
+    })
+}
+
+/// What is directly in a carried directory, with the prefix; none if there is nothing.
+pub(crate) fn list(directory: &str) -> Vec<PathBuf> {
+    let below = |file: &Carried| Path::new(file.path).strip_prefix(directory).ok();
+    let first = |rest: &'static Path| rest.components().next();
+    let names: BTreeSet<_> = all().iter().filter_map(below).filter_map(first).collect();
+    names.iter().map(|name| Path::new(&format!("{PREFIX}{directory}")).join(name)).collect()
+}
+
+fn all() -> &'static [Carried] {
+    CARRIED.get().copied().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files;
+
+    #[test]
+    fn carried_files_are_read_as_others() {
+        carry(&[
+            Carried { path: "data/a.txt", bytes: b"one\r" },
+            Carried { path: "data/jobs/b.txt", bytes: b"two" },
+        ]);
+        let path = |text: &str| PathBuf::from(text);
+        assert_eq!(files::read_text(&path("shipped:data").join("a.txt")).unwrap(), "one\n");
+        assert_eq!(files::read(&path("shipped:data/a.txt"), 3).unwrap_err().kind(), ErrorKind::FileTooLarge);
+        assert_eq!(files::read_text(&path("shipped:data/c")).unwrap_err().kind(), ErrorKind::NotFound);
+        assert_eq!(files::read_text(&path("shipped:data")).unwrap_err().kind(), ErrorKind::NotFound);
+        assert!(
+            files::is_directory(&path("shipped:data")) && files::is_directory(&path("shipped:data/jobs"))
+        );
+        assert!(
+            !files::is_directory(&path("shipped:dat")) && !files::is_directory(&path("shipped:data/a.txt"))
+        );
+        assert!(files::is_file(&path("shipped:data/jobs/b.txt")) && !files::is_file(&path("shipped:data")));
+        let listed = files::list(&path("shipped:data")).unwrap();
+        assert_eq!(listed, [path("shipped:data/a.txt"), path("shipped:data/jobs")]);
+        assert_eq!(files::list(&path("shipped:none")).unwrap_err().kind(), ErrorKind::NotFound);
+    }
+}

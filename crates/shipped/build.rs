@@ -1,0 +1,35 @@
+//! Lists the files of `data/` with their bytes.
+
+use std::{
+    env, fs, io,
+    path::{Path, PathBuf},
+};
+
+fn main() -> io::Result<()> {
+    let here = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").ok_or(io::ErrorKind::NotFound)?);
+    let out = PathBuf::from(env::var_os("OUT_DIR").ok_or(io::ErrorKind::NotFound)?);
+    let root = here.join("../..").canonicalize()?;
+    let mut files = Vec::new();
+    collect(&root.join("data"), &mut files)?;
+    files.sort();
+    let entries = files.iter().map(|file| {
+        let path = file.strip_prefix(&root).unwrap_or(file);
+        format!("    Carried {{ path: {path:?}, bytes: include_bytes!({file:?}) }},\n")
+    });
+    fs::write(out.join("files.rs"), format!("&[\n{}]\n", entries.collect::<String>()))?;
+    // Cargo looks at every file below.
+    println!("cargo::rerun-if-changed={}", root.join("data").display());
+    Ok(())
+}
+
+fn collect(directory: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in fs::read_dir(directory)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            collect(&path, files)?;
+        } else {
+            files.push(path);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,101 @@
+//! The programs as they are installed: they need no file beside them, and their pages come from their definitions.
+
+use std::{
+    env, fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+use whole_system_tests::{Scratch, rcs_cell, rcs_console, rcs_log, rcs_neighbour, rcs_run, root};
+
+/// What stands before the pages of the programs.
+const TOP: &str = "# Command lines\n\n\
+    This page is made from the definitions of the programs. Each program prints its own part with `--help`;\n\
+    `PROGRAM --generate DIR` writes manual pages and shell completions ([install](install.md)).\n\n";
+
+fn in_directory(program: &Path, directory: &Path, arguments: &[&str]) -> Output {
+    Command::new(program).args(arguments).current_dir(directory).output().expect("the program can be started")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn the_page_of_the_command_lines_is_what_the_programs_say() {
+    let mut page = TOP.to_owned();
+    for program in [rcs_run(), rcs_log(), rcs_console(), rcs_cell(), rcs_neighbour()] {
+        let scratch = Scratch::new("pages");
+        let made = in_directory(program, &scratch.file("."), &["--generate", "pages"]);
+        assert!(made.status.success(), "{}", text(&made.stderr));
+        let name = program.file_name().expect("a program has a name").to_string_lossy().into_owned();
+        let read =
+            |file: String| fs::read_to_string(scratch.file("pages").join(file)).expect("the file is made");
+        assert!(read(format!("man/{name}.1")).contains(".TH"), "{name} has a manual page");
+        assert!(read(format!("completions/{name}.bash")).contains("COMPREPLY"), "{name} has completions");
+        // The page has one title; each program is a section of it.
+        for line in read(format!("{name}.md")).lines() {
+            page += &if line.starts_with('#') { format!("#{line}\n") } else { format!("{line}\n") };
+        }
+    }
+    let file = root().join("docs/cli.md");
+    if env::var_os("RCS_PAGES").is_some() {
+        fs::write(&file, &page).expect("the page can be written");
+    }
+    let kept = fs::read_to_string(&file).expect("the page is there");
+    assert!(
+        kept == page,
+        "docs/cli.md is old: RCS_PAGES=write cargo test --release -p whole-system-tests --test command_lines"
+    );
+}
+
+#[test]
+fn a_program_runs_in_an_empty_directory() {
+    let scratch = Scratch::new("empty");
+    let run = |arguments: &[&str]| in_directory(rcs_run(), &scratch.file("."), arguments);
+    for boards in ["one", "split"] {
+        let short = run(&["--ticks", "100", "--log", "none", "--boards", boards, "--json"]);
+        assert_eq!(short.status.code(), Some(0), "{}", text(&short.stderr));
+    }
+    let checked = run(&["check"]);
+    assert_eq!(checked.status.code(), Some(0), "{}{}", text(&checked.stdout), text(&checked.stderr));
+    let failed = run(&["--faults", "data/faults/blank-missing.toml"]);
+    assert_eq!(failed.status.code(), Some(1), "{}", text(&failed.stderr));
+    assert!(text(&failed.stderr).contains("vision sees no object"), "{}", text(&failed.stderr));
+    assert!(!scratch.file("data").exists());
+    let why = in_directory(rcs_log(), &scratch.file("."), &["why", "runs/linkbar.mcap"]);
+    assert!(text(&why.stdout).contains("LOCATE-OBJ"), "{}", text(&why.stdout));
+}
+
+#[test]
+fn a_directory_that_is_named_must_be_there() {
+    let scratch = Scratch::new("named");
+    let run = in_directory(rcs_run(), &scratch.file("."), &["--data", "elsewhere"]);
+    assert_eq!(run.status.code(), Some(2));
+    assert!(text(&run.stderr).contains("there is no task data directory elsewhere"), "{}", text(&run.stderr));
+}
+
+#[test]
+fn a_copy_of_the_data_can_be_changed() {
+    let scratch = Scratch::new("init");
+    let run = |arguments: &[&str]| in_directory(rcs_run(), &scratch.file("."), arguments);
+    let made = run(&["init", "."]);
+    assert!(text(&made.stdout).ends_with("check them with rcs-run check\n"), "{}", text(&made.stdout));
+    let job = scratch.file("data/jobs/linkbar.job");
+    let changed = fs::read_to_string(&job).expect("the job is written").replace("LINKBAR1_BH", "LINKBAR9_BH");
+    fs::write(&job, changed).expect("the job can be changed");
+    let refused = run(&["--log", "none"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("LINKBAR9_BH"), "{}", text(&refused.stderr));
+    let again = run(&["init", "."]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(text(&again.stderr).contains("is there already"), "{}", text(&again.stderr));
+}
+
+#[test]
+fn each_program_says_its_version() {
+    for program in [rcs_run(), rcs_log(), rcs_console(), rcs_cell(), rcs_neighbour()] {
+        let said = text(&in_directory(program, root(), &["--version"]).stdout);
+        assert!(said.contains(env!("CARGO_PKG_VERSION")), "{said}");
+    }
+}
