@@ -1,9 +1,10 @@
-//! The samples of the README and of docs/fork.md are what the programs print: each `console` block is run as it stands there.
+//! The samples of the README and of the tutorials are what the programs print: each `console` block is run as it stands
+//! there, one after the other in one directory.
 //!
 //! `...` stands for any lines, and at the end of a line for the rest of it. Numbers that depend on the machine count
 //! as equal.
 
-use std::{fs, os::unix::fs::symlink, process::Command};
+use std::{fs, os::unix::fs::symlink, process::Command as Process};
 
 use whole_system_tests::{Scratch, rcs_log, rcs_run, root};
 
@@ -56,6 +57,23 @@ fn words(command: &str) -> Vec<String> {
     words
 }
 
+/// The process of a command: a program of this workspace, or what the shell has.
+fn process(command: &str) -> Process {
+    let Some(rest) = command.strip_prefix("cargo run --release") else {
+        let mut shell = Process::new("sh");
+        shell.args(["-c", command]);
+        return shell;
+    };
+    let (program, arguments) = match rest.trim().split_once("-- ") {
+        Some(("-p rcs-log ", arguments)) => (rcs_log(), arguments),
+        Some(("", arguments)) => (rcs_run(), arguments),
+        _ => (rcs_run(), rest),
+    };
+    let mut process = Process::new(program);
+    process.args(words(arguments));
+    process
+}
+
 /// Run the samples of a page in an empty directory with the shipped data; how many there are.
 fn run_samples(page: &str) -> usize {
     let text = fs::read_to_string(root().join(page)).expect("the page is there");
@@ -66,17 +84,8 @@ fn run_samples(page: &str) -> usize {
     for (block, _) in blocks {
         for sample in block.split("$ ").skip(1) {
             let (command, expected) = sample.split_once('\n').expect("a command is a line");
-            let rest = command.strip_prefix("cargo run --release").expect("samples run with cargo").trim();
-            let (program, arguments) = match rest.split_once("-- ") {
-                Some(("-p rcs-log ", arguments)) => (rcs_log(), arguments),
-                Some(("", arguments)) => (rcs_run(), arguments),
-                _ => (rcs_run(), rest),
-            };
-            let output = Command::new(program)
-                .args(words(arguments))
-                .current_dir(scratch.file("."))
-                .output()
-                .expect("the program can be started");
+            let output =
+                process(command).current_dir(scratch.file(".")).output().expect("the program can be started");
             let text = [output.stdout, output.stderr].concat();
             let expected: Vec<&str> = expected.lines().collect();
             assert_shown(command, &expected, &String::from_utf8_lossy(&text));
@@ -94,4 +103,18 @@ fn the_samples_of_the_readme_are_what_is_printed() {
 #[test]
 fn the_samples_of_the_page_about_forks_are_what_is_printed() {
     assert_eq!(run_samples("docs/fork.md"), 6, "the page shows a run, four forks and a comparison");
+}
+
+#[test]
+fn the_samples_of_the_first_tutorial_are_what_is_printed() {
+    assert_eq!(run_samples("docs/start.md"), 8, "the page shows runs, changes, a failure and a pose");
+}
+
+#[test]
+fn the_samples_of_the_tutorial_on_failures_are_what_is_printed() {
+    assert_eq!(
+        run_samples("docs/explain-a-failure.md"),
+        8,
+        "the page shows two failures, their causes and a remedy"
+    );
 }

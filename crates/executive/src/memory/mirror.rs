@@ -14,8 +14,8 @@
 //!
 //! The mirror is a convenience inside the program that moves a robot, so it must not be what ends it: it reads
 //! what the tick left for it in this program's own memory, where no other process can write; its shared memory is laid
-//! out beforehand and never grows, and it is silent while there is so little of it that a new subscriber could not
-//! be given his.
+//! out beforehand and never grows, and it is silent while there is so little of it that a new subscriber
+//! could not be served.
 
 use std::{
     fs,

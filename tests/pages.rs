@@ -1,0 +1,134 @@
+//! The pages of documentation: every link leads somewhere, and every page is in the table of contents.
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use whole_system_tests::root;
+
+/// Where pages are.
+const PLACES: [&str; 9] = [".", "docs", "docs/design", "data", "crates", "bins", "benches", "fuzz", "tests"];
+
+/// Every page of the repository: those in [`PLACES`] and in the directories right below them.
+fn pages() -> BTreeSet<PathBuf> {
+    let entries = |directory: &Path| {
+        let entries = fs::read_dir(directory).expect("the directory is there");
+        entries.map(|entry| entry.expect("it can be listed").path()).collect::<Vec<_>>()
+    };
+    let mut pages = BTreeSet::new();
+    for place in PLACES {
+        let listed = entries(&root().join(place));
+        let below = listed.iter().filter(|path| path.is_dir() && place != ".").flat_map(|path| entries(path));
+        pages.extend(below.chain(listed.clone()).filter(|path| path.extension().is_some_and(|e| e == "md")));
+    }
+    pages
+}
+
+/// The text outside of blocks of code.
+fn prose(text: &str) -> String {
+    let mut inside = false;
+    let outside = |line: &&str| {
+        let fence = line.trim_start().starts_with("```");
+        inside ^= fence;
+        !fence && !inside
+    };
+    text.lines().filter(outside).collect::<Vec<_>>().join("\n")
+}
+
+/// The targets of links `[text](target)`.
+fn links(text: &str) -> Vec<&str> {
+    text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target).collect()
+}
+
+/// The anchors that the headings of a page give, as the web page of a repository makes them.
+fn anchors(text: &str) -> BTreeSet<String> {
+    let headings = text.lines().filter(|line| line.starts_with('#'));
+    let anchor = |heading: &str| {
+        let kept = heading.trim_start_matches('#').trim().to_lowercase();
+        kept.chars()
+            .filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'))
+            .map(|c| if c == ' ' { '-' } else { c })
+            .collect()
+    };
+    headings.map(anchor).collect()
+}
+
+#[test]
+fn every_link_leads_somewhere() {
+    let mut broken = Vec::new();
+    let pages = pages();
+    assert!(pages.len() > 40, "{} pages were found", pages.len());
+    for page in &pages {
+        let text = prose(&fs::read_to_string(page).expect("the page can be read"));
+        for link in
+            links(&text).into_iter().filter(|link| !link.contains("://") && !link.starts_with("mailto:"))
+        {
+            let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let target = if file.is_empty() { page.clone() } else { page.with_file_name(file) };
+            let is_there = target.exists()
+                && (anchor.is_empty()
+                    || fs::read_to_string(&target).is_ok_and(|text| anchors(&prose(&text)).contains(anchor)));
+            if !is_there {
+                broken.push(format!("{}: {link}", page.display()));
+            }
+        }
+    }
+    assert!(broken.is_empty(), "links that lead nowhere:\n{}", broken.join("\n"));
+}
+
+#[test]
+fn every_page_is_in_the_contents_once() {
+    let docs = root().join("docs");
+    let summary = fs::read_to_string(docs.join("SUMMARY.md")).expect("the contents are there");
+    let mut listed: Vec<_> = links(&summary).into_iter().map(|link| docs.join(link)).collect();
+    listed.sort();
+    let is_page = |path: &&PathBuf| path.starts_with(&docs) && !path.ends_with("SUMMARY.md");
+    let pages: Vec<_> = pages().iter().filter(is_page).cloned().collect();
+    assert_eq!(listed, pages);
+}
+
+/// Widest line of prose, characters.
+const WIDEST: usize = 110;
+/// Pages that programs and tests write.
+const WRITTEN: [&str; 4] = ["check-variants.md", "traceability.md", "seeds.md", "cli.md"];
+
+/// Whether a line may be wider: a table, an indented block, a link, a picture, the name of a test.
+fn may_be_wide(line: &str) -> bool {
+    line.starts_with(['|', '#'])
+        || line.starts_with("    ")
+        || line.contains("](")
+        || line.trim_start().starts_with("- test:")
+}
+
+#[test]
+fn prose_is_within_110_columns() {
+    let mut wide = Vec::new();
+    for page in pages().iter().filter(|page| !WRITTEN.iter().any(|written| page.ends_with(written))) {
+        let text = fs::read_to_string(page).expect("the page can be read");
+        let lines = prose(&text);
+        let lines = lines.lines().filter(|line| line.chars().count() > WIDEST && !may_be_wide(line));
+        wide.extend(lines.map(|line| format!("{}: {line}", page.display())));
+    }
+    assert!(wide.is_empty(), "lines of more than {WIDEST} columns:\n{}", wide.join("\n"));
+}
+
+/// Words for persons: a reader stumbles over them where programs are meant.
+const AVOIDED: [&str; 7] = ["somebody", "someone", "whoever", "himself", "hers", "his", "he"];
+
+#[test]
+fn programs_are_no_persons() {
+    let mut found = Vec::new();
+    for page in &pages() {
+        let text = prose(&fs::read_to_string(page).expect("the page can be read")).to_lowercase();
+        for (number, line) in text.lines().enumerate() {
+            let words: Vec<_> = line.split(|c: char| !c.is_alphanumeric() && c != '\'').collect();
+            let avoided: Vec<_> = AVOIDED.iter().filter(|avoided| words.contains(*avoided)).collect();
+            if !avoided.is_empty() {
+                found.push(format!("{}: line {} of the prose: {avoided:?}", page.display(), number + 1));
+            }
+        }
+    }
+    assert!(found.is_empty(), "use the field's terms instead:\n{}", found.join("\n"));
+}
