@@ -1,6 +1,9 @@
 //! Parts and tools: the bodies with which they collide, coloured by kind.
 
-use plant::{description::PartType, solid::along};
+use plant::{
+    description::PartType,
+    solid::{Family, along},
+};
 
 use crate::{
     material::{
@@ -13,14 +16,14 @@ use crate::{
 /// Edges of a part, in.
 const EDGE: f64 = 0.03;
 
-/// The colour of a kind of part: tools, round parts, large and small blocks each have their own.
+/// The colour of a kind of part: that of its family.
 #[must_use]
 pub fn colour(kind: &PartType) -> Material {
-    match along(kind) {
-        _ if kind.tool => Red,
-        Some(_) => Brass,
-        None if kind.size[0] > 1.0 => Violet,
-        None => Green,
+    match Family::of(kind) {
+        Family::Tool => Red,
+        Family::Round => Brass,
+        Family::Block => Violet,
+        Family::Bar => Green,
     }
 }
 

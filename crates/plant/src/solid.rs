@@ -100,6 +100,32 @@ pub fn along(kind: &PartType) -> Option<(Frame, f64, f64)> {
     Some((Frame { position: Inches::zeros(), rotation: turn }, diameter / 2.0, length))
 }
 
+/// What a part looks like from afar: pictures give each family a colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Family {
+    /// A tool in its holder.
+    Tool,
+    /// A cylinder.
+    Round,
+    /// A box thicker than an inch.
+    Block,
+    /// A thin box.
+    Bar,
+}
+
+impl Family {
+    /// The family of a kind of part.
+    #[must_use]
+    pub fn of(kind: &PartType) -> Self {
+        match kind.shape {
+            _ if kind.tool => Self::Tool,
+            Shape::CylinderX | Shape::CylinderZ => Self::Round,
+            Shape::Box if kind.size[0] > 1.0 => Self::Block,
+            Shape::Box => Self::Bar,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

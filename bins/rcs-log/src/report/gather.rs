@@ -15,7 +15,7 @@ use rcs_core::{
 };
 use record::{Attachment, Log, proto::foxglove::Level, remarks::is_restart_ordered};
 
-use super::scene::Scene;
+use super::scene::{FROM_ABOVE, FROM_THE_SIDE, Scene};
 use crate::{
     Error,
     story::{Chronicle, Moment, walk},
@@ -24,6 +24,8 @@ use crate::{
 
 /// Levels whose commands have a lane in the timeline: positions in the ladder's list of processes, Task to Prim.
 pub const LANES: usize = 4;
+/// The link whose origin is the tool point.
+const TOOL: &str = "quick_change";
 /// Pictures at most; with more commands, every so many has one.
 const PICTURES: usize = 36;
 
@@ -48,6 +50,17 @@ pub struct Picture {
     pub text: String,
     /// The drawing.
     pub svg: String,
+    /// Drawings of what is near the tool point, with what they show: of the failure.
+    pub near: Vec<(&'static str, String)>,
+}
+
+/// A passage of the robot by something, nearer than any other of the run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clearance {
+    /// The tick.
+    pub tick: u64,
+    /// What the log says of it.
+    pub text: String,
 }
 
 /// A run as the page shows it. All series have one value a tick.
@@ -87,6 +100,8 @@ pub struct Run {
     pub all_lines: usize,
     /// The cell where commands begin, where the failure began, and at the end.
     pub pictures: Vec<Picture>,
+    /// The closest passage of the robot by something.
+    pub clearance: Option<Clearance>,
 }
 
 /// Read a log.
@@ -110,6 +125,7 @@ pub fn gather(log: &Log, path: &Path) -> Result<Run, Error> {
         }
     }
     run.pictures = pictures(log, &run);
+    run.clearance = log.end.as_ref().and_then(|end| end.get("clearance")).and_then(|text| clearance(text));
     Ok(run)
 }
 
@@ -178,9 +194,23 @@ fn pictures(log: &Log, run: &Run) -> Vec<Picture> {
         while let Some((_, moved)) = places.next_if(|(moved, _)| moved.0 <= tick) {
             scene.place(moved);
         }
-        pictures.push(Picture { tick, text, svg: scene.draw() });
+        let failed = run.failure.as_ref().is_some_and(|failure| failure.story.tick == tick);
+        let views = [
+            ("near the tool point, from above: +X to the right, +Y up", FROM_ABOVE),
+            ("near the tool point, from the operator's side: +X to the right, +Z up", FROM_THE_SIDE),
+        ];
+        let views = views.into_iter().filter(|_| failed);
+        let near = views.filter_map(|(what, eye)| Some((what, scene.near(TOOL, eye)?))).collect();
+        pictures.push(Picture { tick, text, svg: scene.draw(), near });
     }
     pictures
+}
+
+/// The tick of a clearance as a run puts it: "... by 0.157 in at tick 1307, during ...".
+fn clearance(text: &str) -> Option<Clearance> {
+    let (_, rest) = text.split_once("at tick ")?;
+    let digits = rest.split(|c: char| !c.is_ascii_digit()).next()?;
+    Some(Clearance { tick: digits.parse().ok()?, text: text.to_owned() })
 }
 
 /// Lengthen the last stretch of a lane, or begin a new one.
@@ -225,6 +255,14 @@ mod tests {
         let texts: Vec<_> = lane.iter().map(|s| (s.from, s.to, s.text.as_str())).collect();
         assert_eq!(texts, [(1, 1, ""), (2, 4, "MOVE"), (5, 5, "PAUSE")]);
         assert_eq!(lane[1].steps, [(2, "start".to_owned()), (3, "moving".to_owned())]);
+    }
+
+    #[test]
+    fn the_closest_passage_has_a_tick() {
+        let text =
+            "right_finger passes UNIT_1_floor by 0.157 in at tick 1307, during GRASP-OBJ of GET-OBJECT";
+        assert_eq!(clearance(text), Some(Clearance { tick: 1307, text: text.into() }));
+        assert_eq!(clearance("none"), None);
     }
 
     #[test]

@@ -121,8 +121,15 @@ fn failure(told: &Told, run: &Run) -> Markup {
         section.failure {
             h2 { "Why it failed" }
             p { "Tick " (story.tick) " (" (format_args!("{:.2}", seconds(story.tick))) " s): " (story.text) "." }
+            @for picture in seen.take(1) {
+                div.gallery {
+                    (figure(picture))
+                    @for (what, svg) in &picture.near {
+                        figure { (PreEscaped(svg)) figcaption { (what) } }
+                    }
+                }
+            }
             p { b { "First cause:" } " " (story.first_cause) "." }
-            @for picture in seen.take(1) { (figure(picture)) }
             (links("The commands that led there", &story.commands))
             (links("From the failure to its cause, each because of the next", &story.causes))
             @if !story.evidence.is_empty() {
@@ -243,6 +250,8 @@ fn paths(run: &Run) -> Markup {
     let at = |tick: u64| run.ticks.binary_search(&tick).ok().and_then(|at| run.path.get(at)).copied();
     let stops: Vec<[f64; 3]> =
         run.chronicle.commands.iter().filter_map(|command| at(command.last_tick)).collect();
+    let closest = run.clearance.as_ref();
+    let ring = closest.and_then(|clearance| Some((at(clearance.tick)?, clearance.text.as_str())));
     html! {
         section {
             h2 { "Path of the tool point" }
@@ -251,14 +260,19 @@ fn paths(run: &Run) -> Markup {
                     "From above: +X (machine tool) to the right, +Y up; inches. Dots: where commands ended.",
                     &run.path,
                     &stops,
+                    ring,
                     |p| [p[0], p[1]],
                 ))
                 (path(
                     "From the side: distance from the base axis to the right, +Z up; inches.",
                     &run.path,
                     &stops,
+                    ring,
                     |p| [p[0].hypot(p[1]), p[2]],
                 ))
+            }
+            @if let Some(clearance) = closest {
+                p { span.key {} "Closest clearance: " (clearance.text) "." }
             }
         }
     }

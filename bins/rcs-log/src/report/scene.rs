@@ -1,7 +1,8 @@
 //! Pictures of the cell: the boxes and cylinders of its description, where the log says that they are, drawn as SVG.
 //!
 //! The eye looks from the operator's side, to the right and from above, without perspective, so that lengths can be
-//! compared. Faces turned away are left out, the others are painted from the farthest to the nearest.
+//! compared; near a link also straight from above and from the side. Faces turned away are left out, the others are painted
+//! from the farthest to the nearest.
 
 use std::{collections::HashMap, fmt::Write as _};
 
@@ -12,13 +13,23 @@ use roxmltree::{Document, Node};
 const SIZE: [f64; 2] = [560.0, 380.0];
 /// Sides of a cylinder.
 const SIDES: usize = 14;
-/// From the eye into the picture, to the right, and up; and where the light comes from. Unit vectors of the world, roughly.
+/// From the eye into the picture; and where the light comes from. Unit vectors of the world, roughly.
 const EYE: [f64; 3] = [-0.35, 0.80, -0.49];
+/// Straight down: +X to the right, +Y up.
+pub const FROM_ABOVE: [f64; 3] = [0.0, 0.02, -1.0];
+/// From the operator's side: +X to the right, +Z up.
+pub const FROM_THE_SIDE: [f64; 3] = [0.0, 1.0, -0.02];
+/// A point that the raised arm does not reach, m: a picture of the whole cell has room for it.
+const OVER_THE_ARM: [f64; 3] = [0.0, 0.0, 1.35];
+/// Half the width of a picture near a link, m.
+const NEAR: f64 = 0.55;
 const LIGHT: [f64; 3] = [0.35, -0.55, 0.76];
 /// Links that would hide the others or fill the picture.
 const LEFT_OUT: [&str; 2] = ["floor", "machine_column"];
 
 type Point = [f64; 3];
+/// Depth, colour, and corners in the picture.
+type Face = (f64, String, Vec<[f64; 2]>);
 
 /// A body with its place in its link.
 struct Visual {
@@ -69,8 +80,25 @@ impl Scene {
 
     /// The cell as it stands now.
     pub fn draw(&mut self) -> String {
-        let (right, up) = basis();
-        let mut faces: Vec<(f64, String, Vec<[f64; 2]>)> = Vec::new();
+        let faces = self.faces(EYE);
+        let (right, up) = basis(EYE);
+        let over = [dot(OVER_THE_ARM, right), -dot(OVER_THE_ARM, up)];
+        let view = *self.view.get_or_insert_with(|| fit(&faces, over));
+        svg(faces, view)
+    }
+
+    /// What is near a link as it stands now, seen along a direction; none if the link is nowhere.
+    pub fn near(&self, link: &str, eye: Point) -> Option<String> {
+        let (right, up) = basis(eye);
+        let at = self.world(link)?.position;
+        let view = ([dot(at, right), -dot(at, up)], SIZE[0] / (2.0 * NEAR));
+        Some(svg(self.faces(eye), view))
+    }
+
+    /// The faces that are seen along a direction: depth, colour, corners in the picture, m.
+    fn faces(&self, eye: Point) -> Vec<Face> {
+        let (right, up) = basis(eye);
+        let mut faces = Vec::new();
         for (name, visuals) in &self.visuals {
             let Some(link) =
                 self.world(name).filter(|place| *place != Transform::IDENTITY || name == "world")
@@ -82,32 +110,46 @@ impl Scene {
                 for face in &visual.faces {
                     let corners: Vec<Point> = face.iter().map(|corner| apply(&at, *corner)).collect();
                     let normal = normal(&corners);
-                    if dot(normal, EYE) >= 0.0 {
+                    if dot(normal, eye) >= 0.0 {
                         continue;
                     }
                     let depth =
-                        corners.iter().map(|corner| dot(*corner, EYE)).sum::<f64>() / corners.len() as f64;
+                        corners.iter().map(|corner| dot(*corner, eye)).sum::<f64>() / corners.len() as f64;
                     let flat =
                         corners.iter().map(|corner| [dot(*corner, right), -dot(*corner, up)]).collect();
                     faces.push((depth, shade(visual.color, normal), flat));
                 }
             }
         }
-        let (middle, scale) = *self.view.get_or_insert_with(|| fit(&faces));
-        faces.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let [width, height] = SIZE;
-        let mut out = format!("<svg class=\"cell\" viewBox=\"0 0 {width} {height}\" role=\"img\">");
-        for (_, fill, corners) in &faces {
-            let _ = write!(out, "<path fill=\"{fill}\" d=\"");
-            for (index, corner) in corners.iter().enumerate() {
-                let x = (corner[0] - middle[0]).mul_add(scale, width / 2.0);
-                let y = (corner[1] - middle[1]).mul_add(scale, height / 2.0);
-                let _ = write!(out, "{}{x:.1} {y:.1}", if index == 0 { 'M' } else { 'L' });
-            }
-            out.push_str("Z\"/>");
-        }
-        out + "</svg>"
+        faces
     }
+}
+
+/// The faces around a middle, at so many pixels a metre, the farthest first.
+fn svg(mut faces: Vec<Face>, (middle, scale): ([f64; 2], f64)) -> String {
+    faces.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let [width, height] = SIZE;
+    let mut out = format!("<svg class=\"cell\" viewBox=\"0 0 {width} {height}\" role=\"img\">");
+    for (_, fill, corners) in &faces {
+        let place = |corner: &[f64; 2]| {
+            let x = (corner[0] - middle[0]).mul_add(scale, width / 2.0);
+            [x, (corner[1] - middle[1]).mul_add(scale, height / 2.0)]
+        };
+        let corners: Vec<[f64; 2]> = corners.iter().map(place).collect();
+        let outside = |axis: usize| {
+            corners.iter().all(|corner| corner[axis] < 0.0)
+                || corners.iter().all(|corner| corner[axis] > SIZE[axis])
+        };
+        if outside(0) || outside(1) {
+            continue;
+        }
+        let _ = write!(out, "<path fill=\"{fill}\" d=\"");
+        for (index, [x, y]) in corners.iter().enumerate() {
+            let _ = write!(out, "{}{x:.1} {y:.1}", if index == 0 { 'M' } else { 'L' });
+        }
+        out.push_str("Z\"/>");
+    }
+    out + "</svg>"
 }
 
 fn children<'a, 'input>(node: Node<'a, 'input>, name: &'a str) -> impl Iterator<Item = Node<'a, 'input>> {
@@ -193,10 +235,10 @@ fn unit(a: Point) -> Point {
     a.map(|value| value / length)
 }
 
-/// Right and up in the picture.
-fn basis() -> (Point, Point) {
-    let right = unit(cross(EYE, [0.0, 0.0, 1.0]));
-    (right, unit(cross(right, EYE)))
+/// Right and up in a picture seen along a direction that is not vertical.
+fn basis(eye: Point) -> (Point, Point) {
+    let right = unit(cross(eye, [0.0, 0.0, 1.0]));
+    (right, unit(cross(right, eye)))
 }
 
 /// Outward normal of a flat face.
@@ -243,9 +285,9 @@ fn shade(color: Point, normal: Point) -> String {
     format!("#{:02x}{:02x}{:02x}", byte(color[0]), byte(color[1]), byte(color[2]))
 }
 
-/// Middle and scale that show all faces.
-fn fit(faces: &[(f64, String, Vec<[f64; 2]>)]) -> ([f64; 2], f64) {
-    let (mut least, mut most) = ([f64::MAX; 2], [f64::MIN; 2]);
+/// Middle and scale that show all faces, and a point.
+fn fit(faces: &[Face], point: [f64; 2]) -> ([f64; 2], f64) {
+    let (mut least, mut most) = (point, point);
     for corner in faces.iter().flat_map(|(_, _, corners)| corners) {
         for axis in 0..2 {
             (least[axis], most[axis]) = (least[axis].min(corner[axis]), most[axis].max(corner[axis]));
@@ -314,6 +356,28 @@ mod tests {
         scene.place(vec![(link("base", "world"), at([1.0, 0.0, 0.0]))]);
         let picture = scene.draw();
         assert_eq!(picture.matches("<path").count(), 3, "{picture}");
+    }
+
+    #[test]
+    fn near_a_link_it_is_in_the_middle_whichever_way_one_looks() {
+        let mut scene = Scene::new(URDF);
+        assert_eq!(scene.near("arm", FROM_ABOVE), None, "it is nowhere yet");
+        scene.place(vec![
+            (link("base", "world"), at([9.0, 0.0, 0.0])),
+            (link("arm", "world"), at([1.0, 2.0, 3.0])),
+        ]);
+        for eye in [FROM_ABOVE, FROM_THE_SIDE] {
+            let picture = scene.near("arm", eye).unwrap();
+            assert!(picture.matches("<path").count() > 0, "{picture}");
+            let view = |point| basis(eye).0.iter().zip(point).map(|(a, b): (&f64, f64)| a * b).sum::<f64>();
+            assert!((view([1.0, 0.0, 0.0]) - 1.0).abs() < 1e-9, "+X is to the right");
+        }
+        let far = scene.near("arm", FROM_ABOVE).unwrap().matches("<path").count();
+        scene.place(vec![(link("base", "world"), at([1.0, 2.0, 3.0]))]);
+        assert!(
+            scene.near("arm", FROM_ABOVE).unwrap().matches("<path").count() > far,
+            "what is far is left out"
+        );
     }
 
     #[test]

@@ -244,12 +244,13 @@ impl Square {
 }
 
 /// A path seen along an axis: `seen` takes the coordinates that are drawn, across and up, from a point. `stops` are
-/// places worth a dot.
+/// places worth a dot, `ring` one worth a ring, with what is to be said of it.
 #[must_use]
 pub fn path(
     title: &str,
     points: &[[f64; 3]],
     stops: &[[f64; 3]],
+    ring: Option<([f64; 3], &str)>,
     seen: impl Fn(&[f64; 3]) -> [f64; 2],
 ) -> Markup {
     const SIZE: f64 = Square::SIZE;
@@ -275,6 +276,13 @@ pub fn path(
                     polyline.path points=(list(&line)) {}
                     @for (x, y) in stops.iter().map(|stop| square.place(*stop)) {
                         circle.dot cx=(px(x)) cy=(px(y)) r="2.6" {}
+                    }
+                    @if let Some((point, text)) = ring {
+                        @let (x, y) = square.place(seen(&point));
+                        g {
+                            title { (text) }
+                            circle.ring cx=(px(x)) cy=(px(y)) r="8" {}
+                        }
                     }
                     @for (x, y) in points.iter().take(1).map(|start| square.place(*start)) {
                         circle.start cx=(px(x)) cy=(px(y)) r="4" { title { "start" } }
@@ -318,8 +326,12 @@ mod tests {
 
     #[test]
     fn a_path_without_points_is_an_empty_picture() {
-        assert!(!path("nowhere", &[[0.0; 3]], &[], |p| [p[0], p[1]]).into_string().contains("polyline"));
+        assert!(
+            !path("nowhere", &[[0.0; 3]], &[], None, |p| [p[0], p[1]]).into_string().contains("polyline")
+        );
         let corner = [[1.0, 0.0, 0.0], [2.0, 5.0, 0.0]];
-        assert!(path("somewhere", &corner, &corner, |p| [p[0], p[1]]).into_string().contains("polyline"));
+        let drawn =
+            path("somewhere", &corner, &corner, Some((corner[1], "a<b")), |p| [p[0], p[1]]).into_string();
+        assert!(drawn.contains("polyline") && drawn.contains("<title>a&lt;b</title>"), "{drawn}");
     }
 }

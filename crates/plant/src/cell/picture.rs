@@ -15,10 +15,10 @@ use super::Cell;
 use crate::{
     bodies::turret,
     convert::{metres, newtons, to_metres, to_pose},
-    description::PartType,
+    description::{Kind, PartType},
     linkage::{AXES, STARTS},
     scene::{Block, along_x, jaw_blocks},
-    solid::along,
+    solid::{Family, along},
 };
 
 /// A moving body, metres, in the coordinates of its parent.
@@ -111,7 +111,7 @@ impl Cell {
         for block in &self.furniture {
             if !VISE_BLOCKS.contains(&block.name.as_str()) {
                 urdf.begin_link(&block.name);
-                urdf.block(&Block { frame: Frame::identity(), ..block.clone() }, STEEL);
+                urdf.block(&Block { frame: Frame::identity(), ..block.clone() }, colour(block));
                 urdf.end_link();
                 urdf.joint(
                     &format!("{}_mount", block.name),
@@ -128,9 +128,11 @@ impl Cell {
             urdf.begin_link(&name);
             match along(kind) {
                 Some((axis, radius, length)) => {
-                    urdf.shape(&axis, &Outline::Cylinder(radius, length), PART);
+                    urdf.shape(&axis, &Outline::Cylinder(radius, length), part_colour(kind));
                 }
-                None => urdf.shape(&Frame::identity(), &Outline::Box(Inches::from(kind.size)), PART),
+                None => {
+                    urdf.shape(&Frame::identity(), &Outline::Box(Inches::from(kind.size)), part_colour(kind));
+                }
             }
             urdf.end_link();
             urdf.joint(&format!("{name}_free"), "floating", "world", &name, &Frame::identity(), None);
@@ -168,6 +170,16 @@ impl Cell {
             let middle = if joint == 0 { Frame { rotation: upright(), ..Frame::identity() } } else { middle };
             urdf.begin_link(name);
             urdf.shape(&middle, &Outline::Cylinder(radius, length), ROBOT);
+            let axle = match joint {
+                1 => Some(turret_radius + 3.0),
+                2 => Some(robot.upper_arm_radius + 1.0),
+                _ => None,
+            };
+            if let Some(half) = axle {
+                // The axle about which the link turns.
+                let across = Frame { rotation: sideways(), ..Frame::identity() };
+                urdf.shape(&across, &Outline::Cylinder(0.8 * robot.upper_arm_radius, 2.0 * half), DARK);
+            }
             urdf.end_link();
             let start =
                 Frame { position: Inches::new(STARTS[joint], 0.0, 0.0), rotation: Rotation::identity() };
@@ -209,6 +221,11 @@ fn upright() -> Rotation {
     Rotation::from_axis_angle(&Inches::y_axis(), -core::f64::consts::FRAC_PI_2)
 }
 
+/// The rotation of a cylinder along X onto the Y axis of a link.
+fn sideways() -> Rotation {
+    Rotation::from_axis_angle(&Inches::z_axis(), core::f64::consts::FRAC_PI_2)
+}
+
 /// Name of the link of a part.
 #[must_use]
 pub fn part_link(id: u32) -> String {
@@ -224,10 +241,37 @@ pub(super) fn link(name: &str, parent: &'static str, pose: &Pose) -> Link {
     }
 }
 
-const ROBOT: &str = "0.85 0.35 0.10 1";
+const ROBOT: &str = "0.91 0.42 0.11 1";
 pub(super) const STEEL: &str = "0.60 0.62 0.65 1";
 pub(super) const DARK: &str = "0.25 0.27 0.30 1";
-const PART: &str = "0.15 0.45 0.80 1";
+const TRAY: &str = "0.22 0.44 0.70 1";
+const YELLOW: &str = "0.96 0.77 0.09 1";
+const MACHINE: &str = "0.30 0.52 0.58 1";
+const BENCH: &str = "0.79 0.68 0.50 1";
+const FLOOR: &str = "0.73 0.73 0.72 1";
+
+/// The colour of a block that stands still.
+fn colour(block: &Block) -> &'static str {
+    match (block.kind, block.name.as_str()) {
+        (Kind::Tray, _) => TRAY,
+        (Kind::Holster | Kind::Drum, _) => YELLOW,
+        (_, "floor") => FLOOR,
+        (_, "robot_base") => DARK,
+        (_, name) if name.starts_with("machine_") || name == "tool_drum" => MACHINE,
+        _ if block.size.min() >= 8.0 => BENCH,
+        _ => STEEL,
+    }
+}
+
+/// The colour of a part: that of its family.
+fn part_colour(kind: &PartType) -> &'static str {
+    match Family::of(kind) {
+        Family::Tool => "0.82 0.23 0.20 1",
+        Family::Round => "0.85 0.66 0.16 1",
+        Family::Block => "0.47 0.32 0.72 1",
+        Family::Bar => "0.18 0.62 0.34 1",
+    }
+}
 
 /// How a joint moves: radians or metres.
 pub(super) struct Motion {
