@@ -20,7 +20,7 @@ use tungstenite::{
 };
 
 /// Topics that are sent once, at the start.
-const ONCE: [&str; 2] = ["/robot_description", "/tf_static"];
+const ONCE: [&str; 4] = ["/robot_description", "/tf_static", "/meshes", "/names"];
 
 /// What a run says to its person.
 #[derive(Clone, Default)]

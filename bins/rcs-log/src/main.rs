@@ -9,6 +9,7 @@
 //! | [`fork`] | what would have happened if? |
 //! | [`compare`] | what do other data change in the jobs? |
 //! | [`report`] | the run on one page |
+//! | [`serve`] | the run as a viewer shows it |
 //! | [`golden`] | the run as a small file for tests |
 
 mod compare;
@@ -20,6 +21,7 @@ mod info;
 mod parallel;
 mod replay;
 mod report;
+mod serve;
 mod story;
 mod why;
 
@@ -49,6 +51,7 @@ Examples:
   rcs-log fork runs/linkbar.mcap --tick 4600 --set 'line=** wait 50'   what if the next line came 2 s later?
   rcs-log compare data ../new/data          what do other data change in the jobs?
   rcs-log report runs/linkbar.mcap          the run as a page, runs/linkbar.html
+  rcs-log serve runs/linkbar.mcap --rate 5  play the run to Foxglove or Lichtblick, five times as fast
   rcs-log golden runs/*.mcap -o tests/goldens   small files for tests, with their texts
 
 Exit status: 0 done, and the same where something is compared; 1 different; 2 usage, or a file that cannot be used.
@@ -89,6 +92,11 @@ enum Command {
     Compare(compare::Arguments),
     /// Write the run as one page of HTML that needs nothing else
     Report(report::Arguments),
+    /// Play a log to Foxglove or Lichtblick on this machine, as rcs-run --live shows a run
+    ///
+    /// It plays once, from its start, when a viewer has subscribed to something, and the program ends when the log has
+    /// ended and the last viewer is closed.
+    Serve(serve::Arguments),
     /// Make the small files that tests replay, and their texts for review
     ///
     /// A log is refused unless it is complete, nothing in it is damaged, and this program computes every tick of it
@@ -185,6 +193,17 @@ enum Error {
         /// Why.
         source: io::Error,
     },
+    /// Viewers cannot connect.
+    #[error("viewers cannot connect at 127.0.0.1:{port}: {source}; --port names another one")]
+    Port {
+        /// The port.
+        port: u16,
+        /// Why.
+        source: io::Error,
+    },
+    /// The system has no random numbers.
+    #[error(transparent)]
+    NoRandom(#[from] live::NoRandom),
     /// The answer cannot be written.
     #[error("the answer cannot be written: {0}")]
     Output(#[from] io::Error),
@@ -201,6 +220,7 @@ fn main() -> ExitCode {
         Command::Fork(arguments) => fork::fork(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Report(arguments) => report::report(&arguments),
+        Command::Serve(arguments) => serve::serve(&arguments),
         Command::Golden(arguments) => golden::golden(&arguments),
     };
     outcome.unwrap_or_else(|error| {

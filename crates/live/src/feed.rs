@@ -101,7 +101,13 @@ impl Feed {
         }
     }
 
-    /// True once someone has subscribed to anything.
+    /// How many clients there are.
+    #[must_use]
+    pub fn viewers(&self) -> usize {
+        lock(&self.0).queues.len()
+    }
+
+    /// True if a client has subscribed to anything.
     #[must_use]
     pub fn is_watched(&self) -> bool {
         lock(&self.0).queues.iter().any(|queue| !lock(&queue.0).subscriptions.is_empty())

@@ -133,6 +133,8 @@ fn frame(bytes: &[u8], at: usize) -> Option<(u8, usize)> {
 fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     match opcode {
         op::METADATA => texts(body, text(body, 0)?)?,
+        // A number, name, encoding, the schema.
+        op::SCHEMA => text(body, text(body, text(body, 2)?)?)?,
         // Two numbers, topic, encoding, metadata.
         op::CHANNEL => texts(body, text(body, text(body, 4)?)?)?,
         // Two times, name, media type, length of the data; behind the data the checksum.

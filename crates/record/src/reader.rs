@@ -12,7 +12,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use mcap::{McapError, records::Record};
+use mcap::{
+    McapError,
+    records::{self, Record},
+};
 use os_io::files;
 use rcs_core::tick::Tick;
 
@@ -28,6 +31,7 @@ use crate::{
         wire::{Fields, Value},
     },
     scene::{TF, TF_STATIC},
+    tap::{Channel, Tap},
     writer::{Codecs, END, LAYOUT, LOG_TOPIC, REPLAY, RUN, Timing, replay_field},
 };
 
@@ -41,6 +45,8 @@ pub struct Log {
     segments: Vec<Segment>,
     /// Numbers of the channels by topic.
     channels: BTreeMap<String, u16>,
+    /// What the file says of channels and schemas, by number.
+    described: Described,
     /// Metadata of the start: what run it was.
     pub run: BTreeMap<String, String>,
     /// Metadata of the end: how the run ended; none if the program was killed.
@@ -49,6 +55,13 @@ pub struct Log {
     pub attachments: Vec<Attachment>,
     /// The file has its end. If not, up to a second before the end of the run is missing.
     pub complete: bool,
+}
+
+/// What a file says of channels and schemas, by number.
+#[derive(Default)]
+struct Described {
+    channels: BTreeMap<u16, records::Channel>,
+    schemas: BTreeMap<u16, (records::SchemaHeader, Vec<u8>)>,
 }
 
 /// A part of the file, as far as messages are concerned.
@@ -116,6 +129,7 @@ impl Log {
             bytes: Vec::new(),
             segments: Vec::new(),
             channels: BTreeMap::new(),
+            described: Described::default(),
             run: BTreeMap::new(),
             end: None,
             attachments: Vec::new(),
@@ -164,8 +178,16 @@ impl Log {
     }
 
     fn note(&mut self, record: &Record<'_>) {
-        if let Record::Channel(channel) = record {
-            self.channels.entry(channel.topic.clone()).or_insert(channel.id);
+        match record {
+            Record::Channel(channel) => {
+                self.channels.entry(channel.topic.clone()).or_insert(channel.id);
+                self.described.channels.entry(channel.id).or_insert_with(|| channel.clone());
+            }
+            Record::Schema { header, data } => {
+                let schema = || (header.clone(), data.to_vec());
+                self.described.schemas.entry(header.id).or_insert_with(schema);
+            }
+            _ => {}
         }
     }
 
@@ -284,6 +306,31 @@ impl Log {
     pub fn places(&self) -> impl Iterator<Item = (Tick, Vec<(Link, Transform)>)> {
         let fixed = self.messages(TF_STATIC);
         fixed.chain(self.messages(TF)).map(|(tick, data)| (tick, foxglove::take_transforms(&data)))
+    }
+
+    /// Tell a tap of the channels. One whose schema is damaged is left out.
+    pub fn tell_channels(&self, tap: &mut dyn Tap) {
+        for (id, channel) in &self.described.channels {
+            let Some((header, schema)) = self.described.schemas.get(&channel.schema_id) else { continue };
+            let (topic, encoding) = (&channel.topic, &channel.message_encoding);
+            let (schema_name, schema_encoding) = (&header.name, &header.encoding);
+            tap.channel(*id, &Channel { topic, encoding, schema_name, schema_encoding, schema });
+        }
+    }
+
+    /// Give all messages to a tap, in the order of the file. `before` gets the time of each message before it is
+    /// given, nanoseconds since 1970, and may wait. A chunk is decompressed at a time.
+    pub fn play(&self, tap: &mut dyn Tap, mut before: impl FnMut(u64)) {
+        for segment in &self.segments {
+            let Segment::Chunk(range) = segment else { continue };
+            // `from_bytes` has decoded it: there is no error.
+            let _ = decode(self.bytes.get(range.clone()).unwrap_or_default(), |record| {
+                if let Record::Message { header, data } = record {
+                    before(header.log_time);
+                    tap.message(header.channel_id, header.log_time, &data);
+                }
+            });
+        }
     }
 
     /// The messages of a topic with their ticks.

@@ -1,0 +1,116 @@
+//! `rcs-log serve`: plays a log to Foxglove and Lichtblick, as `rcs-run --live` shows a run.
+
+use std::{
+    path::PathBuf,
+    process::ExitCode,
+    thread,
+    time::{Duration, Instant},
+};
+
+use live::{Feed, Options, Origin, Port, Server, protocol::ServerInfo};
+use os_io::stderr_line;
+use record::Log;
+
+use crate::Error;
+
+/// How often to look whether viewers have come or gone.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Arguments of `serve`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Arguments {
+    /// The log
+    pub file: PathBuf,
+    /// The port on 127.0.0.1; 0 for any that is free
+    #[arg(long, value_name = "PORT", default_value_t = 8765)]
+    port: u16,
+    /// How many times as fast as the robot
+    #[arg(long, value_name = "N", default_value = "1", value_parser = rate)]
+    rate: f64,
+    /// Let pages of this site connect, such as http://localhost:8080; may be given again
+    #[arg(long, value_name = "ORIGIN")]
+    live_origin: Vec<Origin>,
+}
+
+/// A rate of playing.
+fn rate(text: &str) -> Result<f64, String> {
+    let rate: Option<f64> = text.parse().ok();
+    rate.filter(|rate| (0.01..=1000.0).contains(rate))
+        .ok_or_else(|| format!("a number from 0.01 to 1000 was expected, found {text}"))
+}
+
+/// Play a log once, from its start, when a viewer has subscribed to something.
+///
+/// # Errors
+/// [`Error`] if the log cannot be read, or the port cannot be had.
+pub fn serve(arguments: &Arguments) -> Result<ExitCode, Error> {
+    let path = &arguments.file;
+    // The schemas travel in the log: one of another version can be shown as well.
+    let log = Log::open(path).map_err(|source| Error::Read { path: path.clone(), source })?;
+    if let Some(damage) = log.damage() {
+        stderr_line!("rcs-log: {}: {damage}", path.display());
+    }
+    let unreachable = |source| Error::Port { port: arguments.port, source };
+    let port = Port::take(arguments.port).map_err(unreachable)?;
+    let name = arguments.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let info = ServerInfo { name, metadata: log.run.clone(), ..ServerInfo::new()? };
+    let options = Options { origins: arguments.live_origin.clone(), info, ..Options::default() };
+    let feed = Feed::default();
+    let mut tap = feed.tap();
+    log.tell_channels(&mut *tap);
+    let server = Server::start(port, options, feed.clone()).map_err(unreachable)?;
+    stderr_line!(
+        "rcs-log: viewers can connect at ws://{}; the log plays when one has subscribed",
+        server.address()
+    );
+    while !feed.is_watched() {
+        thread::sleep(LOOK);
+    }
+    let mut pace = Pace { rate: arguments.rate, start: None };
+    log.play(&mut *tap, |time| pace.wait(time));
+    stderr_line!("rcs-log: the log has ended; this ends when the last viewer is closed");
+    while feed.viewers() > 0 {
+        thread::sleep(LOOK);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// When a message is due.
+struct Pace {
+    rate: f64,
+    /// Time of the first message, nanoseconds, and when it was sent.
+    start: Option<(u64, Instant)>,
+}
+
+impl Pace {
+    fn wait(&mut self, time: u64) {
+        let (first, begin) = *self.start.get_or_insert_with(|| (time, Instant::now()));
+        let seconds = Duration::from_nanos(time.saturating_sub(first)).as_secs_f64() / self.rate;
+        // A damaged log may have any time: a year is as good as for ever.
+        let due = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+        thread::sleep(due.saturating_sub(begin.elapsed()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rate_is_a_number_above_zero() {
+        assert_eq!((rate("1"), rate("0.5"), rate("1000")), (Ok(1.0), Ok(0.5), Ok(1000.0)));
+        for wrong in ["0", "-1", "1001", "NaN", "inf", "x", ""] {
+            assert!(rate(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn messages_are_due_by_their_times_and_the_rate() {
+        let mut pace = Pace { rate: 10.0, start: None };
+        let begin = Instant::now();
+        pace.wait(5_000_000_000);
+        pace.wait(5_400_000_000);
+        pace.wait(5_200_000_000);
+        assert!(begin.elapsed() >= Duration::from_millis(40));
+    }
+}
