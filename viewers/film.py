@@ -209,7 +209,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         if arguments.tick is not None:
             image = frame(studio, arguments.tick, size, scratch, max(1, round(size[0] / 800)))
-            image.quantize(192, dither=Image.Dither.NONE).save(arguments.output, optimize=True)
+            image.save(arguments.output, optimize=True)
             return
         folder = arguments.folder or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)

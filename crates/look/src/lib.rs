@@ -2,7 +2,7 @@
 //!
 //! [`models`] makes glTF files of parametric solids. They are for eyes only: the physics has its own bodies
 //! ([`plant::bodies`], [`plant::scene`]), and each mesh covers the bodies of its link, so that nobody sees a gap where the
-//! physics has contact. [`labels`] says the names of the things that matter.
+//! physics has contact. [`labels`] says the names of the things that matter, [`camera`] draws what vision saw.
 //!
 //! The same description gives the same bytes. Lengths are inches until [`glb`] writes metres.
 
@@ -10,12 +10,14 @@
 #![warn(missing_docs)]
 
 pub mod arm;
+pub mod camera;
 pub mod glb;
 pub mod hand;
 pub mod machine;
 pub mod material;
 pub mod mesh;
 pub mod parts;
+pub mod png;
 pub mod room;
 
 use plant::{

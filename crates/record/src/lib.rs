@@ -42,6 +42,7 @@ pub mod rows;
 pub mod scene;
 pub mod sink;
 pub mod tap;
+pub mod trail;
 pub mod writer;
 
 pub use error::{ReadError, RecordError, ReplayError};

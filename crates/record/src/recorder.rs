@@ -47,6 +47,8 @@ const IDLE: Duration = Duration::from_millis(5);
 const FULL: Duration = Duration::from_micros(100);
 /// Files that the ring holds.
 const FILE_RING: usize = 64;
+/// Pictures of the camera that the ring holds.
+const PICTURE_RING: usize = 128;
 /// Lines of operators that the ring holds.
 const OPERATOR_RING: usize = 256;
 /// Characters of a note; what is longer is cut.
@@ -93,6 +95,7 @@ pub struct Recorder {
     notes: Producer<Note>,
     files: Producer<(Tick, Attachment)>,
     operators: Producer<OperatorLine>,
+    pictures: Producer<(Tick, Vec<u8>)>,
     pace: Pace,
     last_state: Option<Tick>,
     timing: Option<Timing>,
@@ -114,6 +117,8 @@ pub struct Lost {
     pub notes: u64,
     /// Files that came up during the run: without them it cannot be replayed to the end.
     pub files: u64,
+    /// Pictures of the camera.
+    pub pictures: u64,
     /// Lines of operators: without them their inputs cannot be given again.
     pub operators: u64,
 }
@@ -165,6 +170,7 @@ impl Recorder {
         let (notes, note_consumer) = ring(NOTE_RING, note);
         let (files, file_consumer) = RingBuffer::new(FILE_RING);
         let (operators, operator_consumer) = RingBuffer::new(OPERATOR_RING);
+        let (pictures, picture_consumer) = RingBuffer::new(PICTURE_RING);
         let end = Arc::default();
         let drain = Drain {
             log,
@@ -175,6 +181,7 @@ impl Recorder {
             notes: note_consumer,
             files: file_consumer,
             operators: operator_consumer,
+            pictures: picture_consumer,
             end: Arc::clone(&end),
         };
         let thread = thread::Builder::new()
@@ -188,6 +195,7 @@ impl Recorder {
             notes,
             files,
             operators,
+            pictures,
             pace,
             last_state: None,
             timing: None,
@@ -221,6 +229,13 @@ impl Recorder {
     pub fn attach(&mut self, tick: Tick, attachment: Attachment) {
         if !has_room(&self.files, self.pace) || self.files.push((tick, attachment)).is_err() {
             self.lost.files += 1;
+        }
+    }
+
+    /// What the camera on the wrist saw, a PNG file; before [`Recorder::tick`] of the same tick.
+    pub fn picture(&mut self, tick: Tick, png: Vec<u8>) {
+        if !has_room(&self.pictures, Pace::Drop) || self.pictures.push((tick, png)).is_err() {
+            self.lost.pictures += 1;
         }
     }
 
@@ -285,10 +300,23 @@ impl Recorder {
     /// # Errors
     /// What ended the log before the run did.
     pub fn finish(self, end: End) -> Result<Summary, RecordError> {
-        let Self { ticks, states, cells, notes, files, operators, lost, path, end: slot, thread, .. } = self;
+        let Self {
+            ticks,
+            states,
+            cells,
+            notes,
+            files,
+            operators,
+            pictures,
+            lost,
+            path,
+            end: slot,
+            thread,
+            ..
+        } = self;
         *slot.lock().unwrap_or_else(PoisonError::into_inner) = (end, lost);
         // Without a producer the writer finishes; the ticks go last, since they are what it waits for.
-        drop((states, cells, notes, files, operators));
+        drop((states, cells, notes, files, operators, pictures));
         drop(ticks);
         let written = thread.join().map_err(|_| RecordError::Thread)??;
         Ok(Summary { path, ticks: written.ticks, lost, bytes: written.bytes })
@@ -325,6 +353,7 @@ struct Drain {
     notes: Consumer<Note>,
     files: Consumer<(Tick, Attachment)>,
     operators: Consumer<OperatorLine>,
+    pictures: Consumer<(Tick, Vec<u8>)>,
     end: Arc<Mutex<(End, Lost)>>,
 }
 
@@ -359,6 +388,11 @@ impl Drain {
         while self.files.peek().is_ok_and(|(tick, _)| *tick <= record.tick) {
             if let Ok((tick, attachment)) = self.files.pop() {
                 self.log.attach(tick, attachment)?;
+            }
+        }
+        while self.pictures.peek().is_ok_and(|(tick, _)| *tick <= record.tick) {
+            if let Ok((tick, png)) = self.pictures.pop() {
+                self.log.picture(tick, &png)?;
             }
         }
         let state = latest(&mut self.states, record.tick, |(tick, _)| *tick).map(|(_, state)| state);

@@ -1,4 +1,4 @@
-//! The moving cell: `/tf`, `/tf_static`, `/joint_states`, `/robot_description`, `/meshes` and `/names`.
+//! The moving cell: `/tf`, `/tf_static`, `/joint_states`, `/robot_description`, `/meshes`, `/names`, `/trail` and `/camera`.
 //!
 //! Links travel relative to their parents in the URDF, so that a description and its transforms can never
 //! contradict each other in a viewer, and so that a link that only turns repeats its position.
@@ -16,6 +16,7 @@ use crate::{
         ros,
         scene::{self, Colour, Entity, Primitive},
     },
+    trail::Trail,
 };
 
 /// Steps of a metre, of a radian, and of the unit of a quaternion, in the log: 8 µm and 8 µrad are finer than
@@ -32,6 +33,11 @@ pub const MESHES: &str = "/meshes";
 /// Topic of the names of things: one message at the start of the log.
 pub const NAMES: &str = "/names";
 
+/// Topic of what the camera on the wrist saw.
+pub const CAMERA: &str = "/camera";
+
+/// The link that the camera is on.
+const CAMERA_LINK: &str = "quick_change";
 /// Height of the letters of a name, metres.
 const LETTERS: f64 = 0.07;
 /// Their colour.
@@ -49,6 +55,8 @@ pub struct Scene {
     description: u16,
     meshes: u16,
     names: u16,
+    camera: u16,
+    trail: Trail,
     described: bool,
     last: Vec<Option<Transform>>,
     last_joints: Vec<f64>,
@@ -67,9 +75,25 @@ impl Scene {
         let drawn = scene::descriptor();
         let meshes = output.protobuf(MESHES, scene::SCENE_UPDATE, &drawn)?;
         let names = output.protobuf(NAMES, scene::SCENE_UPDATE, &drawn)?;
+        let image = foxglove::compressed_image_descriptor();
+        let camera = output.protobuf(CAMERA, foxglove::COMPRESSED_IMAGE, &image)?;
+        let trail = Trail::open(output, &model)?;
         let last = vec![None; model.links.len()];
         let (described, last_joints) = (false, Vec::new());
-        Ok(Self { model, moving, fixed, joints, description, meshes, names, described, last, last_joints })
+        Ok(Self {
+            model,
+            moving,
+            fixed,
+            joints,
+            description,
+            meshes,
+            names,
+            camera,
+            trail,
+            described,
+            last,
+            last_joints,
+        })
     }
 
     /// Write what moved since the frame before, or everything that moves; before the first frame also what
@@ -96,6 +120,7 @@ impl Scene {
         if !data.is_empty() {
             output.put(self.moving, frame.tick, &data)?;
         }
+        self.trail.note(output, frame)?;
         let joints: Vec<f64> =
             frame.joints.iter().take(self.model.joints.len()).copied().map(round).collect();
         if all || joints != self.last_joints {
@@ -105,6 +130,13 @@ impl Scene {
             self.last_joints = joints;
         }
         Ok(())
+    }
+
+    /// Write what the camera saw: a PNG file.
+    pub fn picture<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick, png: &[u8]) -> McapResult<()> {
+        let mut data = Vec::new();
+        foxglove::put_png(output.epoch.of(tick), CAMERA_LINK, png, &mut data);
+        output.put(self.camera, tick, &data)
     }
 
     /// What is true for the whole log.

@@ -7,6 +7,7 @@
 //! | `/task/row`, `/prim/row` ... | `rcs.Row`: the row that fired, as text | on change, and every ten seconds |
 //! | `/tf`, `/joint_states`, `/robot_description` | the moving cell | on change, and every ten seconds |
 //! | `/meshes`, `/names` | what it looks like, and what things are called | at the start |
+//! | `/trail`, `/camera` | the way of the tool point, the pictures that vision worked on | once a second, on an answer |
 //! | `/log` | `foxglove.Log` | when there is something to say |
 //! | `/operator` | `rcs.OperatorLine` | when an operator asks for something |
 //!
@@ -280,6 +281,14 @@ impl<W: Write + Seek> LogWriter<W> {
         self.output.put(self.log, tick, &data)
     }
 
+    /// Write what the camera on the wrist saw, a PNG file; a log without a cell has no camera.
+    ///
+    /// # Errors
+    /// What the sink says.
+    pub fn picture(&mut self, tick: Tick, png: &[u8]) -> McapResult<()> {
+        self.scene.as_ref().map_or(Ok(()), |scene| scene.picture(&mut self.output, tick, png))
+    }
+
     /// Write what an operator has asked for.
     ///
     /// # Errors
@@ -312,6 +321,7 @@ impl<W: Write + Seek> LogWriter<W> {
             ("lost_frames", lost.frames.to_string()),
             ("lost_notes", lost.notes.to_string()),
             ("lost_files", lost.files.to_string()),
+            ("lost_pictures", lost.pictures.to_string()),
             ("lost_operators", lost.operators.to_string()),
         ];
         let mut metadata = end.facts.clone();

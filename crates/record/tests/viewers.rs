@@ -48,7 +48,8 @@ fn named<'v>(value: &'v Value, found: &mut Vec<(&'v str, &'v str)>) {
             for (key, value) in map {
                 match (key.as_str(), value) {
                     (
-                        "value" | "topicToRender" | "topicPath" | "first" | "second" | "layout",
+                        "value" | "topicToRender" | "topicPath" | "imageTopic" | "first" | "second"
+                        | "layout",
                         Value::String(text),
                     ) => found.push((key, text)),
                     ("topics", Value::Object(topics)) => {

@@ -5,9 +5,12 @@ use std::{collections::BTreeMap, path::Path};
 use ::egm::Pose;
 use depc::fault::{Counts, FaultKind};
 use executive::alloc::Section;
-use interfaces::{CommonMemory, ExternalInputs};
+use interfaces::{
+    CommonMemory, ExternalInputs,
+    device::{Picture, VisionRequest, VisionResponse, VisionStatus},
+};
 use levels::ladder::LadderState;
-use plant::{Cell, convert::metres, part_link};
+use plant::{Cell, camera::Subject, convert::metres, description::Camera, part_link};
 use rcs_core::{digest::Digest, tick::Tick};
 use record::{
     Attachment, CellFrame, CellModel, End, Epoch, Level, Link, LogFile, Model, Name, OperatorLine, Pace,
@@ -51,6 +54,36 @@ pub struct Log {
     /// Faults on the line so far, and their kinds in the last tick.
     faults: Counts,
     kinds: Vec<&'static str>,
+    vision: Vision,
+}
+
+/// What vision was asked last and what it answered, and what the camera saw then.
+struct Vision {
+    camera: Camera,
+    request: VisionRequest,
+    answer: VisionResponse,
+    /// Number of the request whose picture is taken.
+    taken: u32,
+    seen: Option<Vec<Subject>>,
+}
+
+impl Vision {
+    fn new(camera: &Camera) -> Self {
+        let (request, answer) = (VisionRequest::default(), VisionResponse::default());
+        Self { camera: camera.clone(), request, answer, taken: 0, seen: None }
+    }
+
+    /// Take the picture of a new request; the drawing of one that is answered.
+    fn look(&mut self, cell: &Cell) -> Option<Vec<u8>> {
+        let VisionRequest { number, picture, .. } = self.request;
+        if number != self.taken && picture != Picture::None {
+            self.taken = number;
+            self.seen = Some(cell.picture());
+        }
+        let answered = self.answer.echo == self.taken && self.answer.status != VisionStatus::Busy;
+        let seen = self.seen.take_if(|_| answered)?;
+        Some(look::camera::draw(&self.camera, &seen, &self.answer))
+    }
 }
 
 impl Log {
@@ -89,7 +122,13 @@ impl Log {
         let run = metadata(config, &setup.job, &attachments);
         let start = record::Setup { epoch, run, attachments, cell: Some(model) };
         let recorder = Recorder::start_in(file, pace, start, tap)?;
-        Ok(Self { recorder, links, faults: Counts::default(), kinds: Vec::new() })
+        Ok(Self {
+            recorder,
+            links,
+            faults: Counts::default(),
+            kinds: Vec::new(),
+            vision: Vision::new(&setup.description.camera),
+        })
     }
 
     /// The cell as the controller will see it in `tick`, with the [`FRAMES`] of a robot with EGM; before
@@ -109,6 +148,9 @@ impl Log {
         }
         let joints = cell.joint_states().into_iter().map(|(_, value)| value);
         self.recorder.cell(&CellFrame::of(tick, places, joints).with_digest(cell.digest()));
+        if let Some(png) = self.vision.look(cell) {
+            self.recorder.picture(tick, png);
+        }
     }
 
     /// Something worth a line; before [`Log::tick`] of the same tick.
@@ -156,6 +198,7 @@ impl Log {
         memory: &CommonMemory,
         state: impl FnOnce() -> LadderState,
     ) {
+        (self.vision.request, self.vision.answer) = (memory.emove.vision, external.devices.vision);
         let _section = Section::enter();
         self.recorder.tick(tick, external, memory, state);
     }

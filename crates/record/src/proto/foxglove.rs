@@ -13,6 +13,8 @@ use crate::input::Link;
 
 /// Full name of the message on `/tf`.
 pub const FRAME_TRANSFORMS: &str = "foxglove.FrameTransforms";
+/// Full name of the message on `/camera`.
+pub const COMPRESSED_IMAGE: &str = "foxglove.CompressedImage";
 /// Full name of the message on `/log`.
 pub const LOG: &str = "foxglove.Log";
 
@@ -97,6 +99,31 @@ pub fn frame_transforms_descriptor() -> Vec<u8> {
     ];
     let imports = ["google/protobuf/timestamp.proto"];
     encode_set(vec![timestamp_file(), file("foxglove/FrameTransforms.proto", "foxglove", &imports, messages)])
+}
+
+/// Descriptors of [`COMPRESSED_IMAGE`].
+#[must_use]
+pub fn compressed_image_descriptor() -> Vec<u8> {
+    let fields = vec![
+        timestamp_field(),
+        field("data", 2, Type::Bytes),
+        field("format", 3, Type::String),
+        field("frame_id", 4, Type::String),
+    ];
+    let image = message("CompressedImage", fields);
+    let imports = ["google/protobuf/timestamp.proto"];
+    encode_set(vec![
+        timestamp_file(),
+        file("foxglove/CompressedImage.proto", "foxglove", &imports, vec![image]),
+    ])
+}
+
+/// Append a `CompressedImage` message: a PNG file of what is seen in a frame. `time` in nanoseconds since 1970.
+pub fn put_png(time: u64, frame: &str, png: &[u8], out: &mut Vec<u8>) {
+    timestamp(time, out);
+    wire::bytes(2, png, out);
+    wire::bytes(3, b"png", out);
+    wire::bytes(4, frame.as_bytes(), out);
 }
 
 /// Descriptors of [`LOG`].
@@ -200,7 +227,11 @@ mod tests {
 
     #[test]
     fn descriptors_hold_what_they_name() {
-        for (bytes, root) in [(frame_transforms_descriptor(), "FrameTransforms"), (log_descriptor(), "Log")] {
+        for (bytes, root) in [
+            (frame_transforms_descriptor(), "FrameTransforms"),
+            (log_descriptor(), "Log"),
+            (compressed_image_descriptor(), "CompressedImage"),
+        ] {
             let set = FileDescriptorSet::decode(bytes.as_slice()).unwrap();
             assert_eq!(set.file[0].name(), set.file[1].dependency[0]);
             assert!(set.file[1].message_type.iter().any(|message| message.name() == root));

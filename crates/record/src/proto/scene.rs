@@ -26,6 +26,8 @@ pub enum Primitive<'a> {
     Model(&'a [u8]),
     /// A text that faces the viewer: where it stands, how high its letters are, its colour.
     Text(&'a str, [f64; 3], f64, Colour),
+    /// A line through points, with its thickness and colour.
+    Line(&'a [[f64; 3]], f64, Colour),
 }
 
 /// A thing to draw.
@@ -65,12 +67,26 @@ pub fn descriptor() -> Vec<u8> {
         of("color", 5, "foxglove.Color"),
         field("text", 6, Type::String),
     ];
+    let line = vec![
+        typed_field("type", 1, Type::Enum, "foxglove.LinePrimitive.Type"),
+        of("pose", 2, "foxglove.Pose"),
+        field("thickness", 3, Type::Double),
+        field("scale_invariant", 4, Type::Bool),
+        list("points", 5, "foxglove.Point3"),
+        of("color", 6, "foxglove.Color"),
+        list("colors", 7, "foxglove.Color"),
+        repeated(field("indices", 8, Type::Fixed32)),
+    ];
+    let strips = ["LINE_STRIP", "LINE_LOOP", "LINE_LIST"];
+    let strips = enumeration("Type", (0..).zip(strips.map(str::to_owned)).collect());
+    let line = DescriptorProto { enum_type: vec![strips], ..message("LinePrimitive", line) };
     let entity = vec![
         timestamp_field(),
         field("frame_id", 2, Type::String),
         field("id", 3, Type::String),
         of("lifetime", 4, "google.protobuf.Duration"),
         field("frame_locked", 5, Type::Bool),
+        list("lines", 11, "foxglove.LinePrimitive"),
         list("texts", 13, "foxglove.TextPrimitive"),
         list("models", 14, "foxglove.ModelPrimitive"),
     ];
@@ -83,6 +99,8 @@ pub fn descriptor() -> Vec<u8> {
         doubles("Quaternion", &["x", "y", "z", "w"]),
         doubles("Color", &["r", "g", "b", "a"]),
         message("Pose", pose),
+        doubles("Point3", &["x", "y", "z"]),
+        line,
         message("ModelPrimitive", model),
         message("TextPrimitive", text),
         message("SceneEntity", entity),
@@ -125,13 +143,26 @@ pub fn put_entity(time: u64, entity: &Entity<'_>, out: &mut Vec<u8>) {
                 wire::nested(5, out, |out| put_doubles(&colour, out));
                 wire::bytes(6, text.as_bytes(), out);
             }),
+            Primitive::Line(points, thickness, colour) => wire::nested(11, out, |out| {
+                nested_pose(2, &[0.0; 3], out);
+                wire::double(3, thickness, out);
+                for point in points {
+                    wire::nested(5, out, |out| put_doubles(point, out));
+                }
+                wire::nested(6, out, |out| put_doubles(&colour, out));
+            }),
         }
     });
 }
 
-/// A pose that is not turned.
+/// A pose that is not turned, as the first field.
 fn pose(position: &[f64; 3], out: &mut Vec<u8>) {
-    wire::nested(1, out, |out| {
+    nested_pose(1, position, out);
+}
+
+/// A pose that is not turned, as a field.
+fn nested_pose(field: u32, position: &[f64; 3], out: &mut Vec<u8>) {
+    wire::nested(field, out, |out| {
         wire::nested(1, out, |out| put_doubles(position, out));
         wire::nested(2, out, |out| put_doubles(&Transform::IDENTITY.rotation, out));
     });
@@ -185,5 +216,10 @@ mod tests {
         let text = Primitive::Text("vise", [0.0, 0.0, 2.0], 0.06, [1.0; 4]);
         put_entity(0, &Entity { primitive: text, ..entity }, &mut out);
         assert_eq!(part(part(part(&out, 2), 13), 6), b"vise");
+        out.clear();
+        let line = Primitive::Line(&[[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]], 0.01, [1.0; 4]);
+        put_entity(0, &Entity { primitive: line, ..entity }, &mut out);
+        let points = Fields(part(part(&out, 2), 11)).filter(|field| matches!(field, (5, _))).count();
+        assert_eq!(points, 2);
     }
 }

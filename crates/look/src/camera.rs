@@ -1,0 +1,164 @@
+//! What the camera on the wrist saw, with what vision found in it, as a small picture.
+//!
+//! The picture is a drawing of the faces that vision worked on ([`plant::camera::Subject`]): Y of the tool to the left, Z up. The
+//! outline of the part that it answered for is green if it was recognised and yellow if not; a cross is where it said that the
+//! middle is, with a line along which the fingers move. A red border: it saw nothing.
+
+use geometry::frame::Vector;
+use interfaces::device::{VisionResponse, VisionStatus};
+use plant::{
+    camera::{Face, Subject, subject::RASTER},
+    convert::inches,
+    description::Camera,
+};
+
+use crate::png::Picture;
+
+/// Pixels across and down.
+const SIZE: usize = 160;
+/// Colours: the tray, eleven greys from dark to bright, then those of the marks.
+const GREYS: u8 = 11;
+const FOUND: u8 = GREYS + 1;
+const DOUBT: u8 = GREYS + 2;
+const NOTHING: u8 = GREYS + 3;
+
+/// A picture that is being drawn.
+struct Canvas {
+    pixels: Vec<u8>,
+    /// Half the width of the field of view, as a share of the distance.
+    widest: f64,
+}
+
+impl Canvas {
+    /// Where a point in camera axes stands, pixels.
+    fn place(&self, point: &Vector) -> [f64; 2] {
+        let half = SIZE as f64 / 2.0;
+        let scale = half / (self.widest * point.x.max(1e-3));
+        [half - point.y * scale, half - point.z * scale]
+    }
+
+    fn dot(&mut self, [x, y]: [f64; 2], colour: u8) {
+        let inside = |value: f64| (0.0..SIZE as f64).contains(&value);
+        if inside(x) && inside(y) {
+            self.pixels[y as usize * SIZE + x as usize] = colour;
+        }
+    }
+
+    /// A line two pixels thick.
+    fn line(&mut self, [ax, ay]: [f64; 2], [bx, by]: [f64; 2], colour: u8) {
+        let steps = ((bx - ax).abs().max((by - ay).abs()).min(4.0 * SIZE as f64) * 2.0) as usize + 1;
+        for step in 0..=steps {
+            let share = step as f64 / steps as f64;
+            let (x, y) = (ax + (bx - ax) * share, ay + (by - ay) * share);
+            [[x, y], [x + 1.0, y], [x, y + 1.0]].into_iter().for_each(|point| self.dot(point, colour));
+        }
+    }
+
+    /// What is seen of a face: each field of its raster as closely set points.
+    fn face(&mut self, subject: &Subject) {
+        const FINE: usize = 12;
+        let colour = 1 + (subject.reflectance().clamp(0.0, 1.0) * f64::from(GREYS - 1)).round() as u8;
+        let [a, b] = subject.face().edges.map(|(edge, length)| edge * (length / RASTER as f64));
+        let step = |index: usize| (index as f64 + 0.5) / FINE as f64 - 0.5;
+        let seen = subject.raster();
+        for (_, middle) in subject.face().points().enumerate().filter(|(at, _)| seen >> at & 1 == 1) {
+            for (row, column) in (0..FINE).flat_map(|row| (0..FINE).map(move |column| (row, column))) {
+                self.dot(self.place(&(middle + a * step(row) + b * step(column))), colour);
+            }
+        }
+    }
+
+    fn outline(&mut self, face: &Face, colour: u8) {
+        let [a, b] = face.edges.map(|(edge, length)| edge * (length / 2.0));
+        let corners = [a + b, a - b, -a - b, b - a].map(|corner| self.place(&(face.centre + corner)));
+        (0..4).for_each(|i| self.line(corners[i], corners[(i + 1) % 4], colour));
+    }
+}
+
+/// The picture of an answer as a PNG file: `subjects` is what the camera saw when it was asked.
+#[must_use]
+pub fn draw(camera: &Camera, subjects: &[Subject], answer: &VisionResponse) -> Vec<u8> {
+    let widest = camera.view / inches(camera.reference_range_mm / 1000.0);
+    let mut canvas = Canvas { pixels: vec![0; SIZE * SIZE], widest };
+    subjects.iter().for_each(|subject| canvas.face(subject));
+    let off_axis = |subject: &&Subject| {
+        let centre = subject.centroid();
+        centre.y.abs() + centre.z.abs()
+    };
+    let found = subjects.iter().min_by(|a, b| off_axis(a).total_cmp(&off_axis(b)));
+    match (answer.status, found) {
+        (VisionStatus::Done | VisionStatus::NotRecognised, Some(subject)) => {
+            let colour = if answer.recognised.is_some() { FOUND } else { DOUBT };
+            canvas.outline(subject.face(), colour);
+            if answer.status == VisionStatus::Done {
+                cross(&mut canvas, subject, answer, colour);
+            }
+        }
+        _ => {
+            let far = SIZE as f64 - 2.0;
+            let corners = [[0.0, 0.0], [far, 0.0], [far, far], [0.0, far]];
+            (0..4).for_each(|i| canvas.line(corners[i], corners[(i + 1) % 4], NOTHING));
+        }
+    }
+    let mut palette = vec![[0x22, 0x3A, 0x55]];
+    palette.extend((0..GREYS).map(|grey| [60 + 18 * grey; 3]));
+    palette.extend([[0x3C, 0xE0, 0x78], [0xFF, 0xC8, 0x2E], [0xE0, 0x3C, 0x3C]]);
+    Picture { width: SIZE, pixels: canvas.pixels }.png(&palette)
+}
+
+/// The centroid of an answer, and the direction in which the fingers close.
+fn cross(canvas: &mut Canvas, subject: &Subject, answer: &VisionResponse, colour: u8) {
+    const ARM: f64 = 7.0;
+    let hundredths = |value: i32| f64::from(value) / 100.0;
+    let middle = Vector::new(subject.face().centre.x, hundredths(answer.y), hundredths(answer.z));
+    let [x, y] = canvas.place(&middle);
+    canvas.line([x - ARM, y], [x + ARM, y], colour);
+    canvas.line([x, y - ARM], [x, y + ARM], colour);
+    if answer.recognised.is_some() {
+        let angle = hundredths(answer.angle).to_radians();
+        let along = Vector::new(0.0, libm::cos(angle), libm::sin(angle)) * 1.5;
+        let ends = [canvas.place(&(middle + along)), canvas.place(&(middle - along))];
+        canvas.line(ends[0], ends[1], DOUBT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::frame::Frame;
+    use plant::CellDescription;
+
+    /// A bar 590 mm before the camera, an inch to the left.
+    fn bar() -> Subject {
+        let frame = Frame { position: Vector::new(23.54, 1.0, 0.0), ..Frame::identity() };
+        Subject::new(Face::of(&frame, &Vector::new(0.625, 0.625, 4.0)), 0.5, |_| true)
+    }
+
+    fn picture(subjects: &[Subject], answer: &VisionResponse) -> Vec<u8> {
+        let cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
+        draw(&cell.camera, subjects, answer)
+    }
+
+    #[test]
+    fn a_picture_is_small_and_shows_what_was_answered() {
+        let found =
+            VisionResponse { status: VisionStatus::Done, y: 100, recognised: Some(17), ..Default::default() };
+        let doubt = VisionResponse { status: VisionStatus::NotRecognised, ..Default::default() };
+        let nothing = VisionResponse { status: VisionStatus::NothingSeen, ..Default::default() };
+        let pictures = [picture(&[bar()], &found), picture(&[bar()], &doubt), picture(&[], &nothing)];
+        for (i, one) in pictures.iter().enumerate() {
+            assert!(one.len() < 4_000, "{} bytes", one.len());
+            assert!(pictures[..i].iter().all(|other| other != one), "each answer looks otherwise");
+        }
+    }
+
+    #[test]
+    fn what_is_on_the_left_of_the_tool_is_on_the_left() {
+        let camera = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap().camera;
+        let widest = camera.view / inches(camera.reference_range_mm / 1000.0);
+        let canvas = Canvas { pixels: vec![0; SIZE * SIZE], widest };
+        let [x, y] = canvas.place(&Vector::new(inches(0.605), 5.25, 0.0));
+        assert!(x.abs() < 1e-6 && (y - 80.0).abs() < 1e-6, "the edge of the field of view: {x} {y}");
+        assert!(canvas.place(&Vector::new(20.0, 0.0, 1.0))[1] < 80.0, "Z is up");
+    }
+}
