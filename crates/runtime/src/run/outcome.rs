@@ -1,0 +1,146 @@
+//! What became of a run.
+
+use ::neighbours::workstation::player::BegunStep;
+use rcs_core::tick::TICK_S;
+
+use super::Run;
+use crate::{
+    pace,
+    result::{
+        self, CommandResult, EgmResult, EmergencyResult, FailureResult, FaultsResult, ItemResult, PortResult,
+        RunResult, SIMULATED,
+    },
+    verdict::Ending,
+};
+
+/// What became of a run.
+pub struct RunOutcome {
+    /// How it ended.
+    pub ending: Ending,
+    /// All that is known of it, for scripts.
+    pub result: RunResult,
+    /// All steps of the job, those of the workstation included.
+    pub steps: Vec<BegunStep>,
+    /// What became of the log, in words.
+    pub log: String,
+    /// The processes that took longest, in words.
+    pub slowest: String,
+    /// What a person has to do before a job that has failed can go on.
+    pub remedy: Option<&'static str>,
+}
+
+impl RunOutcome {
+    /// The job is over, every part is where it should be, and nothing touched that may not.
+    #[must_use]
+    pub const fn is_finished(&self) -> bool {
+        matches!(self.ending, Ending::Finished)
+    }
+}
+
+impl Run {
+    /// End the run and its log. A run that is not over counts as stopped.
+    #[must_use]
+    pub fn finish(mut self) -> RunOutcome {
+        let wall_s = self.started.map_or(0.0, |started| started.elapsed().as_secs_f64());
+        let ending = self.ending.take().unwrap_or(Ending::Stopped);
+        let ending = self.checked(ending);
+        let mut result = self.result(&ending, wall_s);
+        let log = self.finish_log(&ending, &mut result);
+        // What is shared goes first: a caller may start the next run of the name at once.
+        drop(self.mirror.take());
+        drop(self.live.take());
+        RunOutcome {
+            result,
+            steps: self.neighbours.all_steps(),
+            log,
+            slowest: pace::slowest(self.runner.stage_times()),
+            remedy: self.remedy,
+            ending,
+        }
+    }
+
+    fn result(&mut self, ending: &Ending, wall_s: f64) -> RunResult {
+        let ticks = self.runner.tick().0;
+        let simulated_s = ticks as f64 * TICK_S;
+        let ramp_ticks = self.ramp.as_ref().map_or(0, |ramp| ramp.ticks);
+        let steps = self.neighbours.all_steps();
+        let commands = steps.iter().filter(|step| step.is_command).map(|step| CommandResult {
+            text: result::bare(&step.text),
+            status: step.outcome.text(),
+            ticks: step.ticks,
+        });
+        RunResult {
+            job: self.job.name.clone(),
+            commands: commands.collect(),
+            retries: self.neighbours.retried().iter().map(Into::into).collect(),
+            ticks: ticks - u64::from(ramp_ticks),
+            ramp_ticks,
+            simulated_s,
+            wall_s,
+            realtime_factor: simulated_s / wall_s,
+            overruns: self.pace.skipped(),
+            overruns_by: self.pace.overruns(),
+            allocations_after_start: self.runner.allocations(),
+            tick_us: self.runner.times().summary().into(),
+            part_us: pace::times(self.runner.stage_times()),
+            late_us: self.pace.late(),
+            realtime: self.pace.verdict(),
+            boards: self.runner.levels().results(),
+            link: (&self.runner.memory().t3i.status.counters).into(),
+            operator: self.operator.requests(),
+            faults: self.robot.faults().map(FaultsResult::from),
+            cell_faults: self.workstation.cell.faults().into_iter().map(Into::into).collect(),
+            port: self.robot.port().map(PortResult::from),
+            egm: self.robot.egm().map(EgmResult::from),
+            emergency_stop: self.workstation.last_emergency().map(EmergencyResult::from),
+            digest: self.runner.digest().to_string(),
+            simulated: self.robot.is_elsewhere().then_some(SIMULATED),
+            digest_before_ramp: self
+                .ramp
+                .as_ref()
+                .map_or_else(|| self.runner.digest(), |ramp| ramp.before)
+                .to_string(),
+            parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),
+            data_base: self.items(),
+            contacts: self.check.collisions().to_vec(),
+            clearance: self.check.nearest().cloned(),
+            events: std::mem::take(&mut self.events),
+            log: None,
+            failure: match ending {
+                Ending::Failed(failure) => {
+                    Some(FailureResult::new(failure, self.neighbours.line_at(failure.tick), self.remedy))
+                }
+                Ending::Finished | Ending::Stopped => None,
+            },
+        }
+    }
+
+    /// What the data base holds at the end.
+    fn items(&mut self) -> Vec<ItemResult> {
+        let items = self.neighbours.items().inspect_err(|why| {
+            self.observer.message(&format!("the items cannot be listed: {why}"));
+        });
+        items.unwrap_or_default().into_iter().map(Into::into).collect()
+    }
+
+    /// End the log and say what became of it. A log that broke does not make a finished job a failed one.
+    fn finish_log(&mut self, ending: &Ending, result: &mut RunResult) -> String {
+        let Some(log) = self.log.take() else { return "none".to_owned() };
+        let outcome = ending.text().to_owned();
+        result.log = self.log_path.take();
+        match log.finish(self.runner.digest(), outcome, result.facts()) {
+            Ok(summary) => {
+                let (file, size) = (summary.path.display(), summary.bytes as f64 / 1e6);
+                let lost = match summary.lost.ticks {
+                    0 => String::new(),
+                    lost => format!("; {lost} ticks found no room and are missing"),
+                };
+                format!("{file} ({size:.1} MB{lost}): rerun {file}, or open it in Foxglove or Lichtblick")
+            }
+            Err(error) => {
+                self.observer.message(&format!("the log ended before the run did: {error}"));
+                format!("incomplete: {error}")
+            }
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! What comes before the first tick.
+
+use depc::host::{PATIENCE_TICKS, RESTART_TICKS};
+use executive::{
+    generations::Generations,
+    memory::{Mirror, Publisher, RunName, SET_UP_LIMIT, within_limit},
+    rest::RestWatch,
+    runner::Runner,
+};
+use interfaces::ExternalInputs;
+
+use super::Run;
+use crate::{
+    boards::Controller,
+    config::{RobotKind, RunConfig},
+    contacts::ContactCheck,
+    error::StartError,
+    log::Log,
+    observer::Observer,
+    operator::{Inputs, Operator},
+    own::OwnRobot,
+    pace::Pace,
+    placement::PlacementCheck,
+    result::Events,
+    setup::Setup,
+    workstation::SimulatedWorkstation,
+};
+
+/// Ticks that the first answer of a robot controller at a port may take: it may be powered up after the run has begun.
+fn first_patience(config: &RunConfig) -> Option<u16> {
+    if config.robot.kind == RobotKind::Sim {
+        return None;
+    }
+    let wait = config.wait.saturating_mul(RESTART_TICKS.into());
+    let patience = config.robot.patience().unwrap_or(PATIENCE_TICKS);
+    Some(u16::try_from(wait).unwrap_or(u16::MAX).max(patience))
+}
+
+/// Shared memory is a convenience: a run that cannot have it says so and goes on.
+fn publisher(config: &RunConfig, name: &RunName, observer: &mut dyn Observer) -> Option<Publisher> {
+    if !config.shared_memory {
+        return None;
+    }
+    let publisher = within_limit(SET_UP_LIMIT, config.on_stuck, || Publisher::create(name));
+    let publisher = publisher.inspect_err(|error| {
+        observer.message(&format!("the run cannot be watched, shared memory cannot be had: {error}"));
+    });
+    publisher.ok()
+}
+
+/// So is the mirror of the status.
+fn mirror(publisher: &Publisher, observer: &mut dyn Observer) -> Option<Mirror> {
+    let mirror = Mirror::start(publisher);
+    mirror.inspect_err(|error| observer.message(&format!("the status is not mirrored: {error}"))).ok()
+}
+
+impl Run {
+    /// Read, check and start all that the run needs, and wait for boards, neighbours and robot controller.
+    ///
+    /// # Errors
+    /// [`StartError`] if the run cannot begin, with all errors of the data. Nothing has moved then.
+    pub fn new(config: RunConfig, observer: Box<dyn Observer>) -> Result<Self, StartError> {
+        Self::start(config, None, observer)
+    }
+
+    /// Like [`Run::new`], with a robot of the caller's own in the place of that of the configuration.
+    ///
+    /// # Errors
+    /// As [`Run::new`].
+    pub fn with_robot(
+        mut config: RunConfig,
+        robot: Box<dyn OwnRobot>,
+        observer: Box<dyn Observer>,
+    ) -> Result<Self, StartError> {
+        config.robot.kind = RobotKind::Own;
+        Self::start(config, Some(robot), observer)
+    }
+
+    fn start(
+        config: RunConfig,
+        own: Option<Box<dyn OwnRobot>>,
+        mut observer: Box<dyn Observer>,
+    ) -> Result<Self, StartError> {
+        let mut setup = Setup::load(&config, own, &mut *observer)?;
+        setup.neighbours.gather(&config, &mut *observer)?;
+        setup.robot.gather(&config, &mut *observer);
+        let name = config.name.clone().unwrap_or_else(|| RunName::unique(&setup.job.name));
+        let controller = Controller::start(&config, &name, &setup.store, &setup.job, &mut *observer)?;
+        let file = setup.log.take();
+        let log_path = file.as_ref().map(|file| file.path().to_owned());
+        let log = file.map(|file| Log::start(file, &config, &setup)).transpose()?;
+        let publisher = publisher(&config, &name, &mut *observer);
+        let Setup { store, job, description, cell, robot, neighbours, mut live, .. } = setup;
+        let workstation = SimulatedWorkstation::new(cell);
+        let workstation = if robot.is_elsewhere() { workstation.with_robot_elsewhere() } else { workstation };
+        let workstation = if neighbours.can_switch() { workstation.with_hand_over() } else { workstation };
+        let operator = Operator::new(robot.is_elsewhere());
+        let runner = Runner::new(controller, publisher);
+        let asked = Inputs::of(&config, &name, &mut *observer)?;
+        if let Some(live) = &mut live {
+            live.start(&config, &job.name, asked.socket(), &mut *observer)?;
+        }
+        let mirror = runner.publisher().and_then(|publisher| mirror(publisher, &mut *observer));
+        Ok(Self {
+            runner,
+            mirror,
+            neighbours,
+            inputs: workstation.cell.inputs(),
+            robot,
+            workstation,
+            asked,
+            operator,
+            log,
+            log_path,
+            live,
+            pace: Pace::fast(config.overrun),
+            started: None,
+            ending: None,
+            placement: PlacementCheck::new(&description),
+            warning: None,
+            check: ContactCheck::new(description.contact),
+            view: Box::default(),
+            fresh: Vec::new(),
+            events: Events::default(),
+            rest: RestWatch::default(),
+            ramp: None,
+            patience: config.robot.patience(),
+            first_patience: first_patience(&config),
+            trouble: None,
+            remedy: None,
+            generations: Generations::new(store),
+            changed: 0,
+            external: ExternalInputs::default(),
+            job,
+            observer,
+            config,
+        })
+    }
+}
