@@ -28,5 +28,3 @@ picture runs/tool-change.mcap docs/tool-change.png --eye -0.7 -1.1 0.7 \
     "3380 tool_gripper pulled out, past the strike plate" \
     "6340 tool_gripper ENDMILL-1 is inserted" \
     "6900 tool_gripper let go"
-picture runs/linkbar.mcap docs/cell.png --eye 0.3 -4.2 1.9 --size 1900 1060 \
-    "2490 wrist_pitch the blank of a linkbar over the ledge of the vise"
