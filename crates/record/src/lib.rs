@@ -26,6 +26,7 @@
 
 pub mod channels;
 pub mod delta;
+mod described;
 pub mod error;
 pub mod file;
 pub mod golden;

@@ -12,15 +12,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use mcap::{
-    McapError,
-    records::{self, Record},
-};
+use mcap::{McapError, records::Record};
 use os_io::files;
 use rcs_core::tick::Tick;
 
 use crate::{
     delta::Codec,
+    described::Described,
     error::ReadError,
     input::{Attachment, Link},
     layout,
@@ -31,7 +29,7 @@ use crate::{
         wire::{Fields, Value},
     },
     scene::{TF, TF_STATIC},
-    tap::{Channel, Tap},
+    tap::Tap,
     writer::{Codecs, END, LAYOUT, LOG_TOPIC, REPLAY, RUN, Timing, replay_field},
 };
 
@@ -55,13 +53,6 @@ pub struct Log {
     pub attachments: Vec<Attachment>,
     /// The file has its end. If not, up to a second before the end of the run is missing.
     pub complete: bool,
-}
-
-/// What a file says of channels and schemas, by number.
-#[derive(Default)]
-struct Described {
-    channels: BTreeMap<u16, records::Channel>,
-    schemas: BTreeMap<u16, (records::SchemaHeader, Vec<u8>)>,
 }
 
 /// A part of the file, as far as messages are concerned.
@@ -178,16 +169,9 @@ impl Log {
     }
 
     fn note(&mut self, record: &Record<'_>) {
-        match record {
-            Record::Channel(channel) => {
-                self.channels.entry(channel.topic.clone()).or_insert(channel.id);
-                self.described.channels.entry(channel.id).or_insert_with(|| channel.clone());
-            }
-            Record::Schema { header, data } => {
-                let schema = || (header.clone(), data.to_vec());
-                self.described.schemas.entry(header.id).or_insert_with(schema);
-            }
-            _ => {}
+        self.described.note(record);
+        if let Record::Channel(channel) = record {
+            self.channels.entry(channel.topic.clone()).or_insert(channel.id);
         }
     }
 
@@ -308,14 +292,9 @@ impl Log {
         fixed.chain(self.messages(TF)).map(|(tick, data)| (tick, foxglove::take_transforms(&data)))
     }
 
-    /// Tell a tap of the channels. One whose schema is damaged is left out.
+    /// Tell a tap of the channels; one without its schema is left out.
     pub fn tell_channels(&self, tap: &mut dyn Tap) {
-        for (id, channel) in &self.described.channels {
-            let Some((header, schema)) = self.described.schemas.get(&channel.schema_id) else { continue };
-            let (topic, encoding) = (&channel.topic, &channel.message_encoding);
-            let (schema_name, schema_encoding) = (&header.name, &header.encoding);
-            tap.channel(*id, &Channel { topic, encoding, schema_name, schema_encoding, schema });
-        }
+        self.described.tell(tap);
     }
 
     /// Give all messages to a tap, in the order of the file. `before` gets the time of each message before it is
