@@ -2,7 +2,7 @@
 //!
 //! A FIFO keeps a reader waiting until another program writes into it, a terminal until a key is pressed, and
 //! `/dev/zero` has no end. So only regular files are read, and no more of them than the reader can use. Files that the
-//! program carries in itself ([`carried`](crate::carried)) are read likewise.
+//! program carries in itself ([`carried`]) are read likewise.
 
 use std::{
     fs::{self, File, FileType, OpenOptions},
