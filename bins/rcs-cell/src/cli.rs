@@ -2,10 +2,8 @@
 
 use std::{path::PathBuf, str::FromStr};
 
-use clap::{
-    Parser,
-    builder::{PathBufValueParser, TypedValueParser as _},
-};
+use clap::Parser;
+use cli_pages::shipped_path;
 use depc::Limits;
 use egm_robot::EgmOptions;
 
@@ -53,7 +51,7 @@ pub struct Cli {
     #[arg(long, value_name = "egm:PORT", conflicts_with_all = ["link", "auto", "faults"])]
     pub emulate: Option<EgmTarget>,
     /// Directory with robots/NAME.toml
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
     /// Go through the start-up without a person, and answer ENTER when a host comes
     #[arg(long)]

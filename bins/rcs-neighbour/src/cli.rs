@@ -2,10 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{
-    Args, Parser, Subcommand,
-    builder::{PathBufValueParser, TypedValueParser as _},
-};
+use clap::{Args, Parser, Subcommand};
+use cli_pages::shipped_path;
 use neighbours::network::Address;
 
 use crate::vision::Fault;
@@ -101,7 +99,7 @@ pub struct WorkstationArguments {
     #[arg(default_value = "linkbar")]
     pub job: String,
     /// Task data, against which the job is checked, and jobs
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
     /// After a command that ends with an error send PAUSE and the same command again, at most so many times a line
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -134,7 +132,7 @@ pub struct VisionArguments {
     #[command(flatten)]
     pub controller: ControllerArguments,
     /// Where the cell description of the run is: cell.toml
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
     /// Let pictures go wrong, counted from 1 over all runs: N:KIND or N-M:KIND, with commas between them
     ///

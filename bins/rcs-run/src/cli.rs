@@ -3,10 +3,8 @@
 use std::{path::PathBuf, str::FromStr};
 
 use crate::campaign::CampaignArguments;
-use clap::{
-    Args, Parser, Subcommand, ValueEnum,
-    builder::{ArgPredicate, PathBufValueParser, TypedValueParser as _},
-};
+use clap::{Args, Parser, Subcommand, ValueEnum, builder::ArgPredicate};
+use cli_pages::shipped_path;
 use executive::{boards::Board, memory::RunName, overrun::Policy};
 use live::Origin;
 use neighbours::network::{Address, Role};
@@ -88,7 +86,7 @@ pub struct RunArguments {
     #[arg(default_value = "linkbar")]
     pub job: String,
     /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
     /// Run ticks at once: fast; one every 40 ms: real; or N in that time, with the simulated robot: Nx, such as 5x
     #[arg(
@@ -121,7 +119,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "ROBOT", default_value = "sim")]
     pub robot: RobotConfig,
     /// Faults of the cell and of the line to the simulated robot, on schedule or by chance (TOML; data/README.md)
-    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().map(shipped::resolve))]
+    #[arg(long, value_name = "FILE", value_parser = shipped_path())]
     pub faults: Option<PathBuf>,
     /// How the control processes are spread over boards
     #[arg(long, value_enum, default_value_t = Boards::One)]
@@ -215,7 +213,7 @@ pub struct BoardArguments {
     #[arg(long, value_name = "NAME")]
     pub run: RunName,
     /// Task data and jobs; they must be those of the run
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
     /// The core to run on if ticks come every 40 ms [default: the highest that is allowed]
     #[arg(long, value_name = "N")]
@@ -368,7 +366,7 @@ pub struct PoseArguments {
     #[arg(long, value_name = "NAME", default_value = "...", requires = "write")]
     pub movetable: String,
     /// Task data and cell description
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
@@ -387,10 +385,10 @@ pub struct InitArguments {
 #[derive(Clone, Debug, Args)]
 pub struct CheckArguments {
     /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
     /// The same as --data DIR
-    #[arg(value_name = "DIR", conflicts_with = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
+    #[arg(value_name = "DIR", conflicts_with = "data", value_parser = shipped_path())]
     pub directory: Option<PathBuf>,
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]

@@ -32,6 +32,8 @@ use crate::{
 
 /// How far around the arm is looked for obstacles, inches.
 const NEAR: f64 = 12.0;
+/// Greatest coordinate, inches, and greatest angle, degrees: far beyond every arm.
+const FARTHEST: f64 = 1000.0;
 /// So many named poses are shown.
 const NAMED: usize = 3;
 
@@ -165,6 +167,11 @@ pub fn pose(arguments: &PoseArguments) -> Result<ExitCode, Error> {
 /// The pose that is asked about.
 fn asked(arguments: &PoseArguments, store: &Store) -> Result<Pose, Error> {
     if let [x, y, z] = *arguments.point {
+        let given = [x, y, z, arguments.azimuth, arguments.tilt, arguments.roll];
+        if let Some(found) = given.iter().find(|number| !(-FARTHEST..=FARTHEST).contains(*number)) {
+            let expected = format!("numbers from -{FARTHEST} to {FARTHEST} were expected");
+            return Err(Error::Pose(format!("{expected}, inches and degrees; found {found}")));
+        }
         let [azimuth, tilt, roll] = [arguments.azimuth, arguments.tilt, arguments.roll].map(f64::to_radians);
         let pointing = Vector::new(tilt.sin() * azimuth.cos(), tilt.sin() * azimuth.sin(), -tilt.cos());
         let level = Vector::new(-azimuth.sin(), azimuth.cos(), 0.0);

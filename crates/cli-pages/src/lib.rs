@@ -4,9 +4,16 @@
 
 mod markdown;
 
-use std::{env, fs, io, path::Path, process};
+use std::{
+    env, fs, io,
+    path::{Path, PathBuf},
+    process,
+};
 
-use clap::{Arg, Command, Parser, ValueEnum};
+use clap::{
+    Arg, Command, Parser, ValueEnum,
+    builder::{PathBufValueParser, TypedValueParser},
+};
 use clap_complete::{Generator, Shell};
 
 pub use markdown::markdown;
@@ -39,6 +46,12 @@ pub fn parse<P: Parser>() -> P {
     }
     let mut matches = command.get_matches_mut();
     P::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| error.format(&mut command).exit())
+}
+
+/// The value of an option that names a file or directory: if it is not there, a carried one of that name counts.
+#[must_use]
+pub fn shipped_path() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().map(shipped::resolve)
 }
 
 /// The definition of a program with its version and `--generate`.

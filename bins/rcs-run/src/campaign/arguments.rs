@@ -2,10 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{
-    Args,
-    builder::{PathBufValueParser, TypedValueParser as _},
-};
+use clap::Args;
+use cli_pages::shipped_path;
 
 use super::{operator::Recovery, trial::Until};
 
@@ -16,7 +14,7 @@ pub struct CampaignArguments {
     #[arg(default_value = "linkbar")]
     pub jobs: Vec<String>,
     /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = PathBufValueParser::new().map(shipped::resolve))]
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
     /// Seed of the cell's noise and of where parts are delivered
     #[arg(long, value_name = "N", default_value_t = 1)]

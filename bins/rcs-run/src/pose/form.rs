@@ -60,9 +60,11 @@ fn end_of(text: &str, block: Option<u32>) -> Result<usize, String> {
     let block = block.ok_or("there is no form of that name: say with --block where it is to stand")?;
     let source = Source { name: String::new(), text: text.into() };
     let (blocks, _) = blocks(0, &source);
-    let known = || blocks.iter().map(|block| block.number.number.to_string()).collect::<Vec<_>>().join(", ");
+    let known: Vec<_> = blocks.iter().map(|block| block.number.number.to_string()).collect();
+    let there =
+        if known.is_empty() { "it has none".to_owned() } else { format!("it has {}", known.join(", ")) };
     let found = blocks.iter().find(|found| found.number.number == block);
-    let found = found.ok_or_else(|| format!("there is no block {block}; there are {}", known()))?;
+    let found = found.ok_or_else(|| format!("there is no block {block} in the file; {there}"))?;
     let used = found.lines.len();
     if used + 4 > BLOCK_LINES {
         return Err(format!(
@@ -116,7 +118,8 @@ BLOCK# 612 OFFSET 21000
     fn what_has_no_place_is_refused() {
         let refused = |block| put(TEXT, block, "NEW-P", "...", &POSE).unwrap_err();
         assert!(refused(None).contains("--block"));
-        assert!(refused(Some(99)).contains("there are 610, 612"));
+        assert!(refused(Some(99)).contains("it has 610, 612"));
+        assert!(put("", Some(1), "NEW-P", "...", &POSE).unwrap_err().contains("it has none"));
         let full = TEXT.replace("( HOME )", &"(x)\n".repeat(9));
         assert!(put(&full, Some(610), "NEW-P", "...", &POSE).unwrap_err().contains("no room"));
     }

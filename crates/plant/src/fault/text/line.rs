@@ -1,7 +1,5 @@
 //! Faults of the line to the robot controller.
 
-use core::num::NonZeroU8;
-
 use depc::fault::{ALWAYS, Direction, FaultKind, MOST_TICKS, Plan, Rule};
 
 use super::Entry;
@@ -23,7 +21,7 @@ pub(super) fn kind(name: &str) -> Option<FaultKind> {
 /// A plan without a rule.
 pub(super) fn empty(seed: u64, most_per_tick: Option<u8>) -> Plan {
     let plan = Plan::new(seed);
-    most_per_tick.and_then(NonZeroU8::new).map_or_else(|| plan, |most| plan.most_per_tick(most.get()))
+    most_per_tick.map_or(plan, |most| plan.most_per_tick(most))
 }
 
 /// The rule of an entry.
