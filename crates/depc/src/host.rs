@@ -49,6 +49,7 @@ pub const START_ATTEMPTS: u8 = 3;
 ///    │ DTR off       │ no answer,       └───────────────────────┤  └──┘
 ///   (any)            └──────────────────────────────────────────┘
 ///                      unasked report            18: Cancelling ──ACK or DTR off──► Ended
+///                                                         report, or 05: as from Down ◄──┘
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum HostState {
@@ -62,7 +63,8 @@ pub enum HostState {
     Waiting,
     /// A cancel is outstanding.
     Cancelling,
-    /// The function was cancelled. A report, when the program comes to the function again, begins anew.
+    /// The function was cancelled. A report, when the program comes to the function again, begins anew; so does a
+    /// restart, when DTR is on for as long as an answer may take and no report comes.
     Ended,
 }
 
@@ -107,7 +109,7 @@ pub struct Host {
     /// Ticks since the last byte was sent, or since the wait began.
     waited: u16,
     answer_ticks: u16,
-    /// Ticks that a start may take with DTR on.
+    /// Ticks that a start or a cancel may take with DTR on.
     patience: u16,
     /// Ticks with DTR on that this one has taken.
     starting: u16,
@@ -141,7 +143,8 @@ impl Host {
         Self { answer_ticks: answer_ticks.max(1), patience: PATIENCE_TICKS, ..Self::default() }
     }
 
-    /// Wait `ticks` for a report while DTR is on before the link counts as failed; [`PATIENCE_TICKS`] at first.
+    /// Wait `ticks` for a report, or for the answer to a cancel, while DTR is on before the link counts as failed;
+    /// [`PATIENCE_TICKS`] at first.
     pub const fn set_patience(&mut self, ticks: u16) {
         self.patience = ticks;
     }
@@ -360,7 +363,7 @@ impl Host {
             }
             (HostState::Waiting, Reply::Response(Response::Nak)) => self.refused(),
             (HostState::Cancelling, Reply::Response(Response::Ack)) => {
-                self.resend_due = false;
+                (self.resend_due, self.waited) = (false, 0);
                 self.state = HostState::Ended;
                 HostEvent::None
             }

@@ -57,7 +57,14 @@ impl Host {
                 self.resend_due = true;
                 HostEvent::None
             }
-            HostState::Down | HostState::Ready | HostState::Ended => HostEvent::None,
+            // DTR is on again, and the report with which the function begins has not come.
+            HostState::Ended => {
+                self.begin_start();
+                (self.starting, self.attempt) = (0, LinkFault::None);
+                (self.asked, self.restart_due) = (1, true);
+                HostEvent::None
+            }
+            HostState::Down | HostState::Ready => HostEvent::None,
         }
     }
 
@@ -66,7 +73,7 @@ impl Host {
             // What was asked for; the ACK, which comes with it, is not waited for.
             self.receiver.clear();
             self.state = HostState::Ended;
-            self.resend_due = false;
+            (self.resend_due, self.waited) = (false, 0);
             return HostEvent::None;
         }
         let was_running = self.is_running();
@@ -117,9 +124,9 @@ impl Host {
         self.restarted = false;
     }
 
-    /// A tick of a start with DTR on is over.
+    /// A tick of a start, or of a cancel that is not answered, is over with DTR on.
     pub(super) fn be_patient(&mut self) {
-        if self.state != HostState::Starting {
+        if !matches!(self.state, HostState::Starting | HostState::Cancelling) {
             return;
         }
         self.starting = self.starting.saturating_add(1);

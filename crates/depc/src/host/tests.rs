@@ -363,3 +363,36 @@ fn a_cancel_that_is_refused_and_acknowledged_in_one_tick_is_acknowledged() {
     assert_eq!(tick(&mut host, &[0x15, 0x06], &Intent::Idle).1, []);
     assert_eq!(host.state(), HostState::Ended);
 }
+
+#[test]
+fn a_cancel_that_is_not_answered_is_blamed_at_the_end_of_patience() {
+    let mut host = running();
+    host.set_patience(30);
+    tick(&mut host, &[], &Intent::Cancel);
+    let blamed = (1..100).find(|_| {
+        tick(&mut host, &[], &Intent::Idle);
+        host.fault() != LinkFault::None
+    });
+    assert_eq!(
+        (blamed, host.fault(), host.state()),
+        (Some(30), LinkFault::NotResponding, HostState::Cancelling)
+    );
+}
+
+#[test]
+fn a_function_that_begins_again_after_a_cancel_is_asked_for_its_report() {
+    let mut host = running();
+    tick(&mut host, &[], &Intent::Cancel);
+    for _ in 0..20 {
+        host.receive(&LinkBytes::default(), false);
+    }
+    // DTR is on again, and the report with which the function begins is lost.
+    for waited in 1..ANSWER_TICKS {
+        assert_eq!(
+            (tick(&mut host, &[], &Intent::Idle).1, host.state()),
+            (vec![], HostState::Ended),
+            "{waited}"
+        );
+    }
+    assert_eq!((tick(&mut host, &[], &Intent::Idle).1, host.state()), (vec![0x05], HostState::Starting));
+}

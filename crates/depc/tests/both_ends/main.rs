@@ -1,0 +1,124 @@
+//! The real [`depc::host::Host`] against the real [`depc::controller::Controller`], searched through: breadth first
+//! over all states that both ends, the line, the panel and the user of the host can reach with a bounded number of
+//! faults.
+//!
+//! ```text
+//!   user ── next point, restart, cancel ──► Host ── frame: as sent, lost, damaged, doubled, late ──► Controller ──► robot
+//!                                            ▲                                                     panel │
+//!                                            └── answer: as sent, lost, damaged, doubled, late, DTR ─────┘
+//! ```
+//!
+//! In every state: no point is executed twice (without functions: the robot never goes back), none is skipped, one
+//! command is outstanding, and what the host believes is true. From every state on, if nothing else goes wrong, the
+//! next command is acknowledged or a stop is reported within a bound, whatever the operator does; and with an operator
+//! who answers at once the next command is acknowledged.
+//!
+//! `DEPC_FAULTS=3` searches three faults in place of two, without Hold; `DEPC_ALL_BITS=1` damages every bit and every
+//! byte, not only one of each part of a frame.
+
+#![expect(clippy::print_stdout, reason = "the figures of a search are printed")]
+
+mod explore;
+mod image;
+mod model;
+
+use explore::{Found, search};
+use model::{Carried, Event, KINDS, Kind, Panel, QUIET, Setting, Wrong};
+
+/// Ticks in which a stop is reported or the next command is acknowledged: a second of silence, and what comes before.
+const BOUND: u32 = RESTART + 11;
+const RESTART: u32 = depc::host::RESTART_TICKS as u32;
+
+/// A serial line does not double frames. One that does deceives this protocol, if something else goes wrong too.
+const fn is_doubling(kind: Kind) -> bool {
+    matches!(kind, Kind::CommandDoubled | Kind::AnswerDoubled)
+}
+
+fn number(name: &str) -> Option<u8> {
+    let text = std::env::var(name).ok()?;
+    Some(text.parse().unwrap_or_else(|_| panic!("{name}: expected a number, found {text:?}")))
+}
+
+fn is_sound(setting: &Setting) -> Found {
+    let found = search(setting);
+    println!(
+        "faults {}, functions {}: {} states, {} ticks; a good end after {} ticks at most, with an operator {}",
+        setting.faults, setting.functions, found.states, found.ticks, found.alone, found.helped
+    );
+    assert!(found.wrong.is_none(), "{setting:?}: {:#?}", found.wrong);
+    assert!(found.alone.max(found.helped) <= BOUND, "{setting:?}: {} and {}", found.alone, found.helped);
+    found
+}
+
+#[test]
+fn one_fault_of_any_kind_deceives_neither_end_and_is_over_or_reported_in_time() {
+    for functions in [false, true] {
+        let found = is_sound(&Setting { functions, faults: 1, kinds: KINDS.to_vec(), all_bits: true });
+        assert!(found.states > 15_000, "{} states", found.states);
+    }
+}
+
+/// Two faults of any kind but a doubled frame.
+fn several_faults(functions: bool) {
+    let faults = number("DEPC_FAULTS").unwrap_or(2);
+    let mut kinds = KINDS.to_vec();
+    kinds.retain(|kind| !is_doubling(*kind) && (faults <= 2 || *kind != Kind::Hold));
+    let all_bits = number("DEPC_ALL_BITS").is_some_and(|value| value > 0);
+    let found = is_sound(&Setting { functions, faults, kinds, all_bits });
+    assert!(found.states > 500_000, "{} states", found.states);
+}
+
+#[test]
+fn two_faults_deceive_neither_end_of_a_line_of_positions() {
+    several_faults(false);
+}
+
+#[test]
+fn two_faults_deceive_neither_end_of_a_line_of_functions() {
+    several_faults(true);
+}
+
+/// What the protocol cannot do, in the fewest ticks.
+fn shortest(functions: bool, kinds: [Kind; 2]) -> Option<(Vec<Event>, Wrong)> {
+    search(&Setting { functions, faults: 2, kinds: kinds.to_vec(), all_bits: false }).wrong
+}
+
+const START: Event = Event { panel: Panel::Start, ..QUIET };
+
+/// An answer bears no number: that of one command is believed to be that of the next, which is lost.
+#[test]
+fn an_answer_that_arrives_twice_hides_a_command_that_is_lost() {
+    let twice = Event { answer: Carried::Doubled(1), ..QUIET };
+    let lost = Event { command: Carried::Lost, ..QUIET };
+    let wrong = "an answer is believed that is not true";
+    let found = shortest(true, [Kind::AnswerDoubled, Kind::CommandLost]);
+    assert_eq!(found, Some((vec![START, twice, lost, QUIET], wrong)));
+}
+
+/// A command bears no number either: the controller executes the copy, if no other command comes between.
+#[test]
+fn a_command_that_arrives_twice_is_executed_twice_if_its_answer_is_lost() {
+    let twice = Event { command: Carried::Doubled(1), answer: Carried::Lost, ..QUIET };
+    let wrong = "a point is executed twice";
+    let found = shortest(true, [Kind::CommandDoubled, Kind::AnswerLost]);
+    assert_eq!(found, Some((vec![START, twice, QUIET], wrong)));
+    // T3 Interface sends no functions. To be sent once more where it stands does not move the robot.
+    assert_eq!(shortest(false, [Kind::CommandDoubled, Kind::AnswerLost]), None);
+}
+
+/// Each pair of faults with a doubled frame, once for positions and once for functions.
+#[test]
+fn a_doubled_frame_deceives_together_with_these_faults_only() {
+    use Kind::*;
+    let with = |functions, doubling| {
+        let deceives = |other: &Kind| shortest(functions, [doubling, *other]).is_some();
+        KINDS.into_iter().filter(deceives).collect::<Vec<_>>()
+    };
+    let answer = [CommandLost, CommandDamaged, CommandDoubled, CommandLate, CtsLow, Hold, Interrupt];
+    assert_eq!(with(false, AnswerDoubled), answer);
+    assert_eq!(with(true, AnswerDoubled), answer);
+    assert_eq!(with(false, CommandDoubled), [CommandLost, CommandLate, AnswerDoubled]);
+    let command =
+        [CommandLost, CommandLate, AnswerLost, AnswerDamaged, AnswerDoubled, AnswerLate, DtrLow, Restart];
+    assert_eq!(with(true, CommandDoubled), command);
+}
