@@ -122,7 +122,7 @@ fn holding(held: &interfaces::emove::Holding) -> String {
 }
 
 /// The sensors of a holster (V.1.2): bits 0 and 1 see the ears at the rear, 2 and 3 at the seat.
-fn holster(bits: u8) -> &'static str {
+pub(super) fn holster(bits: u8) -> &'static str {
     match (bits & 0b0011, bits & 0b1100) {
         (0, 0) => "empty",
         (0b0011, 0b1100) => "seated",

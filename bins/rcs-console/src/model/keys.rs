@@ -69,10 +69,14 @@ impl Model {
             self.type_on(prompt, key, source);
         } else if self.help {
             self.help = false;
-        } else if !self.operate(key) {
+        } else if !self.operate(key) && !self.is_of_a_procedure(key, source) {
             return self.command(key, source);
         }
         Effect::Draw
+    }
+
+    fn is_of_a_procedure(&mut self, key: Key, source: &dyn Source) -> bool {
+        self.screen == Screen::Procedures && self.work_a_procedure(key, source)
     }
 
     fn command(&mut self, key: Key, source: &dyn Source) -> Effect {
@@ -80,7 +84,7 @@ impl Model {
             Key::Char('q') => return Effect::Quit,
             Key::Char('o') => return Effect::OpenLog,
             Key::Char('?') => self.help = true,
-            Key::Char(digit @ '1'..='6') => {
+            Key::Char(digit @ '1'..='7') => {
                 let at = digit.to_digit(10).and_then(|digit| usize::try_from(digit).ok());
                 self.turn_to(Screen::ALL[at.map_or(0, |at| at - 1)]);
             }
@@ -200,7 +204,7 @@ impl Model {
 
     fn type_on(&mut self, mut prompt: Prompt, key: Key, source: &dyn Source) {
         let text = match &mut prompt {
-            Prompt::Filter(text) | Prompt::Tick(text) => text,
+            Prompt::Filter(text) | Prompt::Tick(text) | Prompt::Reason(text) => text,
             Prompt::Request(text) => return self.type_request(std::mem::take(text), key),
         };
         match key {
@@ -216,6 +220,7 @@ impl Model {
         match prompt {
             Prompt::Filter(text) => (self.filter, self.scroll) = (text, 0),
             Prompt::Request(_) => {}
+            Prompt::Reason(reason) => self.leave_out(reason),
             Prompt::Tick(text) => match text.trim().parse() {
                 Ok(tick) => self.go(tick, source),
                 Err(_) => self.answer = Some(format!("a tick is a number such as 623; found {text:?}")),

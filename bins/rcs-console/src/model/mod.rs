@@ -8,14 +8,18 @@ pub mod ladder;
 pub mod link;
 pub mod operating;
 pub mod panels;
+pub mod procedures;
 pub mod process;
 pub mod units;
 
 use interfaces::{ProcessId, device::JoystickBox};
 
+use self::procedures::{Begun, Sight};
+
 pub use self::{
     keys::{Effect, Key},
     operating::Operating,
+    procedures::Progress,
 };
 use crate::{
     picture::Picture,
@@ -37,12 +41,14 @@ pub enum Screen {
     Terminal,
     /// Joystick box, robot controller, emergency stops (III.3.3, IV.3.3)
     Panels,
+    /// Checklists of chapter IV
+    Procedures,
 }
 
 impl Screen {
     /// All screens, in the order of their keys.
-    pub const ALL: [Self; 6] =
-        [Self::Ladder, Self::Process, Self::Link, Self::Cell, Self::Terminal, Self::Panels];
+    pub const ALL: [Self; 7] =
+        [Self::Ladder, Self::Process, Self::Link, Self::Cell, Self::Terminal, Self::Panels, Self::Procedures];
 
     /// The name in the first line.
     #[must_use]
@@ -54,6 +60,7 @@ impl Screen {
             Self::Cell => "Cell",
             Self::Terminal => "Terminal",
             Self::Panels => "Panels",
+            Self::Procedures => "Procedures",
         }
     }
 }
@@ -149,6 +156,8 @@ pub enum Prompt {
     Tick(String),
     /// A request to the run.
     Request(String),
+    /// Why a step of a procedure is left out.
+    Reason(String),
 }
 
 /// The state of the screen.
@@ -173,6 +182,8 @@ pub struct Model {
     pub acknowledged: u64,
     /// The answer to the last key, where it did nothing else.
     pub answer: Option<String>,
+    /// How far the procedures have come.
+    pub procedures: Progress,
     /// What an operator asks for; none on a console that looks only.
     pub operating: Option<Operating>,
     /// The picture.
@@ -196,6 +207,7 @@ impl Model {
             place: Place::Last,
             acknowledged: 0,
             answer: None,
+            procedures: Progress::default(),
             operating: None,
             picture: None,
             last: None,
@@ -221,6 +233,16 @@ impl Model {
         let Some(picture) = source.picture(wanted) else { return };
         if known != Some(picture.tick.0) {
             self.last = self.picture.replace(picture);
+            self.look_at_procedures(source);
+        }
+    }
+
+    /// What a picture shows of the procedures: only what goes on, not what is looked at again.
+    fn look_at_procedures(&mut self, source: &dyn Source) {
+        if let (Some(picture), Place::Last) = (&self.picture, self.place) {
+            let cell = source.cell(picture.tick.0);
+            let (operating, begun) = (self.operating.as_ref(), Begun::default());
+            self.procedures.look(&Sight { picture, cell: &cell, operating, begun });
         }
     }
 

@@ -97,7 +97,22 @@ impl Operating {
         self.status.starts_with("the job waits")
     }
 
-    fn ask(&mut self, line: impl Into<String>) {
+    /// The number of the last request that was sent; 0 before the first.
+    #[must_use]
+    pub fn newest(&self) -> u32 {
+        self.exchanges.last().map_or(0, |exchange| exchange.number)
+    }
+
+    /// All requests behind this one have been sent, answered and taken.
+    #[must_use]
+    pub fn has_taken_since(&self, number: u32) -> bool {
+        let mut since = self.exchanges.iter().filter(|exchange| exchange.number > number).peekable();
+        let sent = self.outbox.is_empty() && since.peek().is_some();
+        sent && since.all(|exchange| matches!(exchange.answer, Some(Ok(_))))
+    }
+
+    /// Ask the run for something.
+    pub fn ask(&mut self, line: impl Into<String>) {
         self.outbox.push(line.into());
     }
 

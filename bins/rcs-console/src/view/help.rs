@@ -6,8 +6,8 @@ use super::Look;
 use crate::model::Tone;
 
 /// What each key does.
-const KEYS: [(&str, &str); 15] = [
-    ("1 2 3 4 5 6", "screens: ladder, process, link, cell, terminal, panels"),
+const KEYS: [(&str, &str); 16] = [
+    ("1 ... 7", "screens: ladder, process, link, cell, terminal, panels, procedures"),
     ("j k, arrows, PgUp PgDn", "choose a process; scroll"),
     ("Enter, Esc", "the process under the cursor; back to the ladder"),
     ("Tab", "next pane of the process screen"),
@@ -20,6 +20,7 @@ const KEYS: [(&str, &str); 15] = [
     ("c", "to the first cause of the last failure"),
     ("a", "acknowledge the alarm in the line above the keys"),
     ("o", "open the log of this run, at the first cause"),
+    ("Enter y s u r", "on screen 7: do a step, it is so, leave out, take back, anew"),
     (": Space h F1", "with --operate: request, stop and go, hold Prim, E-stop"),
     ("q, Control-C", "quit; the run does not notice"),
 ];
@@ -31,7 +32,6 @@ const MARKS: &str = " !! trouble   * gripper on the robot   - not stepped, or lo
 pub fn lines(look: Look) -> Vec<Line<'static>> {
     let keys = KEYS.iter().map(|(key, does)| look.line(Tone::Plain, format!(" {key:<24} {does}")));
     let words = [
-        "",
         MARKS,
         " A row with seconds behind it fired that long ago; ~ marks a row that nearly fired.",
         " Without --operate this program only reads: no key changes the run.",

@@ -18,7 +18,7 @@ use ratatui::{
 use record::Level;
 
 use crate::{
-    model::{Model, Operating, Place, Prompt, Screen, Tone, cell, ladder as lines, link, panels},
+    model::{Model, Operating, Place, Prompt, Screen, Tone, cell, ladder as lines, link, panels, procedures},
     source::{About, Source, State},
 };
 use text::{fit, rule};
@@ -145,6 +145,15 @@ fn screen(
                 let said = panels::conversation(model.operating.as_ref());
                 panes::column(&said, model, look, width, room)
             }
+            Screen::Procedures => {
+                let cell = source.cell(picture.tick.0);
+                let (operating, begun) = (model.operating.as_ref(), procedures::Begun::default());
+                let sight = procedures::Sight { picture, cell: &cell, operating, begun };
+                (
+                    panes::list(&procedures::sections(&model.procedures, &sight), look, width, room),
+                    Reach::default(),
+                )
+            }
             Screen::Panels => {
                 let (joystick, cell) = (model.joystick(), source.cell(picture.tick.0));
                 let sections = panels::sections(&joystick, &cell, model.operating.as_ref());
@@ -164,13 +173,13 @@ fn tabs(screen: Screen, look: Look, width: usize) -> Line<'static> {
     let mut used = 0;
     for (number, tab) in (1..).zip(Screen::ALL) {
         let mark = if tab == screen { '>' } else { ' ' };
-        let text = format!("{mark}{number} {}  ", tab.name());
+        let text = format!("{mark}{number} {} ", tab.name());
         used += text.chars().count();
         let style =
             if tab == screen { Style::default().add_modifier(Modifier::BOLD) } else { Style::default() };
         spans.push(Span::styled(look.signs(text), style));
     }
-    let right = "?=help q=quit ";
+    let right = if width > 90 { "?=help  q=quit " } else { "?=help " };
     spans.push(Span::raw(format!("{right:>rest$}", rest = width.saturating_sub(used))));
     Line::from(spans)
 }
@@ -220,6 +229,9 @@ fn news(model: &Model, source: &dyn Source, about: &About<'_>, look: Look, width
         Some(Prompt::Request(text)) => {
             let said = model.answer.as_deref().unwrap_or("Enter  Tab  Esc");
             return line(Tone::Marked, &format!(" : {text}_   {said}"));
+        }
+        Some(Prompt::Reason(text)) => {
+            return line(Tone::Marked, &format!(" leave the step out, because: {text}_   Enter  Esc"));
         }
         Some(Prompt::Tick(text)) => return line(Tone::Marked, &format!(" go to tick: {text}_   Enter  Esc")),
         None => {}
@@ -288,6 +300,13 @@ fn keys(model: &Model, state: State) -> &'static str {
         (_, Screen::Terminal | Screen::Panels, _) if model.operating.is_none() => " Esc=back",
         (_, Screen::Terminal, _) => {
             " Esc=back  :=request  Space=stop, go  h=hold Prim  F1=E-stop  j k=scroll"
+        }
+        (_, Screen::Procedures, _) if !model.procedures.is_open => " j k=choose  Enter=open  Esc=back",
+        (_, Screen::Procedures, _) if model.operating.is_none() => {
+            " Esc=list  j k=step  y=it is so  s=leave it out  u=take back  r=from the start"
+        }
+        (_, Screen::Procedures, _) => {
+            " Esc=list  Enter=do it  y=it is so  s=leave out  u=take back  r=anew  Space=stop"
         }
         (_, Screen::Panels, _) => " Esc=back  Space=stop, go  F1=E-stop  :=request  j k Enter=keys  s=jog",
         (_, Screen::Link | Screen::Cell, _) => {

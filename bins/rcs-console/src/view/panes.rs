@@ -88,6 +88,22 @@ pub fn column(
     (lines, reach)
 }
 
+/// Sections of which the line that must be seen stays on the screen, without scrolling by hand.
+pub fn list(sections: &[Section], look: Look, width: usize, room: usize) -> Vec<Line<'static>> {
+    let mut lines = Vec::new();
+    for section in sections {
+        let (body, at) = (body(section, width), at(section, width));
+        let height = room.saturating_sub(lines.len() + 1);
+        // The details of the step that must be seen come below it.
+        let start = at.saturating_sub(height / 3).min(body.len().saturating_sub(height));
+        let more = more(start, body.len(), height);
+        lines.push(look.line(Tone::Plain, rule(&format!("{}{more}", section.title), width)));
+        let shown = body.into_iter().skip(start).take(height);
+        lines.extend(shown.map(|Text { tone, text }| look.line(tone, text)));
+    }
+    lines
+}
+
 /// The lines of a section in the width.
 fn body(section: &Section, width: usize) -> Vec<Text> {
     let wrapped = |line: &Text| {

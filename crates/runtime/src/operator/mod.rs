@@ -192,6 +192,7 @@ impl Operator {
                 }
                 Ok(done)
             }
+            Request::Note => Ok(done),
             Request::Wait => {
                 job(around)?.wait_for_operator().map(|()| done).map_err(|error| error.to_string())
             }

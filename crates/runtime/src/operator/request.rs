@@ -20,6 +20,8 @@ pub enum Request {
     Go,
     /// Another operator may command.
     Leave,
+    /// Something that is to stand in the log.
+    Note,
     /// The job waits when its line has ended.
     Wait,
     /// The job goes on.
@@ -59,6 +61,9 @@ impl Request {
         if let Some((_, request)) = WORDS.iter().find(|(word, _)| *word == words) {
             return Ok(request.clone());
         }
+        if words.strip_prefix("note").is_some_and(|text| text.starts_with(' ')) {
+            return Ok(Self::Note);
+        }
         if words == "job" || words.starts_with("job ") {
             return Err(format!("job wait, job go or job skip was expected; found {words}"));
         }
@@ -73,10 +78,16 @@ impl Request {
         }
     }
 
-    /// It can only bring something to rest: every operator may ask for it, also while another commands.
+    /// It can only bring something to rest, or changes nothing: every operator may ask for it, also while
+    /// another commands.
     pub const fn is_stop(&self) -> bool {
         match self {
-            Self::Status | Self::Stop | Self::Leave | Self::Wait | Self::Box(BoxAction::Hold(_)) => true,
+            Self::Status
+            | Self::Stop
+            | Self::Leave
+            | Self::Note
+            | Self::Wait
+            | Self::Box(BoxAction::Hold(_)) => true,
             Self::Cell(action, _) => {
                 matches!(
                     action,

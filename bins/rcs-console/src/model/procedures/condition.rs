@@ -1,0 +1,316 @@
+//! What a step waits for: a look at the picture of the run, at its cell, and at what it answers.
+
+use geometry::pose::WireFrame;
+use interfaces::{
+    ProcessId,
+    data_base::Connection,
+    device::{JoystickBox, VisionStatus},
+};
+use rcs_core::tick::Tick;
+
+use crate::{
+    model::Operating,
+    picture::{Absence, Picture},
+    source::Cell,
+};
+
+/// HOME as the manual prints it (IV.3.3 step 11).
+pub const HOME: WireFrame =
+    WireFrame { tool: [0, -7145, -1483], wrist_to_tool: [0, -2123, -2119], tool_to_finger: [3000, 0, 0] };
+/// How far a value of HOME, or of a frame that is to agree with another, may be off (IV.3.3 steps 11 and 13).
+pub const TOLERANCE: i32 = 4;
+/// A robot that has not moved by more than this, 0.01 in, stands.
+const STANDS: i32 = 4;
+/// Ticks that the robot has to stand: 2 s.
+const STANDS_FOR: u64 = 50;
+/// A robot that has moved by this, 0.01 in, has moved.
+const MOVED: i32 = 10;
+
+/// The stages of the robot controller's start-up (IV.3.3), in their order.
+pub const STAGES: [&str; 11] = [
+    "control power off",
+    "fault",
+    "hydraulics disabled",
+    "hydraulics enabled",
+    "hydraulics starting",
+    "manual",
+    "pre-manual",
+    "moving to HOME",
+    "auto, at HOME",
+    "vertical motions",
+    "DEPC",
+];
+
+/// What can be looked at.
+pub struct Sight<'a> {
+    /// The picture of the tick.
+    pub picture: &'a Picture,
+    /// The cell.
+    pub cell: &'a Cell,
+    /// The session with the run; none on a console that looks only.
+    pub operating: Option<&'a Operating>,
+    /// How things were when the step began.
+    pub begun: Begun,
+}
+
+/// How things were when a step began, or when it was asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Begun {
+    /// The tick.
+    pub tick: Tick,
+    /// The tool point by the resolvers, 0.01 in.
+    pub tool: Option<[i32; 3]>,
+    /// The requests after this one are of the step; none before Enter.
+    pub asked: Option<u32>,
+}
+
+/// Something that is so, or is not, or cannot be seen here.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Condition {
+    /// The robot controller has come to this stage of its start-up, or further.
+    Reached(&'static str),
+    /// It is at this stage.
+    At(&'static str),
+    /// The actuators have no pressure.
+    NoPressure,
+    /// All emergency stops are out.
+    EStopsOut,
+    /// All six axes have their asterisk.
+    Aligned,
+    /// The DEPC link runs.
+    LinkRuns,
+    /// The resolvers can be believed.
+    Resolvers,
+    /// The resolvers show HOME to within [`TOLERANCE`].
+    AtHome,
+    /// The frame that Prim gets and the one that it gives agree to within [`TOLERANCE`].
+    FramesAgree,
+    /// The robot has stood since the step began, for two seconds at least.
+    Stands,
+    /// The robot has moved since the step began.
+    Moved,
+    /// The processes have this command.
+    Have(&'static [ProcessId], &'static str),
+    /// The process reports this.
+    Says(ProcessId, &'static str),
+    /// The processes are stepped.
+    Run(&'static [ProcessId]),
+    /// The processes are suspended.
+    Held(&'static [ProcessId]),
+    /// The velocity knob is at zero, or is not.
+    KnobUp(bool),
+    /// A coordinate switch is on, or none is.
+    FrameOn(bool),
+    /// The hand of the pedestal is calibrated.
+    HandCalibrated,
+    /// The rotary table is calibrated and stands at this angle, 0.1 degree.
+    TableAt(i32),
+    /// The Data System is told of moves, or is not.
+    DataSystem(Connection),
+    /// The pedestal is a system of its own, and answers.
+    PedestalAnswers,
+    /// The last request to the vision system was answered.
+    VisionAnswers,
+    /// The job waits for the operator.
+    JobWaits,
+    /// The run says of itself that this commands.
+    Commands(&'static str),
+    /// The run has taken what the step asks for.
+    Taken,
+}
+
+impl Sight<'_> {
+    /// Whether a condition holds; none if that cannot be seen here.
+    #[must_use]
+    pub fn holds(&self, condition: Condition) -> Option<bool> {
+        let (memory, external) = (&self.picture.memory, &self.picture.external);
+        let joystick = &external.devices.joystick;
+        match condition {
+            Condition::Reached(stage) => Some(place(self.stage()?) >= place(stage)),
+            Condition::At(stage) => Some(self.stage()? == stage),
+            Condition::NoPressure => Some(!self.shown()?.lamps.hydraulics_on),
+            Condition::EStopsOut => Some(self.shown()?.estops == [false; 5]),
+            Condition::Aligned => Some(self.shown()?.aligned == [true; 6]),
+            Condition::LinkRuns => Some(memory.t3i.status.link_running),
+            Condition::Resolvers => Some(memory.t3i.status.resolver_frame.is_some()),
+            Condition::AtHome => Some(largest(&self.frame_feedback(), &HOME) <= TOLERANCE),
+            Condition::FramesAgree => Some(self.frames_agree()),
+            Condition::Stands => {
+                let since = self.picture.tick.since(self.begun.tick);
+                Some(self.way()? <= STANDS && since >= STANDS_FOR)
+            }
+            Condition::Moved => Some(self.way()? >= MOVED),
+            Condition::Have(processes, command) => {
+                Some(processes.iter().all(|process| self.picture.command(*process).contains(command)))
+            }
+            Condition::Says(process, report) => Some(memory.said(process).report == report),
+            Condition::Run(processes) => Some(processes.iter().all(|process| self.runs(*process))),
+            Condition::Held(processes) => {
+                Some(processes.iter().all(|process| self.picture.absence(*process) == Some(Absence::Held)))
+            }
+            Condition::KnobUp(up) => Some((joystick.velocity > 0) == up),
+            Condition::FrameOn(on) => Some((joystick.frame != 0) == on),
+            Condition::HandCalibrated => Some(memory.hand.status.initialized),
+            Condition::TableAt(angle) => Some(memory.table.status.position == Some(angle)),
+            Condition::DataSystem(connection) => Some(memory.task.connection == connection),
+            Condition::PedestalAnswers => Some(external.pedestal.elsewhere && external.pedestal.answers),
+            Condition::VisionAnswers => {
+                let (asked, answer) = (&memory.emove.vision, &external.devices.vision);
+                let seen = answer.echo == asked.number && answer.status != VisionStatus::Busy;
+                Some(asked.number > 0 && seen)
+            }
+            Condition::JobWaits => Some(self.operating?.job_waits()),
+            Condition::Commands(commander) => Some(self.operating?.status.contains(commander)),
+            Condition::Taken => Some(self.operating?.has_taken_since(self.begun.asked?)),
+        }
+    }
+
+    /// The robot controller of the simulated cell.
+    pub(super) fn shown(&self) -> Option<&executive::memory::cell::ControllerView> {
+        match self.cell {
+            Cell::Shown(view) => Some(&view.controller),
+            Cell::NotPublished | Cell::Recorded { .. } => None,
+        }
+    }
+
+    fn stage(&self) -> Option<&str> {
+        Some(self.shown()?.stage.as_str())
+    }
+
+    fn runs(&self, process: ProcessId) -> bool {
+        matches!(self.picture.absence(process), None | Some(Absence::Dormant | Absence::Elsewhere))
+    }
+
+    /// `frame-feedback` as IV.3.3 step 11 reads it: by the resolvers, also while the link runs.
+    pub(super) fn frame_feedback(&self) -> WireFrame {
+        let status = &self.picture.memory.t3i.status;
+        status.resolver_frame.unwrap_or(status.frame_feedback)
+    }
+
+    /// What Prim gets as the present frame, and what it gives (IV.3.3 step 13).
+    pub(super) fn prim_frames(&self) -> (WireFrame, WireFrame) {
+        let memory = &self.picture.memory;
+        (memory.t3i.status.frame_feedback, memory.prim.t3i.frame)
+    }
+
+    fn frames_agree(&self) -> bool {
+        let (got, given) = self.prim_frames();
+        largest(&got, &given) <= TOLERANCE
+    }
+
+    /// The tool point by the resolvers, 0.01 in.
+    pub(super) fn tool(&self) -> Option<[i32; 3]> {
+        self.picture.memory.t3i.status.resolver_frame.map(|frame| frame.tool)
+    }
+
+    /// How far the tool point is from where it was when the step began, 0.01 in: the largest of X, Y, Z.
+    pub(super) fn way(&self) -> Option<i32> {
+        let (now, was) = (self.tool()?, self.begun.tool?);
+        now.iter().zip(was).map(|(now, was)| (now - was).abs()).max()
+    }
+
+    /// The joystick box.
+    pub(super) const fn joystick(&self) -> &JoystickBox {
+        &self.picture.external.devices.joystick
+    }
+}
+
+/// Place of a stage in the start-up; none for an unknown one, which is before all others.
+fn place(stage: &str) -> Option<usize> {
+    STAGES.iter().position(|known| *known == stage)
+}
+
+/// The rows of a frame as the terminal shows it.
+#[must_use]
+pub const fn rows(frame: &WireFrame) -> [[i32; 3]; 3] {
+    [frame.tool, frame.wrist_to_tool, frame.tool_to_finger]
+}
+
+/// The largest difference of two frames in a value.
+#[must_use]
+pub fn largest(frame: &WireFrame, other: &WireFrame) -> i32 {
+    let (frame, other) = (rows(frame).concat(), rows(other).concat());
+    frame.iter().zip(other).map(|(is, should)| (is - should).abs()).max().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use executive::memory::{Text, cell::CellView};
+    use interfaces::{CommonMemory, ExternalInputs};
+
+    fn picture() -> Picture {
+        let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
+        Picture { tick: Tick(100), external, memory, timing: None }
+    }
+
+    fn cell(stage: &str) -> Cell {
+        let mut view = CellView::default();
+        view.controller.stage = Text::clipped(stage);
+        Cell::Shown(Box::new(view))
+    }
+
+    fn holds(picture: &Picture, cell: &Cell, begun: Begun, condition: Condition) -> Option<bool> {
+        Sight { picture, cell, operating: None, begun }.holds(condition)
+    }
+
+    #[test]
+    fn home_and_the_stages_are_those_of_the_cell() {
+        assert_eq!((HOME, TOLERANCE), (plant::t3::HOME, plant::t3::HOME_TOLERANCE));
+        use plant::t3::Stage;
+        let stages = [
+            Stage::Dark,
+            Stage::Faulted,
+            Stage::Ready,
+            Stage::Enabled,
+            Stage::Rising,
+            Stage::Manual,
+            Stage::PreManual,
+            Stage::Homing,
+            Stage::Auto,
+            Stage::Rehearsing,
+            Stage::Depc,
+        ];
+        assert_eq!(stages.map(Stage::text), STAGES);
+    }
+
+    #[test]
+    fn a_stage_is_reached_by_it_and_by_all_behind_it() {
+        let reached = |stage, wanted| {
+            holds(&picture(), &cell(stage), Begun::default(), Condition::Reached(wanted)).unwrap()
+        };
+        assert!(reached("DEPC", "manual") && reached("manual", "manual") && !reached("fault", "manual"));
+        assert!(reached("pre-manual", "manual") && !reached("pre-manual", "auto, at HOME"));
+        let at_a_port = holds(&picture(), &Cell::NotPublished, Begun::default(), Condition::Reached("DEPC"));
+        assert_eq!(at_a_port, None, "a robot at a port does not show its console");
+    }
+
+    #[test]
+    fn a_robot_stands_or_has_moved_since_the_step_began() {
+        let (mut picture, cell) = (picture(), cell("DEPC"));
+        let begun = Begun { tick: Tick(40), tool: Some([0, 0, 0]), asked: None };
+        let both = |picture: &Picture| {
+            [Condition::Stands, Condition::Moved].map(|wanted| holds(picture, &cell, begun, wanted))
+        };
+        assert_eq!(both(&picture), [None, None], "the resolvers cannot be believed");
+        picture.memory.t3i.status.resolver_frame = Some(WireFrame { tool: [0, 3, -4], ..HOME });
+        assert_eq!(both(&picture), [Some(true), Some(false)]);
+        picture.memory.t3i.status.resolver_frame = Some(WireFrame { tool: [0, 11, 0], ..HOME });
+        assert_eq!(both(&picture), [Some(false), Some(true)]);
+        picture.tick = Tick(60);
+        picture.memory.t3i.status.resolver_frame = Some(WireFrame { tool: [0, 0, 0], ..HOME });
+        assert_eq!(both(&picture), [Some(false), Some(false)], "it has not stood for long");
+    }
+
+    #[test]
+    fn home_is_home_to_within_four() {
+        let (mut picture, cell) = (picture(), cell("DEPC"));
+        let mut at_home = |frame| {
+            picture.memory.t3i.status.resolver_frame = Some(frame);
+            holds(&picture, &cell, Begun::default(), Condition::AtHome)
+        };
+        assert_eq!(at_home(WireFrame { tool: [3, -7142, -1487], ..HOME }), Some(true));
+        assert_eq!(at_home(WireFrame { tool: [5, -7145, -1483], ..HOME }), Some(false));
+        assert_eq!(at_home(WireFrame { tool: [0, 7145, -1483], ..HOME }), Some(false), "a wrong sign");
+    }
+}

@@ -1,0 +1,228 @@
+//! Stops, and the way back (III.6, IV.3.1, IV.3.3 steps 11 and 12, IV.3.4).
+
+use interfaces::ProcessId;
+
+use super::{
+    Ask::Line, Ask::ReleaseEStops, Condition, Procedure, Show, Step, Watch, event, real, said, state, step,
+};
+
+/// III.6 and IV.3.1.
+pub const E_STOP: Procedure = Procedure {
+    section: "III.6",
+    title: "Stop the robot, and start again after an E-stop",
+    steps: &[
+        Step {
+            ask: &[Line("stop")],
+            how: "The best stop, if there is time: Space on every screen. The robot ramps to rest.",
+            show: Show::Box,
+            until: "8",
+            ..state("1", "the velocity knob is at 0", &[Condition::KnobUp(false)])
+        },
+        Step {
+            ask: &[Line("joystick hold PRIM")],
+            how: "The next best: h on every screen.",
+            show: Show::Box,
+            until: "12",
+            ..state("2", "Prim is held", &[Condition::Held(&[ProcessId::Prim])])
+        },
+        Step {
+            ask: &[Line("estop terminals")],
+            how: "Only if the two above do not stop it. s leaves this step out.",
+            warning: "the arm loses its pressure and sinks; away from HOME and SAFE it may hit something",
+            show: Show::Hand,
+            until: "8",
+            ..state("3", "an E-stop is in: no hydraulic pressure", &[Condition::NoPressure])
+        },
+        Step {
+            how: "The hand sinks until the shot pin holds the shoulder, or until it lies on something.",
+            show: Show::Hand,
+            ..said("4", "the shot pin has been looked at, and where the arm sinks")
+        },
+        Step {
+            how: "If damage threatens, or is being done: steps 6 to 8 at once, as soon as possible.",
+            show: Show::Hand,
+            ..said("5", "it can settle without damage, or power comes back now")
+        },
+        Step {
+            ask: &[ReleaseEStops, Line("panel fault-reset")],
+            show: Show::Screen,
+            ..state(
+                "6",
+                "the E-stops are out, and FAULT RESET is out",
+                &[Condition::EStopsOut, Condition::Reached("hydraulics disabled")],
+            )
+        },
+        Step {
+            ask: &[Line("panel hydraulics enable")],
+            show: Show::Screen,
+            ..state("7", "HYDRAULICS stands at ENABLE", &[Condition::Reached("hydraulics enabled")])
+        },
+        Step {
+            ask: &[Line("panel manual on")],
+            warning: "the end of the arm jumps up by about 10 in",
+            show: Show::Hand,
+            ..state("8", "MANUAL is on: the arm stands", &[Condition::Reached("manual")])
+        },
+        Step {
+            ask: &[Line("panel align")],
+            warning: "the arm moves",
+            show: Show::Aligned,
+            until: "10",
+            ..state("9", "all six axes are aligned", &[Condition::Aligned])
+        },
+        Step {
+            ask: &[Line("panel auto")],
+            warning: "the arm moves directly to HOME, whatever is in its way",
+            show: Show::Hand,
+            ..state("10", "AUTO: the robot is at HOME", &[Condition::Reached("auto, at HOME")])
+        },
+        Step {
+            ask: &[Line("panel cycle-start")],
+            warning: "the robot makes two short vertical motions by itself",
+            show: Show::Screen,
+            ..state("11", "CYCLE START: the program has come to DEPC", &[Condition::Reached("DEPC")])
+        },
+        Step {
+            ask: &[Line("joystick free PRIM"), Line("PAUSE")],
+            how: "PAUSE takes the position of the robot over, and starts the link again.",
+            warning: "the robot comes under control; it must not move",
+            show: Show::Hand,
+            ..event(
+                "12",
+                "Prim runs, the link runs, the robot stands",
+                &[
+                    Condition::Taken,
+                    Condition::Run(&[ProcessId::Prim]),
+                    Condition::LinkRuns,
+                    Condition::Says(ProcessId::Task, "finished"),
+                    Condition::Stands,
+                ],
+            )
+        },
+        Step {
+            ask: &[Line("joystick velocity 1000"), Line("go")],
+            show: Show::Box,
+            ..state("13", "the knob is up again", &[Condition::KnobUp(true)])
+        },
+        Step {
+            ask: &[Line("job go")],
+            how: "The job sends PAUSE and the line that was interrupted. :job skip goes on behind it.",
+            warning: "the robot goes on with its job",
+            ..state("14", "the job plays", &[Condition::Commands("the job plays")])
+        },
+    ],
+};
+
+/// IV.3.3 step 12.
+pub const WARNING: Procedure = Procedure {
+    section: "IV.3.3",
+    title: "Recover from a warning of the robot controller",
+    steps: &[
+        Step {
+            show: Show::Screen,
+            how: "Screen 3 explains the code.",
+            ..said("12", "the warning has been read")
+        },
+        Step {
+            ask: &[Line("panel interrupt")],
+            show: Show::Screen,
+            ..event("12a", "INTERRUPT is pressed", &[Condition::Taken])
+        },
+        Step {
+            ask: &[Line("panel cancel")],
+            show: Show::Screen,
+            ..event("12b", "CANCEL is pressed", &[Condition::Taken])
+        },
+        Step {
+            ask: &[Line("panel cancel")],
+            show: Show::Screen,
+            until: "12d",
+            ..state("12c", "CANCEL is pressed again: pre-manual", &[Condition::At("pre-manual")])
+        },
+        Step {
+            ask: &[Line("panel auto")],
+            warning: "the arm moves directly to HOME, whatever is in its way",
+            show: Show::Hand,
+            ..state("12d", "AUTO: the robot is at HOME", &[Condition::Reached("auto, at HOME")])
+        },
+        Step {
+            ask: &[Line("panel cycle-start")],
+            warning: "the robot makes two short vertical motions by itself",
+            show: Show::Screen,
+            ..state("12e", "CYCLE START: the program has come to DEPC", &[Condition::Reached("DEPC")])
+        },
+        Step {
+            ask: &[Line("PAUSE")],
+            how: ".R: PAUSE lets Prim execute RESTART, and takes the position over.",
+            show: Show::Frames,
+            ..event(
+                "12f",
+                "the link runs, and the frames agree",
+                &[
+                    Condition::Taken,
+                    Condition::Says(ProcessId::Task, "finished"),
+                    Condition::LinkRuns,
+                    Condition::FramesAgree,
+                ],
+            )
+        },
+    ],
+};
+
+/// The three address switches of a joint and its button (IV.3.3 step 11).
+const SWITCHES: &str = "The switches are read from the left: 4, 2, 1.";
+
+/// IV.3.3 step 11, a to q.
+pub const RESOLVERS: Procedure = Procedure {
+    section: "IV.3.3",
+    title: "Reset the resolver electronics, 11 a to q",
+    steps: &[
+        real("a", "the Resolver Electronics Box has power"),
+        real("b", "MANUAL/AUTO stands at MANUAL"),
+        Step { how: SWITCHES, ..real("c", "address switches down, down, down") },
+        real("d", "the button of joint 0 is pressed"),
+        Step { how: SWITCHES, ..real("e", "address switches down, down, up") },
+        real("f", "the button of joint 1 is pressed"),
+        Step { how: SWITCHES, ..real("g", "address switches down, up, down") },
+        real("h", "the button of joint 2 is pressed"),
+        Step { how: SWITCHES, ..real("i", "address switches down, up, up") },
+        real("j", "the button of joint 3 is pressed"),
+        Step { how: SWITCHES, ..real("k", "address switches up, down, down") },
+        real("l", "the button of joint 4 is pressed"),
+        Step { how: SWITCHES, ..real("m", "address switches up, down, up") },
+        real("n", "the button of joint 5 is pressed"),
+        Step { how: SWITCHES, ..real("o", "address switches down, down, down") },
+        real("p", "MANUAL/AUTO stands at AUTO"),
+        Step { show: Show::Frame, ..state("q", "frame-feedback is that of HOME", &[Condition::AtHome]) },
+    ],
+};
+
+/// IV.3.4, second part.
+pub const MANUAL_CONTROL: Procedure = Procedure {
+    section: "IV.3.4",
+    title: "Return the robot to the teach pendant",
+    steps: &[
+        Step {
+            ask: &[Line("panel interrupt")],
+            how: "After trouble this may be better than to move to HOME first, or the only way.",
+            show: Show::Screen,
+            ..event("1", "INTERRUPT is pressed", &[Condition::Taken])
+        },
+        Step {
+            ask: &[Line("panel cancel")],
+            show: Show::Screen,
+            ..event("2", "CANCEL is pressed", &[Condition::Taken])
+        },
+        Step {
+            ask: &[Line("panel cancel")],
+            show: Show::Screen,
+            until: "4",
+            ..state("3", "CANCEL is pressed again: pre-manual", &[Condition::At("pre-manual")])
+        },
+        Step {
+            how: "Near HOME the robot may be shut down: IV.3.4 from step 2 on.",
+            show: Show::Hand,
+            ..step("4", "the robot is moved near to HOME with the pendant", Watch::Said)
+        },
+    ],
+};
