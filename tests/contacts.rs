@@ -3,6 +3,7 @@
 
 use std::fs;
 
+use record::Log;
 use serde_json::Value;
 use whole_system_tests::{Outcome, Scratch, root, run};
 
@@ -69,6 +70,23 @@ fn a_vise_that_was_taught_a_fifth_of_an_inch_beside_its_place_is_run_into() {
         (67.0..69.0).contains(&x) && (-45.0..-43.0).contains(&y) && (-8.0..-3.0).contains(&z),
         "{contact}"
     );
+    let marks = marks(&outcome);
+    let red = marks.iter().find(|(_, text)| text.contains("LINKBAR1_BH in fixed_jaw"));
+    // What the cell does in a tick is seen in the next one.
+    let begun = contact["tick"].as_u64().map(|tick| tick + 1);
+    assert_eq!(red.map(|(tick, _)| *tick), begun, "the collision is marked when it begins");
+    let last = marks.last().map(|(_, text)| text.as_str());
+    assert!(
+        last.is_some_and(|text| !text.contains("fixed_jaw")),
+        "what comes free is no longer marked: {last:?}"
+    );
+}
+
+/// The marks of contacts in the log: their ticks, and the texts in them.
+fn marks(outcome: &Outcome) -> Vec<(u64, String)> {
+    let log = Log::open(&outcome.log).expect("a run has a log");
+    let text = |data: Vec<u8>| String::from_utf8_lossy(&data).into_owned();
+    log.messages("/contacts").map(|(tick, data)| (tick.0, text(data))).collect()
 }
 
 /// An entry `[[contact]]` by its reason, a job that needs it, and what is different in the cell then.

@@ -177,6 +177,11 @@ def caption(image, studio, tick, scale):
     draw.text((left, height - 13 * scale), below, font=small, anchor="lm", fill=(170, 182, 192))
 
 
+def save(image, path):
+    """Save a picture with 256 colours, in a fifth of the bytes."""
+    image.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(path, optimize=True)
+
+
 def frame(studio, tick, size, folder, scale=1):
     """A picture of a tick: the cell, the gripper near by, captions."""
     studio.show(tick)
@@ -209,7 +214,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         if arguments.tick is not None:
             image = frame(studio, arguments.tick, size, scratch, max(1, round(size[0] / 800)))
-            image.save(arguments.output, optimize=True)
+            save(image, arguments.output)
             return
         folder = arguments.folder or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)

@@ -93,10 +93,10 @@ pub fn models(cell: &CellDescription, parts: &[(String, &PartType)]) -> Vec<Mode
 #[must_use]
 pub fn labels(cell: &CellDescription) -> Vec<Label> {
     let label = |text: &str, frame, position| Label { text: text.into(), frame, position };
-    let above = |text: &str, fixture: &str| {
+    let above = |text: &str, fixture: &str, rise: f64| {
         let fixture = cell.fixture.iter().find(|known| known.name == fixture)?;
         let [x, y, z] = fixture.centre;
-        Some(label(text, WORLD, [x, y, z + fixture.size[2] / 2.0 + 10.0]))
+        Some(label(text, WORLD, [x, y, z + fixture.size[2] / 2.0 + rise]))
     };
     let mut labels = vec![label("T3", "turret", [0.0, 0.0, 2.0 * cell.robot.upper_arm_radius + 6.0])];
     for (tray, number) in cell.tray.iter().zip(1..) {
@@ -106,8 +106,9 @@ pub fn labels(cell: &CellDescription) -> Vec<Label> {
     }
     let [_, _, up] = cell.vise.jaw;
     labels.push(label("vise", "vise", [cell.vise.jaw[0], 0.0, 2.0 * up]));
-    labels.extend(above("machining centre", "machine_column"));
-    labels.extend(above("tool drum", "tool_drum"));
+    // One above the other: they stand side by side.
+    labels.extend(above("machining centre", "machine_column", 18.0));
+    labels.extend(above("tool drum", "tool_drum", 8.0));
     let [x, y, z] = cell.pedestal.position;
     labels.push(label("pedestal", WORLD, [x, y, z + 6.0]));
     if let Some(frame) = cell.holsters.right.frame() {

@@ -211,6 +211,30 @@ impl CellFrame {
     }
 }
 
+/// Something of the robot, or what it carries, that touches something.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Touch {
+    /// What touches, by its name in the cell.
+    pub mover: String,
+    /// What it touches.
+    pub obstacle: String,
+    /// Where they are deepest in each other, world, inches.
+    pub point: [f64; 3],
+    /// How deep, inches.
+    pub depth: f64,
+    /// The cell description does not let them touch now.
+    pub collides: bool,
+}
+
+/// What viewers are shown beside the frames of the cell.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shown {
+    /// What the camera on the wrist saw: a PNG file.
+    Picture(Vec<u8>),
+    /// Everything that touches something, from this tick on.
+    Touches(Vec<Touch>),
+}
+
 /// What a log is told before the first tick.
 #[derive(Clone, Debug)]
 pub struct Setup {

@@ -25,6 +25,7 @@
 )]
 
 pub mod channels;
+pub mod contacts;
 pub mod delta;
 mod described;
 pub mod error;
@@ -48,7 +49,7 @@ pub mod writer;
 
 pub use error::{ReadError, RecordError, ReplayError};
 pub use file::LogFile;
-pub use input::{Attachment, CellFrame, CellModel, End, Epoch, Link, Model, Name, Setup};
+pub use input::{Attachment, CellFrame, CellModel, End, Epoch, Link, Model, Name, Setup, Shown, Touch};
 pub use operator::{OPERATOR, OperatorLine};
 pub use proto::foxglove::{Level, Transform};
 pub use reader::Log;

@@ -26,7 +26,7 @@ use rtrb::{Consumer, Producer, RingBuffer};
 use crate::{
     error::RecordError,
     file::LogFile,
-    input::{Attachment, CellFrame, End, Setup},
+    input::{Attachment, CellFrame, End, Setup, Shown},
     operator::OperatorLine,
     proto::foxglove::Level,
     remarks::Remark,
@@ -47,8 +47,8 @@ const IDLE: Duration = Duration::from_millis(5);
 const FULL: Duration = Duration::from_micros(100);
 /// Files that the ring holds.
 const FILE_RING: usize = 64;
-/// Pictures of the camera that the ring holds.
-const PICTURE_RING: usize = 128;
+/// Pictures of the camera and lists of contacts that the ring holds.
+const SHOWN_RING: usize = 256;
 /// Lines of operators that the ring holds.
 const OPERATOR_RING: usize = 256;
 /// Characters of a note; what is longer is cut.
@@ -95,7 +95,7 @@ pub struct Recorder {
     notes: Producer<Note>,
     files: Producer<(Tick, Attachment)>,
     operators: Producer<OperatorLine>,
-    pictures: Producer<(Tick, Vec<u8>)>,
+    shown: Producer<(Tick, Shown)>,
     pace: Pace,
     last_state: Option<Tick>,
     timing: Option<Timing>,
@@ -117,8 +117,8 @@ pub struct Lost {
     pub notes: u64,
     /// Files that came up during the run: without them it cannot be replayed to the end.
     pub files: u64,
-    /// Pictures of the camera.
-    pub pictures: u64,
+    /// Pictures of the camera, and lists of contacts.
+    pub shown: u64,
     /// Lines of operators: without them their inputs cannot be given again.
     pub operators: u64,
 }
@@ -170,7 +170,7 @@ impl Recorder {
         let (notes, note_consumer) = ring(NOTE_RING, note);
         let (files, file_consumer) = RingBuffer::new(FILE_RING);
         let (operators, operator_consumer) = RingBuffer::new(OPERATOR_RING);
-        let (pictures, picture_consumer) = RingBuffer::new(PICTURE_RING);
+        let (shown, shown_consumer) = RingBuffer::new(SHOWN_RING);
         let end = Arc::default();
         let drain = Drain {
             log,
@@ -181,7 +181,7 @@ impl Recorder {
             notes: note_consumer,
             files: file_consumer,
             operators: operator_consumer,
-            pictures: picture_consumer,
+            shown: shown_consumer,
             end: Arc::clone(&end),
         };
         let thread = thread::Builder::new()
@@ -195,7 +195,7 @@ impl Recorder {
             notes,
             files,
             operators,
-            pictures,
+            shown,
             pace,
             last_state: None,
             timing: None,
@@ -232,10 +232,10 @@ impl Recorder {
         }
     }
 
-    /// What the camera on the wrist saw, a PNG file; before [`Recorder::tick`] of the same tick.
-    pub fn picture(&mut self, tick: Tick, png: Vec<u8>) {
-        if !has_room(&self.pictures, Pace::Drop) || self.pictures.push((tick, png)).is_err() {
-            self.lost.pictures += 1;
+    /// What viewers are shown; before [`Recorder::tick`] of the same tick.
+    pub fn show(&mut self, tick: Tick, shown: Shown) {
+        if !has_room(&self.shown, Pace::Drop) || self.shown.push((tick, shown)).is_err() {
+            self.lost.shown += 1;
         }
     }
 
@@ -301,22 +301,11 @@ impl Recorder {
     /// What ended the log before the run did.
     pub fn finish(self, end: End) -> Result<Summary, RecordError> {
         let Self {
-            ticks,
-            states,
-            cells,
-            notes,
-            files,
-            operators,
-            pictures,
-            lost,
-            path,
-            end: slot,
-            thread,
-            ..
+            ticks, states, cells, notes, files, operators, shown, lost, path, end: slot, thread, ..
         } = self;
         *slot.lock().unwrap_or_else(PoisonError::into_inner) = (end, lost);
         // Without a producer the writer finishes; the ticks go last, since they are what it waits for.
-        drop((states, cells, notes, files, operators, pictures));
+        drop((states, cells, notes, files, operators, shown));
         drop(ticks);
         let written = thread.join().map_err(|_| RecordError::Thread)??;
         Ok(Summary { path, ticks: written.ticks, lost, bytes: written.bytes })
@@ -353,7 +342,7 @@ struct Drain {
     notes: Consumer<Note>,
     files: Consumer<(Tick, Attachment)>,
     operators: Consumer<OperatorLine>,
-    pictures: Consumer<(Tick, Vec<u8>)>,
+    shown: Consumer<(Tick, Shown)>,
     end: Arc<Mutex<(End, Lost)>>,
 }
 
@@ -390,9 +379,9 @@ impl Drain {
                 self.log.attach(tick, attachment)?;
             }
         }
-        while self.pictures.peek().is_ok_and(|(tick, _)| *tick <= record.tick) {
-            if let Ok((tick, png)) = self.pictures.pop() {
-                self.log.picture(tick, &png)?;
+        while self.shown.peek().is_ok_and(|(tick, _)| *tick <= record.tick) {
+            if let Ok((tick, shown)) = self.shown.pop() {
+                self.log.show(tick, &shown)?;
             }
         }
         let state = latest(&mut self.states, record.tick, |(tick, _)| *tick).map(|(_, state)| state);

@@ -1,4 +1,5 @@
-//! The moving cell: `/tf`, `/tf_static`, `/joint_states`, `/robot_description`, `/meshes`, `/names`, `/trail` and `/camera`.
+//! The moving cell: `/tf`, `/tf_static`, `/joint_states`, `/robot_description`, `/meshes`, `/names`, `/trail`, `/contacts`
+//! and `/camera`.
 //!
 //! Links travel relative to their parents in the URDF, so that a description and its transforms can never
 //! contradict each other in a viewer, and so that a link that only turns repeats its position.
@@ -10,7 +11,8 @@ use rcs_core::tick::Tick;
 
 use crate::{
     channels::Output,
-    input::{CellFrame, CellModel},
+    contacts,
+    input::{CellFrame, CellModel, Shown},
     proto::{
         foxglove::{self, Transform},
         ros,
@@ -36,12 +38,17 @@ pub const NAMES: &str = "/names";
 /// Topic of what the camera on the wrist saw.
 pub const CAMERA: &str = "/camera";
 
+/// A frame at the tool point with the axes of the world: a view that rides with it does not turn.
+const TOOL_POINT: &str = "tool_point";
+/// The frame of what stands still.
+const WORLD: &str = "world";
+
 /// The link that the camera is on.
 const CAMERA_LINK: &str = "quick_change";
 /// Height of the letters of a name, metres.
-const LETTERS: f64 = 0.07;
-/// Their colour.
-const WHITE: Colour = [1.0, 1.0, 1.0, 1.0];
+const LETTERS: f64 = 0.10;
+/// Their colour: on dark letters viewers put a light ground.
+const INK: Colour = [0.09, 0.12, 0.14, 1.0];
 
 /// Encoding of the definitions of ROS 2 messages, and of the messages.
 const ROS2: (&str, &str) = ("ros2msg", "cdr");
@@ -56,9 +63,11 @@ pub struct Scene {
     meshes: u16,
     names: u16,
     camera: u16,
+    contacts: u16,
     trail: Trail,
     described: bool,
     last: Vec<Option<Transform>>,
+    last_tool: Option<Transform>,
     last_joints: Vec<f64>,
 }
 
@@ -77,9 +86,10 @@ impl Scene {
         let names = output.protobuf(NAMES, scene::SCENE_UPDATE, &drawn)?;
         let image = foxglove::compressed_image_descriptor();
         let camera = output.protobuf(CAMERA, foxglove::COMPRESSED_IMAGE, &image)?;
+        let contacts = output.protobuf(contacts::CONTACTS, scene::SCENE_UPDATE, &drawn)?;
         let trail = Trail::open(output, &model)?;
         let last = vec![None; model.links.len()];
-        let (described, last_joints) = (false, Vec::new());
+        let (described, last_tool, last_joints) = (false, None, Vec::new());
         Ok(Self {
             model,
             moving,
@@ -89,9 +99,11 @@ impl Scene {
             meshes,
             names,
             camera,
+            contacts,
             trail,
             described,
             last,
+            last_tool,
             last_joints,
         })
     }
@@ -117,6 +129,13 @@ impl Scene {
                 *last = Some(place);
             }
         }
+        if let Some(position) = self.trail.tool_point(frame) {
+            let place = rounded(&Transform { position, ..Transform::IDENTITY });
+            if all || self.last_tool != Some(place) {
+                foxglove::put_transform(time, WORLD, TOOL_POINT, &place, &mut data);
+                self.last_tool = Some(place);
+            }
+        }
         if !data.is_empty() {
             output.put(self.moving, frame.tick, &data)?;
         }
@@ -132,11 +151,20 @@ impl Scene {
         Ok(())
     }
 
-    /// Write what the camera saw: a PNG file.
-    pub fn picture<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick, png: &[u8]) -> McapResult<()> {
-        let mut data = Vec::new();
-        foxglove::put_png(output.epoch.of(tick), CAMERA_LINK, png, &mut data);
-        output.put(self.camera, tick, &data)
+    /// Write what viewers are shown beside the frames.
+    pub fn show<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick, shown: &Shown) -> McapResult<()> {
+        let (mut data, time) = (Vec::new(), output.epoch.of(tick));
+        let channel = match shown {
+            Shown::Picture(png) => {
+                foxglove::put_png(time, CAMERA_LINK, png, &mut data);
+                self.camera
+            }
+            Shown::Touches(touches) => {
+                contacts::put_marks(time, touches, &mut data);
+                self.contacts
+            }
+        };
+        output.put(channel, tick, &data)
     }
 
     /// What is true for the whole log.
@@ -153,13 +181,13 @@ impl Scene {
         data.clear();
         for model in &self.model.models {
             let primitive = Primitive::Model(&model.glb);
-            scene::put_entity(time, &Entity { id: &model.name, frame: &model.frame, primitive }, &mut data);
+            scene::put_entity(time, &Entity::new(&model.name, &model.frame, primitive), &mut data);
         }
         output.put(self.meshes, tick, &data)?;
         data.clear();
         for name in &self.model.names {
-            let primitive = Primitive::Text(&name.text, name.position, LETTERS, WHITE);
-            scene::put_entity(time, &Entity { id: &name.text, frame: &name.frame, primitive }, &mut data);
+            let primitive = Primitive::Text(&name.text, name.position, LETTERS, INK);
+            scene::put_entity(time, &Entity::new(&name.text, &name.frame, primitive), &mut data);
         }
         output.put(self.names, tick, &data)
     }

@@ -58,11 +58,17 @@ impl Trail {
         Ok(Self { channel, chain, points: VecDeque::new(), longer: false })
     }
 
+    /// Where the tool point of a frame is, world, metres; `None` in a cell without one.
+    pub fn tool_point(&self, frame: &CellFrame) -> Option<[f64; 3]> {
+        let places = self.chain.iter().filter_map(|at| frame.transforms.get(*at));
+        let point = places.fold([0.0; 3], |point, place| moved(place, point));
+        (!self.chain.is_empty()).then_some(point)
+    }
+
     /// Take the tool point of a frame, and write the line once a second if it has become longer.
     pub fn note<W: Write + Seek>(&mut self, output: &mut Output<W>, frame: &CellFrame) -> McapResult<()> {
-        if !self.chain.is_empty() && frame.tick.0.is_multiple_of(STEP) {
-            let places = self.chain.iter().filter_map(|at| frame.transforms.get(*at));
-            let point = places.fold([0.0; 3], |point, place| moved(place, point));
+        let point = self.tool_point(frame).filter(|_| frame.tick.0.is_multiple_of(STEP));
+        if let Some(point) = point {
             let apart = |last: &[f64; 3]| last.iter().zip(point).any(|(a, b)| (a - b).abs() > NEAR);
             if self.points.back().is_none_or(apart) {
                 self.points.push_back(point.map(|metres| (metres * 1000.0).round() / 1000.0));
@@ -76,7 +82,7 @@ impl Trail {
             self.longer = false;
             let mut data = Vec::new();
             let primitive = Primitive::Line(self.points.make_contiguous(), THICKNESS, COLOUR);
-            let entity = Entity { id: "trail", frame: "world", primitive };
+            let entity = Entity::new("trail", "world", primitive);
             scene::put_entity(output.epoch.of(frame.tick), &entity, &mut data);
             output.put(self.channel, frame.tick, &data)?;
         }

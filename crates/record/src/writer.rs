@@ -8,6 +8,7 @@
 //! | `/tf`, `/joint_states`, `/robot_description` | the moving cell | on change, and every ten seconds |
 //! | `/meshes`, `/names` | what it looks like, and what things are called | at the start |
 //! | `/trail`, `/camera` | the way of the tool point, the pictures that vision worked on | once a second, on an answer |
+//! | `/contacts` | a mark where the robot, or what it carries, touches something | on change |
 //! | `/log` | `foxglove.Log` | when there is something to say |
 //! | `/operator` | `rcs.OperatorLine` | when an operator asks for something |
 //!
@@ -34,7 +35,7 @@ use rcs_core::{Plain, plain::Writer, tick::Tick};
 use crate::{
     channels::{Buffers, HeaderPlace, Output, headers},
     delta::Codec,
-    input::{Attachment, CellFrame, End, Setup},
+    input::{Attachment, CellFrame, End, Setup, Shown},
     layout,
     operator::{OperatorChannel, OperatorLine},
     proto::{
@@ -281,12 +282,12 @@ impl<W: Write + Seek> LogWriter<W> {
         self.output.put(self.log, tick, &data)
     }
 
-    /// Write what the camera on the wrist saw, a PNG file; a log without a cell has no camera.
+    /// Write what viewers are shown; a log without a cell has no channels for it.
     ///
     /// # Errors
     /// What the sink says.
-    pub fn picture(&mut self, tick: Tick, png: &[u8]) -> McapResult<()> {
-        self.scene.as_ref().map_or(Ok(()), |scene| scene.picture(&mut self.output, tick, png))
+    pub fn show(&mut self, tick: Tick, shown: &Shown) -> McapResult<()> {
+        self.scene.as_ref().map_or(Ok(()), |scene| scene.show(&mut self.output, tick, shown))
     }
 
     /// Write what an operator has asked for.
@@ -321,7 +322,7 @@ impl<W: Write + Seek> LogWriter<W> {
             ("lost_frames", lost.frames.to_string()),
             ("lost_notes", lost.notes.to_string()),
             ("lost_files", lost.files.to_string()),
-            ("lost_pictures", lost.pictures.to_string()),
+            ("lost_shown", lost.shown.to_string()),
             ("lost_operators", lost.operators.to_string()),
         ];
         let mut metadata = end.facts.clone();

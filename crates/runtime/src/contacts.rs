@@ -211,6 +211,12 @@ impl ContactCheck {
         lines
     }
 
+    /// The two are in a collision that goes on.
+    #[must_use]
+    pub fn is_collision(&self, contact: &Contact) -> bool {
+        self.open.contains_key(&contact.pair())
+    }
+
     /// Everything that was run into.
     #[must_use]
     pub fn collisions(&self) -> &[Collision] {

@@ -10,11 +10,11 @@ use interfaces::{
     device::{Picture, VisionRequest, VisionResponse, VisionStatus},
 };
 use levels::ladder::LadderState;
-use plant::{Cell, camera::Subject, convert::metres, description::Camera, part_link};
+use plant::{Cell, camera::Subject, clearance::Contact, convert::metres, description::Camera, part_link};
 use rcs_core::{digest::Digest, tick::Tick};
 use record::{
     Attachment, CellFrame, CellModel, End, Epoch, Level, Link, LogFile, Model, Name, OperatorLine, Pace,
-    RecordError, Recorder, Summary, Timing, Transform,
+    RecordError, Recorder, Shown, Summary, Timing, Touch, Transform,
 };
 use taskdata::load::{
     Source,
@@ -55,6 +55,8 @@ pub struct Log {
     faults: Counts,
     kinds: Vec<&'static str>,
     vision: Vision,
+    /// What touched something in the last tick.
+    touches: Vec<Touch>,
 }
 
 /// What vision was asked last and what it answered, and what the camera saw then.
@@ -128,6 +130,7 @@ impl Log {
             faults: Counts::default(),
             kinds: Vec::new(),
             vision: Vision::new(&setup.description.camera),
+            touches: Vec::new(),
         })
     }
 
@@ -149,7 +152,17 @@ impl Log {
         let joints = cell.joint_states().into_iter().map(|(_, value)| value);
         self.recorder.cell(&CellFrame::of(tick, places, joints).with_digest(cell.digest()));
         if let Some(png) = self.vision.look(cell) {
-            self.recorder.picture(tick, png);
+            self.recorder.show(tick, Shown::Picture(png));
+        }
+    }
+
+    /// What touches what, as the cell is in `tick`, and which of it may not; before [`Log::tick`].
+    pub fn contacts(&mut self, tick: Tick, contacts: &[Contact], collides: impl Fn(&Contact) -> bool) {
+        let touching = contacts.iter().filter(|contact| contact.touches());
+        let touches: Vec<_> = touching.map(|contact| touch(contact, collides(contact))).collect();
+        if touches != self.touches {
+            self.recorder.show(tick, Shown::Touches(touches.clone()));
+            self.touches = touches;
         }
     }
 
@@ -219,6 +232,21 @@ impl Log {
 
 fn transform(link: &plant::Link) -> Transform {
     Transform { position: link.position, rotation: link.rotation }
+}
+
+/// A contact as a viewer is to see it, rounded, so that what only trembles is not new: to hundredths of an inch where it
+/// is, to thousandths how deep.
+fn touch(contact: &Contact, collides: bool) -> Touch {
+    let Contact { mover, obstacle, depth, at, .. } = contact;
+    let rounded = |inches: f64, steps: f64| (inches * steps).round() / steps;
+    let (mover, obstacle) = (mover.clone(), obstacle.clone());
+    Touch {
+        mover,
+        obstacle,
+        point: at.map(|inches| rounded(inches, 100.0)),
+        depth: rounded(*depth, 1000.0),
+        collides,
+    }
 }
 
 /// What everything looks like, with the parts that will come.

@@ -16,6 +16,9 @@ pub const SCENE_UPDATE: &str = "foxglove.SceneUpdate";
 /// Media type of a [`Primitive::Model`].
 const GLB: &str = "model/gltf-binary";
 
+/// Deletes all entities of a topic: `foxglove.SceneEntityDeletion.Type`.
+const ALL: u64 = 1;
+
 /// A colour: red, green, blue and opacity from 0 to 1.
 pub type Colour = [f64; 4];
 
@@ -28,6 +31,8 @@ pub enum Primitive<'a> {
     Text(&'a str, [f64; 3], f64, Colour),
     /// A line through points, with its thickness and colour.
     Line(&'a [[f64; 3]], f64, Colour),
+    /// A ball: its middle, its diameter and its colour.
+    Ball([f64; 3], f64, Colour),
 }
 
 /// A thing to draw.
@@ -39,6 +44,16 @@ pub struct Entity<'a> {
     pub frame: &'a str,
     /// What it looks like.
     pub primitive: Primitive<'a>,
+    /// What a viewer says of it when it is selected: keys and values.
+    pub facts: &'a [(&'a str, String)],
+}
+
+impl<'a> Entity<'a> {
+    /// A thing of which there is nothing more to say.
+    #[must_use]
+    pub const fn new(id: &'a str, frame: &'a str, primitive: Primitive<'a>) -> Self {
+        Self { id, frame, primitive, facts: &[] }
+    }
 }
 
 /// Descriptors of [`SCENE_UPDATE`].
@@ -77,6 +92,11 @@ pub fn descriptor() -> Vec<u8> {
         list("colors", 7, "foxglove.Color"),
         repeated(field("indices", 8, Type::Fixed32)),
     ];
+    let ball = vec![
+        of("pose", 1, "foxglove.Pose"),
+        of("size", 2, "foxglove.Vector3"),
+        of("color", 3, "foxglove.Color"),
+    ];
     let strips = ["LINE_STRIP", "LINE_LOOP", "LINE_LIST"];
     let strips = enumeration("Type", (0..).zip(strips.map(str::to_owned)).collect());
     let line = DescriptorProto { enum_type: vec![strips], ..message("LinePrimitive", line) };
@@ -86,6 +106,8 @@ pub fn descriptor() -> Vec<u8> {
         field("id", 3, Type::String),
         of("lifetime", 4, "google.protobuf.Duration"),
         field("frame_locked", 5, Type::Bool),
+        list("metadata", 6, "foxglove.KeyValuePair"),
+        list("spheres", 9, "foxglove.SpherePrimitive"),
         list("lines", 11, "foxglove.LinePrimitive"),
         list("texts", 13, "foxglove.TextPrimitive"),
         list("models", 14, "foxglove.ModelPrimitive"),
@@ -100,6 +122,8 @@ pub fn descriptor() -> Vec<u8> {
         doubles("Color", &["r", "g", "b", "a"]),
         message("Pose", pose),
         doubles("Point3", &["x", "y", "z"]),
+        message("KeyValuePair", vec![field("key", 1, Type::String), field("value", 2, Type::String)]),
+        message("SpherePrimitive", ball),
         line,
         message("ModelPrimitive", model),
         message("TextPrimitive", text),
@@ -122,6 +146,14 @@ fn deletion() -> DescriptorProto {
     }
 }
 
+/// Append to a `SceneUpdate` that everything which it has drawn before is to go. `time` in nanoseconds since 1970.
+pub fn put_clear(time: u64, out: &mut Vec<u8>) {
+    wire::nested(1, out, |out| {
+        timestamp(time, out);
+        wire::unsigned(2, ALL, out);
+    });
+}
+
 /// Append one entity, which stays until it is replaced, to a `SceneUpdate`. `time` in nanoseconds since 1970.
 pub fn put_entity(time: u64, entity: &Entity<'_>, out: &mut Vec<u8>) {
     wire::nested(2, out, |out| {
@@ -129,6 +161,12 @@ pub fn put_entity(time: u64, entity: &Entity<'_>, out: &mut Vec<u8>) {
         wire::bytes(2, entity.frame.as_bytes(), out);
         wire::bytes(3, entity.id.as_bytes(), out);
         wire::unsigned(5, 1, out);
+        for (key, value) in entity.facts {
+            wire::nested(6, out, |out| {
+                wire::bytes(1, key.as_bytes(), out);
+                wire::bytes(2, value.as_bytes(), out);
+            });
+        }
         match entity.primitive {
             Primitive::Model(glb) => wire::nested(14, out, |out| {
                 pose(&[0.0; 3], out);
@@ -150,6 +188,11 @@ pub fn put_entity(time: u64, entity: &Entity<'_>, out: &mut Vec<u8>) {
                     wire::nested(5, out, |out| put_doubles(point, out));
                 }
                 wire::nested(6, out, |out| put_doubles(&colour, out));
+            }),
+            Primitive::Ball(middle, diameter, colour) => wire::nested(9, out, |out| {
+                pose(&middle, out);
+                wire::nested(2, out, |out| put_doubles(&[diameter; 3], out));
+                wire::nested(3, out, |out| put_doubles(&colour, out));
             }),
         }
     });
@@ -205,7 +248,7 @@ mod tests {
     #[test]
     fn a_model_and_a_text_are_where_viewers_look_for_them() {
         let mut out = Vec::new();
-        let entity = Entity { id: "arm", frame: "upper_arm", primitive: Primitive::Model(b"glTF") };
+        let entity = Entity::new("arm", "upper_arm", Primitive::Model(b"glTF"));
         put_entity(1_000_000_002, &entity, &mut out);
         let model = part(&out, 2);
         assert_eq!((part(model, 2), part(model, 3)), (&b"upper_arm"[..], &b"arm"[..]));

@@ -36,6 +36,7 @@ impl Run {
         if let Some(counts) = self.robot.faults() {
             log.faults(tick, counts);
         }
+        log.contacts(tick, self.workstation.cell.contacts(), |contact| self.check.is_collision(contact));
         log.cell(tick, &self.workstation.cell, self.robot.egm().map(EgmPort::frames));
     }
 

@@ -1,0 +1,90 @@
+//! Marks where the robot, or what it carries, touches something: `/contacts`.
+//!
+//! A message holds all marks that there are from its tick on, so that a reader needs only the last one.
+
+use crate::{
+    input::Touch,
+    proto::scene::{self, Colour, Entity, Primitive},
+};
+
+/// Topic of the marks.
+pub const CONTACTS: &str = "/contacts";
+
+/// An inch, metres.
+const INCH: f64 = 0.0254;
+/// The mark of two things that may touch: its diameter, m, and its colour.
+const PERMITTED: (f64, Colour) = (0.024, [0.15, 0.70, 0.30, 0.85]);
+/// The mark of a collision.
+const COLLISION: (f64, Colour) = (0.06, [0.90, 0.10, 0.10, 0.85]);
+/// Height of the letters at a collision, and how far above its middle they stand, m.
+const LETTERS: (f64, f64) = (0.05, 0.08);
+
+/// Append the marks to a `foxglove.SceneUpdate`. `time` in nanoseconds since 1970.
+pub fn put_marks(time: u64, touches: &[Touch], out: &mut Vec<u8>) {
+    scene::put_clear(time, out);
+    for Touch { mover, obstacle, point, depth, collides } in touches {
+        let (diameter, colour) = if *collides { COLLISION } else { PERMITTED };
+        let [x, y, z] = point.map(|inches| inches * INCH);
+        let [east, north, up] = point;
+        let facts = [
+            ("mover", mover.clone()),
+            ("obstacle", obstacle.clone()),
+            ("point_in", format!("{east:.2} {north:.2} {up:.2}")),
+            ("depth_in", format!("{depth:.3}")),
+            ("permitted", (!collides).to_string()),
+        ];
+        let id = format!("{mover}, {obstacle}");
+        let primitive = Primitive::Ball([x, y, z], diameter, colour);
+        scene::put_entity(time, &Entity { facts: &facts, ..Entity::new(&id, "world", primitive) }, out);
+        if *collides {
+            let (letters, above) = LETTERS;
+            let text = format!("{mover} in {obstacle}");
+            let primitive = Primitive::Text(&text, [x, y, z + above], letters, colour);
+            scene::put_entity(time, &Entity::new(&text, "world", primitive), out);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::proto::wire::{Fields, Value};
+
+    fn touch(collides: bool) -> Touch {
+        let (mover, obstacle) = ("forearm".into(), "vise".into());
+        Touch { mover, obstacle, point: [10.0, -20.0, 5.0], depth: 0.25, collides }
+    }
+
+    /// How often a field is in a message.
+    fn count(data: &[u8], number: u64) -> usize {
+        Fields(data).filter(|field| matches!(field, (n, Value::Bytes(_)) if *n == number)).count()
+    }
+
+    fn marks(touches: &[Touch]) -> Vec<u8> {
+        let mut data = Vec::new();
+        put_marks(1, touches, &mut data);
+        data
+    }
+
+    #[test]
+    fn what_no_longer_touches_is_deleted() {
+        let none = marks(&[]);
+        assert_eq!((count(&none, 1), count(&none, 2)), (1, 0));
+    }
+
+    #[test]
+    fn a_collision_is_named_and_what_may_touch_is_not() {
+        assert_eq!(count(&marks(&[touch(false)]), 2), 1);
+        assert_eq!(count(&marks(&[touch(true)]), 2), 2);
+    }
+
+    #[test]
+    fn a_mark_says_which_two_bodies_touch_and_where() {
+        let data = marks(&[touch(false)]);
+        let text = String::from_utf8_lossy(&data);
+        for fact in ["forearm", "vise", "10.00 -20.00 5.00", "0.250", "true"] {
+            assert!(text.contains(fact), "{fact} is not in {text}");
+        }
+        assert!(data.windows(8).any(|bytes| bytes == 0.254_f64.to_le_bytes()), "metres for the viewer");
+    }
+}
