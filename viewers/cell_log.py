@@ -32,6 +32,16 @@ class Label:
 
 
 @dataclass
+class Mark:
+    """A ball where things touch: metres in the world, its colour from 0 to 1 each, and which things."""
+
+    position: tuple
+    diameter: float
+    colour: tuple
+    text: str
+
+
+@dataclass
 class CellLog:
     """A log in memory."""
 
@@ -41,6 +51,7 @@ class CellLog:
     labels: list = field(default_factory=list)
     moves: dict = field(default_factory=dict)  # frame: ([tick], [Pose])
     lines: list = field(default_factory=list)  # (tick, source, text)
+    marks: list = field(default_factory=list)  # (ns, [Mark]): those that there are from then on
 
     def pose(self, frame, tick):
         """The pose of a frame in its parent as it holds in a tick."""
@@ -64,6 +75,12 @@ def triple(vector):
     return (vector.x, vector.y, vector.z)
 
 
+def mark(text, ball):
+    """A mark of a contact."""
+    colour = (ball.color.r, ball.color.g, ball.color.b)
+    return Mark(triple(ball.pose.position), ball.size.x, colour, text)
+
+
 def read(path):
     """Read a log that `rcs-run` wrote."""
     log = CellLog()
@@ -72,11 +89,14 @@ def read(path):
         statistics = reader.get_summary().statistics
         log.start = statistics.message_start_time
         log.ticks = (statistics.message_end_time - log.start) // TICK
-        topics = ["/meshes", "/names", "/tf", "/tf_static", "/log"]
+        topics = ["/meshes", "/names", "/tf", "/tf_static", "/log", "/contacts"]
         for _, channel, message, decoded in reader.iter_decoded_messages(topics=topics):
             tick = (message.log_time - log.start) // TICK
             if channel.topic == "/log":
                 log.lines.append((tick, decoded.name, decoded.message))
+            elif channel.topic == "/contacts":
+                balls = [(e.id, e.spheres[0]) for e in decoded.entities if e.spheres]
+                log.marks.append((message.log_time, [mark(text, ball) for text, ball in balls]))
             elif channel.topic == "/meshes":
                 log.models += [(e.id, e.frame_id, e.models[0].data) for e in decoded.entities]
             elif channel.topic == "/names":

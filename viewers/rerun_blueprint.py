@@ -17,8 +17,8 @@ import rerun.blueprint as rrb
 
 EYE = rrb.EyeControls3D(
     kind=rrb.Eye3DKind.Orbital,
-    position=(0.6, -4.6, 1.4),
-    look_target=(0.2, -0.35, -0.35),
+    position=(0.7, -5.6, 1.6),
+    look_target=(0.3, -0.35, -0.3),
     eye_up=(0.0, 0.0, 1.0),
 )
 
@@ -35,7 +35,7 @@ def blueprint(meshes: bool) -> rrb.Blueprint:
     )
     cell = rrb.Spatial3DView(
         origin="/",
-        contents=["/meshes/**", "/names/**", "/tf/**", "/tf_static/**"] if meshes else "/**",
+        contents=["/meshes/**", "/names/**", "/marks/**", "/tf/**", "/tf_static/**"] if meshes else "/**",
         name="Cell",
         background=rrb.Background(color=(205, 214, 222)),
         line_grid=rrb.LineGrid3D(visible=False),

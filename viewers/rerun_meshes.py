@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
-"""Takes the meshes and names of a log and writes them as a recording of Rerun.
+"""Takes meshes, names and marks of contacts of a log and writes them as a recording of Rerun.
 
     pip install rerun-sdk mcap mcap-protobuf-support
     python3 viewers/rerun_meshes.py runs/linkbar.mcap meshes.rrd
 
-Rerun draws neither the models nor the texts of foxglove.SceneUpdate. viewers/rerun.sh merges the recording with the log
+Rerun draws nothing of foxglove.SceneUpdate. viewers/rerun.sh merges the recording with the log
 itself and opens both. A glTF file has Y up, a link has Z up: each mesh is turned by 90 degrees about X.
 """
 
 import argparse
 from pathlib import Path
 
+import numpy as np
 import rerun as rr
 
 import cell_log
@@ -40,6 +41,16 @@ def main():
         rr.log(path, rr.CoordinateFrame(label.frame), static=True)
         point = rr.Points3D([label.position], labels=[label.text], colors=[WHITE], radii=[0.004])
         rr.log(path, point, static=True)
+    rr.log("marks", rr.CoordinateFrame("world"), static=True)
+    for time, marks in log.marks:
+        rr.set_time("message_log_time", timestamp=np.datetime64(time, "ns"))
+        balls = rr.Points3D(
+            [mark.position for mark in marks],
+            radii=[mark.diameter / 2 for mark in marks],
+            colors=[mark.colour for mark in marks],
+            labels=[mark.text for mark in marks],
+        )
+        rr.log("marks", balls)
 
 
 if __name__ == "__main__":
