@@ -118,3 +118,12 @@ fn the_samples_of_the_tutorial_on_failures_are_what_is_printed() {
         "the page shows two failures, their causes and a remedy"
     );
 }
+
+#[test]
+fn the_samples_of_the_tutorial_on_new_parts_are_what_is_printed() {
+    assert_eq!(
+        run_samples("docs/teach-a-part.md"),
+        18,
+        "the page makes a part, shows its data, and breaks them"
+    );
+}

@@ -105,6 +105,19 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::from(if outcome.ok { 0 } else { UNUSABLE }))
 }
 
+/// What is wrong with a data directory, in words: errors, and warnings.
+pub fn findings(data: &Path) -> (Vec<String>, Vec<String>) {
+    let checked = Checked::of(data, &Flights::default());
+    let all = checked.reports.iter().flat_map(|(_, report)| report.diagnostics());
+    let words = |diagnostic: &Diagnostic| {
+        let help = diagnostic.help().map_or_else(String::new, |help| format!("; {help}"));
+        format!("{}: {}{help}", diagnostic.place(), diagnostic.message())
+    };
+    let (errors, warnings): (Vec<_>, Vec<_>) =
+        all.partition(|diagnostic| diagnostic.severity() == Severity::Error);
+    (errors.into_iter().map(words).collect(), warnings.into_iter().map(words).collect())
+}
+
 /// Flights of all checks of this process, by the text of the cell description.
 #[derive(Default)]
 struct Flights(Mutex<HashMap<Arc<str>, Arc<Known>>>);

@@ -1,8 +1,11 @@
 //! The command line.
 
-use std::{path::PathBuf, str::FromStr};
+use std::{
+    path::{Path, PathBuf},
+    str::FromStr,
+};
 
-use crate::campaign::CampaignArguments;
+use crate::{campaign::CampaignArguments, new::NewArguments};
 use clap::{Args, Parser, Subcommand, ValueEnum, builder::ArgPredicate};
 use cli_pages::shipped_path;
 use executive::{boards::Board, memory::RunName, overrun::Policy};
@@ -35,6 +38,8 @@ Examples:
                                        the whole way of a command, and how long it takes
   rcs-run --network unix:/tmp/rcs.sock --outside workstation --clock real
                                        take commands from a workstation controller in another process
+  rcs-run new part HINGE --size 3x1.5x1 --like LCLEVIS
+                                       data for a part of another size, tried before they are shown
   rcs-run status                       what the run in the other terminal is doing
   rcs-run tables > tables.md           all decision tables
 
@@ -75,6 +80,8 @@ pub enum Command {
     Pose(PoseArguments),
     /// Write the data that comes with the program into DIR/data, to be changed
     Init(InitArguments),
+    /// Make task data and cell entries for a new part or place, try them, and show or write what changes
+    New(NewArguments),
     /// Remove what killed runs left in shared memory
     Clean,
 }
@@ -256,6 +263,22 @@ impl RunArguments {
             live_origins: own.live_origin,
             shared_memory: own.shared_memory == Switch::On,
             ..RunConfig::new(own.data, own.job)
+        }
+    }
+}
+
+impl CheckArguments {
+    /// To look at a data directory, and nothing else.
+    #[must_use]
+    pub fn of(data: &Path) -> Self {
+        Self {
+            data: data.to_owned(),
+            directory: None,
+            json: false,
+            urdf: None,
+            explain: None,
+            explain_job: None,
+            from: "HOME".to_owned(),
         }
     }
 }

@@ -31,6 +31,9 @@ pub enum Error {
     /// A pose cannot be shown or written.
     #[error("no pose: {0}")]
     Pose(String),
+    /// Data for something new cannot be made.
+    #[error("nothing is written: {0}")]
+    New(String),
     /// A file that was asked for cannot be written.
     #[error("{} cannot be written: {source}", path.display())]
     Write {

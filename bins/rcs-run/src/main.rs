@@ -20,6 +20,7 @@ mod interrupt;
 mod latency;
 mod link_test;
 mod memory_fault;
+mod new;
 mod page;
 mod pose;
 mod progress;
@@ -89,6 +90,7 @@ fn execute(cli: Cli) -> Result<ExitCode, Error> {
         Some(Command::Send(arguments)) => send::send(&arguments),
         Some(Command::Pose(arguments)) => pose::pose(&arguments),
         Some(Command::Init(arguments)) => init::init(&arguments),
+        Some(Command::New(arguments)) => new::new(&arguments),
         Some(Command::Clean) => clean::clean(),
     }
 }

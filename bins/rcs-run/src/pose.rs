@@ -167,18 +167,8 @@ pub fn pose(arguments: &PoseArguments) -> Result<ExitCode, Error> {
 /// The pose that is asked about.
 fn asked(arguments: &PoseArguments, store: &Store) -> Result<Pose, Error> {
     if let [x, y, z] = *arguments.point {
-        let given = [x, y, z, arguments.azimuth, arguments.tilt, arguments.roll];
-        if let Some(found) = given.iter().find(|number| !(-FARTHEST..=FARTHEST).contains(*number)) {
-            let expected = format!("numbers from -{FARTHEST} to {FARTHEST} were expected");
-            return Err(Error::Pose(format!("{expected}, inches and degrees; found {found}")));
-        }
-        let [azimuth, tilt, roll] = [arguments.azimuth, arguments.tilt, arguments.roll].map(f64::to_radians);
-        let pointing = Vector::new(tilt.sin() * azimuth.cos(), tilt.sin() * azimuth.sin(), -tilt.cos());
-        let level = Vector::new(-azimuth.sin(), azimuth.cos(), 0.0);
-        let finger = level * roll.cos() + pointing.cross(&level) * roll.sin();
-        let rotation = rotation_from_x_y(&pointing, &finger)
-            .ok_or_else(|| Error::Pose("angles and coordinates must be numbers".to_owned()))?;
-        return Ok(Pose::from_frame(&Frame { position: Vector::new(x, y, z), rotation }));
+        let frame = standing([x, y, z], arguments.azimuth, arguments.tilt, arguments.roll);
+        return frame.map(|frame| Pose::from_frame(&frame)).map_err(Error::Pose);
     }
     if let Some(name) = &arguments.of {
         let unknown = || {
@@ -198,6 +188,25 @@ fn asked(arguments: &PoseArguments, store: &Store) -> Result<Pose, Error> {
         let how = "press the button of the joystick box, or ask for `joystick record`";
         Error::Pose(format!("no pose has been recorded in the run {run}: {how}"))
     })
+}
+
+/// The frame of a tool that stands at a point (in), leans from straight down by a tilt towards an azimuth, and is turned by a
+/// roll, degrees.
+///
+/// # Errors
+/// Which number is no place for a robot.
+pub fn standing([x, y, z]: [f64; 3], azimuth: f64, tilt: f64, roll: f64) -> Result<Frame, String> {
+    let given = [x, y, z, azimuth, tilt, roll];
+    if let Some(found) = given.iter().find(|number| !(-FARTHEST..=FARTHEST).contains(*number)) {
+        let expected = format!("numbers from -{FARTHEST} to {FARTHEST} were expected");
+        return Err(format!("{expected}, inches and degrees; found {found}"));
+    }
+    let [azimuth, tilt, roll] = [azimuth, tilt, roll].map(f64::to_radians);
+    let pointing = Vector::new(tilt.sin() * azimuth.cos(), tilt.sin() * azimuth.sin(), -tilt.cos());
+    let level = Vector::new(-azimuth.sin(), azimuth.cos(), 0.0);
+    let finger = level * roll.cos() + pointing.cross(&level) * roll.sin();
+    let rotation = rotation_from_x_y(&pointing, &finger).ok_or("angles and coordinates must be numbers")?;
+    Ok(Frame { position: Vector::new(x, y, z), rotation })
 }
 
 /// Put the form into the file, and say what has changed.

@@ -214,14 +214,28 @@ impl Vise {
         to_pose(&self.frame.shifted(Inches::new(0.0, self.gap, 0.0)))
     }
 
-    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for where the fixed one is. What a
-    /// deeper step has cut out of them before its own back is missing.
+    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for where the fixed one is. Deeper steps
+    /// have cut pieces out of them: of what is left beside and below each, the larger rectangle counts.
     #[must_use]
     pub fn pads(&self, step: usize) -> Pads {
         let step = self.step(step);
-        let deeper = self.description.program.iter().filter(|cut| cut.depth > step.depth);
-        let front = deeper.map(|cut| cut.back).fold(0.0, f64::max).min(step.back);
-        Pads { x: [metres(front), metres(step.back)], z: [metres(step.ledge), 0.0], groove: None }
+        let (mut x, mut z) = ([0.0, step.back], [step.ledge, 0.0]);
+        for cut in self.description.program.iter().filter(|cut| cut.depth > step.depth) {
+            let beside = [cut.back.clamp(x[0], x[1]), x[1]];
+            let below = [z[0], cut.ledge.clamp(z[0], z[1])];
+            if (beside[1] - beside[0]) * (z[1] - z[0]) >= (x[1] - x[0]) * (below[1] - below[0]) {
+                x = beside;
+            } else {
+                z = below;
+            }
+        }
+        Pads { x: x.map(metres), z: z.map(metres), groove: None }
+    }
+
+    /// How deep the clamping face of a step is behind the inner face, in.
+    #[must_use]
+    pub fn depth(&self, step: usize) -> f64 {
+        self.step(step).depth
     }
 
     /// Y of the fixed clamping face of a step in the frame of the vise, m.
@@ -262,5 +276,31 @@ impl Vise {
         (-1.0..into).contains(&point.x)
             && (-deepest..self.gap + deepest).contains(&point.y)
             && (-height..height).contains(&point.z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::CellDescription;
+
+    #[test]
+    fn a_deeper_step_leaves_what_is_beside_or_below_it() {
+        let mut cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
+        let step =
+            |name: &str| cell.vise.program.iter().find(|program| program.name == name).unwrap().clone();
+        let deeper = ViseProgram { back: 0.87, depth: 0.2625, ledge: -0.6, ..step("CLEVIS") };
+        cell.vise.program.push(deeper);
+        let mut world = PhysicsWorld::new();
+        let vise = Vise::new(&mut world, &cell.vise);
+        let faces = |step: usize| (vise.pads(step).x.map(inches), vise.pads(step).z.map(inches));
+        let is = |(x, z): ([f64; 2], [f64; 2]), expected: [f64; 4]| {
+            let found = [x[0], x[1], z[0], z[1]];
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {expected:?}");
+        };
+        // The linkbar's face is cut from above, that of the clevis from the front by both others.
+        is(faces(0), [0.0, 0.41, -3.25, -0.6]);
+        is(faces(1), [0.87, 1.6, -1.0, 0.0]);
+        is(faces(2), [0.0, 0.87, -0.6, 0.0]);
     }
 }

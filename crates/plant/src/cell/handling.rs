@@ -34,6 +34,8 @@ const TOUCHING: Real = 1e-4;
 const JAW_PATIENCE: u32 = 50;
 /// A part may stand this far in a clamping face and is still between the jaws, m.
 const OUTSIDE: Real = 2e-3;
+/// A part that covers this share of what it covers at most stands in a step, too.
+const WELL: Real = 0.25;
 /// Fingers and part: stiff enough that a bar sags by 0.01 mm, soft enough that friction is not a jolt.
 const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
 
@@ -303,13 +305,20 @@ impl Cell {
         }
     }
 
-    /// The part between the clamping faces that stops the jaw first, and the step that it stands in: the one
-    /// whose faces it covers most. A bar that is pressed into the back of its step is not in the next one.
+    /// The part between the clamping faces that stops the jaw first, and the step that it stands in: the
+    /// shallowest of those whose faces it covers well, since that stops the jaw. A bar that is pressed into the
+    /// back of its step is not in the next one.
     fn between_jaws(&self) -> Option<(usize, usize, Squeeze)> {
         let standing = (0..self.parts.len()).filter_map(|index| {
-            let offers =
-                self.vise.steps().filter_map(|step| Some((step, self.between_jaws_of(index, step)?)));
-            let (step, squeeze) = offers.max_by(|(_, a), (_, b)| a.area.total_cmp(&b.area))?;
+            let offers: Vec<_> = self
+                .vise
+                .steps()
+                .filter_map(|step| Some((step, self.between_jaws_of(index, step)?)))
+                .collect();
+            let most = offers.iter().map(|(_, squeeze)| squeeze.area).fold(0.0, f64::max);
+            let covered = offers.into_iter().filter(|(_, squeeze)| squeeze.area >= WELL * most);
+            let depth = |step: usize| self.vise.depth(step);
+            let (step, squeeze) = covered.min_by(|(a, _), (b, _)| depth(*a).total_cmp(&depth(*b)))?;
             let (face, far) = (self.vise.fixed_face(step), self.vise.movable_face(step));
             let inside = squeeze.centre - squeeze.width / 2.0 > face - OUTSIDE
                 && squeeze.centre + squeeze.width / 2.0 < far + OUTSIDE;

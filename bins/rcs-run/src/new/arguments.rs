@@ -1,0 +1,83 @@
+//! The command line of `rcs-run new`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use cli_pages::shipped_path;
+
+use super::part::Size;
+
+/// Arguments of `new`.
+#[derive(Clone, Debug, Args)]
+pub struct NewArguments {
+    /// What is new
+    #[command(subcommand)]
+    pub what: What,
+}
+
+/// What is new.
+#[derive(Clone, Debug, Subcommand)]
+pub enum What {
+    /// A part of another size than one that is there: forms, movetables, cell entries, vise program and job
+    ///
+    /// The data are tried in a copy: check, three runs of the job, and if the jaws of the vise get a new step one run of
+    /// each other job. What fails is not written.
+    Part(PartArguments),
+    /// A place for the robot to stand: a pose, a location point, and the trajectories and approaches of another place
+    ///
+    /// The data are tried in a copy by check. What fails is not written.
+    Place(PlaceArguments),
+}
+
+/// Arguments of `new part`.
+#[derive(Clone, Debug, Args)]
+pub struct PartArguments {
+    /// Name of the part: capital letters and digits, 11 at most
+    #[arg(value_name = "NAME")]
+    pub name: String,
+    /// Length x width x height of the blank as it lies in its tray, inches; the fingers close on the width
+    #[arg(long, value_name = "LxWxH")]
+    pub size: Size,
+    /// A part of the cell that is handled as the new one is to be
+    #[arg(long, value_name = "PART")]
+    pub like: String,
+    /// Write the files; without it they are only shown
+    #[arg(long)]
+    pub write: bool,
+    /// Print the ways of all lines of the job, as `check --explain-job` does
+    #[arg(long)]
+    pub explain_job: bool,
+    /// Task data, jobs and cell description
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    pub data: PathBuf,
+}
+
+/// Arguments of `new place`.
+#[derive(Clone, Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub struct PlaceArguments {
+    /// Name of the place: capital letters and digits, 8 at most
+    #[arg(value_name = "NAME")]
+    pub name: String,
+    /// The tool point, inches
+    #[arg(value_names = ["X", "Y", "Z"], num_args = 3, required = true)]
+    pub point: Vec<f64>,
+    /// Where the tool leans, degrees from the X axis of the world; the finger point lies level, 90 degrees further
+    #[arg(long, value_name = "DEGREES", default_value_t = -90.0)]
+    pub azimuth: f64,
+    /// How far the tool leans from straight down, degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0)]
+    pub tilt: f64,
+    /// Turn of the finger point about the axis of the tool, degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0)]
+    pub roll: f64,
+    /// A location point that is reached as the new one is to be
+    #[arg(long, value_name = "PLACE")]
+    pub like: String,
+    /// Write the files; without it they are only shown
+    #[arg(long)]
+    pub write: bool,
+    /// Task data, jobs and cell description
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    pub data: PathBuf,
+}

@@ -1,0 +1,67 @@
+//! What was entered in the blocks of the task data, and which blocks load which.
+
+use taskdata::load::{
+    Store,
+    entries::Entry,
+    lex,
+    parse::parse,
+    report::Problems,
+    source::{BlockNumber, blocks},
+};
+
+/// The entries of all blocks.
+pub struct Entered {
+    all: Vec<(BlockNumber, Entry)>,
+    blocks: Vec<Loads>,
+}
+
+/// A block, its file, and what it loads.
+struct Loads {
+    file: String,
+    block: BlockNumber,
+    named: Vec<BlockNumber>,
+}
+
+impl Entered {
+    /// Read the blocks of task data without errors.
+    pub fn of(store: &Store) -> Self {
+        let mut entered = Self { all: Vec::new(), blocks: Vec::new() };
+        for source in store.sources() {
+            for block in blocks(0, source).0 {
+                let mut problems = Problems::default();
+                let words = lex::words(&block, &mut problems);
+                let parsed = parse(&words, block.number, block.header, &mut problems);
+                let named = parsed.loads.iter().map(|load| load.block).collect();
+                entered.blocks.push(Loads { file: source.name.clone(), block: block.number, named });
+                entered.all.extend(parsed.entries.into_iter().map(|entry| (block.number, entry)));
+            }
+        }
+        entered
+    }
+
+    /// All entries.
+    pub fn all(&self) -> impl Iterator<Item = &Entry> {
+        self.all.iter().map(|(_, entry)| entry)
+    }
+
+    /// The block of the first entry of a kind.
+    pub fn block_of(&self, kind: impl Fn(&Entry) -> bool) -> Option<BlockNumber> {
+        self.all.iter().find(|(_, entry)| kind(entry)).map(|(block, _)| *block)
+    }
+
+    /// The directory block that loads a block, and its file.
+    pub fn directory(&self, block: BlockNumber) -> Option<(&str, BlockNumber)> {
+        let loads = self.blocks.iter().find(|loads| loads.named.contains(&block))?;
+        Some((&loads.file, loads.block))
+    }
+
+    /// The first of as many numbers in a row that no block of an area has.
+    pub fn free_blocks(&self, offset: u32, count: u32) -> Option<u32> {
+        let used = |number: u32| {
+            let block = BlockNumber { offset, number };
+            self.blocks.iter().any(|loads| loads.block == block || loads.named.contains(&block))
+        };
+        let starts = (10..20).chain(4..10).map(|step| step * 50 + 1);
+        starts.into_iter().find(|start| (*start..start + count).all(|number| !used(number)))
+    }
+}

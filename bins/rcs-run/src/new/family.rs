@@ -1,0 +1,178 @@
+//! The parts that a new part is made after: blank, what machining makes of it, and the virtual objects of hold and seat.
+
+use std::path::Path;
+
+use plant::{
+    CellDescription,
+    description::{PartType, ViseProgram},
+};
+use rcs_core::name::Name16;
+use runtime::setup::jobs;
+use taskdata::load::{
+    Job, Source, Step, Store, Workstation,
+    entries::{Entry, GripEntry, MovetableEntry},
+    names,
+    source::BlockNumber,
+};
+
+use super::entered::Entered;
+use crate::error::Error;
+
+/// A family of parts.
+pub struct Family {
+    /// From the blank to the finished part, as the job has them.
+    pub parts: Vec<PartType>,
+    /// What their names have in common.
+    pub stem: String,
+    /// The text of the job.
+    pub job: Source,
+    /// The program of the vise in the job, if the vise has a part in it.
+    pub program: Option<ViseProgram>,
+    /// All entries of the task data.
+    pub entered: Entered,
+}
+
+impl Family {
+    /// The family of a part: what the job with the fewest parts has beside it.
+    ///
+    /// # Errors
+    /// [`Error::New`] if there is no such part, no job for it, or its parts have nothing in common.
+    pub fn of(like: &str, store: &Store, cell: &CellDescription, data: &Path) -> Result<Self, Error> {
+        if cell.part(like).is_none() {
+            let known: Vec<_> = cell.part.iter().map(|part| part.name.as_str()).collect();
+            let near = names::nearest(like, known.iter().copied());
+            let near = near.map_or_else(String::new, |near| format!("; the nearest is {near}"));
+            let known = known.join(", ");
+            return Err(Error::New(format!("no part is named {like}{near}; the cell has {known}")));
+        }
+        let loaded = jobs(data).into_iter().filter_map(|path| Some(Job::load(&path, store).ok()?.0));
+        let with_parts = loaded.map(|job| (parts(&job, cell), job));
+        let with_it = with_parts.filter(|(parts, _)| parts.iter().any(|part| part.name == like));
+        let (parts, job) = with_it
+            .min_by_key(|(parts, _)| parts.len())
+            .ok_or_else(|| Error::New(format!("no job moves {like}: a new part gets a job after another")))?;
+        let stem = stem(&parts).ok_or_else(|| {
+            let names: Vec<_> = parts.iter().map(|part| part.name.as_str()).collect();
+            let job = &job.name;
+            Error::New(format!(
+                "the job {job} has several parts, {}: name one that has a job",
+                names.join(", ")
+            ))
+        })?;
+        let program = program(&job, cell);
+        Ok(Self { parts, stem, job: job.source().clone(), program, entered: Entered::of(store) })
+    }
+
+    /// The part of the family that an object is, or is a hold or seat pose of: its number, and whether it is the part itself.
+    pub fn part_of(&self, object: &Name16) -> Option<(usize, bool)> {
+        let at = |name: &str| self.parts.iter().position(|part| part.name == name);
+        let name = object.as_str();
+        let virtual_one = || name.split_once('-').and_then(|(_, part)| at(part)).map(|part| (part, false));
+        at(name).map(|part| (part, true)).or_else(virtual_one)
+    }
+
+    /// The entries of the family's objects.
+    pub fn entries(&self) -> impl Iterator<Item = &Entry> {
+        let belongs = |entry: &Entry| subject(entry).is_some_and(|object| self.part_of(&object).is_some());
+        self.entered.all().filter(move |entry| belongs(entry))
+    }
+
+    /// The grips of the family's objects.
+    pub fn grips(&self) -> impl Iterator<Item = &GripEntry> {
+        self.entries().filter_map(|entry| match entry {
+            Entry::Grip(grip) => Some(grip),
+            _ => None,
+        })
+    }
+
+    /// The movetable of a name.
+    pub fn movetable(&self, name: &str) -> Option<&MovetableEntry> {
+        self.entered.all().find_map(|entry| match entry {
+            Entry::Movetable(table) if table.name.name.as_str() == name => Some(table),
+            _ => None,
+        })
+    }
+
+    /// The numbers of the camera for all objects.
+    pub fn vision_ids(&self) -> impl Iterator<Item = i32> {
+        self.entered.all().filter_map(|entry| match entry {
+            Entry::View(view) => Some(view.id),
+            _ => None,
+        })
+    }
+
+    /// The name of a part or an object after another stem.
+    pub fn renamed(&self, name: &str, stem: &str) -> String {
+        name.replacen(&self.stem, stem, 1)
+    }
+
+    /// The directory block that leads to the family's forms: its file and number.
+    ///
+    /// # Errors
+    /// [`Error::New`] if no directory names the family's own one.
+    pub fn directory(&self) -> Result<(&str, BlockNumber), Error> {
+        let is_first = |entry: &Entry| match entry {
+            Entry::Object(object) => self.part_of(&object.name.name).is_some_and(|(_, own)| own),
+            _ => false,
+        };
+        let entered = &self.entered;
+        let own = entered.block_of(is_first).and_then(|block| entered.directory(block));
+        own.and_then(|(_, own)| entered.directory(own))
+            .ok_or_else(|| Error::New(format!("no directory block leads to the forms of {}", self.stem)))
+    }
+}
+
+/// The object that an entry is about.
+pub fn subject(entry: &Entry) -> Option<Name16> {
+    match entry {
+        Entry::Object(e) => Some(e.name.name),
+        Entry::ObjGrips(e) => Some(e.object.name),
+        Entry::ObjLoc(e) => Some(e.object.name),
+        Entry::PedPara(e) => Some(e.object.name),
+        Entry::Grip(e) => Some(e.object.name),
+        Entry::View(e) => Some(e.object.name),
+        Entry::ApprDept(e) => Some(e.subject.name.name),
+        _ => None,
+    }
+}
+
+/// The parts of a job in their order: those that it delivers, makes or moves.
+fn parts(job: &Job, cell: &CellDescription) -> Vec<PartType> {
+    let mut names: Vec<Name16> = Vec::new();
+    for line in &job.steps {
+        let named = match &line.step {
+            Step::Command(command) => vec![command.object],
+            Step::Workstation(Workstation::Tray { object, .. }) => vec![Some(*object)],
+            Step::Workstation(Workstation::Machine { blank, part, .. }) => vec![Some(*blank), Some(*part)],
+            _ => Vec::new(),
+        };
+        names.extend(named.into_iter().flatten());
+    }
+    let mut parts: Vec<PartType> = Vec::new();
+    for part in names.iter().filter_map(|name| cell.part(name.as_str())) {
+        if !parts.iter().any(|known| known.name == part.name) {
+            parts.push(part.clone());
+        }
+    }
+    parts
+}
+
+/// The program by which the vise opens in a job.
+fn program(job: &Job, cell: &CellDescription) -> Option<ViseProgram> {
+    let used = job.steps.iter().filter_map(|line| match &line.step {
+        Step::Workstation(Workstation::Vise { program, .. }) => Some(program.as_ref()),
+        _ => None,
+    });
+    let used: Vec<_> = used.collect();
+    let named = used.iter().flatten().next().copied();
+    let of_name = |name: &Name16| cell.vise.program.iter().find(|one| one.name == name.as_str());
+    let first = || (!used.is_empty()).then(|| cell.vise.program.first()).flatten();
+    named.and_then(of_name).or_else(first).cloned()
+}
+
+/// The shortest name, if all others begin with it.
+fn stem(parts: &[PartType]) -> Option<String> {
+    let shortest = parts.iter().min_by_key(|part| part.name.len())?.name.clone();
+    let whole = shortest.split_once('_').map_or(shortest.as_str(), |(stem, _)| stem).to_owned();
+    parts.iter().all(|part| part.name.starts_with(&whole)).then_some(whole)
+}

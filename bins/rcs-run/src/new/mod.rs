@@ -1,0 +1,106 @@
+//! `rcs-run new`: data for something new, worked out from what is there, tried, shown as a diff, and written if asked.
+
+mod arguments;
+mod change;
+mod entered;
+mod family;
+mod forms;
+mod jaws;
+mod part;
+mod place;
+mod sizes;
+#[cfg(test)]
+mod tests;
+mod trial;
+
+use std::{path::Path, process::ExitCode};
+
+use os_io::console;
+use plant::CellDescription;
+use runtime::{StartError, setup::CELL};
+use taskdata::load::Store;
+
+pub use arguments::NewArguments;
+
+use self::{
+    arguments::{PartArguments, PlaceArguments, What},
+    change::Change,
+    trial::Trial,
+};
+use crate::{cli::CheckArguments, error::Error, pose, ways};
+
+/// Make what is new.
+///
+/// # Errors
+/// [`Error`] with the reason; then nothing is written.
+pub fn new(arguments: &NewArguments) -> Result<ExitCode, Error> {
+    match &arguments.what {
+        What::Part(arguments) => part(arguments),
+        What::Place(arguments) => place(arguments),
+    }
+}
+
+fn loaded(data: &Path) -> Result<Store, Error> {
+    let unusable =
+        |report| StartError::Data { what: format!("the task data under {}", data.display()), report };
+    Ok(Store::load(data).map_err(unusable)?.0)
+}
+
+/// `new part`.
+fn part(arguments: &PartArguments) -> Result<ExitCode, Error> {
+    let PartArguments { name, size, like, write, explain_job, data } = arguments;
+    let store = loaded(data)?;
+    let path = data.join(CELL);
+    let cell =
+        CellDescription::load(&path).map_err(|error| Error::New(format!("{}: {error}", path.display())))?;
+    let made = part::make(name, *size, like, (&store, &cell, data))?;
+    let trial = Trial::checked(&made.change, name)?;
+    if *explain_job {
+        let arguments = CheckArguments::of(trial.data());
+        return ways::explain(&arguments, &made.job);
+    }
+    let runs = trial.run(&made.job, made.jaws)?;
+    let mut lines = vec![("part", format!("{name}, {size} in, like {like}"))];
+    lines.extend(made.chosen.into_iter().map(|line| ("vise", line)));
+    lines.push(("tried", format!("check finds no errors; {runs} runs finished")));
+    lines.extend(trial.warnings.into_iter().map(|line| ("warning", line)));
+    lines.extend(made.to_teach.into_iter().map(|line| ("to teach", line)));
+    let next = format!("rcs-run {} --data {}", made.job, data.display());
+    finish(&made.change, lines, write.then_some(next))
+}
+
+/// `new place`.
+fn place(arguments: &PlaceArguments) -> Result<ExitCode, Error> {
+    let PlaceArguments { name, point, azimuth, tilt, roll, like, write, data } = arguments;
+    let store = loaded(data)?;
+    let point = point.as_slice().try_into().map_err(|_| Error::New("X, Y and Z were expected".to_owned()))?;
+    let frame = pose::standing(point, *azimuth, *tilt, *roll).map_err(Error::New)?;
+    let change = place::make(name, &frame, like, &store, data)?;
+    let trial = Trial::checked(&change, name)?;
+    let mut lines = vec![("place", format!("{name}, reached like {like}"))];
+    lines.push(("tried", "check finds no errors".to_owned()));
+    lines.extend(trial.warnings.into_iter().map(|line| ("warning", line)));
+    lines.push(("to teach", format!("robot: the pose {name}-P by joystick (rcs-run pose --write)")));
+    let next =
+        format!("rcs-run check --data {} --explain 'MOVE -- +0 -- 0 +0 {name} 0 -- 0'", data.display());
+    finish(&change, lines, write.then_some(next))
+}
+
+/// Show what changes, and write it if a next command is named.
+fn finish(change: &Change, lines: Vec<(&str, String)>, next: Option<String>) -> Result<ExitCode, Error> {
+    let mut text = change.diff() + "\n";
+    let mut before = "";
+    for (word, line) in lines {
+        text += &format!("{:<10} {line}\n", if word == before { "" } else { word });
+        before = word;
+    }
+    text += &match next {
+        Some(next) => {
+            change.write()?;
+            format!("written    try {next}\n")
+        }
+        None => "not written; --write writes the files\n".to_owned(),
+    };
+    console::answer(&text)?;
+    Ok(ExitCode::SUCCESS)
+}

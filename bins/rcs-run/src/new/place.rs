@@ -1,0 +1,139 @@
+//! `rcs-run new place`: a pose, a location point, and the trajectories and approaches of a place that is there.
+
+use std::path::Path;
+
+use geometry::{frame::Frame, pose::Pose};
+use rcs_core::name::{Name, Name10};
+use taskdata::{
+    files::RefType,
+    load::{
+        Store,
+        entries::{Entry, Named, PointAt, PoseEntry, Typed},
+        names,
+        source::At,
+    },
+};
+
+use super::{change::Change, entered::Entered, forms::Blocks};
+use crate::error::Error;
+
+/// Longest name: `-P` stands behind it in a name of 10 characters.
+const LONGEST: usize = 8;
+/// Characters of the name with which its trajectories begin.
+const BEGINS: usize = 6;
+
+/// Make the data of a place.
+///
+/// # Errors
+/// [`Error::New`] with the reason if there cannot be such a place.
+pub fn make(name: &str, frame: &Frame, like: &str, store: &Store, data: &Path) -> Result<Change, Error> {
+    let entered = Entered::of(store);
+    is_name(name, store)?;
+    let locpt = |entry: &Entry| matches!(entry, Entry::Locpt(point) if point.name.name.as_str() == like);
+    let block = entered.block_of(locpt).ok_or_else(|| unknown(like, store))?;
+    let (directory, number) = entered
+        .directory(block)
+        .ok_or_else(|| Error::New(format!("no directory block loads the location point {like}")))?;
+    let new = New { name: clipped(name), like };
+    let mut ways = Vec::new();
+    let mut count = 0;
+    for entry in entered.all() {
+        match entry.clone() {
+            Entry::Traj(mut way) if new.is_like(&way.start) || new.is_like(&way.end) => {
+                count += 1;
+                let begins: String = name.chars().take(BEGINS).collect();
+                way.name.name = Name::clipped(&format!("{begins}-T{count}"));
+                new.rename(&mut way.start);
+                new.rename(&mut way.end);
+                ways.push(Entry::Traj(way));
+            }
+            Entry::ApprDept(mut way) if way.place.is_none() && new.is_like(&way.subject) => {
+                new.rename(&mut way.subject);
+                ways.push(Entry::ApprDept(way));
+            }
+            _ => {}
+        }
+    }
+    let mut blocks = Blocks::new(name, format!("{like} and the pose"), number.offset);
+    blocks.group("pose", &[new.pose(frame)]);
+    blocks.group("location point", &[new.point()]);
+    blocks.group("trajectories, approach and depart", &ways);
+    let first = entered.free_blocks(number.offset, blocks.count());
+    let first = first.ok_or_else(|| Error::New(format!("the area {} has no free blocks", number.offset)))?;
+    let file = name.to_lowercase();
+    let mut change = Change::of(data);
+    change.add(&format!("places/{file}.blk"), blocks.text(first))?;
+    change.add_to_block(directory, number.number, &format!("  {first:03} load ( {file:<16} )"))?;
+    Ok(change)
+}
+
+/// Whether a name can be given.
+fn is_name(name: &str, store: &Store) -> Result<(), Error> {
+    let fits = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit();
+    if name.is_empty() || name.len() > LONGEST || !name.chars().all(fits) {
+        let expected = format!("1 to {LONGEST} capital letters and digits were expected");
+        return Err(Error::New(format!("a place is not named {name}: {expected}")));
+    }
+    let data = store.view();
+    let there = |name: &str| {
+        data.locpts.iter().any(|point| point.name.as_str() == name)
+            || data.owners.iter().any(|owner| owner.name.as_str() == name)
+            || data.arrays.iter().any(|array| array.name.as_str() == name)
+            || data.poses.iter().any(|pose| pose.name.as_str() == format!("{name}-P"))
+    };
+    if there(name) {
+        let free = (2..).map(|number| format!("{name}{number}")).find(|name| !there(name));
+        let free = free.unwrap_or_default();
+        return Err(Error::New(format!("{name} is there already: choose another name, such as {free}")));
+    }
+    Ok(())
+}
+
+fn unknown(like: &str, store: &Store) -> Error {
+    let known: Vec<String> = store.view().locpts.iter().map(|point| point.name.to_string()).collect();
+    let near = names::nearest(like, known.iter().map(String::as_str));
+    let near = near.map_or_else(String::new, |near| format!("; the nearest is {near}"));
+    Error::New(format!("no location point is named {like}{near}; there are {}", known.join(", ")))
+}
+
+/// A name of a form that was not read from a file.
+fn clipped(name: &str) -> Named<10> {
+    Named { name: Name10::clipped(name), at: At::default() }
+}
+
+/// A place and the one that it is like.
+struct New<'a> {
+    name: Named<10>,
+    like: &'a str,
+}
+
+impl New<'_> {
+    fn is_like(&self, end: &Typed) -> bool {
+        end.kind == RefType::LocationPoint && end.name.name.as_str() == self.like
+    }
+
+    fn rename(&self, end: &mut Typed) {
+        if self.is_like(end) {
+            end.name.name = Name::clipped(self.name.name.as_str());
+        }
+    }
+
+    fn pose_name(&self) -> Named<10> {
+        clipped(&format!("{}-P", self.name.name))
+    }
+
+    fn pose(&self, frame: &Frame) -> Entry {
+        let Pose { wrist, tool, finger } = Pose::from_frame(frame);
+        let points = [wrist, tool, finger];
+        Entry::Pose(PoseEntry {
+            points,
+            at: At::default(),
+            movetable: clipped("..."),
+            name: self.pose_name(),
+        })
+    }
+
+    fn point(&self) -> Entry {
+        Entry::Locpt(PointAt { name: self.name, pose: self.pose_name(), movetable: clipped("...") })
+    }
+}

@@ -1,0 +1,90 @@
+//! New data are tried before they are written: check, and runs in the simulated cell.
+
+use std::{panic::resume_unwind, path::Path, thread};
+
+use runtime::{Ending, LogTarget, Run, RunConfig, result::FailureResult, setup::jobs};
+use tempfile::TempDir;
+
+use super::change::Change;
+use crate::{check, error::Error};
+
+/// Seeds of the runs of a new job.
+const SEEDS: [u64; 3] = [1, 2, 3];
+/// Runs at a time.
+const AT_A_TIME: usize = 2;
+
+/// A copy of the data with the change.
+pub struct Trial {
+    place: TempDir,
+    /// Warnings about what is new.
+    pub warnings: Vec<String>,
+}
+
+impl Trial {
+    /// Copy and check. `name` is in all warnings that are told.
+    ///
+    /// # Errors
+    /// [`Error::New`] with every error that `check` finds.
+    pub fn checked(change: &Change, name: &str) -> Result<Self, Error> {
+        let place = tempfile::tempdir()?;
+        change.copy_to(place.path())?;
+        let (errors, mut warnings) = check::findings(place.path());
+        if !errors.is_empty() {
+            // The copy is gone when this is read.
+            let copy = format!("{}/", place.path().display());
+            let errors = errors.join("\n  ").replace(&copy, "");
+            return Err(Error::New(format!("check finds errors:\n  {errors}")));
+        }
+        warnings.retain(|warning| warning.contains(name));
+        Ok(Self { place, warnings })
+    }
+
+    /// The copy.
+    pub fn data(&self) -> &Path {
+        self.place.path()
+    }
+
+    /// Run the new job with some seeds, and all other jobs once if `others`. Returns how many runs finished.
+    ///
+    /// # Errors
+    /// [`Error::New`] with the first run that did not finish.
+    pub fn run(&self, job: &str, others: bool) -> Result<usize, Error> {
+        let mut wanted: Vec<(String, u64)> = SEEDS.map(|seed| (job.to_owned(), seed)).into();
+        let all = jobs(self.data()).into_iter().filter(|_| others);
+        let names = all.filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned()));
+        wanted.extend(names.filter(|name| name != job).map(|name| (name, 1)));
+        for some in wanted.chunks(AT_A_TIME) {
+            thread::scope(|scope| {
+                let runs: Vec<_> =
+                    some.iter().map(|(job, seed)| scope.spawn(move || self.finishes(job, *seed))).collect();
+                runs.into_iter().try_for_each(|run| run.join().unwrap_or_else(|panic| resume_unwind(panic)))
+            })?;
+        }
+        Ok(wanted.len())
+    }
+
+    /// One run.
+    fn finishes(&self, job: &str, seed: u64) -> Result<(), Error> {
+        let config = RunConfig {
+            seed,
+            log: LogTarget::None,
+            shared_memory: false,
+            ..RunConfig::new(self.data(), job)
+        };
+        let outcome = Run::new(config, Box::new(()))?.complete();
+        let Ending::Failed(failure) = &outcome.ending else {
+            return if outcome.is_finished() {
+                Ok(())
+            } else {
+                Err(Error::New(format!("the trial run of {job} was stopped")))
+            };
+        };
+        let line = outcome.result.failure.as_ref().and_then(|FailureResult { line, .. }| line.as_ref());
+        let line = line.map_or_else(String::new, |line| format!(" in `{line}`"));
+        let tick = failure.tick;
+        Err(Error::New(format!(
+            "the trial run of {job} with seed {seed} fails at tick {tick}{line}: {}",
+            failure.text
+        )))
+    }
+}
