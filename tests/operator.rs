@@ -11,9 +11,9 @@ use std::{
 use executive::memory::{Attached, RunName, operator_socket};
 use operator::{Client, ClientError};
 use record::{Log, OperatorLine};
-use runtime::{ClockKind, LogTarget, OperatorAccess, Run, RunConfig, RunOutcome};
+use runtime::{Boards, ClockKind, LogTarget, OperatorAccess, Run, RunConfig, RunOutcome};
 use tempfile::TempDir;
-use whole_system_tests::root;
+use whole_system_tests::{copy, rcs_run, root};
 
 /// Twenty ticks in the time of one: a tick takes 2 ms.
 const SPEED: u8 = 20;
@@ -120,8 +120,15 @@ fn outcomes(outcome: &RunOutcome) -> Vec<(&str, &'static str)> {
 
 /// The log's inputs, given again in fast clock, lead to the same bits.
 fn assert_repeats(outcome: &RunOutcome, log: &PathBuf, directory: &TempDir) {
+    assert_repeats_on(Boards::One, outcome, log, directory);
+}
+
+fn assert_repeats_on(boards: Boards, outcome: &RunOutcome, log: &PathBuf, directory: &TempDir) {
     let again = directory.path().join("again.mcap");
     let config = RunConfig {
+        boards,
+        // Each board is a process of it.
+        program: if boards == Boards::Split { rcs_run().to_path_buf() } else { PathBuf::new() },
         inputs: Some(log.clone()),
         log: LogTarget::File(again.clone()),
         ticks: Some(outcome.result.ticks),
@@ -195,6 +202,91 @@ fn after_an_emergency_stop_the_operator_starts_the_robot_up_and_the_job_goes_on(
     assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
     assert!(outcome.result.emergency_stop.is_some());
     assert_repeats(&outcome, &log, &directory);
+}
+
+/// Ask until it is taken.
+fn ask_until(client: &mut Client, line: &str, meanwhile: &str) {
+    let begun = Instant::now();
+    while let Err(why) = client.ask(line).unwrap() {
+        assert!(why.contains(meanwhile) && begun.elapsed() < PATIENCE, "{line}: {why}");
+        thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// `^C`, `GO`, `.R`, PRIM-LEVEL and LINE-LOAD (IV.2.6, IV.3): the log gives the same run, on one board and on five.
+#[test]
+fn boards_are_stopped_executed_and_started_again() {
+    let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
+    let mut client = cell.client("anna");
+    wait_ticks(&mut client, 150);
+    ask(&mut client, &["board 2 stop"]);
+    wait_ticks(&mut client, 20);
+    let refused = client.ask("robot-init").unwrap().unwrap_err();
+    assert!(refused.contains("PAUSE first"), "{refused}");
+    ask(&mut client, &["board 2 go", "PAUSE"]);
+    ask_until(&mut client, "robot-init", "PAUSE first");
+    wait_ticks(&mut client, 100);
+    ask(&mut client, &["board 2 stop", "robot-init", "execute PRIM 2"]);
+    wait_ticks(&mut client, 20);
+    ask(&mut client, &["board 2 go", "board 6 stop", "line-load 863 4 4"]);
+    wait_ticks(&mut client, 20);
+    let refused = client.ask("line-load 863 0 2").unwrap().unwrap_err();
+    assert!(refused.contains("one command was expected"), "{refused}");
+    ask(&mut client, &["board 8 stop", "board 8 go", "board 6 go"]);
+    go_on(&mut client);
+    drop(client);
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
+    assert_repeats(&outcome, &log, &directory);
+    assert_repeats_on(Boards::Split, &outcome, &log, &directory);
+}
+
+/// LOAD (IV.2.4): a block counts from the next command on, and the log has its text.
+#[test]
+fn a_block_is_loaded_while_the_run_goes_on() {
+    let place = tempfile::tempdir().unwrap();
+    let data = place.path().join("data");
+    copy(&root().join("data"), &data);
+    let own = data.clone();
+    let cell = Cell::start("== MOVE -- 0 -- 0 0 HOME 0 -- 0\n", |config| RunConfig { data: own, ..config });
+    let mut client = cell.client("anna");
+    assert!(client.ask("data").unwrap().unwrap().ends_with(&data.display().to_string()));
+    ask_until(&mut client, "job wait", "waits");
+    ask(&mut client, &["line-load 863 4 4"]);
+    wait_ticks(&mut client, 20);
+    let refused = client.ask("load 16000 863").unwrap().unwrap_err();
+    assert!(refused.contains("a command is executed"), "{refused}");
+    ask(&mut client, &["PAUSE"]);
+    let refused = client.ask("load 21000 999").unwrap().unwrap_err();
+    assert!(refused.contains("a command is executed") || refused.contains("no block 999"), "{refused}");
+    // Line 5 is new: PAUSE.
+    let text = std::fs::read_to_string(data.join("commands.blk")).unwrap();
+    let safe = "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n";
+    let longer = format!("{safe}== PAUSE -- +0 -- 0 +0 -- 0 -- 0");
+    std::fs::write(data.join("commands.blk"), text.replace(safe, &longer)).unwrap();
+    assert!(client.ask("line-load 863 5 5").unwrap().is_err(), "it is not loaded yet");
+    ask_until(&mut client, "load 16000 863", "a command is executed");
+    ask(&mut client, &["line-load 863 5 5"]);
+    std::fs::write(data.join("commands.blk"), text.replace(safe, "== NONSENSE\n")).unwrap();
+    ask_until_refused(&mut client, "load 16000 863", "the task data have errors with it");
+    go_on(&mut client);
+    drop(client);
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
+    // The data of the repetition have never had line 5.
+    assert_repeats(&outcome, &log, &directory);
+}
+
+/// Ask until it is refused for this reason.
+fn ask_until_refused(client: &mut Client, line: &str, why: &str) {
+    let begun = Instant::now();
+    loop {
+        match client.ask(line).unwrap() {
+            Err(refused) if refused.contains(why) => return,
+            other => assert!(begun.elapsed() < PATIENCE, "{line}: {other:?}"),
+        }
+        thread::sleep(Duration::from_millis(10));
+    }
 }
 
 #[test]

@@ -67,7 +67,9 @@ impl Generations {
     }
 }
 
-fn is_busy(memory: &CommonMemory) -> bool {
+/// True if a command is being executed.
+#[must_use]
+pub fn is_busy(memory: &CommonMemory) -> bool {
     memory.task.status.report == HwsReport::Executing
         || memory.subtask.status.report == StatusReport::Executing
         || memory.emove.status.report == StatusReport::Executing

@@ -28,6 +28,7 @@ pub mod grip;
 pub mod hws;
 pub mod jaws;
 pub mod location;
+pub mod operator;
 pub mod pedestal;
 pub mod prim;
 pub mod process;
@@ -50,6 +51,7 @@ pub use self::{
     grip::GripOutputs,
     hws::{HwsCommand, TaskOutputs},
     jaws::JawsOutputs,
+    operator::OperatorInputs,
     pedestal::{OutsidePedestal, PedestalOutputs, TableOutputs},
     prim::PrimOutputs,
     processes::{CommonMemory, Fault, PROCESS_COUNT, ProcessId, Said},
@@ -339,4 +341,6 @@ pub struct ExternalInputs {
     pub generation: u32,
     /// From an Active Pedestal that is a system of its own.
     pub pedestal: OutsidePedestal,
+    /// From the terminals of the boards.
+    pub operator: OperatorInputs,
 }

@@ -42,7 +42,10 @@ macro_rules! for_each_process {
                 failure: reason;
                 board: 2;
                 commander: Subtask, subtask.emove;
-                reads: ["devices.vision", "devices.holsters", "devices.quick_change", "devices.grip.beams"];
+                reads: [
+                    "devices.vision", "devices.holsters", "devices.quick_change", "devices.grip.beams",
+                    "operator.robot_init"
+                ];
             }
             /// Prim (V.1).
             Prim "Prim" {

@@ -8,8 +8,8 @@
 //! in their place.
 
 use interfaces::{
-    CommonMemory, Decided, ExternalInputs, Header, OutsidePedestal,
-    device::{JoystickBox, single_step},
+    CommonMemory, Decided, ExternalInputs, OutsidePedestal,
+    device::{LinkBytes, single_step},
     for_each_process,
     process::{Inputs, Process},
 };
@@ -121,14 +121,10 @@ macro_rules! ladder {
 }
 for_each_process!(ladder);
 
-/// A process that is not stepped in this tick: dormant (II.2.3), held by its switch on the joystick box, or
-/// suspended while a recorded pose is looked at (III.3.3).
-const fn is_suspended(
-    process: ProcessId,
-    before: &CommonMemory,
-    joystick: &JoystickBox,
-    pressed: u8,
-) -> bool {
+/// A process that is not stepped in this tick: dormant (II.2.3), held by its switch on the joystick box, on a
+/// board that is stopped (IV.2.6), or suspended while a recorded pose is looked at (III.3.3).
+fn is_suspended(process: ProcessId, before: &CommonMemory, external: &ExternalInputs, pressed: u8) -> bool {
+    let (joystick, operator) = (&external.devices.joystick, &external.operator);
     let recording = before.prim.status.recording && !joystick.resume;
     let switch = match process {
         ProcessId::Task => single_step::TASK,
@@ -145,12 +141,17 @@ const fn is_suspended(
         ProcessId::Emove | ProcessId::Prim => recording,
         _ => false,
     };
-    held || dormant
+    let stopped = operator.is_stopped(process.board());
+    dormant || (held || stopped) && !operator.executes(process)
 }
 
 /// Publish the last outputs of a process that is not stepped again, so that its readers do not take it for
-/// lost (docs/design/handshake.md "Stamp").
-const fn republish(header: &mut Header, tick: Tick) {
+/// lost (docs/design/handshake.md "Stamp"). The frame of a tick goes out once.
+const fn republish(process: ProcessId, tick: Tick, memory: &mut CommonMemory) {
+    if matches!(process, ProcessId::T3i) {
+        memory.t3i.link_tx = LinkBytes::ZERO;
+    }
+    let header = memory.header_mut(process);
     header.stamp = tick;
     header.republished = true;
 }
@@ -223,14 +224,13 @@ impl Ladder {
         let pressed = buttons & !self.buttons;
         self.buttons = buttons;
         for &process in order {
-            if is_suspended(process, before, &external.devices.joystick, pressed) {
-                republish(after.header_mut(process), tick);
-                continue;
-            }
             let is_pedestal =
                 matches!(process, ProcessId::Pedestal | ProcessId::Hand | ProcessId::RotaryTable);
             if is_pedestal && external.pedestal.elsewhere {
                 adopt(process, &external.pedestal, tick, after);
+            } else if is_suspended(process, before, external, pressed) {
+                republish(process, tick, after);
+                continue;
             } else {
                 self.step_one(process, &inputs, after);
             }

@@ -17,6 +17,7 @@ use interfaces::{
     CommonMemory, ExternalInputs, Header, HwsCommand, OutsidePedestal, Reason,
     device::{LinkBytes, RESOLVER_COUNTS, single_step},
     hws::HwsReport,
+    operator::{BOARDS, board_bit, process_bit},
     prim::{PrimReport, PrimVerb},
 };
 use levels::ladder::{Ladder, LadderState, PROCESS_COUNT, ProcessId};
@@ -467,6 +468,87 @@ fn a_held_process_is_stepped_once_a_press() {
     rig.external.devices.joystick.hold = 0;
     rig.command("MOVE", "SAFE");
     assert_eq!(rig.finish(ProcessId::ALL, 5000), FINISHED);
+}
+
+/// `^C` and `GO` on each board, and the pulse, in the middle of a motion (IV.2.6).
+#[test]
+fn a_stopped_board_stands_and_goes_on() {
+    for board in BOARDS {
+        let mut rig = Rig::new();
+        rig.command("PAUSE", "");
+        assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
+        rig.command("MOVE", "SAFE");
+        for _ in 0..60 {
+            rig.step(ProcessId::ALL);
+        }
+        rig.external.operator.stopped = board_bit(board);
+        for _ in 0..80 {
+            rig.step(ProcessId::ALL);
+            for &process in ProcessId::ALL {
+                let header = rig.header(process);
+                let stands = board == 0 || process.board() == board;
+                assert!(header.stamp == rig.tick && (header.republished || !stands), "{board}: {process}");
+            }
+            let silent = board == 0 || board == 4;
+            assert_eq!(rig.before.t3i.link_tx.length == 0, silent, "board {board}");
+        }
+        rig.external.operator.stopped = 0;
+        if board == 0 || board == 4 {
+            // The robot controller has missed the link, and warns of it: the link begins again.
+            assert_ne!(rig.finish(ProcessId::ALL, 5000).0, HwsReport::Executing);
+            rig.command("PAUSE", "");
+            assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED, "board {board}");
+            rig.command("MOVE", "SAFE");
+        } else {
+            assert_eq!(rig.warnings, 0, "board {board}: the controller was asked for a jump");
+        }
+        assert_eq!(rig.finish(ProcessId::ALL, 5000), FINISHED, "board {board}");
+        assert!(rig.at("SAFE"), "board {board}");
+    }
+}
+
+/// `PRIM-LEVEL` and the like: a pass of one process of a board that is stopped.
+#[test]
+fn a_process_of_a_stopped_board_is_executed_once() {
+    let mut rig = Rig::new();
+    rig.command("PAUSE", "");
+    assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
+    rig.external.operator.stopped = board_bit(2);
+    for process in [ProcessId::Prim, ProcessId::Emove] {
+        for pass in [false, true, true, false] {
+            rig.external.operator.executed = if pass { process_bit(process) } else { 0 };
+            rig.step(ProcessId::ALL);
+            for other in [ProcessId::Prim, ProcessId::Emove] {
+                assert_eq!(rig.header(other).republished, !pass || other != process, "{process}: {other}");
+            }
+        }
+    }
+}
+
+/// `.R` on board 2 (IV.3.3 step 2): E-move, which pauses, gives Prim ROBOT-INIT, and pauses again.
+#[test]
+fn the_link_is_initialized_when_a_person_asks_for_it() {
+    let mut rig = Rig::new();
+    rig.command("PAUSE", "");
+    assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
+    let restarts = |rig: &Rig| rig.before.t3i.status.counters.restarts;
+    let before = restarts(&rig);
+    rig.external.operator.robot_init += 1;
+    let mut seen = false;
+    for _ in 0..100 {
+        rig.step(ProcessId::ALL);
+        seen |= rig.before.emove.prim.command == PrimVerb::RobotInit;
+        assert_eq!(rig.before.task.status.report, HwsReport::Finished, "what is done stays done");
+    }
+    assert!(seen && rig.before.t3i.status.link_running);
+    assert_eq!((restarts(&rig), rig.before.emove.prim.command), (before + 1, PrimVerb::Pause));
+    rig.command("MOVE", "SAFE");
+    for _ in 0..60 {
+        rig.step(ProcessId::ALL);
+    }
+    rig.external.operator.robot_init += 1;
+    assert_eq!(rig.finish(ProcessId::ALL, 5000), FINISHED, "a motion is not disturbed");
+    assert!(rig.at("SAFE") && restarts(&rig) == before + 1);
 }
 
 #[test]

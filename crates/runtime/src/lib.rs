@@ -27,6 +27,7 @@ pub mod contacts;
 mod egm;
 pub mod error;
 mod live;
+mod load;
 mod log;
 pub mod neighbours;
 pub mod observer;

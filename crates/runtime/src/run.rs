@@ -2,6 +2,7 @@
 //!
 //! What the log is told of the next tick, and its warm-up, come before that tick begins.
 
+mod operate;
 mod outcome;
 mod start;
 mod tell;
@@ -36,7 +37,7 @@ use crate::{
     log::Log,
     neighbours::Neighbours,
     observer::{Observer, TickReport},
-    operator::{A_TICK, Around, Inputs, Operator},
+    operator::{Inputs, Operator},
     pace::Pace,
     placement::PlacementCheck,
     result::Events,
@@ -51,7 +52,7 @@ const SETTLING: usize = 50;
 
 /// A run that has been set up.
 pub struct Run {
-    config: RunConfig,
+    pub(crate) config: RunConfig,
     observer: Box<dyn Observer>,
     pub(crate) job: Job,
     /// Task data, with what the job loads on the way.
@@ -66,7 +67,7 @@ pub struct Run {
     pub(crate) neighbours: Neighbours,
     pub(crate) workstation: SimulatedWorkstation,
     /// Where operators' requests come from, and what becomes of them.
-    asked: Inputs,
+    pub(crate) asked: Inputs,
     operator: Operator,
     inputs: DeviceInputs,
     pub(crate) robot: Robot,
@@ -208,6 +209,7 @@ impl Run {
             data_base: self.neighbours.data_base(),
             generation: self.generations.number(),
             pedestal: *self.neighbours.pedestal(),
+            operator: *self.operator.at_the_terminals(),
         }
     }
 
@@ -328,29 +330,6 @@ impl Run {
         }
         let ending = std::mem::replace(&mut ramp.ending, Ending::Stopped);
         Some(if matches!(ending, Ending::Stopped) { self.left(ending) } else { ending })
-    }
-
-    /// What operators have asked for since the last tick. The next tick is the first to see it.
-    fn operate(&mut self, tick: Tick) {
-        let first = tick.next();
-        for _ in 0..A_TICK {
-            let Some(input) = self.asked.next(first) else { break };
-            let mut around = Around {
-                tick,
-                store: self.generations.current(),
-                neighbours: &mut self.neighbours,
-                workstation: &mut self.workstation,
-            };
-            let verdict = self.operator.carry_out(&input, &mut around);
-            let line = input.line(first, &verdict);
-            if let Some(difference) = input.answer(first, &verdict) {
-                self.observer.message(&format!("tick {first}: {difference}"));
-            }
-            if let (Some(log), Some(line)) = (&mut self.log, line) {
-                log.operator(line);
-            }
-        }
-        self.operator.work_the_box();
     }
 
     /// The rest of a tick: the cell moves.

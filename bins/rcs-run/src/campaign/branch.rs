@@ -11,8 +11,8 @@ use std::sync::Arc;
 use depc::fault::{Direction, FaultKind, Injector, Plan, Rule};
 use executive::failure::Watch;
 use interfaces::{
-    CommonMemory, DataBaseCommand, DeviceInputs, DeviceOutputs, ExternalInputs, HwsCommand, OutsidePedestal,
-    StatusReport, hws::HwsReport,
+    CommonMemory, DataBaseCommand, DeviceInputs, DeviceOutputs, ExternalInputs, HwsCommand, OperatorInputs,
+    OutsidePedestal, StatusReport, hws::HwsReport,
 };
 use levels::ladder::{Ladder, ProcessId};
 use neighbours::{
@@ -240,6 +240,7 @@ impl<'f> Branch<'f> {
             data_base: self.data_system.status(),
             generation: control.generation,
             pedestal: OutsidePedestal::ZERO,
+            operator: OperatorInputs::ZERO,
         };
         let before = control.memory;
         let data = data(self.facility, control.generation);

@@ -76,7 +76,10 @@ impl State {
         }
         match action {
             Action::Wait => {}
-            Action::RobotInit => self.send_prim(PrimVerb::RobotInit, inputs, outputs),
+            Action::RobotInit => {
+                self.robot_init = inputs.external.operator.robot_init;
+                self.send_prim(PrimVerb::RobotInit, inputs, outputs);
+            }
             Action::Pause => {
                 self.stop_robot(inputs, outputs);
                 let request = FingerOrder { order: FingerVerb::Pause, ..FingerOrder::default() };

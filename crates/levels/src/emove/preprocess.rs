@@ -23,8 +23,8 @@ use super::{
     route::{near, same_location},
     state::State,
     tables::{
-        At, Contact, Holster, Knowledge, Link, Load, Lock, Mate, Motion, Orders, Pause, Readiness, Request,
-        Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch,
+        At, Contact, Holster, Initialization, Knowledge, Link, Load, Lock, Mate, Motion, Orders, Pause,
+        Readiness, Request, Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch,
         e_pause::EPauseStep,
         number,
         search::{Look, search},
@@ -78,7 +78,7 @@ impl State {
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &EmoveOutputs) -> Seen {
         let command = &inputs.memory.subtask.emove;
         let arrival = self.execution.observe(inputs.tick, command.number);
-        self.adopt(inputs.memory, outputs);
+        self.adopt(inputs, outputs);
         self.sense_neighbours(inputs);
         self.sense_way(inputs.memory);
         self.sense_pictures(inputs.memory);
@@ -111,8 +111,10 @@ impl State {
     }
 
     /// In its first tick E-move takes over what it believed before a restart.
-    fn adopt(&mut self, memory: &CommonMemory, outputs: &EmoveOutputs) {
+    fn adopt(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &EmoveOutputs) {
         if !mem::replace(&mut self.started, true) {
+            let memory = inputs.memory;
+            self.robot_init = inputs.external.operator.robot_init;
             self.beliefs = outputs.beliefs;
             // Another gripper may have come in the meantime; one whose pins read as none may still be on.
             let (before, now) = (Gripper::of(outputs.status.end_effector_id), Gripper::attached(memory));
@@ -173,12 +175,14 @@ impl State {
             };
             self.away = self.beliefs.place.is_some_and(|place| !there(&place.pose));
         }
+        let pause = match (command.command, self.step) {
+            (EmoveVerb::Pause, Step::EPause(EPauseStep::Standing)) => Pause::Standing,
+            (EmoveVerb::Pause, _) => Pause::UnderWay,
+            _ => Pause::Other,
+        };
         let watch = Watch {
-            pause: match (command.command, self.step) {
-                (EmoveVerb::Pause, Step::EPause(EPauseStep::Standing)) => Pause::Standing,
-                (EmoveVerb::Pause, _) => Pause::UnderWay,
-                _ => Pause::Other,
-            },
+            initialization: self.initialization(pause, inputs),
+            pause,
             outcome: self.execution.outcome,
             place: self.whereabouts(inputs),
             resolvers: known(present.is_some()),
@@ -191,6 +195,23 @@ impl State {
             (Look::Look, None) | (Look::Rest, _) => {}
         }
         watch
+    }
+
+    /// `.R`: what is to be done for it, or was. It waits for a pause that stands.
+    fn initialization(&self, pause: Pause, inputs: &Inputs<'_, TaskData<'_>>) -> Initialization {
+        if pause != Pause::Standing {
+            return Initialization::None;
+        }
+        let prim = &inputs.memory.prim;
+        let below = self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
+        let ended = matches!(below, Lower::Done | Lower::Error);
+        if inputs.external.operator.robot_init != self.robot_init {
+            Initialization::Asked
+        } else if inputs.memory.emove.prim.command == PrimVerb::RobotInit && ended {
+            Initialization::Over
+        } else {
+            Initialization::None
+        }
     }
 
     /// How the last order stands.

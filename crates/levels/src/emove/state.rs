@@ -67,4 +67,6 @@ pub struct State {
     pub button: JoystickGrip,
     /// Last record number given to a changing pose.
     pub last_pose: u32,
+    /// The last `.R` that has been done.
+    pub robot_init: u32,
 }

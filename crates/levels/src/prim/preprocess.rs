@@ -8,7 +8,7 @@ use geometry::{
     units::{inches, rounded},
 };
 use interfaces::{
-    PrimOutputs,
+    PrimOutputs, ProcessId,
     device::{JoystickBox, single_step},
     prim::{PrimCommand, PrimVerb},
     process::Inputs,
@@ -86,7 +86,8 @@ impl State {
     /// After a time in which Prim was held or suspended the motion goes on from rest, because T3I has stopped
     /// the robot dead. A Prim that is stepped singly goes on from point to point.
     fn resume_from_rest(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
-        let held = inputs.external.devices.joystick.hold & single_step::PRIM != 0;
+        let stopped = inputs.external.operator.is_stopped(ProcessId::Prim.board());
+        let held = stopped || inputs.external.devices.joystick.hold & single_step::PRIM != 0;
         let before = mem::replace(&mut self.single_step, held);
         if !held && (before || inputs.memory.prim.header.republished) {
             if let Some(motion) = &mut self.motion {

@@ -1,8 +1,9 @@
 //! The operator of a run (IV): what is asked for between two ticks, who may ask for it, and what becomes of it.
 //!
 //! A request is a line of text ([`Request`]). What the controller reads anyway goes into its joystick box
-//! ([`Operator::at_the_box`]); what the cell takes is applied to the cell; a command goes through the mailbox of the job
-//! player, whose numbers it shares. All of it happens in [`Run::operate`](crate::Run), after the cell has moved and
+//! ([`Operator::at_the_box`]); what is entered at the terminals of the boards is an input beside it
+//! ([`Operator::at_the_terminals`]); what the cell takes is applied to the cell; a command goes through the mailbox of the
+//! job player, whose numbers it shares. All of it happens in [`Run::operate`](crate::Run), after the cell has moved and
 //! before the job player looks: the next tick is the first one that sees it. Every request stands in the log with that
 //! tick, so that the same inputs can be given again.
 //!
@@ -11,17 +12,23 @@
 
 mod request;
 mod source;
+mod terminals;
+
+use std::path::{self, Path};
 
 use ::operator::Event;
-use interfaces::device::{JoystickBox, KNOB_FULL};
+use interfaces::{
+    CommonMemory, OperatorInputs,
+    device::{JoystickBox, KNOB_FULL},
+};
 use neighbours::workstation::player::Hwsc;
 use plant::{BoxAction, Joystick};
 use rcs_core::tick::Tick;
 use serde::Serialize;
-use taskdata::load::Store;
+use taskdata::load::{BlockNumber, Store};
 
 pub use self::source::Inputs;
-use self::{request::Request, source::Input};
+use self::{request::Request, source::Input, terminals::Terminals};
 use crate::{neighbours::Neighbours, workstation::SimulatedWorkstation};
 
 /// Requests that are taken in a tick; more wait for the next one.
@@ -33,6 +40,10 @@ pub struct Operator {
     hand: Joystick,
     /// What it shows in the next tick.
     shown: JoystickBox,
+    /// What is entered at the terminals of the boards.
+    terminals: Terminals,
+    /// The block that is to be loaded before the next tick.
+    load: Option<BlockNumber>,
     /// The velocity knob is at zero until `go`.
     is_stopped: bool,
     /// Who is connected.
@@ -57,8 +68,12 @@ pub struct Requests {
 pub struct Around<'a> {
     /// The tick that is over.
     pub tick: Tick,
+    /// What it has left.
+    pub memory: &'a CommonMemory,
     /// Task data, with which lines are read.
     pub store: &'a Store,
+    /// The directory that they come from.
+    pub data: &'a Path,
     /// Who commands Task.
     pub neighbours: &'a mut Neighbours,
     /// The cell.
@@ -72,6 +87,8 @@ impl Operator {
         Self {
             hand: Joystick::default(),
             shown: JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() },
+            terminals: Terminals::default(),
+            load: None,
             is_stopped: false,
             sessions: Vec::new(),
             commander: None,
@@ -104,9 +121,26 @@ impl Operator {
         }
     }
 
-    /// Once a tick, after all requests: what the box shows in the next one.
-    pub fn work_the_box(&mut self) {
+    /// What the controller reads of the terminals in the next tick.
+    #[must_use]
+    pub const fn at_the_terminals(&self) -> &OperatorInputs {
+        self.terminals.inputs()
+    }
+
+    /// Once a tick, after all requests: what box and terminals show in the next one.
+    pub fn end_tick(&mut self) {
         self.shown = self.hand.read();
+        self.terminals.end_tick();
+    }
+
+    /// The block that is to be loaded: the run does it.
+    pub const fn take_load(&mut self) -> Option<BlockNumber> {
+        self.load.take()
+    }
+
+    /// A request turned out to be refused.
+    pub const fn refused(&mut self) {
+        self.counts.refused += 1;
     }
 
     /// How many requests there were; none if nobody has connected.
@@ -124,8 +158,10 @@ impl Operator {
             Event::Disconnected => self.disconnected(who, around),
             Event::Line(line) => {
                 let request = Request::read(line, around.store);
-                if request == Ok(Request::Status) {
-                    return Ok(self.status(around));
+                match request {
+                    Ok(Request::Status) => return Ok(self.status(around)),
+                    Ok(Request::Data) => return Ok(directory(around.data)),
+                    _ => {}
                 }
                 let carried_out = request.and_then(|request| self.obey(who, request, around));
                 self.counts.requests += 1;
@@ -178,6 +214,7 @@ impl Operator {
         let tick = around.tick;
         match request {
             Request::Status => Ok(self.status(around)),
+            Request::Data => Ok(directory(around.data)),
             Request::Stop => {
                 self.is_stopped = true;
                 Ok("the velocity knob is at 0; `go` turns it back".to_owned())
@@ -206,6 +243,11 @@ impl Operator {
                 self.hand.act(action);
                 Ok(done)
             }
+            Request::Load(block) => {
+                self.load = Some(block);
+                Ok(done)
+            }
+            Request::Terminal(entry) => self.terminals.enter(entry, around.memory),
             Request::Cell(action, line) => around.workstation.begin_line(&action, &line).map(|()| done),
         }
     }
@@ -236,6 +278,12 @@ impl Operator {
     }
 }
 
+/// A directory, also for a program in another one; what the program carries has no other name.
+fn directory(data: &Path) -> String {
+    let absolute = if data.is_dir() { path::absolute(data) } else { Ok(data.to_owned()) };
+    absolute.unwrap_or_else(|_| data.to_owned()).display().to_string()
+}
+
 /// The job, if it is the job that commands.
 fn job<'a>(around: &'a mut Around<'_>) -> Result<&'a mut Hwsc, String> {
     around.neighbours.job_under_way()
@@ -255,11 +303,11 @@ mod tests {
         operator.hand.act(BoxAction::Velocity(800));
         operator.hand.act(BoxAction::Hold(2));
         operator.hand.act(BoxAction::Stick { x: 0, y: -30, ticks: 1 });
-        operator.work_the_box();
+        operator.end_tick();
         let both = operator.at_the_box(job);
         assert_eq!((both.velocity, both.hold, both.x, both.y), (700, 3, 0, -30));
         operator.hand.act(BoxAction::Velocity(100));
-        operator.work_the_box();
+        operator.end_tick();
         assert_eq!((operator.at_the_box(job).velocity, operator.at_the_box(job).x), (100, 5));
         operator.is_stopped = true;
         assert_eq!(operator.at_the_box(job).velocity, 0);

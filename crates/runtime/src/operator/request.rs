@@ -3,10 +3,11 @@
 use interfaces::HwsCommand;
 use plant::BoxAction;
 use taskdata::load::{
-    Store,
+    BlockNumber, Store,
     job::{self, Panel, Step, Workstation},
 };
 
+use super::terminals::Entry;
 use crate::workstation::at_the_box;
 
 /// A request.
@@ -14,6 +15,8 @@ use crate::workstation::at_the_box;
 pub enum Request {
     /// How things stand; changes nothing.
     Status,
+    /// Where the task data are; changes nothing.
+    Data,
     /// The velocity knob to zero.
     Stop,
     /// The velocity knob back to where it was.
@@ -32,16 +35,25 @@ pub enum Request {
     Command(String, HwsCommand),
     /// Something at the operator's own joystick box.
     Box(BoxAction),
+    /// Something at the terminal of a board.
+    Terminal(Entry),
+    /// A block of the data directory is loaded.
+    Load(BlockNumber),
     /// Something else in the cell, and its line.
     Cell(Workstation, String),
 }
 
+/// Requests that change nothing, and stand in no log.
+pub const QUESTIONS: [&str; 2] = [STATUS, DATA];
 /// How one asks for the status.
-pub const STATUS: &str = "status";
+const STATUS: &str = "status";
+/// How one asks for the directory of the task data.
+const DATA: &str = "data";
 
 /// The requests that are no lines of a job.
 const WORDS: &[(&str, Request)] = &[
     (STATUS, Request::Status),
+    (DATA, Request::Data),
     ("stop", Request::Stop),
     ("go", Request::Go),
     ("leave", Request::Leave),
@@ -67,6 +79,13 @@ impl Request {
         if words == "job" || words.starts_with("job ") {
             return Err(format!("job wait, job go or job skip was expected; found {words}"));
         }
+        let each: Vec<&str> = words.split(' ').collect();
+        if let Some(entry) = Entry::read(&each) {
+            return entry.map(Self::Terminal);
+        }
+        if let Some(request) = line_load(&each, store).or_else(|| load(&each)) {
+            return request;
+        }
         if job::is_command(line) {
             let read = job::own_command(line, store).map_err(|error| error.to_string())?;
             let Step::Command(command) = read.step else { return Err(format!("{line} is no command")) };
@@ -83,6 +102,7 @@ impl Request {
     pub const fn is_stop(&self) -> bool {
         match self {
             Self::Status
+            | Self::Data
             | Self::Stop
             | Self::Leave
             | Self::Note
@@ -94,7 +114,31 @@ impl Request {
                     Workstation::Press(_) | Workstation::Panel(Panel::Hold(true) | Panel::Interrupt)
                 )
             }
-            Self::Go | Self::GoOn | Self::Skip | Self::Command(..) | Self::Box(_) => false,
+            Self::Terminal(entry) => entry.is_stop(),
+            Self::Load(_) | Self::Go | Self::GoOn | Self::Skip | Self::Command(..) | Self::Box(_) => false,
         }
     }
+}
+
+/// `line-load BLOCK LINE LINE` (IV.3.3): the command that stands there; none if the words begin another request.
+fn line_load(words: &[&str], store: &Store) -> Option<Result<Request, String>> {
+    let ["line-load", numbers @ ..] = words else { return None };
+    let expected = || "line-load BLOCK LINE LINE was expected, such as line-load 863 12 12".to_owned();
+    let parsed: Option<Vec<u32>> = numbers.iter().map(|number| number.parse().ok()).collect();
+    let Some(&[block, from, to]) = parsed.as_deref() else { return Some(Err(expected())) };
+    let line = |number: u32| usize::try_from(number).unwrap_or(usize::MAX);
+    let read = store.line_load(block, line(from), line(to)).map_err(|error| error.to_string());
+    Some(read.and_then(|read| match read.step {
+        Step::Command(command) => Ok(Request::Command(read.text, command)),
+        _ => Err(expected()),
+    }))
+}
+
+/// `load OFFSET BLOCK` (IV.2.4); none if the words begin another request. With another word behind it, it is a line of a
+/// job, which says what is wrong.
+fn load(words: &[&str]) -> Option<Result<Request, String>> {
+    let ["load", offset, block] = words else { return None };
+    let numbers = offset.parse().ok().zip(block.parse().ok());
+    let expected = || "load OFFSET BLOCK was expected, such as load 21000 610".to_owned();
+    Some(numbers.map(|(offset, number)| Request::Load(BlockNumber { offset, number })).ok_or_else(expected))
 }

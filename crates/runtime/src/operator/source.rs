@@ -5,9 +5,10 @@ use std::{collections::VecDeque, fs, path::Path};
 use ::operator::{Event, Given, Listener};
 use executive::memory::{RunName, operator_socket};
 use rcs_core::tick::Tick;
-use record::{Log, OperatorLine};
+use record::{Attachment, Log, OperatorLine};
+use taskdata::load::Source;
 
-use super::request::STATUS;
+use super::request::QUESTIONS;
 use crate::{
     config::{ClockKind, OperatorAccess, RunConfig},
     error::StartError,
@@ -20,8 +21,8 @@ pub enum Inputs {
     None,
     /// Operators who connect.
     Sessions(Listener),
-    /// A log, tick by tick.
-    Recorded(VecDeque<OperatorLine>),
+    /// A log, tick by tick, with the blocks that were loaded meanwhile, by their generation.
+    Recorded(VecDeque<OperatorLine>, Vec<(u32, Source)>),
 }
 
 /// An input, from wherever.
@@ -49,10 +50,18 @@ impl Input {
         }
     }
 
+    /// Why the log says that it was refused; none for one of a session, and for one that was taken.
+    pub fn refusal(&self) -> Option<&str> {
+        match self {
+            Self::Given(_) => None,
+            Self::Recorded(line, _) => line.refused.as_deref(),
+        }
+    }
+
     /// How it stands in the log, with the tick that sees it first; none for what changes nothing.
     pub fn line(&self, tick: Tick, verdict: &Result<String, String>) -> Option<OperatorLine> {
         let line = self.event().to_string();
-        (line != STATUS).then(|| OperatorLine {
+        (!QUESTIONS.contains(&line.as_str())).then(|| OperatorLine {
             tick,
             source: self.source().to_owned(),
             line,
@@ -111,7 +120,8 @@ impl Inputs {
 
     fn recorded(path: &Path) -> Result<Self, StartError> {
         let log = Log::open(path).map_err(|source| StartError::Inputs(Box::new(source)))?;
-        Ok(Self::Recorded(log.operator_lines().collect()))
+        let loaded = log.attachments.iter().filter_map(Attachment::as_reload).collect();
+        Ok(Self::Recorded(log.operator_lines().collect(), loaded))
     }
 
     /// Where operators connect, if they can.
@@ -119,8 +129,16 @@ impl Inputs {
     pub fn socket(&self) -> Option<&Path> {
         match self {
             Self::Sessions(listener) => Some(listener.path()),
-            Self::None | Self::Recorded(_) => None,
+            Self::None | Self::Recorded(..) => None,
         }
+    }
+
+    /// The block that a log has for a generation of the task data; none if inputs do not come from a log.
+    #[must_use]
+    pub fn recorded_block(&self, generation: u32) -> Option<Option<Source>> {
+        let Self::Recorded(_, loaded) = self else { return None };
+        let found = loaded.iter().find(|(number, _)| *number == generation);
+        Some(found.map(|(_, source)| source.clone()))
     }
 
     /// The next input that `tick` is the first to see.
@@ -128,7 +146,7 @@ impl Inputs {
         match self {
             Self::None => None,
             Self::Sessions(listener) => listener.try_next().map(Input::Given),
-            Self::Recorded(lines) => {
+            Self::Recorded(lines, _) => {
                 let line = lines.pop_front_if(|line| line.tick <= tick)?;
                 let event = Event::from(line.line.as_str());
                 Some(Input::Recorded(line, event))

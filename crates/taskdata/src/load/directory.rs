@@ -2,7 +2,7 @@
 //!
 //! The boot loads blocks 905 and 906 at offset 21000 (system data) and block 0 at offset 20000 (objects); these name
 //! further blocks with `n load` or `offset n OLOAD`, and so on. An area without such a root has no directory, and all its
-//! blocks are loaded in the order in which they stand.
+//! blocks are loaded in the order in which they stand. Those at offset 16000 hold commands ([`commands`]).
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -10,6 +10,7 @@ use rustc_hash::FxHashMap;
 
 use super::{
     collected::Collected,
+    commands::{self, Commands},
     entries::LoadLine,
     lex,
     orphans::Orphans,
@@ -40,6 +41,8 @@ pub(super) struct Read {
     pub blocks: BTreeSet<BlockNumber>,
     /// Blocks that were not, and numbers that lead to none.
     pub orphans: Orphans,
+    /// Blocks of commands, which need no directory.
+    pub commands: Commands,
 }
 
 /// Read the blocks that are to be loaded of all sources from position `first` on; `known` are those that were loaded before.
@@ -53,7 +56,7 @@ pub(super) fn read(
     let found = parallel::map(new.len(), |i| new.get(i).map(|source| blocks(first + i, source)));
     let mut all: FxHashMap<BlockNumber, Content> = FxHashMap::default();
     let mut order = Vec::new();
-    let mut orphans = Orphans::default();
+    let (mut orphans, mut commands) = (Orphans::default(), Commands::default());
     for (source, (found, faults)) in found.into_iter().flatten().enumerate() {
         for (at, fault) in faults {
             note(fault, at, problems);
@@ -65,6 +68,9 @@ pub(super) fn read(
             problems.error_help("block.none", at, "this file has no block", help);
             orphans.incomplete = true;
         }
+        let is_of_commands = |block: &Block<'_>| block.number.offset == commands::OFFSET;
+        let (of_commands, found): (Vec<_>, Vec<_>) = found.into_iter().partition(is_of_commands);
+        of_commands.iter().for_each(|block| commands.add(block, problems));
         for (block, content) in found.iter().zip(contents(&found)) {
             let first = all.get(&block.number).map(|first| first.header);
             if first.is_some() || block.number.offset == BlockNumber::UNREADABLE {
@@ -75,7 +81,8 @@ pub(super) fn read(
             }
         }
     }
-    let read = Read { orphans, ..Read::default() };
+    let blocks = commands.numbers().collect();
+    let read = Read { blocks, orphans, commands, ..Read::default() };
     let mut loader = Loader { all, known, read, problems };
     loader.load_roots(&order);
     loader.unloaded(&order);

@@ -10,11 +10,13 @@
 //! 6. [`store`]: the files; [`origins`]: where each record was entered; [`report`]: everything that was found, with its
 //!    [`places`].
 //!
-//! [`mod@print`] writes entries as forms again. [`job`] reads the job files, which stand beside the blocks.
+//! [`mod@print`] writes entries as forms again. [`job`] reads the job files, which stand beside the blocks, and
+//! [`commands`] the blocks with commands for Task.
 
 pub mod alike;
 mod check;
 mod collected;
+pub mod commands;
 pub mod directory;
 pub mod entries;
 pub mod forms;
@@ -128,12 +130,16 @@ impl Store {
             link::link(&entries, &read.broken, &mut read.orphans, &mut problems);
         let unread = read.orphans.words().cloned().chain(read.broken).chain(unknown).collect();
         read.orphans.report(&mut problems);
+        let commands = self.commands.with(read.commands);
         let count = read.blocks.len();
         let blocks = self.blocks.union(&read.blocks).copied().collect();
-        let store = Self { files, indexes, sources, entries, blocks, origins };
+        let store = Self { files, indexes, sources, entries, blocks, origins, commands };
         // Records that name nothing are no use in checks of several entries; the names come first.
         let whole = !problems.has_errors();
         check::check(&store.view(), &store.origins, whole, &mut problems);
+        if whole {
+            store.commands.check(&store, &mut problems);
+        }
         Linked { store, problems, blocks: count, unread }
     }
 }

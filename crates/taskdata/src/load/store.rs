@@ -10,6 +10,7 @@ use crate::files::{
 
 use super::{
     collected::Collected,
+    commands::Commands,
     index::{OwnedIndex, OwnedPlaceIndex},
     origins::Origins,
     places::Places,
@@ -128,6 +129,8 @@ pub struct Store {
     /// Blocks that were loaded.
     pub(super) blocks: BTreeSet<BlockNumber>,
     pub(super) origins: Origins,
+    /// Blocks of commands for Task.
+    pub(super) commands: Commands,
 }
 
 impl Store {

@@ -4,10 +4,13 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// ATTEND: of what EXECUTE leaves alone, E-PAUSE goes on after it is done, as long as it is the command:
-    /// the joystick box may take the robot and give it back (V.1.1 PAUSE). No header names its rows.
+    /// the joystick box may take the robot and give it back (V.1.1 PAUSE), and `.R` lets Prim initialize the
+    /// link once more (IV.3.3 steps 2 and 12). No header names its rows.
     pub ATTEND: fn attend(super::Watch) -> super::Action or () {
-        1: pause: Standing, outcome: Done | Joystick          => consult;
-        2: pause: Standing, outcome: Idle | Executing | Error => Wait;
-        3: pause: Other | UnderWay                            => Wait;
+        1: pause: Standing, outcome: Done | Joystick, initialization: None  => consult;
+        2: pause: Standing, outcome: Idle | Executing | Error               => Wait;
+        3: pause: Other | UnderWay                                          => Wait;
+        4: pause: Standing, outcome: Done | Joystick, initialization: Asked => RobotInit;
+        5: pause: Standing, outcome: Done | Joystick, initialization: Over  => StopRobot;
     }
 }

@@ -33,9 +33,9 @@ use rcs_core::{
 };
 
 pub use self::variables::{
-    Along, At, AtDrum, Attached, Contact, Coupling, Exchange, Fingers, Holster, HolsterData, Knowledge, Link,
-    Load, Lock, Mate, Motion, Opening, Ordered, Pause, Readiness, Record, Ring, Shut, Sight, Spread, Target,
-    ToolWork, Tooling, Tries, Vision, Whereabouts,
+    Along, At, AtDrum, Attached, Contact, Coupling, Exchange, Fingers, Holster, HolsterData, Initialization,
+    Knowledge, Link, Load, Lock, Mate, Motion, Opening, Ordered, Pause, Readiness, Record, Ring, Shut, Sight,
+    Spread, Target, ToolWork, Tooling, Tries, Vision, Whereabouts,
 };
 use self::{accept::accept, carried::carried, ordered::ordered};
 use super::{
@@ -82,6 +82,8 @@ pub struct Request {
 /// What goes on whatever the command, for [`attend::ATTEND`] and [`search::SEARCH`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Watch {
+    /// Was `.R` entered?
+    pub initialization: Initialization,
     /// Is the command E-PAUSE?
     pub pause: Pause,
     /// How far it has come.

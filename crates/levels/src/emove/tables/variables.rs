@@ -42,6 +42,17 @@ pub enum Knowledge {
     Unknown,
 }
 
+/// `.R` at the terminal of board 2 (IV.3.3 step 2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Initialization {
+    /// It was not entered, was entered and done, or waits until the pause stands.
+    None,
+    /// It was entered: Prim is to initialize the link.
+    Asked,
+    /// Prim has initialized the link, or has failed to.
+    Over,
+}
+
 /// Is the command E-PAUSE?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Pause {

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     emove::tables::{
-        self, Knowledge, Watch, Whereabouts,
+        self, Action, Knowledge, Watch, Whereabouts,
         attend::attend,
         search::{Look, search},
     },
@@ -66,6 +66,24 @@ fn a_link_that_fails_in_a_pause_is_initialized_again_or_reported() {
         "no failure of E-PAUSE"
     );
     assert_eq!(bench.pause(), DONE);
+}
+
+#[test]
+fn a_person_lets_prim_initialize_the_link_while_the_pause_stands() {
+    let mut bench = Bench::ready("HOME", 1);
+    assert_eq!(bench.pause(), DONE);
+    bench.world.log.clear();
+    bench.external.operator.robot_init = 7;
+    bench.steps(40);
+    assert_eq!(bench.log(), ["ROBOT-INIT", "PAUSE", "QC-PAUSE"]);
+    assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "what is done stays done");
+    // An E-move that starts again does not obey it once more.
+    bench.process = crate::emove::Emove::default();
+    assert_eq!(bench.finish(), error(Reason::Restarted));
+    assert_eq!(bench.pause(), DONE);
+    bench.world.log.clear();
+    bench.steps(40);
+    assert!(bench.log().is_empty(), "{:?}", bench.log());
 }
 
 #[test]
@@ -197,6 +215,7 @@ fn the_robot_is_found_where_it_stands() {
 fn the_search_belongs_to_the_pause() {
     let rows = |watch: Watch| (search((), &watch).row, search((), &watch).action);
     let looking = Watch {
+        initialization: tables::Initialization::None,
         pause: tables::Pause::UnderWay,
         outcome: Outcome::Executing,
         place: Whereabouts::Searching,
@@ -221,10 +240,27 @@ fn the_search_belongs_to_the_pause() {
 fn only_a_standing_pause_goes_on() {
     for &pause in tables::Pause::ALL {
         for &outcome in Outcome::ALL {
-            let watch = Watch { pause, outcome, place: Whereabouts::Known, resolvers: Knowledge::Known };
+            let watch = Watch {
+                initialization: tables::Initialization::None,
+                pause,
+                outcome,
+                place: Whereabouts::Known,
+                resolvers: Knowledge::Known,
+            };
             let goes_on =
                 pause == tables::Pause::Standing && matches!(outcome, Outcome::Done | Outcome::Joystick);
             assert_eq!(attend((), &watch) == Verdict::Passed(()), goes_on, "{pause} {outcome}");
+            // `.R` initializes the link, then the pause goes on.
+            for (initialization, action) in [
+                (tables::Initialization::Asked, Action::RobotInit),
+                (tables::Initialization::Over, Action::StopRobot),
+            ] {
+                let expected = if goes_on { action } else { Action::Wait };
+                let Verdict::Decided(found) = attend((), &Watch { initialization, ..watch }) else {
+                    panic!("{pause} {outcome}: the tables of the commands know nothing of it");
+                };
+                assert_eq!(found.action, expected, "{pause} {outcome}");
+            }
         }
     }
 }

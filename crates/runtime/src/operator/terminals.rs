@@ -1,0 +1,229 @@
+//! What is entered at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3): boards are stopped and started, a level is
+//! executed once, the link is initialized. The record goes to the controller with the other inputs of the tick.
+
+use std::collections::VecDeque;
+
+use interfaces::{
+    CommonMemory, OperatorInputs, ProcessId,
+    emove::EmoveVerb,
+    operator::{BOARDS, board_bit, process_bit},
+};
+use rcs_core::handshake::successor;
+
+/// Most passes of a process that can be asked for at once.
+pub const PASSES: u8 = 100;
+
+/// What can be entered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Entry {
+    /// `^C`: the processes of the board stop; of board 0, the pulse.
+    Stop(u8),
+    /// `GO`, on board 0 `SSGO`.
+    Go(u8),
+    /// `PRIM-LEVEL` and the like: so many passes of a process, in one tick each.
+    Execute(ProcessId, u8),
+    /// `.R` on board 2.
+    RobotInit,
+}
+
+/// The name of a process in requests.
+fn name(process: ProcessId) -> String {
+    process.field().to_uppercase().replace('_', "-")
+}
+
+impl Entry {
+    /// Read the words of a request; none if they begin another one.
+    pub fn read(words: &[&str]) -> Option<Result<Self, String>> {
+        Some(match *words {
+            ["board", number, verb @ ("stop" | "go")] => board(number).map(|board| match verb {
+                "stop" => Self::Stop(board),
+                _ => Self::Go(board),
+            }),
+            ["board", ..] => Err(format!("board NUMBER stop or go was expected; found {}", words.join(" "))),
+            ["execute", process] => named(process).map(|process| Self::Execute(process, 1)),
+            ["execute", process, passes] => named(process).and_then(|process| {
+                let passes = passes.parse().ok().filter(|passes| (1..=PASSES).contains(passes));
+                let passes = passes.ok_or_else(|| format!("1 to {PASSES} passes were expected"))?;
+                Ok(Self::Execute(process, passes))
+            }),
+            ["execute", ..] => {
+                Err("execute PROCESS [PASSES] was expected, such as execute PRIM 2".to_owned())
+            }
+            ["robot-init"] => Ok(Self::RobotInit),
+            _ => return None,
+        })
+    }
+
+    /// It can only bring the robot to rest.
+    pub const fn is_stop(self) -> bool {
+        matches!(self, Self::Stop(2))
+    }
+}
+
+fn board(number: &str) -> Result<u8, String> {
+    let found = number.parse().ok().filter(|number| BOARDS.contains(number));
+    found.ok_or_else(|| format!("board 0, 2, 4, 6 or 8 was expected (IV.2.2); found {number}"))
+}
+
+fn named(word: &str) -> Result<ProcessId, String> {
+    let found = ProcessId::ALL.iter().copied().find(|process| name(*process) == word);
+    found.ok_or_else(|| {
+        let known: Vec<String> = ProcessId::ALL.iter().map(|process| name(*process)).collect();
+        format!("one of {} was expected; found {word}", known.join(", "))
+    })
+}
+
+/// The terminals of all boards.
+#[derive(Debug, Default)]
+pub struct Terminals {
+    shown: OperatorInputs,
+    /// Processes that are executed in the next ticks, a tick each.
+    passes: VecDeque<u16>,
+}
+
+impl Terminals {
+    /// What the controller reads of them.
+    #[must_use]
+    pub const fn inputs(&self) -> &OperatorInputs {
+        &self.shown
+    }
+
+    /// Once a tick, after all requests.
+    pub fn end_tick(&mut self) {
+        self.shown.executed = self.passes.pop_front().unwrap_or_default();
+    }
+
+    /// Enter something. `memory` holds what the last tick has left.
+    ///
+    /// # Errors
+    /// Why it is refused.
+    pub fn enter(&mut self, entry: Entry, memory: &CommonMemory) -> Result<String, String> {
+        match entry {
+            Entry::Stop(board) => {
+                self.shown.stopped |= board_bit(board);
+                Ok(what_stops(board).to_owned())
+            }
+            Entry::Go(board) => {
+                self.shown.stopped &= !board_bit(board);
+                let waits = if board != 0 && self.shown.is_stopped(board) {
+                    ": it waits for the pulse, which `board 0 go` gives"
+                } else {
+                    ""
+                };
+                Ok(format!("board {board} runs{waits}"))
+            }
+            Entry::Execute(process, passes) => self.execute(process, passes),
+            Entry::RobotInit => self.initialize(memory),
+        }
+    }
+
+    fn execute(&mut self, process: ProcessId, passes: u8) -> Result<String, String> {
+        let board = process.board();
+        if !self.shown.is_stopped(board) {
+            return Err(format!(
+                "{process} runs; `board {board} stop` stops it, then it can be executed singly"
+            ));
+        }
+        if self.passes.len() + usize::from(passes) > usize::from(PASSES) {
+            return Err(format!("{} passes are waiting; {PASSES} can", self.passes.len()));
+        }
+        self.passes.extend(std::iter::repeat_n(process_bit(process), passes.into()));
+        Ok(format!("{process} is executed, passes: {passes}"))
+    }
+
+    /// E-move gives Prim ROBOT-INIT while E-PAUSE stands. On a board that is stopped, each takes the pass that it needs.
+    fn initialize(&mut self, memory: &CommonMemory) -> Result<String, String> {
+        let command = memory.subtask.emove.command;
+        if !matches!(command, EmoveVerb::None | EmoveVerb::Pause) {
+            return Err(format!(
+                "E-move executes {command}: PAUSE first, since ROBOT-INIT forgets the motion"
+            ));
+        }
+        self.shown.robot_init = successor(self.shown.robot_init);
+        if self.shown.is_stopped(ProcessId::Prim.board()) {
+            self.passes.extend([ProcessId::Emove, ProcessId::Prim].map(process_bit));
+        }
+        Ok("Prim gets ROBOT-INIT, which restarts the link".to_owned())
+    }
+}
+
+/// What the robot and the grippers do when a board stops.
+const fn what_stops(board: u8) -> &'static str {
+    match board {
+        0 => {
+            "there is no pulse: no process is stepped, the robot gets no frame, and its controller will warn (WD)"
+        }
+        2 => "E-move and Prim are stopped: the robot stands where it was sent last",
+        4 => "T3 Interface is stopped: the robot gets no frame, and its controller will warn (WD)",
+        6 => "Task and Subtask are stopped; what E-move has begun goes on",
+        _ => "Quick Change and the grippers are stopped: valves stay as they are",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entry(line: &str) -> Result<Entry, String> {
+        Entry::read(&line.split(' ').collect::<Vec<_>>()).unwrap()
+    }
+
+    #[test]
+    fn requests_are_read() {
+        assert_eq!(entry("board 2 stop"), Ok(Entry::Stop(2)));
+        assert_eq!(entry("board 0 go"), Ok(Entry::Go(0)));
+        assert_eq!(entry("execute PRIM"), Ok(Entry::Execute(ProcessId::Prim, 1)));
+        assert_eq!(entry("execute QUICK-CHANGE 3"), Ok(Entry::Execute(ProcessId::QuickChange, 3)));
+        assert_eq!(entry("robot-init"), Ok(Entry::RobotInit));
+        assert_eq!(Entry::read(&["stop"]), None);
+        for (line, word) in [
+            ("board 12 go", "0, 2, 4, 6 or 8"),
+            ("board 2", "board NUMBER stop or go"),
+            ("execute PRIMS", "TASK, SUBTASK"),
+            ("execute PRIM 0", "1 to 100"),
+            ("execute", "execute PROCESS"),
+        ] {
+            assert!(entry(line).unwrap_err().contains(word), "{line}: {:?}", entry(line));
+        }
+    }
+
+    #[test]
+    fn a_pass_is_of_one_tick_and_of_a_board_that_is_stopped() {
+        let (mut terminals, memory) = (Terminals::default(), CommonMemory::default());
+        let prim = Entry::Execute(ProcessId::Prim, 2);
+        assert!(terminals.enter(prim, &memory).unwrap_err().contains("Prim runs"));
+        terminals.enter(Entry::Stop(2), &memory).unwrap();
+        terminals.enter(prim, &memory).unwrap();
+        let executed = [1, 2, 3].map(|_| {
+            terminals.end_tick();
+            terminals.inputs().executes(ProcessId::Prim)
+        });
+        assert_eq!(executed, [true, true, false]);
+        assert!(terminals.enter(Entry::Execute(ProcessId::Emove, PASSES), &memory).is_ok());
+        assert!(terminals.enter(prim, &memory).unwrap_err().contains("100 passes are waiting"));
+    }
+
+    #[test]
+    fn a_board_goes_when_there_is_the_pulse() {
+        let (mut terminals, memory) = (Terminals::default(), CommonMemory::default());
+        let mut enter = |entry| terminals.enter(entry, &memory);
+        assert_eq!(enter(Entry::Go(6)).unwrap(), "board 6 runs", "it did before");
+        enter(Entry::Stop(6)).unwrap();
+        enter(Entry::Stop(0)).unwrap();
+        assert!(enter(Entry::Go(6)).unwrap().contains("waits for the pulse"));
+        assert_eq!(enter(Entry::Go(0)).unwrap(), "board 0 runs");
+    }
+
+    #[test]
+    fn the_link_is_initialized_while_e_move_pauses() {
+        let (mut terminals, mut memory) = (Terminals::default(), CommonMemory::default());
+        terminals.enter(Entry::RobotInit, &memory).unwrap();
+        assert_eq!(terminals.inputs().robot_init, 1);
+        terminals.enter(Entry::Stop(2), &memory).unwrap();
+        terminals.enter(Entry::RobotInit, &memory).unwrap();
+        terminals.end_tick();
+        assert!(terminals.inputs().executes(ProcessId::Emove) && terminals.inputs().robot_init == 2);
+        memory.subtask.emove.command = EmoveVerb::MovToLoc;
+        assert!(terminals.enter(Entry::RobotInit, &memory).unwrap_err().contains("PAUSE first"));
+    }
+}
