@@ -33,6 +33,9 @@ pub struct Cli {
     /// Work on the run, not only look at it; it needs --clock real
     #[arg(long, conflicts_with_all = ["once", "tick"])]
     pub operate: bool,
+    /// The task data whose blocks screen 5 lists; with --operate those of the run, of a log its own
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
     /// Colours repeat what marks say; auto heeds NO_COLOR and TERM=dumb
     #[arg(long, value_enum, default_value_t = Colour::Auto)]
     pub colour: Colour,

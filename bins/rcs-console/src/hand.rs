@@ -16,6 +16,8 @@ const ASK: Duration = Duration::from_millis(100);
 pub struct Hand {
     client: Client,
     asked: Option<Instant>,
+    /// The number of the question where the task data are.
+    data: Option<u32>,
 }
 
 impl Hand {
@@ -26,7 +28,7 @@ impl Hand {
     pub fn reach(run: &RunName) -> Result<Self, ClientError> {
         let name = format!("console-{}", std::process::id());
         let name: Name = name.parse().map_err(operator::protocol::ProtocolError::from)?;
-        Ok(Self { client: Client::connect(&operator_socket(run), &name)?, asked: None })
+        Ok(Self { client: Client::connect(&operator_socket(run), &name)?, asked: None, data: None })
     }
 
     /// Send what is asked for, and take what has been answered.
@@ -52,12 +54,20 @@ impl Hand {
                 Err(error) => return Err(error),
             }
         }
+        if self.data.is_none() {
+            self.data = Some(self.client.send("data")?);
+        }
         if self.asked.is_none_or(|asked| asked.elapsed() >= ASK) {
             self.client.send("status")?;
             self.asked = Some(Instant::now());
         }
         while let Some(answer) = self.client.poll()? {
-            operating.answered(answer.number, answer.verdict);
+            if Some(answer.number) == self.data {
+                let said = answer.verdict.ok();
+                operating.directory = said.and_then(|said| Some(said.split_once(": ")?.1.to_owned()));
+            } else {
+                operating.answered(answer.number, answer.verdict);
+            }
         }
         Ok(())
     }

@@ -12,6 +12,7 @@
 //! * [`view`]: the model as a frame of text, on any terminal of at least 80 x 24;
 //! * [`terminal`]: keys, signals, and the terminal as it was before.
 //!
+//! * `watch`: what a person watches, from one session to the next;
 //! * `hand`: the session with a run of an operator, with `--operate`.
 //!
 //! Without `--operate` the console only reads. A run never waits for it.
@@ -29,3 +30,4 @@ pub mod source;
 pub mod story;
 pub mod terminal;
 pub mod view;
+mod watch;

@@ -60,6 +60,7 @@ impl Picture {
         let elsewhere = is_of_pedestal(process) && self.external.pedestal.elsewhere;
         match (header.stamp == self.tick, header.republished) {
             (false, _) => Some(Absence::Lost),
+            (true, true) if self.external.operator.is_stopped(process.board()) => Some(Absence::Stopped),
             (true, true) if is_gripper(process) => Some(Absence::Dormant),
             (true, true) => Some(Absence::Held),
             (true, false) => elsewhere.then_some(Absence::Elsewhere),
@@ -74,6 +75,8 @@ pub enum Absence {
     Dormant,
     /// Its switch on the joystick box is on, or a recorded pose is looked at (III.3.3).
     Held,
+    /// Its board is stopped, or there is no pulse (IV.2.6).
+    Stopped,
     /// Nothing has come from it in this tick.
     Lost,
     /// It runs in another system.
@@ -87,6 +90,7 @@ impl Absence {
         match self {
             Self::Dormant => "dormant",
             Self::Held => "held",
+            Self::Stopped => "stopped",
             Self::Lost => "lost",
             Self::Elsewhere => "elsewhere",
         }
@@ -104,6 +108,7 @@ const fn is_of_pedestal(process: ProcessId) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use interfaces::operator::board_bit;
 
     #[test]
     fn a_process_is_absent_for_one_reason() {
@@ -125,5 +130,8 @@ mod tests {
                 .map(|process| picture.absence(process).map(Absence::text))
                 .into();
         assert_eq!(absences, [None, Some("dormant"), Some("held"), Some("lost"), Some("elsewhere")]);
+        picture.external.operator.stopped = board_bit(2);
+        assert_eq!(picture.absence(ProcessId::Prim).map(Absence::text), Some("stopped"));
+        assert_eq!(picture.absence(ProcessId::Emove), None, "it was executed");
     }
 }

@@ -4,7 +4,7 @@
 //! program to end.
 
 use std::{
-    io,
+    io, mem,
     path::{Path, PathBuf},
     process,
     sync::{
@@ -32,9 +32,10 @@ use crate::{
     cli::Cli,
     error::ConsoleError,
     hand::Hand,
-    model::{Effect, Key, Model, Operating, Place, Screen},
+    model::{Effect, Key, Model, Operating, Place, Screen, terminal::library::Library},
     source::{Live, Recorded, Source, State},
     view::{Look, Scene, Waiting, draw},
+    watch,
 };
 
 /// A run is looked at once a tick.
@@ -63,7 +64,11 @@ pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
         drawn: None,
         log: cli.log.clone(),
         operate: cli.operate,
+        data: shipped::resolve(cli.data.clone()),
+        watch: watch::place(),
+        watched: Vec::new(),
     }
+    .prepared()
     .run(screen);
     ratatui::try_restore().map_err(ConsoleError::Terminal)?;
     ended
@@ -149,9 +154,45 @@ struct Session {
     log: Option<PathBuf>,
     /// Work on the run that is attached to.
     operate: bool,
+    /// The task data whose blocks are listed, if neither run nor log says others.
+    data: PathBuf,
+    /// Where the list of what is watched is kept.
+    watch: Option<PathBuf>,
+    /// The list as it is kept.
+    watched: Vec<String>,
 }
 
 impl Session {
+    /// With what was watched last, and with the blocks of the data.
+    fn prepared(mut self) -> Self {
+        self.watched = self.watch.as_deref().map(watch::load).unwrap_or_default();
+        self.equip();
+        self
+    }
+
+    /// Give a new model the list of what is watched, and the blocks.
+    fn equip(&mut self) {
+        if let Console::Source(model, source, _) = &mut self.console {
+            model.watch.clone_from(&self.watched);
+            model.terminal.library = match source.blocks() {
+                Some(blocks) => Library::with(blocks.to_vec()),
+                None => Library::of(self.data.clone()),
+            };
+        }
+    }
+
+    /// Keep the list of what is watched when it has changed.
+    fn keep_watch(&mut self) {
+        let Console::Source(model, ..) = &mut self.console else { return };
+        let old = mem::replace(&mut self.watched, model.watch.clone());
+        if old != self.watched
+            && let Some(path) = &self.watch
+            && let Err(error) = watch::save(path, &self.watched)
+        {
+            model.answer = Some(format!("the list is not kept: {}: {error}", path.display()));
+        }
+    }
+
     fn run(mut self, mut terminal: DefaultTerminal) -> Result<(), ConsoleError> {
         while !self.stop.load(Ordering::Relaxed) {
             self.refresh();
@@ -183,6 +224,9 @@ impl Session {
                 model.take(source.as_ref());
                 if let (Some(hand), Some(operating)) = (hand, &mut model.operating) {
                     hand.work(operating, source.about().state == State::Over);
+                    if let Some(directory) = operating.directory.take() {
+                        model.terminal.library = Library::of(shipped::resolve(directory.into()));
+                    }
                 }
             }
             Console::Waiting(waiting, looked) => {
@@ -210,6 +254,7 @@ impl Session {
                 let mut model = Model::new(Screen::Ladder);
                 model.operating = hand.as_ref().map(|_| Operating::default());
                 self.console = Console::Source(Box::new(model), Box::new(live), hand);
+                self.equip();
             }
             (Err(error), Console::Waiting(waiting, _)) => waiting.refused = Some(error.to_string()),
             (Err(_), Console::Source(..)) => {}
@@ -241,7 +286,9 @@ impl Session {
         };
         if effect == Effect::OpenLog {
             self.open_log();
+            self.equip();
         }
+        self.keep_watch();
         effect
     }
 

@@ -155,7 +155,7 @@ fn the_start_up_is_seen_step_by_step() {
     look(&mut model, &mut stage);
     assert_eq!([word(&model, "1a"), word(&model, "1b"), cursor(&model)], ["seen", "", "1b"]);
     model.key(Key::Enter, &stage);
-    assert_eq!(asked(&mut model), "joystick hold EMOVE; joystick hold PRIM");
+    assert_eq!(asked(&mut model), "board 2 stop");
     stage.hold(&[ProcessId::Emove, ProcessId::Prim], true);
     look(&mut model, &mut stage);
     // Knob and frames of the box are as they should be already.
@@ -214,12 +214,12 @@ fn after_step_14_what_was_stopped_for_it_need_not_be_stopped() {
     assert_eq!(cursor(&model), "13");
     asked(&mut model);
     model.key(Key::Enter, &stage);
-    assert_eq!(asked(&mut model), "joystick step PRIM 2");
+    assert_eq!(asked(&mut model), "execute PRIM 2");
     look(&mut model, &mut stage);
     assert_eq!([word(&model, "13"), cursor(&model)], ["done", "14"]);
     model.key(Key::Enter, &stage);
     model.key(Key::Enter, &stage);
-    assert_eq!(asked(&mut model), "joystick free EMOVE; joystick free PRIM; PAUSE");
+    assert_eq!(asked(&mut model), "joystick free PRIM; board 2 go; PAUSE");
     stage.hold(&[ProcessId::Emove, ProcessId::Prim], false);
     stage.picture.memory.t3i.status.link_running = true;
     look(&mut model, &mut stage);

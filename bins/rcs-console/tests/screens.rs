@@ -12,7 +12,7 @@ use executive::memory::{
 use interfaces::ProcessId;
 use ratatui::{Terminal, backend::TestBackend};
 use rcs_console::{
-    model::{Effect, Key, Model, Operating, Pane, Place, Screen},
+    model::{Effect, Key, Model, Operating, Pane, Place, Screen, terminal::library::Library},
     once,
     picture::Picture,
     source::{About, Cell, Recorded, Source, State},
@@ -219,7 +219,12 @@ fn operating(kind: Screen, run: &dyn Source) -> Model {
     let mut operating = Operating::default();
     operating
         .answered(0, Ok("tick 624: the job waits; console-4711 commands; knob 1000; connected 1".into()));
-    operating.sent(1, "PAUSE".into());
+    model.operating = Some(operating);
+    // What it becomes is what the run answers below.
+    keys(&mut model, run, if kind == Screen::Terminal { ":863 12 12 LINE-LOAD\n" } else { ":PAUSE\n" });
+    let mut operating = model.operating.take().expect("it operates");
+    let line = operating.outbox.pop().expect("a request");
+    operating.sent(1, line);
     operating.answered(1, Ok("tick 620: command 7".into()));
     operating.sent(2, "vise open TABLE".into());
     operating.answered(2, Err("there is no vise at TABLE; the cell description has one at PFIXTURE".into()));
@@ -286,6 +291,69 @@ fn the_page_shows_these_screens() {
     }
     // The last one is that of `procedures.rs`.
     assert_eq!(shown.len(), drawn.len() + 1);
+}
+
+/// A console with the blocks of the data, that looks at a log.
+fn at_the_terminal(log: &dyn Source, typed: &str) -> Model {
+    let mut model = model(Screen::Terminal, ProcessId::Task, FAILURE, log);
+    model.terminal.library = Library::with(log.blocks().expect("a log has its blocks").to_vec());
+    keys(&mut model, log, typed);
+    model
+}
+
+#[test]
+fn terminal_with_a_block_of_commands() {
+    let log = log();
+    insta::assert_snapshot!("terminal-list", screen(&at_the_terminal(&log, ":863 LIST\n"), &log));
+}
+
+#[test]
+fn terminal_with_a_show_word() {
+    let log = log();
+    insta::assert_snapshot!("terminal-show", screen(&at_the_terminal(&log, "bbbb:II\n"), &log));
+}
+
+#[test]
+fn terminal_that_says_what_is_not_there() {
+    let log = log();
+    let typed = ":WUNLOAD\n:903 LOAD\n:GO\n:LOC SAFE-P\n:LOC LOCATE-OBJ\n";
+    insta::assert_snapshot!("terminal-said", screen(&at_the_terminal(&log, typed), &log));
+}
+
+#[test]
+fn control_c_stops_the_board_of_the_terminal_and_ends_no_console_that_operates() {
+    let run = As(log(), State::Runs);
+    let mut model = operating(Screen::Terminal, &run);
+    assert_eq!(model.key(Key::Interrupt, &run), Effect::Draw);
+    assert_eq!(std::mem::take(&mut model.operating.as_mut().unwrap().outbox), ["board 6 stop"]);
+    keys(&mut model, &run, "B:GO\n");
+    assert_eq!(std::mem::take(&mut model.operating.as_mut().unwrap().outbox), ["board 4 go"]);
+    model.operating = None;
+    assert_eq!(model.key(Key::Interrupt, &run), Effect::Quit);
+}
+
+#[test]
+fn a_command_is_followed_to_its_end() {
+    let run = As(log(), State::Runs);
+    let mut model = operating(Screen::Terminal, &run);
+    let operating = model.operating.as_mut().unwrap();
+    operating.sent(4, "MOVE".into());
+    operating.answered(4, Ok("tick 100: command 5".into()));
+    for tick in [500, FAILURE, 625] {
+        operating.look(&run.picture(tick).unwrap());
+    }
+    assert_eq!(operating.exchanges.last().unwrap().stages, ["executing", "error"]);
+}
+
+#[test]
+fn what_is_watched_stands_in_the_place_of_the_buffers() {
+    let log = log();
+    let mut model = model(Screen::Process, ProcessId::Task, FAILURE, &log);
+    keys(&mut model, &log, "wtask.status.report\nwt3i.status.echo\nwno-such-name\n");
+    assert!(model.answer.as_ref().is_some_and(|answer| answer.contains("no field")), "{:?}", model.answer);
+    insta::assert_snapshot!("process-watch", screen(&model, &log));
+    keys(&mut model, &log, "wt3i.status.echo\nv");
+    assert_eq!((model.watch.as_slice(), model.shows_watch), (&["task.status.report".to_owned()][..], false));
 }
 
 #[test]

@@ -222,8 +222,21 @@ fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_fi
     console.wait_for("JOB WAITS");
     console.press(" ");
     console.wait_for("knob 100 %");
+    // The words of board 6: a command of a block, ^C, GO, a listing, a show word.
+    console.press("5:863 12 12 LINE-LOAD\r");
+    console.wait_for(": line-load 863 12 12");
+    console.wait_for("Finished");
+    console.press(":^C\r");
+    console.wait_for("6 STOPPED");
+    console.press(":GO\r");
+    console.wait_for("6 runs");
+    console.press(":863 LIST\r");
+    console.wait_for("12 == PAUSE -- +0 -- 0 +0 -- 0 -- 0");
+    console.press(":TAI\r");
+    console.wait_for("command-#-in");
+    console.press("\x1b");
     // Tab completes, and a refusal is shown.
-    console.press("5:job n\r");
+    console.press(":job n\r");
     console.wait_for("refused: job wait, job go or job skip was expected");
     console.press("6");
     console.wait_for("no frame is on");

@@ -81,8 +81,31 @@ pub fn outputs(process: ProcessId, picture: &Picture, last: Option<&Picture>) ->
         .collect()
 }
 
-fn is_within(path: &str, buffer: &str) -> bool {
+/// True if a field is the buffer, or in it.
+#[must_use]
+pub fn is_within(path: &str, buffer: &str) -> bool {
     path.strip_prefix(buffer).is_some_and(|rest| rest.starts_with(['.', '[']) || rest.is_empty())
+}
+
+/// The names of all fields of common memory and of the inputs from outside.
+pub fn paths() -> impl Iterator<Item = &'static str> {
+    MEMORY.iter().chain(OUTSIDE.iter()).map(|leaf| leaf.path.as_str())
+}
+
+/// The fields in buffers, in the order of the buffers.
+#[must_use]
+pub fn under(buffers: &[&str], picture: &Picture, last: Option<&Picture>) -> Vec<Field> {
+    let (now, was) = (Images::of(picture), last.map(Images::of));
+    let of = |buffer: &str| {
+        let within = |leaf: &&Leaf| is_within(&leaf.path, buffer);
+        let memory = MEMORY.iter().filter(within);
+        let memory = memory.map(|leaf| field(leaf, &now.memory, was.as_ref().map(|images| &images.memory)));
+        let outside = OUTSIDE.iter().filter(within);
+        let outside =
+            outside.map(|leaf| field(leaf, &now.outside, was.as_ref().map(|images| &images.outside)));
+        memory.chain(outside).collect::<Vec<_>>()
+    };
+    buffers.iter().flat_map(|buffer| of(buffer)).collect()
 }
 
 fn field(leaf: &Leaf, now: &[u8], was: Option<&Vec<u8>>) -> Field {

@@ -2,7 +2,7 @@
 
 use interfaces::ProcessId;
 
-use super::{Model, Pane, Place, Prompt, Screen, ladder};
+use super::{Model, Pane, Place, Prompt, Screen, buffers, ladder, views::fields_named};
 use crate::source::{Source, State};
 
 /// Ticks of a second.
@@ -62,17 +62,22 @@ impl Model {
     /// Take a key.
     pub fn key(&mut self, key: Key, source: &dyn Source) -> Effect {
         self.answer = None;
-        if key == Key::Interrupt {
+        if key == Key::Interrupt && !(self.screen == Screen::Terminal && self.operating.is_some()) {
             return Effect::Quit;
         }
         if let Some(prompt) = self.prompt.take() {
             self.type_on(prompt, key, source);
         } else if self.help {
             self.help = false;
-        } else if !self.operate(key) && !self.is_of_a_procedure(key, source) {
+        } else if !self.is_of_the_terminal(key) && !self.operate(key) && !self.is_of_a_procedure(key, source)
+        {
             return self.command(key, source);
         }
         Effect::Draw
+    }
+
+    fn is_of_the_terminal(&mut self, key: Key) -> bool {
+        self.screen == Screen::Terminal && self.work_the_terminal(key)
     }
 
     fn is_of_a_procedure(&mut self, key: Key, source: &dyn Source) -> bool {
@@ -91,6 +96,10 @@ impl Model {
             Key::Char('/') => self.prompt = Some(Prompt::Filter(self.filter.clone())),
             Key::Char('g') => self.prompt = Some(Prompt::Tick(String::new())),
             Key::Char('a') => self.acknowledged = self.tick(),
+            Key::Char('v') if self.screen == Screen::Process => self.turn_to_watch(),
+            Key::Char('w') if self.screen == Screen::Process => {
+                self.prompt = Some(Prompt::Watch(String::new()));
+            }
             Key::Char('p') => self.freeze(source),
             Key::Char('[') => self.go(self.tick().saturating_sub(1), source),
             Key::Char(']') => self.go(self.tick() + 1, source),
@@ -144,6 +153,29 @@ impl Model {
             Screen::Ladder => self.process = ladder::neighbour(self.process, by, false),
             _ => self.scroll = self.scroll.saturating_sub_unsigned(by),
         }
+    }
+
+    /// The process screen shows what is watched, or the buffers again.
+    fn turn_to_watch(&mut self) {
+        (self.pane, self.scroll, self.shows_watch) = (Pane::Buffers, 0, !self.shows_watch);
+    }
+
+    /// Watch what a name means, or watch it no more.
+    fn watch_or_not(&mut self, name: &str) {
+        let mut found: Vec<String> = fields_named(name, &[]).into_iter().map(str::to_owned).collect();
+        if buffers::paths().any(|path| buffers::is_within(path, name)) {
+            found = vec![name.to_owned()];
+        }
+        if found.is_empty() {
+            self.answer = Some(format!("no field and no buffer is named {name}; screen 2 has their names"));
+            return;
+        }
+        let known = found.iter().all(|path| self.watch.contains(path));
+        self.watch.retain(|path| !found.contains(path));
+        if !known {
+            self.watch.append(&mut found);
+        }
+        (self.pane, self.scroll, self.shows_watch) = (Pane::Buffers, 0, true);
     }
 
     /// Freeze the picture, or let it go on. The run goes on in either case.
@@ -204,7 +236,7 @@ impl Model {
 
     fn type_on(&mut self, mut prompt: Prompt, key: Key, source: &dyn Source) {
         let text = match &mut prompt {
-            Prompt::Filter(text) | Prompt::Tick(text) | Prompt::Reason(text) => text,
+            Prompt::Filter(text) | Prompt::Tick(text) | Prompt::Reason(text) | Prompt::Watch(text) => text,
             Prompt::Request(text) => return self.type_request(std::mem::take(text), key),
         };
         match key {
@@ -221,6 +253,7 @@ impl Model {
             Prompt::Filter(text) => (self.filter, self.scroll) = (text, 0),
             Prompt::Request(_) => {}
             Prompt::Reason(reason) => self.leave_out(reason),
+            Prompt::Watch(name) => self.watch_or_not(name.trim()),
             Prompt::Tick(text) => match text.trim().parse() {
                 Ok(tick) => self.go(tick, source),
                 Err(_) => self.answer = Some(format!("a tick is a number such as 623; found {text:?}")),

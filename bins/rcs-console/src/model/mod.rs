@@ -10,7 +10,9 @@ pub mod operating;
 pub mod panels;
 pub mod procedures;
 pub mod process;
+pub mod terminal;
 pub mod units;
+pub mod views;
 
 use interfaces::{ProcessId, device::JoystickBox};
 
@@ -20,6 +22,7 @@ pub use self::{
     keys::{Effect, Key},
     operating::Operating,
     procedures::Progress,
+    terminal::BoardTerminal,
 };
 use crate::{
     picture::Picture,
@@ -154,8 +157,10 @@ pub enum Prompt {
     Filter(String),
     /// A tick to go to.
     Tick(String),
-    /// A request to the run.
+    /// A request to the run, or words of a board's terminal.
     Request(String),
+    /// A field or buffer to watch, or to watch no more.
+    Watch(String),
     /// Why a step of a procedure is left out.
     Reason(String),
 }
@@ -186,6 +191,12 @@ pub struct Model {
     pub procedures: Progress,
     /// What an operator asks for; none on a console that looks only.
     pub operating: Option<Operating>,
+    /// The terminal of a board.
+    pub terminal: BoardTerminal,
+    /// Fields and buffers that are watched.
+    pub watch: Vec<String>,
+    /// The process screen shows them in the place of the buffers.
+    pub shows_watch: bool,
     /// The picture.
     pub picture: Option<Picture>,
     /// The picture before it on the screen.
@@ -209,6 +220,9 @@ impl Model {
             answer: None,
             procedures: Progress::default(),
             operating: None,
+            terminal: BoardTerminal::default(),
+            watch: Vec::new(),
+            shows_watch: false,
             picture: None,
             last: None,
         }
@@ -241,6 +255,9 @@ impl Model {
     fn look_at_procedures(&mut self, source: &dyn Source) {
         if let (Some(picture), Place::Last) = (&self.picture, self.place) {
             let cell = source.cell(picture.tick.0);
+            if let Some(operating) = &mut self.operating {
+                operating.look(picture);
+            }
             let (operating, begun) = (self.operating.as_ref(), Begun::default());
             self.procedures.look(&Sight { picture, cell: &cell, operating, begun });
         }

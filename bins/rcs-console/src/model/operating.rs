@@ -2,20 +2,28 @@
 
 use interfaces::device::{KNOB_FULL, single_step};
 
-use super::{Key, Model, Prompt, Screen, panels};
+use super::{Key, Model, Prompt, Screen, panels, terminal::follow};
+use crate::picture::Picture;
 
 /// Exchanges that are kept.
 const KEPT: usize = 200;
 /// Lengths of a jog, in.
 pub const JOGS: [f64; 4] = [0.10, 0.50, 2.00, 0.02];
 /// Requests that Tab completes: how they begin.
-const FORMS: [&str; 27] = [
+const FORMS: [&str; 34] = [
     "stop",
     "go",
     "leave",
     "job wait",
     "job go",
     "job skip",
+    "board 2 stop",
+    "board 2 go",
+    "board 6 stop",
+    "board 6 go",
+    "execute PRIM",
+    "robot-init",
+    "line-load 863 ",
     "PAUSE",
     "STARTUP",
     "SHUTDOWN",
@@ -48,6 +56,8 @@ pub struct Exchange {
     pub line: String,
     /// The answer; none before it comes.
     pub answer: Option<Result<String, String>>,
+    /// What has become of the command that it gave, as far as it went.
+    pub stages: Vec<String>,
 }
 
 /// An operator at work.
@@ -57,6 +67,10 @@ pub struct Operating {
     pub status: String,
     /// Requests, the oldest first.
     pub exchanges: Vec<Exchange>,
+    /// How many requests were sent in all.
+    count: u64,
+    /// The directory of the run's task data, once the run has said it.
+    pub directory: Option<String>,
     /// Requests that are to be sent.
     pub outbox: Vec<String>,
     /// Why the run cannot be reached any more.
@@ -77,7 +91,25 @@ impl Operating {
         if self.exchanges.len() == KEPT {
             self.exchanges.remove(0);
         }
-        self.exchanges.push(Exchange { number, line, answer: None });
+        self.count += 1;
+        self.exchanges.push(Exchange { number, line, answer: None, stages: Vec::new() });
+    }
+
+    /// How many requests were sent in all.
+    #[must_use]
+    pub const fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// The requests with their place among all that were sent, from 1 on.
+    pub fn numbered(&self) -> impl Iterator<Item = (u64, &Exchange)> {
+        let kept = u64::try_from(self.exchanges.len()).unwrap_or(u64::MAX);
+        (self.count.saturating_sub(kept) + 1..).zip(&self.exchanges)
+    }
+
+    /// What a picture shows of the commands that were given.
+    pub fn look(&mut self, picture: &Picture) {
+        self.exchanges.iter_mut().for_each(|exchange| follow(exchange, picture));
     }
 
     /// An answer has come: to a request, or about the status.
@@ -228,12 +260,12 @@ impl Model {
 
     /// A key while a request is typed.
     pub(super) fn type_request(&mut self, mut text: String, key: Key) {
-        let Some(operating) = &mut self.operating else { return };
+        let mut recall = |back| self.operating.as_mut().and_then(|operating| operating.recall(back));
         match key {
             Key::Char(typed) => text.push(typed),
             Key::Backspace => drop(text.pop()),
-            Key::Up => text = operating.recall(true).unwrap_or(text),
-            Key::Down => text = operating.recall(false).unwrap_or(text),
+            Key::Up => text = recall(true).unwrap_or(text),
+            Key::Down => text = recall(false).unwrap_or(text),
             Key::Tab => {
                 let (completed, fitting) = complete(&text);
                 if fitting.len() != 1 {
@@ -243,7 +275,7 @@ impl Model {
                 text = completed;
             }
             Key::Enter if text.trim().is_empty() => return,
-            Key::Enter => return operating.ask(text.trim()),
+            Key::Enter => return self.enter(text.trim()),
             _ => return,
         }
         self.prompt = Some(Prompt::Request(text));

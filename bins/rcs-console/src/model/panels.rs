@@ -5,7 +5,7 @@ use interfaces::device::{JoystickBox, KNOB_FULL, joystick_frame, single_step};
 
 use super::{
     Section, Text, Tone,
-    operating::{Exchange, JOGS, Operating},
+    operating::{JOGS, Operating},
 };
 use crate::source::Cell;
 
@@ -144,29 +144,4 @@ fn keys(operating: &Operating) -> Section {
     let shown = KEYS.iter().enumerate().skip(first).take(SHOWN).map(line);
     let title = format!("keys, {} of {}: j k=choose, Enter=press", operating.cursor + 1, KEYS.len());
     Section::new(title, shown.collect())
-}
-
-/// The conversation with the run, the newest request first.
-#[must_use]
-pub fn conversation(operating: Option<&Operating>) -> Vec<Section> {
-    let Some(operating) = operating else { return vec![look_only()] };
-    let mut about = vec![Text::plain(format!(" {}", operating.status))];
-    if let Some(lost) = &operating.lost {
-        about.push(Text::new(Tone::Trouble, format!("!!{lost}")));
-    }
-    let hints = [
-        " :=request   Tab=complete   Up=the last one   Space=stop, go   h=hold Prim",
-        " PAUSE   MOVE ...   job wait, go, skip   vise open PFIXTURE   panel auto",
-    ];
-    about.extend(hints.map(|text| Text::new(Tone::Faint, text)));
-    let exchange = |exchange: &Exchange| {
-        let (tone, text) = match &exchange.answer {
-            None => (Tone::Faint, "  not answered yet".to_owned()),
-            Some(Ok(text)) => (Tone::Plain, format!("  {text}")),
-            Some(Err(why)) => (Tone::Trouble, format!("!!refused: {why}")),
-        };
-        [Text::new(Tone::Marked, format!(" : {}", exchange.line)), Text::new(tone, text)]
-    };
-    let said = operating.exchanges.iter().rev().flat_map(exchange).collect();
-    vec![Section::new("the run", about), Section::new("requests, newest first", said)]
 }

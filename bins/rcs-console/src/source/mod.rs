@@ -8,6 +8,7 @@ pub use live::Live;
 pub use recorded::Recorded;
 
 use executive::memory::cell::CellView;
+use taskdata::load::Source as Blocks;
 
 use crate::{picture::Picture, story::Story};
 
@@ -30,6 +31,11 @@ pub trait Source {
 
     /// The cell as it was in a tick.
     fn cell(&self, tick: u64) -> Cell;
+
+    /// The blocks of the task data, if the source holds them.
+    fn blocks(&self) -> Option<&[Blocks]> {
+        None
+    }
 }
 
 /// What is looked at.

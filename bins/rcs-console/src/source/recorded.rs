@@ -5,7 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use record::{Log, ReadError};
+use record::{Attachment, Log, ReadError};
+use taskdata::load::Source as Blocks;
 
 use super::{About, Cell, Source, State, deltas::Deltas};
 use crate::{error::ConsoleError, picture::Picture, story::Story};
@@ -29,6 +30,7 @@ pub struct Recorded {
     clearance: Option<String>,
     contacts: Option<String>,
     damage: Option<String>,
+    blocks: Vec<Blocks>,
 }
 
 impl Recorded {
@@ -78,6 +80,7 @@ impl Recorded {
             clearance,
             contacts,
             damage,
+            blocks: blocks(&log),
         })
     }
 
@@ -86,6 +89,16 @@ impl Recorded {
     pub fn path(&self) -> &Path {
         &self.path
     }
+}
+
+/// The blocks of the run, those that were loaded while it went on last.
+fn blocks(log: &Log) -> Vec<Blocks> {
+    let first = log.attachments.iter().filter_map(|attachment| {
+        let name = attachment.name.strip_prefix(Attachment::TASK_DATA)?;
+        Some(attachment.source(name))
+    });
+    let later = log.attachments.iter().filter_map(Attachment::as_reload).map(|(_, source)| source);
+    first.chain(later).collect()
 }
 
 /// Where the parts were, tick by tick.
@@ -121,6 +134,10 @@ impl Source for Recorded {
 
     fn story(&self) -> &Story {
         &self.story
+    }
+
+    fn blocks(&self) -> Option<&[Blocks]> {
+        Some(&self.blocks)
     }
 
     fn cell(&self, tick: u64) -> Cell {

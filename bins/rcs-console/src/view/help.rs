@@ -10,7 +10,7 @@ const KEYS: [(&str, &str); 16] = [
     ("1 ... 7", "screens: ladder, process, link, cell, terminal, panels, procedures"),
     ("j k, arrows, PgUp PgDn", "choose a process; scroll"),
     ("Enter, Esc", "the process under the cursor; back to the ladder"),
-    ("Tab", "next pane of the process screen"),
+    ("Tab, w, v", "on screen 2: pane, watch a field, what is watched"),
     ("/", "show only lines with a text; Esc shows all again"),
     ("p", "freeze the picture; the run goes on"),
     ("[ ]  { }  Home End", "a tick, a second, first and last tick"),
@@ -21,7 +21,7 @@ const KEYS: [(&str, &str); 16] = [
     ("a", "acknowledge the alarm in the line above the keys"),
     ("o", "open the log of this run, at the first cause"),
     ("Enter y s u r", "on screen 7: do a step, it is so, leave out, take back, anew"),
-    (": Space h F1", "with --operate: request, stop and go, hold Prim, E-stop"),
+    (":, b; Space h F1", "screen 5: words, board; --operate: stop, hold, E-stop"),
     ("q, Control-C", "quit; the run does not notice"),
 ];
 

@@ -18,7 +18,10 @@ use ratatui::{
 use record::Level;
 
 use crate::{
-    model::{Model, Operating, Place, Prompt, Screen, Tone, cell, ladder as lines, link, panels, procedures},
+    model::{
+        Model, Operating, Place, Prompt, Screen, Tone, cell, ladder as lines, link, panels, procedures,
+        terminal,
+    },
     source::{About, Source, State},
 };
 use text::{fit, rule};
@@ -142,7 +145,8 @@ fn screen(
                 panes::column(&cell::sections(picture, &cell), model, look, width, room)
             }
             Screen::Terminal => {
-                let said = panels::conversation(model.operating.as_ref());
+                let (operating, last) = (model.operating.as_ref(), model.last.as_ref());
+                let said = terminal::sections(&model.terminal, operating, picture, last);
                 panes::column(&said, model, look, width, room)
             }
             Screen::Procedures => {
@@ -228,7 +232,11 @@ fn news(model: &Model, source: &dyn Source, about: &About<'_>, look: Look, width
         }
         Some(Prompt::Request(text)) => {
             let said = model.answer.as_deref().unwrap_or("Enter  Tab  Esc");
-            return line(Tone::Marked, &format!(" : {text}_   {said}"));
+            let at = model.terminal_prompt();
+            return line(Tone::Marked, &format!(" {at}: {text}_   {said}"));
+        }
+        Some(Prompt::Watch(text)) => {
+            return line(Tone::Marked, &format!(" watch, or watch no more: {text}_   Enter  Esc"));
         }
         Some(Prompt::Reason(text)) => {
             return line(Tone::Marked, &format!(" leave the step out, because: {text}_   Enter  Esc"));
@@ -295,11 +303,12 @@ fn keys(model: &Model, state: State) -> &'static str {
             " Enter=process  j k=choose  p=freeze  [ ]=tick  n=change  t=trouble  a=ack"
         }
         (_, Screen::Process, _) => {
-            " Esc=back  Tab=pane  j k=scroll  /=filter  [ ]=tick  n=its change  t=trouble"
+            " Esc=back  Tab=pane  j k=scroll  /=filter  w v=watch  [ ]=tick  n=its change"
         }
-        (_, Screen::Terminal | Screen::Panels, _) if model.operating.is_none() => " Esc=back",
+        (_, Screen::Terminal, _) if model.operating.is_none() => " Esc=back  :=words  b=board  j k=scroll",
+        (_, Screen::Panels, _) if model.operating.is_none() => " Esc=back",
         (_, Screen::Terminal, _) => {
-            " Esc=back  :=request  Space=stop, go  h=hold Prim  F1=E-stop  j k=scroll"
+            " Esc=back  :=enter  b=board  ^C=stop it  Space=stop, go  h=hold Prim  F1=E-stop"
         }
         (_, Screen::Procedures, _) if !model.procedures.is_open => " j k=choose  Enter=open  Esc=back",
         (_, Screen::Procedures, _) if model.operating.is_none() => {

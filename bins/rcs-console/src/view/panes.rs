@@ -7,7 +7,7 @@ use super::{
     text::{rule, wrap},
 };
 use crate::{
-    model::{Model, Pane, Section, Text, Tone, buffers, process},
+    model::{Model, Pane, Section, Text, Tone, buffers, process, views},
     picture::Picture,
     source::Source,
 };
@@ -37,7 +37,11 @@ pub fn process(
     let sections = [
         process::table(model.process, picture, &model.filter),
         process::rows(model.process, picture, story),
-        buffers::section(model.process, picture, last, &model.filter),
+        if model.shows_watch {
+            views::watched(&model.watch, picture, last)
+        } else {
+            buffers::section(model.process, picture, last, &model.filter)
+        },
     ];
     let text = room.saturating_sub(Pane::ALL.len());
     let small = (text / 5).max(LEAST);

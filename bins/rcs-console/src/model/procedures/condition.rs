@@ -146,7 +146,10 @@ impl Sight<'_> {
             Condition::Says(process, report) => Some(memory.said(process).report == report),
             Condition::Run(processes) => Some(processes.iter().all(|process| self.runs(*process))),
             Condition::Held(processes) => {
-                Some(processes.iter().all(|process| self.picture.absence(*process) == Some(Absence::Held)))
+                let stands = |process: &ProcessId| {
+                    matches!(self.picture.absence(*process), Some(Absence::Held | Absence::Stopped))
+                };
+                Some(processes.iter().all(stands))
             }
             Condition::KnobUp(up) => Some((joystick.velocity > 0) == up),
             Condition::FrameOn(on) => Some((joystick.frame != 0) == on),

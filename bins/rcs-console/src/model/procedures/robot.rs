@@ -79,7 +79,7 @@ pub const SET_UP: Procedure = Procedure {
             ..state("3", "Task has the command PAUSE", &[Condition::Have(&[ProcessId::Task], "PAUSE")])
         },
         Step {
-            how: "GO on board 6, SSGO on board 0. This run gives the pulse by itself.",
+            how: "GO on board 6, SSGO on board 0. A run begins with all boards going; screen 5 stops them.",
             ask: &[Line("joystick free TASK"), Line("joystick free SUBTASK")],
             ..state("4", "Task and Subtask run, and the pulse comes", &[Condition::Run(BOARD_6)])
         },
@@ -106,14 +106,19 @@ pub const START_UP: Procedure = Procedure {
             ..state("1a", "Task, Subtask, E-move and Prim have PAUSE", &[Condition::Have(LEVELS, "PAUSE")])
         },
         Step {
-            ask: &[Line("joystick hold EMOVE"), Line("joystick hold PRIM")],
+            ask: &[Line("board 2 stop")],
             how: "^C on board 2.",
             until: "14",
             ..state("1b", "E-move and Prim are stopped", &[Condition::Held(BOARD_2)])
         },
         Step {
-            ask: &[Line("joystick velocity 0"), Line("joystick frame OFF"), Line("joystick hold PRIM")],
-            how: "The manual enters .R here. Prim executes RESTART as ROBOT-INIT, in step 14.",
+            ask: &[
+                Line("robot-init"),
+                Line("joystick velocity 0"),
+                Line("joystick frame OFF"),
+                Line("joystick hold PRIM"),
+            ],
+            how: ".R on board 2: E-move gives Prim ROBOT-INIT, which sends RESTART to T3 Interface.",
             show: Show::Box,
             until: "14",
             ..state(
@@ -189,7 +194,7 @@ pub const START_UP: Procedure = Procedure {
             ..state("12", "CYCLE START: the program has come to DEPC", &[Condition::Reached("DEPC")])
         },
         Step {
-            ask: &[Line("joystick step PRIM 2")],
+            ask: &[Line("execute PRIM 2")],
             how: "PRIM-LEVEL PRIM-LEVEL II: Prim runs twice, and what it gives is what it gets.",
             show: Show::Frames,
             until: "15",
@@ -200,7 +205,7 @@ pub const START_UP: Procedure = Procedure {
             )
         },
         Step {
-            ask: &[Line("joystick free EMOVE"), Line("joystick free PRIM"), Line("PAUSE")],
+            ask: &[Line("joystick free PRIM"), Line("board 2 go"), Line("PAUSE")],
             how: "GO on board 2. If it moves, press an E-stop at once.",
             warning: "the robot comes under control; it must not move; have an E-stop at hand",
             show: Show::Hand,
@@ -230,7 +235,7 @@ pub const START_UP: Procedure = Procedure {
         },
         Step {
             ask: &[Line(HOME)],
-            how: "863 3 3 LINE-LOAD. With the knob at 0 nothing moves yet.",
+            how: "863 3 3 LINE-LOAD on board 6. With the knob at 0 nothing moves yet.",
             until: "19",
             ..state("17", "Task has the command to HOME", &[Condition::Have(&[ProcessId::Task], "HOME")])
         },

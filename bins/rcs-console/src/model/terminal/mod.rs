@@ -1,0 +1,194 @@
+//! The terminal of a board (IV.2): words that run, show and list, and beside them requests in words of today.
+
+pub mod library;
+mod said;
+mod screen;
+mod words;
+
+use std::path::PathBuf;
+
+use interfaces::{ProcessId, hws::HwsReport};
+use taskdata::load::commands;
+
+use self::{
+    library::Library,
+    words::{Interpreter, is_of_terminal},
+};
+use super::{Key, Model, Operating, Text, Tone, operating::Exchange, views::ShowWord};
+use crate::picture::Picture;
+
+pub use self::screen::sections;
+
+/// The boards of the terminals (IV.2.2).
+pub const BOARDS: [u8; 6] = [0, 2, 4, 6, 8, 12];
+/// What is kept of what was typed.
+const KEPT: usize = 100;
+
+/// The mode of a terminal (IV.2.6).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// Words are executed.
+    #[default]
+    Run,
+    /// Variables are shown.
+    Show,
+}
+
+/// What a terminal is set to.
+#[derive(Clone, Debug)]
+pub struct Board {
+    /// The board that it speaks to.
+    pub number: u8,
+    /// Its mode.
+    pub mode: Mode,
+    /// The area whose blocks LIST and LOAD mean.
+    pub offset: u32,
+    /// The vocabulary that was entered last.
+    pub vocabulary: &'static str,
+    /// The show word that was entered last.
+    pub shown: Option<&'static ShowWord>,
+}
+
+impl Default for Board {
+    /// Board 6: the commands for Task are entered there.
+    fn default() -> Self {
+        Self { number: 6, mode: Mode::Run, offset: commands::OFFSET, vocabulary: "SDEF", shown: None }
+    }
+}
+
+impl Board {
+    /// Speak to another board.
+    pub fn turn_to(&mut self, number: u8) {
+        if self.number != number {
+            *self = Self { number, offset: self.offset, ..Self::default() };
+        }
+    }
+
+    /// The processes on it.
+    pub fn processes(&self) -> impl Iterator<Item = ProcessId> + use<> {
+        let number = self.number;
+        ProcessId::ALL.iter().copied().filter(move |process| process.board() == number)
+    }
+
+    /// The buffers that its processes read and write.
+    fn buffers(&self) -> Vec<&'static str> {
+        let mut found: Vec<_> = self.processes().map(ProcessId::field).collect();
+        match self.number {
+            6 => found.extend(["hws", "data_base", "emove.status", "pedestal.status"]),
+            2 => found.extend(["subtask.emove", "t3i.status"]),
+            4 => found.push("prim.t3i"),
+            8 => found.extend(["emove.quick_change", "emove.grip", "emove.v_grip", "emove.tool_grip"]),
+            _ => {}
+        }
+        found
+    }
+}
+
+/// Something that was typed, and what was said at once.
+#[derive(Clone, Debug)]
+struct Typed {
+    board: u8,
+    line: String,
+    said: Vec<Text>,
+    /// How many requests had been sent before.
+    after: u64,
+}
+
+/// A terminal.
+#[derive(Default)]
+pub struct BoardTerminal {
+    /// What it is set to.
+    pub board: Board,
+    /// The blocks.
+    pub library: Library,
+    typed: Vec<Typed>,
+}
+
+impl BoardTerminal {
+    /// With the blocks of a directory.
+    #[must_use]
+    pub fn of(directory: PathBuf) -> Self {
+        Self { library: Library::of(directory), ..Self::default() }
+    }
+
+    fn note(&mut self, line: &str, said: Vec<Text>, after: u64) {
+        if self.typed.len() == KEPT {
+            self.typed.remove(0);
+        }
+        self.typed.push(Typed { board: self.board.number, line: line.to_owned(), said, after });
+    }
+}
+
+impl Model {
+    /// A line was typed at the terminal: words of the board, or a request in words of today.
+    pub(super) fn enter(&mut self, line: &str) {
+        let terminal = &mut self.terminal;
+        let sent = self.operating.as_ref().map_or(0, Operating::count);
+        if !is_of_terminal(line, terminal.board.mode) {
+            match &mut self.operating {
+                Some(operating) => operating.ask(line),
+                None => terminal.note(line, vec![look_only()], sent),
+            }
+            return;
+        }
+        let (picture, last) = (self.picture.as_ref(), self.last.as_ref());
+        let outcome =
+            Interpreter::new(&mut terminal.board, &mut terminal.library, picture, last).interpret(line);
+        let mut said = outcome.said;
+        match &mut self.operating {
+            Some(operating) => outcome.asks.into_iter().for_each(|line| operating.ask(line)),
+            None if outcome.asks.is_empty() => {}
+            None => said.push(look_only()),
+        }
+        terminal.note(line, said, sent);
+    }
+
+    /// What stands in front of what is typed.
+    #[must_use]
+    pub fn terminal_prompt(&self) -> String {
+        let board = &self.terminal.board;
+        match (self.screen, board.mode) {
+            (super::Screen::Terminal, Mode::Run) => format!("board {} :R", board.number),
+            (super::Screen::Terminal, Mode::Show) => format!("board {} :S", board.number),
+            _ => String::new(),
+        }
+    }
+
+    /// A key of the terminal that no other screen has; false if it is none.
+    pub(super) fn work_the_terminal(&mut self, key: Key) -> bool {
+        let board = &mut self.terminal.board;
+        let at = BOARDS.iter().position(|number| *number == board.number).unwrap_or_default();
+        match key {
+            Key::Char('b') => board.turn_to(BOARDS[(at + 1) % BOARDS.len()]),
+            Key::Char('B') => board.turn_to(BOARDS[(at + BOARDS.len() - 1) % BOARDS.len()]),
+            Key::Char(':') => self.prompt = Some(super::Prompt::Request(String::new())),
+            Key::Interrupt if self.operating.is_some() => self.enter("^C"),
+            Key::Esc if board.shown.is_some() => board.shown = None,
+            _ => return false,
+        }
+        true
+    }
+}
+
+fn look_only() -> Text {
+    Text::new(Tone::Trouble, "!!this console looks only: start it with --operate to work on the run")
+}
+
+/// What has become of a command that a request has given, as the terminal of the original said it (IV.4.2 step 3).
+pub fn follow(exchange: &mut Exchange, picture: &Picture) {
+    let Some(Ok(answer)) = &exchange.answer else { return };
+    let number = answer.rsplit_once("command ").and_then(|(_, number)| number.parse::<u32>().ok());
+    let status = &picture.memory.task.status;
+    if number != Some(status.echo) {
+        return;
+    }
+    let step = picture.memory.task.header.step.unwrap_or_default();
+    let stage = match (status.report, step.as_str()) {
+        (HwsReport::Finished, _) => "Finished".to_owned(),
+        (HwsReport::Executing, "Aborting" | "Initiating" | "Connecting") => format!("{step}..."),
+        (report, _) => report.to_string(),
+    };
+    if exchange.stages.last() != Some(&stage) {
+        exchange.stages.push(stage);
+    }
+}

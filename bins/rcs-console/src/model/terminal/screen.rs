@@ -1,0 +1,100 @@
+//! The terminal as text: what it is set to, the show word, and what was typed and answered, the newest first.
+
+use interfaces::operator::BOARDS as RUNNING;
+
+use super::{Board, BoardTerminal, Mode, Typed};
+use crate::{
+    model::{Operating, Section, Text, Tone, operating::Exchange, views::lines},
+    picture::Picture,
+};
+
+/// The sections of the screen.
+#[must_use]
+pub fn sections(
+    terminal: &BoardTerminal,
+    operating: Option<&Operating>,
+    picture: &Picture,
+    last: Option<&Picture>,
+) -> Vec<Section> {
+    let is_used = !terminal.typed.is_empty() || operating.is_some_and(|operating| operating.count() > 0);
+    let mut sections = vec![Section::new(title(&terminal.board), about(operating, picture, is_used))];
+    if let Some(word) = terminal.board.shown {
+        let title = format!("{}: {}", word.word, word.about);
+        sections.push(Section::new(title, lines(word.buffers, picture, last)));
+    }
+    sections.push(Section::new("entered, newest first", conversation(terminal, operating)));
+    sections
+}
+
+fn title(board: &Board) -> String {
+    let processes: Vec<String> = board.processes().map(|process| process.to_string()).collect();
+    let what = match board.number {
+        0 => "Diagnostics, the pulse".to_owned(),
+        12 => "Graphics".to_owned(),
+        8 => "Quick Change, grippers, pedestal".to_owned(),
+        _ => processes.join(", "),
+    };
+    let mode = if board.mode == Mode::Run { ":R" } else { ":S" };
+    format!("board {}: {what}; {}; offset {}; {mode}", board.number, board.vocabulary, board.offset)
+}
+
+/// The boards, who commands, and while nothing was entered yet, what can be.
+fn about(operating: Option<&Operating>, picture: &Picture, is_used: bool) -> Vec<Text> {
+    let operator = &picture.external.operator;
+    let state = |board: u8| match (operator.is_stopped(board), operator.is_stopped(0)) {
+        (_, true) if board == 0 => "no pulse",
+        (true, _) => "STOPPED",
+        (false, _) if board == 0 => "pulse",
+        (false, _) => "runs",
+    };
+    let boards: Vec<String> = RUNNING.iter().map(|board| format!("{board} {}", state(*board))).collect();
+    let tone = if operator.stopped == 0 { Tone::Plain } else { Tone::Marked };
+    let mut lines = vec![Text::new(tone, format!(" boards  {}", boards.join("   ")))];
+    match operating {
+        Some(operating) => {
+            lines.push(Text::plain(format!(" {}", operating.status)));
+            if let Some(lost) = &operating.lost {
+                lines.push(Text::new(Tone::Trouble, format!("!!{lost}")));
+            }
+        }
+        None => lines.push(Text::new(Tone::Faint, " this console looks only: --operate works on a run")),
+    }
+    if is_used {
+        return lines;
+    }
+    let hints = [
+        " words: GO ^C .R  n LIST  863 12 12 LINE-LOAD  TAI  LOC name  :S name   b=board",
+        " today: PAUSE   MOVE ...   job wait, go, skip   vise open PFIXTURE   panel auto",
+    ];
+    lines.extend(hints.map(|text| Text::new(Tone::Faint, text)));
+    lines
+}
+
+/// What was typed and what was asked, the newest first; a request stands behind the words that it comes of.
+fn conversation(terminal: &BoardTerminal, operating: Option<&Operating>) -> Vec<Text> {
+    let mut all: Vec<((u64, u8), Vec<Text>)> = Vec::new();
+    all.extend(terminal.typed.iter().map(|typed| ((typed.after, 1), of_words(typed))));
+    if let Some(operating) = operating {
+        let numbered = operating.numbered();
+        all.extend(numbered.map(|(ordinal, exchange)| ((ordinal, 0), of_request(exchange))));
+    }
+    // Equal keys keep their order: words that asked for nothing.
+    all.sort_by_key(|(key, _)| *key);
+    all.into_iter().rev().flat_map(|(_, lines)| lines).collect()
+}
+
+fn of_words(typed: &Typed) -> Vec<Text> {
+    let head = Text::new(Tone::Marked, format!(" board {}: {}", typed.board, typed.line));
+    std::iter::once(head).chain(typed.said.iter().cloned()).collect()
+}
+
+fn of_request(exchange: &Exchange) -> Vec<Text> {
+    let (tone, text) = match &exchange.answer {
+        None => (Tone::Faint, "  not answered yet".to_owned()),
+        Some(Ok(text)) => {
+            (Tone::Plain, format!("  {text}   {}", exchange.stages.join(" ")).trim_end().to_owned())
+        }
+        Some(Err(why)) => (Tone::Trouble, format!("!!refused: {why}")),
+    };
+    vec![Text::new(Tone::Marked, format!(" : {}", exchange.line)), Text::new(tone, text)]
+}

@@ -1,0 +1,464 @@
+//! The words of a board's terminal (IV.2, IV.3): numbers go onto a stack, words take them from it, as in FORTH. What a
+//! word asks of the run becomes a request in words of today ([`operator`]); what it shows is said at once.
+
+use interfaces::{ProcessId, operator::board_bit};
+use levels::ladder::Ladder;
+use taskdata::load::{BlockNumber, commands, source::BLOCK_LINES};
+
+use super::{
+    BOARDS, Board, Mode,
+    library::{AREAS, Library},
+    said,
+};
+use crate::{
+    model::{
+        Text, Tone,
+        views::{SHOW_WORDS, VOCABULARIES, fields_named, lines},
+    },
+    picture::Picture,
+};
+
+/// Words that take no name behind them.
+const WORDS: [&str; 13] =
+    ["GO", "SSGO", "^C", ".R", ":R", ":S", "LIST", "LOAD", "OLOAD", "LINE-LOAD", "OFFSET", "LOC", "BOARD"];
+
+/// A word that executes a process once, as PRIM-LEVEL (IV.3.3 step 13; VI.2, VI.5; the others are ours).
+static LEVELS: [(&str, ProcessId, &str); 9] = [
+    ("TASK-LEVEL", ProcessId::Task, "TASK"),
+    ("SUBTASK-LEVEL", ProcessId::Subtask, "SUBTASK"),
+    ("EMOVE-LEVEL", ProcessId::Emove, "EMOVE"),
+    ("PRIM-LEVEL", ProcessId::Prim, "PRIM"),
+    ("T3I-LEVEL", ProcessId::T3i, "T3I"),
+    ("QC-LEVEL", ProcessId::QuickChange, "QUICK-CHANGE"),
+    ("GRIP-LEVEL", ProcessId::Grip, "GRIP"),
+    ("VG-LEVEL", ProcessId::VGrip, "V-GRIP"),
+    ("TG-LEVEL", ProcessId::ToolGrip, "TOOL-GRIP"),
+];
+
+/// What comes of a line.
+#[derive(Debug, Default)]
+pub struct Outcome {
+    /// Requests to the run.
+    pub asks: Vec<String>,
+    /// What is said.
+    pub said: Vec<Text>,
+}
+
+/// What words work on.
+pub struct Interpreter<'a> {
+    /// The terminal.
+    pub board: &'a mut Board,
+    /// The blocks.
+    pub library: &'a mut Library,
+    /// What is shown of the run.
+    pub picture: Option<&'a Picture>,
+    /// The picture before.
+    pub last: Option<&'a Picture>,
+    stack: Vec<u32>,
+    outcome: Outcome,
+}
+
+/// True if a line consists of words of a terminal; else it is a request in words of today.
+#[must_use]
+pub fn is_of_terminal(line: &str, mode: Mode) -> bool {
+    let first = line.split_whitespace().next().unwrap_or_default();
+    let is_word = WORDS.contains(&first)
+        || LEVELS.iter().any(|(word, ..)| *word == first)
+        || SHOW_WORDS.iter().any(|word| word.word == first)
+        || VOCABULARIES.iter().any(|(word, _)| *word == first)
+        || said::of_word(first).is_some();
+    is_word || mode == Mode::Show || first.parse::<u32>().is_ok()
+}
+
+impl<'a> Interpreter<'a> {
+    /// An empty stack.
+    pub fn new(
+        board: &'a mut Board,
+        library: &'a mut Library,
+        picture: Option<&'a Picture>,
+        last: Option<&'a Picture>,
+    ) -> Self {
+        Self { board, library, picture, last, stack: Vec::new(), outcome: Outcome::default() }
+    }
+
+    /// Carry a line out. The first word that is wrong ends it.
+    #[must_use]
+    pub fn interpret(mut self, line: &str) -> Outcome {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let mut at = 0;
+        while let Some(word) = words.get(at) {
+            let behind = words.get(at + 1).copied();
+            match self.word(word, behind) {
+                Ok(used) => at += 1 + used,
+                Err(why) => {
+                    self.outcome.said.push(Text::new(Tone::Trouble, format!("!!{word}: {why}")));
+                    break;
+                }
+            }
+        }
+        self.outcome
+    }
+
+    fn say(&mut self, text: impl Into<String>) {
+        self.outcome.said.push(Text::plain(text));
+    }
+
+    /// One word; how many words behind it belong to it.
+    fn word(&mut self, word: &str, behind: Option<&str>) -> Result<usize, String> {
+        if let Ok(number) = word.parse() {
+            self.stack.push(number);
+            return Ok(0);
+        }
+        match word {
+            ":R" => self.board.mode = Mode::Run,
+            ":S" => self.board.mode = Mode::Show,
+            "GO" => self.go()?,
+            "SSGO" => self.on(0).map(|()| self.outcome.asks.push("board 0 go".to_owned()))?,
+            "^C" => self.stop()?,
+            ".R" => self.on(2).map(|()| self.outcome.asks.push("robot-init".to_owned()))?,
+            "LIST" => self.list()?,
+            "LOAD" => {
+                let number = self.pop("n LOAD")?;
+                self.load(BlockNumber { offset: self.board.offset, number })?;
+            }
+            "OLOAD" => {
+                let number = self.pop("offset n OLOAD")?;
+                let offset = self.pop("offset n OLOAD")?;
+                self.load(BlockNumber { offset, number })?;
+            }
+            "LINE-LOAD" => self.line_load()?,
+            "OFFSET" => return self.offset(behind),
+            "LOC" => return self.locate(behind),
+            "BOARD" => return self.turn_to(behind),
+            _ => return self.named(word),
+        }
+        Ok(0)
+    }
+
+    /// A word that names something.
+    fn named(&mut self, word: &str) -> Result<usize, String> {
+        if let Some((_, process, name)) = LEVELS.iter().find(|(level, ..)| *level == word) {
+            self.on(process.board())?;
+            self.execute(name);
+            return Ok(0);
+        }
+        if let Some(show) = SHOW_WORDS.iter().find(|show| show.word == word) {
+            self.on(show.board)?;
+            self.board.shown = Some(show);
+            return Ok(0);
+        }
+        if let Some((name, process)) = VOCABULARIES.iter().find(|(name, _)| *name == word) {
+            if let Some(process) = process {
+                self.on(process.board())?;
+            }
+            self.board.vocabulary = name;
+            let about = process.map_or_else(
+                || "for all processes of this board".to_owned(),
+                |process| {
+                    let tables = Ladder::processes()[process.position()].tables.iter();
+                    let tables: Vec<_> = tables.map(|table| table.name).collect();
+                    format!("{process}: tables {}", tables.join(", "))
+                },
+            );
+            self.say(format!("  {name}: {about}"));
+            return Ok(0);
+        }
+        if word == "<=" {
+            return Err(
+                "a buffer has one writer, its process: what a person may change are commands, the joystick \
+                        box, and the blocks of the task data"
+                    .to_owned(),
+            );
+        }
+        if let Some(text) = said::of_word(word) {
+            self.say(format!("  {text}"));
+            return Ok(0);
+        }
+        if self.board.mode == Mode::Show {
+            return self.show(word);
+        }
+        Err("this is no word of a terminal; :S shows variables, ? lists the words".to_owned())
+    }
+
+    /// Show mode: type and value of a variable (IV.2.6).
+    fn show(&mut self, name: &str) -> Result<usize, String> {
+        let picture = self.picture.ok_or("the run has published no tick yet")?;
+        let here: Vec<&str> = self.board.buffers();
+        let mut fields = fields_named(name, &here);
+        if fields.is_empty() {
+            if let Some(path) = fields_named(name, &[]).first() {
+                let board = ProcessId::ALL.iter().find(|process| path.starts_with(process.field()));
+                return Err(board.map_or_else(
+                    || format!("it is the input {path}"),
+                    |process| format!("board {} has it: {path}", process.board()),
+                ));
+            }
+            return Err(
+                "there is no such variable; names are those of chapters V and VI, or of screen 2".to_owned()
+            );
+        }
+        fields.truncate(BLOCK_LINES);
+        self.outcome.said.extend(lines(&fields, picture, self.last));
+        Ok(0)
+    }
+
+    fn pop(&mut self, form: &str) -> Result<u32, String> {
+        self.stack.pop().ok_or_else(|| format!("a number is missing: {form}"))
+    }
+
+    /// The terminal must speak to this board.
+    fn on(&self, board: u8) -> Result<(), String> {
+        if self.board.number == board {
+            return Ok(());
+        }
+        let number = self.board.number;
+        Err(format!(
+            "it is a word of board {board}, this terminal speaks to board {number}: b turns to the next"
+        ))
+    }
+
+    fn go(&mut self) -> Result<(), String> {
+        match self.board.number {
+            0 => Err("on board 0 it is SSGO, which gives the pulse".to_owned()),
+            12 => Err("board 12 had the graphics: screen 1 shows them, and always runs".to_owned()),
+            number => {
+                self.outcome.asks.push(format!("board {number} go"));
+                Ok(())
+            }
+        }
+    }
+
+    fn stop(&mut self) -> Result<(), String> {
+        match self.board.number {
+            12 => Err("board 12 had the graphics: screen 1 shows them, and needs no stop".to_owned()),
+            number => {
+                self.outcome.asks.push(format!("board {number} stop"));
+                Ok(())
+            }
+        }
+    }
+
+    /// One pass more; passes of the same process are one request.
+    fn execute(&mut self, name: &str) {
+        let request = format!("execute {name}");
+        let passes = self.outcome.asks.last().and_then(|last| last.strip_prefix(&request)).map(|rest| {
+            let passes: u8 = rest.trim().parse().unwrap_or(1);
+            passes.saturating_add(1)
+        });
+        match passes {
+            Some(passes) => {
+                self.outcome.asks.pop();
+                self.outcome.asks.push(format!("{request} {passes}"));
+            }
+            None => self.outcome.asks.push(request),
+        }
+    }
+
+    fn list(&mut self) -> Result<(), String> {
+        let number = BlockNumber { offset: self.board.offset, number: self.pop("n LIST")? };
+        let Some((file, lines)) = self.library.block(number) else { return Err(self.missing(number)) };
+        self.say(format!("  {number}, {file}"));
+        // Empty lines are left out: a screen of 24 lines has no room for a block of 16.
+        for (at, line) in lines.iter().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+            self.say(format!(" {at:>2} {line}"));
+        }
+        Ok(())
+    }
+
+    fn missing(&mut self, number: BlockNumber) -> String {
+        let known = self.library.numbers(number.offset);
+        let known: Vec<String> = known.iter().map(u32::to_string).collect();
+        match (known.as_slice(), AREAS.iter().rev().find(|(offset, ..)| *offset <= number.offset)) {
+            ([], Some((_, process, place))) => {
+                format!("there are no blocks at offset {}; {process} is in {place}", number.offset)
+            }
+            _ => format!("there is no {number}; blocks there: {}", known.join(", ")),
+        }
+    }
+
+    fn load(&mut self, number: BlockNumber) -> Result<(), String> {
+        let of_task = number.offset == commands::OFFSET || number.number == 28;
+        if let Some(text) = said::of_block(number.number).filter(|_| of_task) {
+            self.say(format!("  {text}"));
+            return Ok(());
+        }
+        self.library.forget();
+        if self.library.block(number).is_none() {
+            return Err(self.missing(number));
+        }
+        self.outcome.asks.push(format!("load {} {}", number.offset, number.number));
+        Ok(())
+    }
+
+    fn line_load(&mut self) -> Result<(), String> {
+        let form = "block line line LINE-LOAD";
+        let (to, from) = (self.pop(form)?, self.pop(form)?);
+        let block = self.pop(form)?;
+        self.on(6)?;
+        if self.board.offset != commands::OFFSET {
+            let offset = commands::OFFSET;
+            return Err(format!("blocks of commands stand at offset {offset}: {offset} OFFSET !"));
+        }
+        let is_stopped = self
+            .picture
+            .is_some_and(|picture| picture.external.operator.stopped & (board_bit(6) | board_bit(0)) != 0);
+        if is_stopped {
+            self.say("  boards do not run: GO starts Task and Subtask");
+        }
+        self.outcome.asks.push(format!("line-load {block} {from} {to}"));
+        Ok(())
+    }
+
+    fn offset(&mut self, behind: Option<&str>) -> Result<usize, String> {
+        match behind {
+            Some("!") => {
+                self.board.offset = self.pop("offset OFFSET !")?;
+                Ok(1)
+            }
+            Some("@" | "?") => {
+                let offset = self.board.offset;
+                self.say(format!("  {offset}"));
+                Ok(1)
+            }
+            _ => {
+                for (offset, process, place) in &AREAS {
+                    self.say(format!("  {offset:>5} {process:<24} {place}"));
+                }
+                Ok(0)
+            }
+        }
+    }
+
+    /// LOC: where a word is defined (IV.2.7): an entry of the task data, a decision table, a process.
+    fn locate(&mut self, behind: Option<&str>) -> Result<usize, String> {
+        let name = behind.ok_or("a name is missing: LOC name")?;
+        for (process, info) in ProcessId::ALL.iter().zip(Ladder::processes()) {
+            for table in info.tables.iter().filter(|table| table.name == name) {
+                self.say(format!("  table {} of {process}: {}:{}", table.name, table.file, table.line));
+            }
+        }
+        for (number, line, text) in self.library.find(name) {
+            self.say(format!("  {} at {}, line {line}: {text}", number.number, number.offset));
+        }
+        if self.outcome.said.is_empty() {
+            return Err(format!("no table and no block has {name}"));
+        }
+        Ok(1)
+    }
+
+    fn turn_to(&mut self, behind: Option<&str>) -> Result<usize, String> {
+        let number = behind.and_then(|number| number.parse().ok());
+        let found = number.filter(|number| BOARDS.contains(number));
+        self.board.turn_to(found.ok_or("BOARD 0, 2, 4, 6, 8 or 12 was expected")?);
+        Ok(1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::{CommonMemory, ExternalInputs};
+    use rcs_core::tick::Tick;
+    use std::path::Path;
+
+    struct Bench {
+        board: Board,
+        library: Library,
+        picture: Picture,
+    }
+
+    impl Bench {
+        fn new(number: u8) -> Self {
+            let mut board = Board::default();
+            board.turn_to(number);
+            let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
+            Self {
+                board,
+                library: Library::of(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data")),
+                picture: Picture { tick: Tick(7), external, memory, timing: None },
+            }
+        }
+
+        fn enter(&mut self, line: &str) -> Outcome {
+            Interpreter::new(&mut self.board, &mut self.library, Some(&self.picture), None).interpret(line)
+        }
+
+        fn asks(&mut self, line: &str) -> String {
+            let outcome = self.enter(line);
+            assert!(outcome.said.iter().all(|line| line.tone != Tone::Trouble), "{:?}", outcome.said);
+            outcome.asks.join("; ")
+        }
+
+        fn said(&mut self, line: &str) -> String {
+            let said = self.enter(line).said;
+            said.into_iter().map(|line| line.text).collect::<Vec<_>>().join("\n")
+        }
+    }
+
+    #[test]
+    fn what_chapter_four_enters_becomes_requests() {
+        for (board, line, requests) in [
+            (6, "863 12 12 LINE-LOAD", "line-load 863 12 12"),
+            (6, "GO", "board 6 go"),
+            (0, "SSGO", "board 0 go"),
+            (2, "^C", "board 2 stop"),
+            (2, ".R", "robot-init"),
+            (2, "PRIM-LEVEL PRIM-LEVEL II", "execute PRIM 2"),
+            (2, "PRIM-LEVEL EMOVE-LEVEL", "execute PRIM; execute EMOVE"),
+            (8, "QC-LEVEL GO", "execute QUICK-CHANGE; board 8 go"),
+            (6, "188 LOAD 641 LOAD GO", "board 6 go"),
+        ] {
+            assert_eq!(Bench::new(board).asks(line), requests, "{board}: {line}");
+        }
+    }
+
+    #[test]
+    fn a_word_belongs_to_its_board() {
+        for (board, line, why) in [
+            (6, ".R", "word of board 2"),
+            (2, "TAI", "word of board 6"),
+            (0, "GO", "SSGO"),
+            (12, "GO", "graphics"),
+            (2, "863 12 12 LINE-LOAD", "word of board 6"),
+            (6, "12 LINE-LOAD", "a number is missing"),
+            (6, "21000 OFFSET ! 863 12 12 LINE-LOAD", "offset 16000"),
+            (4, "TDEF", "word of board 6"),
+            (6, "NONSENSE", "no word of a terminal"),
+            (6, "BOARD 3", "BOARD 0, 2, 4, 6, 8 or 12"),
+            (6, ":S command-in <= MOVE", "one writer"),
+        ] {
+            let mut bench = Bench::new(board);
+            let outcome = bench.enter(line);
+            assert!(outcome.asks.is_empty(), "{line}");
+            let said = outcome.said.last().expect("why not");
+            assert!(said.tone == Tone::Trouble && said.text.contains(why), "{line}: {}", said.text);
+        }
+    }
+
+    #[test]
+    fn blocks_are_listed_and_words_located() {
+        let mut bench = Bench::new(6);
+        let block = bench.said("863 LIST");
+        assert!(block.contains("commands.blk") && block.contains(" 12 == PAUSE"), "{block}");
+        assert!(bench.said("21000 OFFSET ! 610 LIST").contains("HOME-POS"));
+        assert!(bench.said("12000 OFFSET ! 3 LIST").contains("crates/levels/src/prim"));
+        assert!(bench.said("OFFSET").contains("16000 Task"));
+        assert!(bench.said("LOC LOCATE-OBJ").contains("crates/levels/src/emove/tables/locate_obj.rs:"));
+        assert!(bench.said("LOC SAFE-P").contains("610 at 21000, line "));
+        assert!(bench.said("16000 903 OLOAD").contains("IV.3.2"));
+        assert_eq!(bench.asks("21000 610 OLOAD"), "load 21000 610");
+        assert!(bench.said("21000 999 OLOAD").contains("there is no block 999"));
+        assert!(bench.said("WUNLOAD").contains("SIGINT"));
+    }
+
+    #[test]
+    fn show_mode_shows_the_variables_of_the_board() {
+        let mut bench = Bench::new(6);
+        bench.picture.external.hws.number = 41;
+        assert!(bench.said(":S command-#-in").contains("hws.number"));
+        assert!(bench.said("command-#-in").contains("41"), "it stays in show mode");
+        assert!(bench.said("frame-command-in").contains("board 2 has it"));
+        assert!(bench.said("bogus-variable").contains("no such variable"));
+        assert_eq!((bench.said(":R TAI"), bench.board.shown.unwrap().word), (String::new(), "TAI"));
+    }
+}

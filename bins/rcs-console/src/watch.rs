@@ -1,0 +1,49 @@
+//! The list of what is watched, from one session to the next: a line a field or buffer, in the person's configuration.
+
+use std::{
+    env, fs, io,
+    path::{Path, PathBuf},
+};
+
+use crate::model::buffers::{is_within, paths};
+
+/// Where the list is kept; none without a home.
+#[must_use]
+pub fn place() -> Option<PathBuf> {
+    let set = |name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let configuration = set("XDG_CONFIG_HOME").or_else(|| set("HOME").map(|home| home.join(".config")));
+    configuration.map(|directory| directory.join("rcs-ii").join("watch"))
+}
+
+/// The list; empty if there is none. Names of another version of the buffers are left out.
+#[must_use]
+pub fn load(path: &Path) -> Vec<String> {
+    let text = fs::read_to_string(path).unwrap_or_default();
+    let known = |name: &&str| paths().any(|field| is_within(field, name));
+    text.lines().map(str::trim).filter(known).map(str::to_owned).collect()
+}
+
+/// Keep the list.
+///
+/// # Errors
+/// What the system says.
+pub fn save(path: &Path, list: &[String]) -> io::Result<()> {
+    path.parent().map_or(Ok(()), fs::create_dir_all)?;
+    let text: String = list.iter().flat_map(|name| [name.as_str(), "\n"]).collect();
+    fs::write(path, text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_comes_back_without_what_is_unknown() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("below").join("watch");
+        assert!(load(&path).is_empty());
+        let list = ["task.status".to_owned(), "no.such.field".to_owned(), "t3i.status.echo".to_owned()];
+        save(&path, &list).unwrap();
+        assert_eq!(load(&path), ["task.status", "t3i.status.echo"]);
+    }
+}
