@@ -16,7 +16,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-use egm_robot::Placement;
+use egm_robot::RobotFile;
 use os_io::{console, files};
 use paths::known::Known;
 use plant::{Cell, CellDescription};
@@ -36,7 +36,9 @@ use runtime::{
 use crate::{
     cli::CheckArguments,
     error::{Error, UNUSABLE},
-    explain, long_json, ways,
+    explain, long_json,
+    reach::Reach,
+    ways,
 };
 
 /// One finding, for editors and scripts.
@@ -74,6 +76,9 @@ struct Outcome {
     records: serde_json::Map<String, serde_json::Value>,
     jobs: Vec<String>,
     findings: Vec<Finding>,
+    /// What the arm of `--robot` reaches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reach: Option<Reach>,
 }
 
 /// Load and report. Exit status 0 if a run could begin, else 2.
@@ -93,8 +98,16 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     if let Some((path, cell)) = arguments.urdf.as_ref().zip(checked.cell.as_ref()) {
         fs::write(path, cell.urdf()).map_err(|source| Error::Write { path: path.clone(), source })?;
     }
-    let outcome = checked.outcome();
-    console::answer(&if arguments.json { long_json(&outcome)? } else { text(&checked.reports) })?;
+    let mut outcome = checked.outcome();
+    let robot = arguments.robot.as_ref().filter(|_| outcome.ok);
+    outcome.reach = robot.map(|robot| Reach::of(&arguments.data, robot)).transpose()?;
+    let in_words =
+        || text(&checked.reports) + &outcome.reach.as_ref().map_or_else(String::new, ToString::to_string);
+    console::answer(&if arguments.json { long_json(&outcome)? } else { in_words() })?;
+    let is_reached = outcome.reach.as_ref().is_none_or(Reach::is_complete);
+    if let Some(robot) = arguments.robot.as_ref().filter(|_| !is_reached) {
+        os_io::stderr_line!("rcs-run: robot {robot} does not reach everything");
+    }
     if !outcome.ok {
         os_io::stderr_line!(
             "rcs-run: {} cannot be used: {}",
@@ -102,7 +115,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
             amount(outcome.errors, "error")
         );
     }
-    Ok(ExitCode::from(if outcome.ok { 0 } else { UNUSABLE }))
+    Ok(ExitCode::from(if outcome.ok && is_reached { 0 } else { UNUSABLE }))
 }
 
 /// What is wrong with a data directory, in words: errors, and warnings.
@@ -209,6 +222,7 @@ impl Checked {
             records: loaded.map(|one| (one.file.to_owned(), one.records.into())).collect(),
             jobs: self.jobs.clone(),
             findings: all().flat_map(|report| report.diagnostics()).map(finding).collect(),
+            reach: None,
         }
     }
 }
@@ -259,7 +273,7 @@ fn robots(data: &Path) -> Diagnostics {
     let mut all = Diagnostics::default();
     for path in toml_files(&data.join("robots")) {
         all.files += 1;
-        if let Err(error) = Placement::load(&path) {
+        if let Err(error) = RobotFile::load(&path) {
             all = all.with(one(&path, &error));
         }
     }

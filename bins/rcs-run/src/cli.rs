@@ -279,6 +279,7 @@ impl CheckArguments {
             explain: None,
             explain_job: None,
             from: "HOME".to_owned(),
+            robot: None,
         }
     }
 }
@@ -428,6 +429,10 @@ pub struct CheckArguments {
     /// Location at which the robot is taken to stand before the command
     #[arg(long, value_name = "NAME", default_value = "HOME", requires = "explain")]
     pub from: String,
+    /// Tell also whether the arm of this robot reaches every taught pose and follows every way of every job: a name in
+    /// data/robots, or a file, with a table [arm] (docs/egm.md)
+    #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["explain", "explain_job"])]
+    pub robot: Option<String>,
 }
 
 /// When ticks are run.

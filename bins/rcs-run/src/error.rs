@@ -28,6 +28,9 @@ pub enum Error {
     /// A command cannot be explained.
     #[error("nothing can be explained: {0}")]
     Explain(String),
+    /// It cannot be said what a robot reaches.
+    #[error("the reach of the robot cannot be checked: {0}")]
+    Reach(String),
     /// A pose cannot be shown or written.
     #[error("no pose: {0}")]
     Pose(String),

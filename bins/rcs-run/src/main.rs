@@ -24,6 +24,7 @@ mod new;
 mod page;
 mod pose;
 mod progress;
+mod reach;
 mod run;
 mod send;
 mod status;

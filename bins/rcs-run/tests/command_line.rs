@@ -478,3 +478,36 @@ fn wait_for(mut condition: impl FnMut() -> bool) {
         std::thread::sleep(Duration::from_millis(20));
     }
 }
+
+/// The shipped place of the arm is one from which it does all jobs; a place nearer to the parts is not.
+#[test]
+fn the_reach_of_another_robot_is_checked_pose_by_pose_and_way_by_way() {
+    let check = |robot: &str| {
+        let output = rcs_run(&["check", "--json", "--robot", robot]);
+        let result: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        (output.status.code(), result["reach"].clone())
+    };
+    let (status, reach) = check("irb6700");
+    assert_eq!(status, Some(0), "{reach}");
+    assert!(
+        reach["poses"].as_u64() > Some(30) && reach["jobs"].as_array().is_some_and(|jobs| jobs.len() >= 5)
+    );
+    for job in reach["jobs"].as_array().expect("jobs") {
+        assert!(job["ways"].as_u64() > Some(30) && job["margin_deg"].as_f64() > Some(1.0), "{job}");
+    }
+    let text = fs::read_to_string(data().join("robots/irb6700.toml")).unwrap();
+    let nearer = text.replace("[0.0, -800.0, 1200.0]", "[0.0, 0.0, 780.0]");
+    assert_ne!(nearer, text);
+    let place = Place::new();
+    let file = place.0.path().join("nearer.toml");
+    fs::write(&file, nearer).unwrap();
+    let (status, reach) = check(&file.display().to_string());
+    assert_eq!(status, Some(2));
+    let trouble =
+        |job: &Value| job["trouble"]["why"].as_str().is_some_and(|why| why.contains("beyond its limit"));
+    assert!(reach["jobs"].as_array().is_some_and(|jobs| jobs.iter().any(trouble)), "{reach}");
+
+    let output = rcs_run(&["check", "--robot", "same"]);
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && text.contains("has no [arm]"), "{text}");
+}

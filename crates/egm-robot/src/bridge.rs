@@ -7,8 +7,9 @@
 //!
 //! | the robot | the function |
 //! |---|---|
-//! | no message for 3 ticks; motors off; RAPID or EGM stopped | has ended: no answers, DTR off |
+//! | motors off; RAPID or EGM stopped | has ended: no answers, DTR off |
 //! | follows, and stands where it was sent | can begin, with a report of that place |
+//! | no message for 3 ticks | warns: no answers; DTR stays on, since nothing says that the robot's program has ended |
 //! | its path was interrupted, or it is not where it was sent | warns; the host's restart is answered when it stands |
 
 use depc::{
@@ -165,7 +166,7 @@ impl Bridge {
     /// One tick: the host's bytes, and its DTR, against the newest sample of the line.
     pub fn step(&mut self, line: &mut Line, rx: &LinkBytes, cts: bool) -> BridgeOutputs {
         self.robot.look(line.sample(), line.now());
-        if self.robot.sample.link != LinkState::Running {
+        if matches!(self.robot.sample.link, LinkState::Waiting | LinkState::Standby(_)) {
             // The robot's program has ended, and with it the function.
             self.controller = Controller::new(*self.controller.limits());
             self.robot.path = None;

@@ -13,10 +13,12 @@
 //!
 //! * [`options`] reads what is typed, `egm:[ADDRESS:]PORT[,OPTION...]`;
 //! * [`placement`]: where the T3's world lies in the robot's work object, from a file;
+//! * [`arm`]: the axes of the robot, from the same file, to know before whether it reaches;
 //! * [`bridge`]: the robot's border;
 //! * [`mod@line`]: the host with a socket ([`udp`]) or with an emulated robot ([`simulated`]);
 //! * [`emulator`]: an EGM robot, with the arm of the T3; [`network`]: what UDP does to datagrams.
 
+pub mod arm;
 pub mod bridge;
 pub mod emulator;
 pub mod line;
@@ -30,5 +32,5 @@ pub use self::{
     bridge::{Bridge, BridgeOutputs},
     line::{Line, Order, Report},
     options::{EgmOptions, Peer},
-    placement::Placement,
+    placement::{Placement, RobotFile},
 };

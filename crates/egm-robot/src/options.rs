@@ -15,7 +15,7 @@ use crate::{
     Placement,
     emulator::{EgmRobot, Tuning},
     network::{Network, Quality},
-    placement::PlacementError,
+    placement::{PlacementError, RobotFile},
     simulated::SimulatedLine,
 };
 
@@ -191,9 +191,7 @@ impl EgmOptions {
     /// [`PlacementError`].
     pub fn placement(&self, data: &Path) -> Result<Placement, PlacementError> {
         let Some(robot) = &self.robot else { return Ok(Placement::default()) };
-        let named = data.join(ROBOTS).join(robot).with_added_extension("toml");
-        let path = if files::is_file(&named) { named } else { PathBuf::from(robot) };
-        Placement::load(&path)
+        RobotFile::load(&robot_path(robot, data)).map(|file| file.placement)
     }
 
     /// How the host behaves.
@@ -219,6 +217,13 @@ impl EgmOptions {
     pub fn networks(&self) -> [Network; 2] {
         [0, 1].map(|direction| Network::new(self.quality, self.seed.wrapping_mul(2).wrapping_add(direction)))
     }
+}
+
+/// The file of a robot: of that name in `data/robots`, or else that path.
+#[must_use]
+pub fn robot_path(robot: &str, data: &Path) -> PathBuf {
+    let named = data.join(ROBOTS).join(robot).with_added_extension("toml");
+    if files::is_file(&named) { named } else { PathBuf::from(robot) }
 }
 
 fn switch(name: &str, value: &str) -> Result<bool, String> {

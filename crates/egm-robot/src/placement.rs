@@ -1,5 +1,5 @@
 //! Where the T3's world lies in the robot's work object, and its end plate in the robot's tool: from a file
-//! such as `data/robots/same.toml`.
+//! such as `data/robots/same.toml`, which may describe the robot's arm too.
 
 use std::path::{Path, PathBuf};
 
@@ -11,6 +11,8 @@ use geometry::{
 };
 use os_io::files;
 use serde::Deserialize;
+
+use crate::arm::{Arm, ArmText};
 
 /// Millimetres of an inch.
 const MM_PER_IN: f64 = 25.4;
@@ -44,11 +46,19 @@ pub enum PlacementError {
 /// A pose as the file has it.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Place {
+pub(crate) struct Place {
     /// mm.
     position: [f64; 3],
     /// w, x, y, z.
     orientation: [f64; 4],
+}
+
+impl Place {
+    /// The pose of the table `name`.
+    pub(crate) fn pose(&self, name: &str) -> Result<Pose, String> {
+        Pose::new(self.position, self.orientation)
+            .map_err(|_| format!("{name}.orientation is a quaternion w, x, y, z of length 1"))
+    }
 }
 
 /// The work space as the file has it, mm in the work object.
@@ -59,12 +69,45 @@ struct Space {
     high: [f64; 3],
 }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Text {
     world: Place,
     tool: Place,
     space: Option<Space>,
+    arm: Option<ArmText>,
+}
+
+/// What a file says of a robot.
+#[derive(Clone, Debug)]
+pub struct RobotFile {
+    /// Its frames.
+    pub placement: Placement,
+    /// Its arm, if the file has one.
+    pub arm: Option<Arm>,
+}
+
+impl RobotFile {
+    /// Read a file.
+    ///
+    /// # Errors
+    /// [`PlacementError`].
+    pub fn load(path: &Path) -> Result<Self, PlacementError> {
+        let text = files::read_text(path)
+            .map_err(|source| PlacementError::Read { path: path.to_owned(), source })?;
+        Self::from_toml(&text).map_err(|why| PlacementError::Text { path: path.to_owned(), why })
+    }
+
+    /// Read the text of a file.
+    ///
+    /// # Errors
+    /// What is wrong, and where.
+    pub fn from_toml(text: &str) -> Result<Self, String> {
+        let text: Text = toml::from_str(text).map_err(|error| error.to_string())?;
+        let placement = Placement::from_text(&text)?;
+        let arm = text.arm.as_ref().map(Arm::from_text).transpose()?;
+        Ok(Self { placement, arm })
+    }
 }
 
 /// The frames of a robot.
@@ -85,27 +128,8 @@ impl Default for Placement {
 }
 
 impl Placement {
-    /// Read a file.
-    ///
-    /// # Errors
-    /// [`PlacementError`].
-    pub fn load(path: &Path) -> Result<Self, PlacementError> {
-        let text = files::read_text(path)
-            .map_err(|source| PlacementError::Read { path: path.to_owned(), source })?;
-        Self::from_toml(&text).map_err(|why| PlacementError::Text { path: path.to_owned(), why })
-    }
-
-    /// Read the text of a file.
-    ///
-    /// # Errors
-    /// What is wrong, and where.
-    pub fn from_toml(text: &str) -> Result<Self, String> {
-        let text: Text = toml::from_str(text).map_err(|error| error.to_string())?;
-        let pose = |name: &str, place: Place| {
-            Pose::new(place.position, place.orientation)
-                .map_err(|_| format!("{name}.orientation is a quaternion w, x, y, z of length 1"))
-        };
-        let (world, tool) = (pose("world", text.world)?, pose("tool", text.tool)?);
+    fn from_text(text: &Text) -> Result<Self, String> {
+        let (world, tool) = (text.world.pose("world")?, text.tool.pose("tool")?);
         // The tool turns about the end plate.
         let speed = SPEED + TURN * pose::norm(&tool.position);
         let mut limits = Limits::of_speed(speed, TURN);
@@ -181,7 +205,7 @@ mod tests {
         #[test]
         fn a_plate_comes_back(at in prop::array::uniform3(-80.0_f64..80.0), turn in prop::array::uniform3(-1.7_f64..1.7)) {
             let plate = Frame { position: at.into(), rotation: rotation_by(&turn.into()) };
-            for placement in [Placement::default(), Placement::from_toml(TEXT).unwrap()] {
+            for placement in [Placement::default(), RobotFile::from_toml(TEXT).unwrap().placement] {
                 let back = placement.plate_frame(&placement.pose(&plate));
                 let off = back.distance(&plate);
                 prop_assert!(off.inches < 1e-9 && off.radians < 1e-9, "{off:?}");
@@ -195,7 +219,7 @@ mod tests {
         let pose = Placement::default().pose(&home);
         assert!((pose.position[1] + 62.93 * 25.4).abs() < 0.3, "{pose:?}");
         // Turned by 90 degrees about z, y becomes -x, and the world lies 1200 mm in front.
-        let placed = Placement::from_toml(&TEXT.replace("100.0", "0.0")).unwrap().pose(&home);
+        let placed = RobotFile::from_toml(&TEXT.replace("100.0", "0.0")).unwrap().placement.pose(&home);
         assert!((placed.position[0] - (1200.0 + 62.93 * 25.4)).abs() < 0.3, "{placed:?}");
     }
 
@@ -206,7 +230,7 @@ mod tests {
             (TEXT.replace("[tool]", "[tools]"), "tools"),
             (format!("{TEXT}[space]\nlow = [0.0, 0.0, 0.0]\nhigh = [1.0, 1.0, 0.0]\n"), "space.low"),
         ] {
-            let error = Placement::from_toml(&wrong).unwrap_err();
+            let error = RobotFile::from_toml(&wrong).unwrap_err();
             assert!(error.contains(word), "{error}");
         }
     }

@@ -16,7 +16,7 @@ pub struct Settings {
     pub times: Times,
     /// Without a message for so long the robot is lost, ns.
     pub silence: u64,
-    /// After a gap of so long between two messages the path comes to rest, ns.
+    /// After a gap of so long between two messages the path goes on only if the robot has kept up with it, ns.
     pub gap: u64,
     /// Give the speed of the target with it.
     pub speed_ref: bool,
@@ -91,6 +91,12 @@ struct Sent {
     at: u64,
     pose: Pose,
     speed: Twist,
+    /// How far the robot was behind, mm and rad.
+    lag: (f64, f64),
+}
+
+fn seconds(nanoseconds: u64) -> f64 {
+    core::time::Duration::from_nanos(nanoseconds).as_secs_f64()
 }
 
 /// The host's side of the link to one robot.
@@ -231,25 +237,38 @@ impl Host {
 
     /// The target at `now`, within the limits of the one before.
     fn target(&mut self, now: u64) -> Sent {
-        if let Some(sent) = self.sent {
-            if now.saturating_sub(sent.at) > self.settings.gap {
-                self.stop(now);
-            }
-            let moving = self.path.motion() == Motion::Moving;
+        let Some(sent) = self.sent else {
             let (pose, speed) = self.path.target(now);
-            if moving && self.path.motion() != Motion::Moving {
-                self.interrupt();
-            }
-            let elapsed = core::time::Duration::from_nanos(now.saturating_sub(sent.at)).as_secs_f64();
-            if pose == sent.pose || self.settings.limits.check(&sent.pose, &pose, elapsed).is_ok() {
-                return Sent { at: now, pose, speed };
-            }
-            self.counters.beyond = self.counters.beyond.saturating_add(1);
-            self.path.hold(sent.pose);
-            return Sent { at: now, speed: Twist::default(), ..sent };
+            return self.sending(now, pose, speed);
+        };
+        let moving = self.path.motion() == Motion::Moving;
+        let (mut pose, mut speed) = self.path.target(now);
+        if moving && self.path.motion() != Motion::Moving {
+            self.interrupt();
+        } else if moving && now.saturating_sub(sent.at) > self.settings.gap && !self.has_kept_up(&sent, &pose)
+        {
+            self.stop(now);
+            (pose, speed) = self.path.target(now);
         }
-        let (pose, speed) = self.path.target(now);
-        Sent { at: now, pose, speed }
+        let elapsed = seconds(now.saturating_sub(sent.at));
+        if pose == sent.pose || self.settings.limits.check(&sent.pose, &pose, elapsed).is_ok() {
+            return self.sending(now, pose, speed);
+        }
+        self.counters.beyond = self.counters.beyond.saturating_add(1);
+        self.path.hold(sent.pose);
+        self.sending(now, sent.pose, Twist::default())
+    }
+
+    fn sending(&self, at: u64, pose: Pose, speed: Twist) -> Sent {
+        Sent { at, pose, speed, lag: pose.distance(&self.feedback) }
+    }
+
+    /// After a gap: without messages a robot goes on with its last speed reference. The next target may be no
+    /// farther from it than it was behind before, and what the limits allow in the longest gap that does not count.
+    fn has_kept_up(&self, sent: &Sent, target: &Pose) -> bool {
+        let (way, turn) = target.distance(&self.feedback);
+        let (Limits { speed, turn: rate, .. }, gap) = (self.settings.limits, seconds(self.settings.gap));
+        way <= sent.lag.0 + speed * gap && turn <= sent.lag.1 + rate * gap
     }
 
     fn rest_at_feedback(&mut self) {
