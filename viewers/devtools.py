@@ -4,6 +4,7 @@
 """
 
 import base64
+import contextlib
 import functools
 import http.server
 import io
@@ -61,6 +62,11 @@ class Files(http.server.SimpleHTTPRequestHandler):
         """Say that parts can be had."""
         self.send_header("Accept-Ranges", "bytes")
         super().end_headers()
+
+    def copyfile(self, source, outputfile):
+        """Send a file; a page that is closed takes no more."""
+        with contextlib.suppress(ConnectionError):
+            super().copyfile(source, outputfile)
 
     def log_message(self, *_):
         """Requests are not told."""

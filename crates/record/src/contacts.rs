@@ -13,15 +13,18 @@ pub const CONTACTS: &str = "/contacts";
 /// An inch, metres.
 const INCH: f64 = 0.0254;
 /// The mark of two things that may touch: its diameter, m, and its colour.
-const PERMITTED: (f64, Colour) = (0.024, [0.15, 0.70, 0.30, 0.85]);
+const PERMITTED: (f64, Colour) = (0.03, [0.15, 0.75, 0.30, 0.9]);
 /// The mark of a collision.
 const COLLISION: (f64, Colour) = (0.06, [0.90, 0.10, 0.10, 0.85]);
-/// Height of the letters at a collision, and how far above its middle they stand, m.
-const LETTERS: (f64, f64) = (0.05, 0.08);
+/// Height of the letters at a collision, m.
+const LETTERS: f64 = 0.05;
+/// How far above its middle the letters stand, and those of each further collision above them, m.
+const ABOVE: (f64, f64) = (0.14, 0.07);
 
 /// Append the marks to a `foxglove.SceneUpdate`. `time` in nanoseconds since 1970.
 pub fn put_marks(time: u64, touches: &[Touch], out: &mut Vec<u8>) {
     scene::put_clear(time, out);
+    let (mut above, line) = ABOVE;
     for Touch { mover, obstacle, point, depth, collides } in touches {
         let (diameter, colour) = if *collides { COLLISION } else { PERMITTED };
         let [x, y, z] = point.map(|inches| inches * INCH);
@@ -37,10 +40,10 @@ pub fn put_marks(time: u64, touches: &[Touch], out: &mut Vec<u8>) {
         let primitive = Primitive::Ball([x, y, z], diameter, colour);
         scene::put_entity(time, &Entity { facts: &facts, ..Entity::new(&id, "world", primitive) }, out);
         if *collides {
-            let (letters, above) = LETTERS;
             let text = format!("{mover} in {obstacle}");
-            let primitive = Primitive::Text(&text, [x, y, z + above], letters, colour);
+            let primitive = Primitive::Text(&text, [x, y, z + above], LETTERS, colour);
             scene::put_entity(time, &Entity::new(&text, "world", primitive), out);
+            above += line;
         }
     }
 }

@@ -6,14 +6,16 @@ use interfaces::{CommonMemory, ExternalInputs};
 use prost::Message as _;
 use prost_types::{DescriptorProto, FileDescriptorSet, field_descriptor_proto::Type};
 use rcs_core::tick::Tick;
-use record::{CellFrame, CellModel, End, Epoch, Pace, Recorder, Setup};
+use record::{CellFrame, CellModel, End, Epoch, Link, Pace, Recorder, Setup};
 use serde_json::Value;
 
 /// A log of one tick: it has all channels.
 fn log() -> Vec<u8> {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("run.mcap");
-    let setup = Setup { epoch: Epoch::Fixed, cell: Some(CellModel::default()), ..Setup::default() };
+    let links = vec![Link { name: "quick_change".into(), parent: "world".into() }];
+    let cell = Some(CellModel { links, ..CellModel::default() });
+    let setup = Setup { epoch: Epoch::Fixed, cell, ..Setup::default() };
     let mut recorder = Recorder::start(&path, Pace::Wait, setup).unwrap();
     recorder.cell(&CellFrame::new(Tick(1)));
     let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
@@ -41,15 +43,23 @@ fn has_field(set: &FileDescriptorSet, message: &str, path: &str) -> bool {
     })
 }
 
-/// Paths, topics and panels that a part of a layout names.
+/// The frames that a log has.
+fn frames(log: &[u8]) -> Vec<String> {
+    let messages = mcap::MessageStream::new(log).unwrap().map(Result::unwrap);
+    let moving = messages.filter(|message| message.channel.topic == "/tf");
+    let links = moving.flat_map(|message| record::proto::foxglove::take_transforms(&message.data));
+    links.flat_map(|(link, _)| [link.parent, link.name]).collect()
+}
+
+/// Paths, topics, frames and panels that a part of a layout names.
 fn named<'v>(value: &'v Value, found: &mut Vec<(&'v str, &'v str)>) {
     match value {
         Value::Object(map) => {
             for (key, value) in map {
                 match (key.as_str(), value) {
                     (
-                        "value" | "topicToRender" | "topicPath" | "imageTopic" | "first" | "second"
-                        | "layout",
+                        "value" | "topicToRender" | "topicPath" | "imageTopic" | "followTf" | "first"
+                        | "second" | "layout",
                         Value::String(text),
                     ) => found.push((key, text)),
                     ("topics", Value::Object(topics)) => {
@@ -70,6 +80,7 @@ fn the_foxglove_layout_names_channels_and_fields_that_a_log_has() {
     let layout: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
     let log = log();
     let summary = mcap::Summary::read(&log).unwrap().unwrap();
+    let frames = frames(&log);
     let mut names = Vec::new();
     named(&layout, &mut names);
     let mut panels = 0;
@@ -77,6 +88,10 @@ fn the_foxglove_layout_names_channels_and_fields_that_a_log_has() {
         if matches!(*key, "first" | "second" | "layout") {
             assert!(layout["configById"].get(name).is_some(), "the panel {name} has no settings");
             panels += 1;
+            continue;
+        }
+        if *key == "followTf" {
+            assert!(frames.iter().any(|frame| frame == name), "no frame {name} among {frames:?}");
             continue;
         }
         let (topic, field) = name.find('.').map_or((*name, ""), |dot| name.split_at(dot));
