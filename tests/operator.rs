@@ -120,22 +120,24 @@ fn outcomes(outcome: &RunOutcome) -> Vec<(&str, &'static str)> {
 
 /// The log's inputs, given again in fast clock, lead to the same bits.
 fn assert_repeats(outcome: &RunOutcome, log: &PathBuf, directory: &TempDir) {
-    assert_repeats_on(Boards::One, outcome, log, directory);
+    assert_repeats_with(|config| config, outcome, log, directory);
 }
 
-fn assert_repeats_on(boards: Boards, outcome: &RunOutcome, log: &PathBuf, directory: &TempDir) {
+fn assert_repeats_with(
+    change: impl FnOnce(RunConfig) -> RunConfig,
+    outcome: &RunOutcome,
+    log: &PathBuf,
+    directory: &TempDir,
+) {
     let again = directory.path().join("again.mcap");
     let config = RunConfig {
-        boards,
-        // Each board is a process of it.
-        program: if boards == Boards::Split { rcs_run().to_path_buf() } else { PathBuf::new() },
         inputs: Some(log.clone()),
         log: LogTarget::File(again.clone()),
         ticks: Some(outcome.result.ticks),
         shared_memory: false,
         ..RunConfig::new(root().join("data"), directory.path().join("operated.job").to_string_lossy())
     };
-    let repeated = Run::new(config, Box::new(())).unwrap().complete();
+    let repeated = Run::new(change(config), Box::new(())).unwrap().complete();
     let digests = |log: &PathBuf| Log::open(log).unwrap().cell_digests().collect::<Vec<_>>();
     assert_eq!(repeated.result.digest, outcome.result.digest);
     assert!(digests(&again) == digests(log), "the cell differs");
@@ -238,7 +240,10 @@ fn boards_are_stopped_executed_and_started_again() {
     let (outcome, log, directory) = cell.end();
     assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
     assert_repeats(&outcome, &log, &directory);
-    assert_repeats_on(Boards::Split, &outcome, &log, &directory);
+    // Each board is a process of it.
+    let program = rcs_run().to_path_buf();
+    let split = |config| RunConfig { boards: Boards::Split, program, ..config };
+    assert_repeats_with(split, &outcome, &log, &directory);
 }
 
 /// LOAD (IV.2.4): a block counts from the next command on, and the log has its text.
@@ -298,9 +303,10 @@ fn a_job_on_stand_by_begins_when_it_may_and_one_that_nobody_attends_ends_with_it
     ask(&mut client, &["job go", "estop pedestal"]);
     wait_for(&mut client, "the job waits");
     drop(client);
-    let (outcome, ..) = cell.end();
-    let failure = outcome.result.failure.expect("nobody is left who could start the robot up");
+    let (outcome, log, directory) = cell.end();
+    let failure = outcome.result.failure.as_ref().expect("nobody is left who could start the robot up");
     assert!(failure.text.contains("pedestal"), "{}", failure.text);
+    assert_repeats_with(|config| RunConfig { stand_by: true, ..config }, &outcome, &log, &directory);
 }
 
 #[test]

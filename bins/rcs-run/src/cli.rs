@@ -183,7 +183,7 @@ pub struct RunArguments {
     #[arg(long, conflicts_with_all = ["json", "inputs"])]
     pub console: bool,
     /// Wait for an operator before the first line of the job
-    #[arg(long, conflicts_with = "inputs")]
+    #[arg(long)]
     pub stand_by: bool,
     /// Give the operator's inputs of this log again, each in its tick
     #[arg(long, value_name = "LOG")]
