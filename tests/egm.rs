@@ -138,6 +138,7 @@ fn a_robot_written_from_the_schema_alone_is_driven() {
     assert!(output.status.success(), "the peer refuses what it got");
     let peer: Value = serde_json::from_slice(&output.stdout).expect("one line of JSON");
     assert_eq!((status, &result["egm"]["refused"]), (0, &Value::from(0)), "{}", result["failure"]);
+    assert_eq!(result["allocations_after_start"], 0);
     assert!(peer["answered"].as_f64() > Some(1000.0), "{peer}");
     assert!(peer["travelled_mm"].as_f64() > Some(100.0), "{peer}");
 }

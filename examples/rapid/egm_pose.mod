@@ -45,7 +45,8 @@ MODULE EgmPose
         ! "default" names the External Motion Interface Data. \CommTimeout: s without a message of the host.
         EGMSetupUC ROB_1, egmId, "default", "UCdevice" \Pose \CommTimeout:=0.2;
         ! \MaxSpeedDeviation: degrees/s of a joint; its default of 1.0 hardly lets the robot move. Raise it with
-        ! the speed of the work. \LpFilter in Hz: a lower one is smoother and lags more.
+        ! the speed of the work: rcs-run check --robot says what it must allow.
+        ! \LpFilter in Hz: a lower one is smoother and lags more.
         ! \SampleRate: 4 ms, the host answers each message.
         EGMActPose egmId \StreamStart \Tool:=toolHost \WObj:=wobjHost,
             noCorrection, EGM_FRAME_WOBJ, noCorrection, EGM_FRAME_WOBJ
