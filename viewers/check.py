@@ -37,8 +37,8 @@ SIZE = (1600, 1000)
 # A run in fast clock begins then. In this tick of the linkbar the fingers close on the blank: there are marks of contacts, and
 # lines of the log.
 EPOCH, TICK_S, TICK = datetime.datetime(1987, 12, 16, tzinfo=datetime.timezone.utc), 0.04, 1322
-# Shares of the pixels of a panel.
-ROBOT, CURVE, PICTURE = 0.004, 0.004, 0.02
+# Shares of the pixels of a panel. An empty plot has none; one whose log is still being loaded, 0.003.
+ROBOT, CURVE, PICTURE = 0.004, 0.0015, 0.02
 
 PANEL = """(() => {
   const found = document.querySelector(`[data-testid~="${ID}"]`);
