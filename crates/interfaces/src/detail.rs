@@ -5,7 +5,7 @@ use core::fmt;
 
 use rcs_core::name::{Name10, Name16};
 
-use crate::{CommonMemory, Fault, HwsCommand, ProcessId, Reason, emove::NearPlace};
+use crate::{CommonMemory, Fault, HwsCommand, ProcessId, Reason, StatusReport, emove::NearPlace};
 
 /// What goes with a reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,29 +42,42 @@ impl Detail {
             _ => Self::None,
         }
     }
+
+    /// What goes with the reason of Task's status, which may come from a process below it. `memory` is common
+    /// memory after the tick, `hws` the command of the workstation controller.
+    #[must_use]
+    pub fn of_command(reason: Reason, hws: &HwsCommand, memory: &CommonMemory) -> Self {
+        let emove = &memory.emove.status;
+        let below = emove.report == StatusReport::Error && emove.reason == reason;
+        let process = if below { ProcessId::Emove } else { ProcessId::Task };
+        Self::of(process, Fault::Reason(reason), hws, memory)
+    }
 }
 
-/// `: none leads from BENCH to VISE. ...`: to be written behind the reason.
+/// `: none leads from BENCH to VISE (...)`, to be written behind the reason; without the remedy in `{:#}`.
 impl fmt::Display for Detail {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::None => Ok(()),
-            Self::Pair(from, to) => write!(
-                f,
-                ": none leads from {from} to {to} (go by way of another location, or write the trajectory \
-                 {from}-{to} and reload the task data)"
-            ),
+            Self::None => return Ok(()),
+            Self::Pair(from, to) => write!(f, ": none leads from {from} to {to}")?,
             Self::Near(places) => {
                 let mut separator = ": ";
                 for place in places.iter().flatten() {
                     write!(f, "{separator}{place}")?;
                     separator = ", ";
                 }
-                f.write_str(
-                    " (move it with the joystick box to within 0.5 in and 2 degrees of a known location, then \
-                     send PAUSE)",
-                )
             }
+        }
+        match self {
+            Self::Pair(from, to) if !f.alternate() => write!(
+                f,
+                " (go by way of another location, or write the trajectory {from}-{to} and reload the task data)"
+            ),
+            Self::Near(_) if !f.alternate() => f.write_str(
+                " (move it with the joystick box to within 0.5 in and 2 degrees of a known location, then send \
+                 PAUSE)",
+            ),
+            _ => Ok(()),
         }
     }
 }
@@ -123,5 +136,19 @@ mod tests {
         assert!(said(ProcessId::Task, Reason::UnknownStart, &hws, &memory).starts_with(
             ": HOME is 1.23 in and 0.5 degrees away, SAFE is 20.00 in and 90.0 degrees away (move it with"
         ));
+    }
+
+    #[test]
+    fn a_reason_that_emove_reports_has_the_detail_of_emove() {
+        let mut memory = CommonMemory::default();
+        let from = RobotPlace { location: Name10::clipped("BENCH"), ..RobotPlace::default() };
+        memory.emove.beliefs.place = Some(from);
+        memory.subtask.emove.location = Name10::clipped("VISE");
+        let hws = HwsCommand::default();
+        let said = |memory: &CommonMemory| Detail::of_command(Reason::NoTrajectory, &hws, memory);
+        assert_eq!(said(&memory), Detail::None);
+        (memory.emove.status.report, memory.emove.status.reason) =
+            (StatusReport::Error, Reason::NoTrajectory);
+        assert_eq!(std::format!("{:#}", said(&memory)), ": none leads from BENCH to VISE");
     }
 }

@@ -317,7 +317,7 @@ impl Neighbours {
             own => (Level::Warning, "Data System", own.to_string()),
         }));
         self.step_vision(tick, memory, workstation);
-        self.gate.write(&memory.task, task_state(&memory.task.header, tick));
+        self.gate.write(memory, task_state(&memory.task.header, tick));
         let progress = match &mut self.workstation {
             _ if self.is_ending => Progress::Running,
             WorkstationSource::Emulator(emulator) => {

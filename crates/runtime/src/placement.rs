@@ -151,10 +151,14 @@ impl PlacementCheck {
     fn conclude(&mut self, tick: Tick, cell: &CellDescription, parts: &[PartState]) {
         let attempt = std::mem::take(&mut self.attempt);
         let command = hws_text(&attempt.command);
-        if attempt.moved.is_empty() && takes_object(&attempt.command) && self.empty.is_none() {
+        let destination = place(attempt.command.destination, attempt.command.destination_sector);
+        if attempt.moved.is_empty()
+            && takes_object(&attempt.command)
+            && !was_done_before(&attempt.command, destination.as_ref(), parts)
+            && self.empty.is_none()
+        {
             self.empty = Some((tick, command.clone()));
         }
-        let destination = place(attempt.command.destination, attempt.command.destination_sector);
         for part in parts.iter().filter(|part| attempt.moved.contains(&part.id)) {
             let goal = match attempt.command.command.as_str() {
                 "TRANSFER" => Goal::At(destination.clone()),
@@ -216,6 +220,22 @@ fn takes_object(command: &HwsCommand) -> bool {
     command.object.is_some() && !matches!(command.command.as_str(), "POSITION" | "RELEASE-TOOL")
 }
 
+/// A TRANSFER that was interrupted after it had put its object down, and is sent again, has nothing to move: the
+/// object is at the destination, and none is at the source.
+fn was_done_before(command: &HwsCommand, destination: Option<&Place>, parts: &[PartState]) -> bool {
+    let source = place(command.source, command.source_sector);
+    let lies_at = |place: Option<&Place>| {
+        parts.iter().any(|part| {
+            !part.held
+                && command.object.is_some_and(|object| object.as_str() == part.name)
+                && place.is_some_and(|(location, sector)| {
+                    *location == part.location && (*sector == 0 || *sector == part.sector)
+                })
+        })
+    };
+    command.command.as_str() == "TRANSFER" && lies_at(destination) && !lies_at(source.as_ref())
+}
+
 fn place(location: Option<Name16>, sector: Option<i32>) -> Option<Place> {
     let sector = sector.and_then(|sector| u16::try_from(sector).ok()).unwrap_or(0);
     Some((location?.to_string(), sector))
@@ -252,4 +272,54 @@ fn has_place(cell: &CellDescription, (location, sector): &Place, part: &str) -> 
     cell.tray.iter().any(|tray| in_tray(&tray.unit, tray.sectors.len()))
         || cell.nest.iter().any(in_nest)
         || [&cell.vise.location, &cell.drum.location, &cell.pedestal.location].contains(&location)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn command(verb: &str) -> HwsCommand {
+        let name = |text| Some(Name16::clipped(text));
+        HwsCommand {
+            command: Name16::clipped(verb),
+            object: name("BLOCK"),
+            source: name("TRAY"),
+            source_sector: Some(2),
+            destination: name("VISE"),
+            ..HwsCommand::default()
+        }
+    }
+
+    fn block(location: &str, sector: u16, held: bool) -> PartState {
+        PartState {
+            id: 1,
+            name: "BLOCK".to_owned(),
+            location: location.to_owned(),
+            sector,
+            held,
+            clamped: false,
+            position: [0.0; 3],
+            error: None,
+        }
+    }
+
+    fn is_done(verb: &str, parts: &[PartState]) -> bool {
+        let command = command(verb);
+        was_done_before(&command, place(command.destination, command.destination_sector).as_ref(), parts)
+    }
+
+    #[test]
+    fn a_transfer_whose_object_lies_at_its_destination_alone_was_done_before() {
+        let (there, here) = (block("VISE", 0, false), block("TRAY", 2, false));
+        assert!(is_done("TRANSFER", &[there.clone()]));
+        assert!(
+            is_done("TRANSFER", &[there.clone(), block("TRAY", 3, false)]),
+            "the one of another sector stays"
+        );
+        assert!(!is_done("TRANSFER", &[there.clone(), here.clone()]));
+        assert!(!is_done("TRANSFER", &[here]));
+        assert!(!is_done("TRANSFER", &[block("VISE", 0, true)]));
+        assert!(!is_done("TRANSFER", &[PartState { name: "PLATE".to_owned(), ..there.clone() }]));
+        assert!(!is_done("ACQUIRE", &[there]), "it ends with its object in the gripper");
+    }
 }

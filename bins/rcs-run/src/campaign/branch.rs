@@ -278,8 +278,8 @@ impl<'f> Branch<'f> {
     /// Task's status goes to the commander, and its command comes back.
     fn exchange(&mut self, commander: &mut impl Commander) {
         let control = &mut self.control;
-        let task = &control.memory.task;
-        control.gate.write(task, task_state(&task.header, control.tick));
+        let state = task_state(&control.memory.task.header, control.tick);
+        control.gate.write(&control.memory, state);
         let command = status::decode(control.gate.status_box().data())
             .ok()
             .and_then(|status| commander.step(control.tick, &status, &mut self.workstation));

@@ -80,7 +80,7 @@ impl State {
         let arrival = self.execution.observe(inputs.tick, command.number);
         self.adopt(inputs, outputs);
         self.sense_neighbours(inputs);
-        self.sense_way(inputs.memory);
+        self.sense_way(inputs.memory, inputs.data);
         self.sense_pictures(inputs.memory);
         self.sense_held(command, inputs);
         let watch = self.sense_place(command, inputs);

@@ -8,8 +8,8 @@
 //!
 //! The robot goes on to the same goal, or back along the way to the end of the depart leg and from there to
 //! another goal. Stopped inside the depart leg it goes out of it. Where a person has moved it beside the way with
-//! the joystick it comes back to the way at first, and stops there: the goal may be a nest that is closed beside it. The way itself is not remembered point by
-//! point: it follows from its two ends and the task data.
+//! the joystick it comes back to the way at first, and stops there: the goal may be a nest that is closed beside
+//! it. The way itself is not remembered point by point: it follows from its two ends and the task data.
 
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
@@ -115,25 +115,28 @@ fn moves(memory: &CommonMemory) -> bool {
     }
 }
 
+/// Does a commanded pose belong to the way? It is a tick of motion from the one before. It is farther along the
+/// segment after ticks in which E-move was held, and after a link that has begun anew where the arm was.
+fn follows(commanded: &Pose, way: &Way, data: &TaskData<'_>) -> bool {
+    let (Ok(now), Ok(before)) = (commanded.to_frame(), way.rest.to_frame()) else { return false };
+    let within = |ticks: f64| near(&now, &before, ticks * STEP_INCHES, ticks * STEP_RADIANS);
+    let may_be_farther = !way.cut_off || within(CUT_OFF_TICKS);
+    within(1.0) || (may_be_farther && is_in_corridor(&now, way, data) == Some(true))
+}
+
 impl State {
-    /// Follow the commanded pose while the robot moves, and note when the operator has moved it.
-    pub(super) fn sense_way(&mut self, memory: &CommonMemory) {
+    /// Follow the commanded pose while the robot moves, and note what may have moved it meanwhile: the operator,
+    /// or a link that has failed or begun anew.
+    pub(super) fn sense_way(&mut self, memory: &CommonMemory, data: &TaskData<'_>) {
         let Some(way) = &mut self.beliefs.way else { return };
-        let prim = &memory.prim.status;
-        match prim.report {
-            PrimReport::JoystickOn => way.by_hand = true,
-            PrimReport::T3LinkOff | PrimReport::T3LinkErr | PrimReport::NoRespT3i => way.cut_off = true,
-            PrimReport::Executing | PrimReport::Done if moves(memory) => {
-                let commanded = commanded_pose(memory);
-                let follows = |pose: &Pose| {
-                    let (Ok(now), Ok(before)) = (pose.to_frame(), way.rest.to_frame()) else { return false };
-                    near(&now, &before, STEP_INCHES, STEP_RADIANS)
-                };
-                if let Some(pose) = commanded.filter(follows) {
-                    way.rest = pose;
-                }
-            }
-            _ => {}
+        let prim = &memory.prim;
+        let report = prim.status.report;
+        way.by_hand |= report == PrimReport::JoystickOn;
+        way.cut_off |= prim.status.restarting
+            || matches!(report, PrimReport::T3LinkOff | PrimReport::T3LinkErr | PrimReport::NoRespT3i);
+        let moves = matches!(report, PrimReport::Executing | PrimReport::Done) && moves(memory);
+        if let Some(commanded) = commanded_pose(memory).filter(|pose| moves && follows(pose, way, data)) {
+            way.rest = commanded;
         }
     }
 

@@ -14,7 +14,7 @@
 
 use std::fmt;
 
-use interfaces::{HwsCommand, TaskOutputs};
+use interfaces::{CommonMemory, Detail, HwsCommand, hws::HwsStatus};
 
 use super::{
     command::{self, CommandError},
@@ -83,6 +83,8 @@ pub struct Gate {
     command: HwsCommand,
     /// No command was taken since the mailboxes were initialized.
     fresh: bool,
+    /// Task's last status, and what went with its reason when it came.
+    told: (HwsStatus, Detail),
     status_box: Mailbox,
 }
 
@@ -93,6 +95,7 @@ impl Default for Gate {
             refused: None,
             command: HwsCommand::default(),
             fresh: true,
+            told: (HwsStatus::default(), Detail::None),
             status_box: Mailbox::initialized(HWSC_STATUS),
         }
     }
@@ -148,9 +151,13 @@ impl Gate {
     }
 
     /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, once a tick: what Task has written goes into the mailbox if it
-    /// is news. True if it is.
-    pub fn write(&mut self, task: &TaskOutputs, state: TaskState) -> bool {
-        let bytes = status::encode(&task.status, state, self.read, self.refused.as_ref());
+    /// is news. True if it is. Names and distances that go with a reason are those of the tick in which it came.
+    pub fn write(&mut self, memory: &CommonMemory, state: TaskState) -> bool {
+        let task = memory.task.status;
+        if task != self.told.0 {
+            self.told = (task, Detail::of_command(task.reason, &self.command, memory));
+        }
+        let bytes = status::encode(&task, self.told.1, state, self.read, self.refused.as_ref());
         if self.status_box.data() == bytes {
             return false;
         }
@@ -165,7 +172,8 @@ fn word(number: u32) -> u16 {
 
 #[cfg(test)]
 mod tests {
-    use interfaces::hws::{HwsReport, HwsStatus};
+    use interfaces::{Reason, emove::NearPlace, hws::HwsReport};
+    use rcs_core::name::Name10;
 
     use super::{super::command::tests::transfer, *};
 
@@ -192,8 +200,9 @@ mod tests {
         }
 
         fn status(&mut self, echo: u32, report: HwsReport) -> status::Status<'_> {
-            let status = HwsStatus { echo, report, ..HwsStatus::default() };
-            self.gate.write(&TaskOutputs { status, ..TaskOutputs::default() }, TaskState::Runs);
+            let mut memory = CommonMemory::default();
+            (memory.task.status.echo, memory.task.status.report) = (echo, report);
+            self.gate.write(&memory, TaskState::Runs);
             status::decode(self.gate.status_box().data()).unwrap()
         }
     }
@@ -248,11 +257,26 @@ mod tests {
     #[test]
     fn the_mailbox_is_written_when_there_is_news() {
         let mut bench = Bench::new();
-        let task = TaskOutputs::default();
-        assert!(bench.gate.write(&task, TaskState::Runs));
-        assert!(!bench.gate.write(&task, TaskState::Runs));
-        assert!(bench.gate.write(&task, TaskState::Held));
+        let memory = CommonMemory::default();
+        assert!(bench.gate.write(&memory, TaskState::Runs));
+        assert!(!bench.gate.write(&memory, TaskState::Runs));
+        assert!(bench.gate.write(&memory, TaskState::Held));
         assert_eq!(bench.gate.status_box().mailgram(), 2);
+    }
+
+    #[test]
+    fn the_distances_of_a_failure_are_those_of_its_tick() {
+        let mut bench = Bench::new();
+        let mut memory = CommonMemory::default();
+        let near =
+            |inches| [Some(NearPlace { location: Name10::clipped("HOME"), inches, degrees: 0.0 }), None];
+        (memory.task.status.report, memory.task.status.reason) = (HwsReport::Error, Reason::UnknownStart);
+        memory.emove.nearest = near(2.5);
+        assert!(bench.gate.write(&memory, TaskState::Runs));
+        let told = status::decode(bench.gate.status_box().data()).unwrap().reason.to_owned();
+        assert!(told.ends_with(": HOME is 2.50 in and 0.0 degrees away"), "{told}");
+        memory.emove.nearest = near(3.5);
+        assert!(!bench.gate.write(&memory, TaskState::Runs), "the same status is no news");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //! the fields before `verdict`: they go on telling of the command that Task has.
 
 use interfaces::{
-    Reason,
+    Detail, Reason,
     hws::{HwsReport, HwsStatus},
 };
 use rcs_core::{Plain, name::Name16};
@@ -70,7 +70,7 @@ crate::layout! {
     "task-state"           (task)           Coded<2>,
         "CHOSEN: 0 Task runs, 1 its switch on the joystick box holds it (III.3.3), 2 it is lost";
     "reason"               (reason)         Text<REASON>,
-        "CHOSEN: why the mailgram was refused, or else why the command failed";
+        "CHOSEN: why the mailgram was refused, or else why the command failed, with names and distances";
 }
 
 /// `status-length>w`, which is not read.
@@ -91,15 +91,20 @@ impl Codec<'_, ()> for Length {
     }
 }
 
-/// The bytes of a status.
+/// The bytes of a status. `detail` goes with its reason.
 #[must_use]
 pub fn encode(
     status: &HwsStatus,
+    detail: Detail,
     task: TaskState,
     mailgram_echo: u16,
     refused: Option<&Refusal>,
 ) -> [u8; StatusLayout::BYTES] {
-    let refusal = refused.map(|refused| Sentence::<REASON>::of(refused));
+    let reason = status.reason.text();
+    let sentence = refused.map_or_else(
+        || Sentence::<REASON>::of(&format_args!("{reason}{detail:#}")),
+        |refused| Sentence::of(refused),
+    );
     StatusLayout::encode(&Status {
         command: status.command,
         report: status.report,
@@ -108,7 +113,7 @@ pub fn encode(
         verdict: refused.map_or(0, Refusal::code),
         code: status.reason,
         task,
-        reason: refusal.as_ref().map_or(status.reason.text(), Sentence::as_str),
+        reason: sentence.as_str(),
     })
 }
 
@@ -123,6 +128,7 @@ pub fn decode(bytes: &[u8]) -> Result<Status<'_>, LayoutError> {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+    use rcs_core::name::Name10;
 
     use super::*;
 
@@ -145,7 +151,7 @@ mod tests {
             format!("{:160}", "the fingers closed on nothing").as_bytes(),
         ]
         .concat();
-        let bytes = encode(&failed(), TaskState::Held, 9, None);
+        let bytes = encode(&failed(), Detail::None, TaskState::Held, 9, None);
         assert_eq!(bytes, &expected[..]);
         let status = decode(&bytes).unwrap();
         assert_eq!((status.echo, status.report, status.code), (7, HwsReport::Error, Reason::GraspMissed));
@@ -157,11 +163,21 @@ mod tests {
     fn every_report_and_reason_comes_back_whole() {
         for &report in HwsReport::ALL {
             for &reason in Reason::ALL {
-                let bytes = encode(&HwsStatus { report, reason, ..failed() }, TaskState::Lost, 0, None);
+                let bytes =
+                    encode(&HwsStatus { report, reason, ..failed() }, Detail::None, TaskState::Lost, 0, None);
                 let status = decode(&bytes).unwrap();
                 assert_eq!((status.report, status.code, status.reason), (report, reason, reason.text()));
             }
         }
+    }
+
+    #[test]
+    fn a_reason_is_told_with_its_names_and_without_its_remedy() {
+        let detail = Detail::Pair(Name10::clipped("BENCH"), Name16::clipped("VISE"));
+        let failed = HwsStatus { reason: Reason::NoTrajectory, ..failed() };
+        let bytes = encode(&failed, detail, TaskState::Runs, 0, None);
+        let told = format!("{}: none leads from BENCH to VISE", Reason::NoTrajectory.text());
+        assert_eq!(decode(&bytes).unwrap().reason, told);
     }
 
     proptest! {

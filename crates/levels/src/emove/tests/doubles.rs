@@ -184,6 +184,8 @@ pub struct Prim {
     /// The arm hangs so far from where it was sent.
     pub sag: Vector,
     receiving: Receiving,
+    /// It tells T3I to begin the link anew.
+    pub restarts: bool,
     pub report: PrimReport,
     pub reason: Reason,
     link: bool,
@@ -294,6 +296,7 @@ impl Prim {
         outputs.poses[1].pose =
             Pose::from_frame(&Frame { position: world.frame.position - self.sag, ..world.frame });
         let status = &mut outputs.status;
+        status.restarting = self.restarts;
         status.echo = self.receiving.receiver.echo;
         (status.report, status.reason) = (self.report, self.reason);
         status.link_running = self.link;

@@ -30,6 +30,8 @@ pub const SCENARIOS: &[fn()] = &[
     a_gripper_on_an_open_ring_goes_nowhere,
     a_robot_that_a_lost_link_stopped_short_is_on_its_way,
     a_link_that_is_lost_behind_a_point_may_stop_the_robot_before_it,
+    a_robot_that_moved_while_emove_was_held_is_on_its_way,
+    a_robot_whose_link_began_anew_short_of_its_point_is_on_its_way,
 ];
 
 type Command<'a> = (EmoveVerb, &'a str, i32, &'a str, u8);
@@ -441,6 +443,46 @@ fn a_link_that_is_lost_behind_a_point_may_stop_the_robot_before_it() {
     bench.world.frame = passed[passed.len() - 5];
     paused(&mut bench);
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE, "{:?}", bench.motions());
+}
+
+#[test]
+fn a_robot_that_moved_while_emove_was_held_is_on_its_way() {
+    let mut bench = loaded();
+    let mut farther = 0;
+    bench.at_every_tick(TO_VISE, |fork| {
+        let before = fork.world.frame.position;
+        fork.dead.push("E-move");
+        fork.steps(30);
+        fork.dead.clear();
+        // A held process does not see the ticks that it has missed.
+        farther += u32::from((fork.world.frame.position - before).norm() > 2.0);
+        let told = paused(fork);
+        assert_eq!(send(fork, TO_VISE), DONE, "{told} told: {:?}", fork.world.log);
+    });
+    assert!(farther > 5, "{farther}");
+}
+
+#[test]
+fn a_robot_whose_link_began_anew_short_of_its_point_is_on_its_way() {
+    for (short, aside, end) in
+        [(1.5, 0.0, DONE), (1.5, 4.5, error(Reason::UnknownStart)), (4.0, 0.0, error(Reason::UnknownStart))]
+    {
+        let mut bench = Bench::ready("HOME", 0);
+        bench.prim.by_steps = true;
+        bench.write(MovToLoc, "", 0, "VISE", 0);
+        bench.steps(90);
+        let heading = bench.world.frame.position;
+        bench.steps(1);
+        let along = (bench.world.frame.position - heading).normalize();
+        let across = along.cross(&Vector::new(0.0, 0.0, 1.0)).normalize();
+        bench.prim.restarts = true;
+        bench.steps(3);
+        let commanded = bench.world.frame.position;
+        bench.prim.restarts = false;
+        bench.world.frame.position = commanded + across * aside - along * short;
+        paused(&mut bench);
+        assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), end, "{short} in short, {aside} in aside");
+    }
 }
 
 #[test]
