@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, builder::ArgPredicate};
 use cli_pages::shipped_path;
 
 use super::{operator::Recovery, trial::Until};
@@ -21,9 +21,25 @@ pub struct CampaignArguments {
     pub seed: u64,
     /// What interrupts, with commas between them: pause, pause-twice, refused, replaced, answer-lost,
     /// answer-late, answer-damaged, hold, nudge, away, estop, held or held:PROCESS, restart or
-    /// restart:PROCESS, fault or fault:FILE, none or all
-    #[arg(long, value_name = "KIND", value_delimiter = ',', default_value = "pause")]
+    /// restart:PROCESS, fault or fault:FILE, none or all; hold+35:pause is hold, and pause 35 ticks after it
+    /// [with --random: all]
+    #[arg(
+        long,
+        value_name = "KIND",
+        value_delimiter = ',',
+        default_value = "pause",
+        default_value_if("random", ArgPredicate::IsPresent, "all")
+    )]
     pub interrupt: Vec<String>,
+    /// Draw so many branches: the tick, and one or several interruptions of those that --interrupt names
+    #[arg(long, value_name = "N", conflicts_with_all = ["ticks", "changes", "at", "markdown"])]
+    pub random: Option<usize>,
+    /// The most interruptions of a branch that is drawn
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(1..=9))]
+    pub longest: u8,
+    /// Seed of the draw: another one draws other branches
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub draw: u64,
     /// Fork at every so many ticks [default: 23 without --changes and --at]
     #[arg(long, value_name = "EVERY", value_parser = clap::value_parser!(u64).range(1..))]
     pub ticks: Option<u64>,

@@ -81,28 +81,37 @@ impl Commander for Hwsc {
 /// The line to the robot controller.
 #[derive(Clone, Copy, Debug, Default)]
 struct RobotLine {
-    injector: Option<Injector>,
+    /// The faults of a file.
+    file: Option<Injector>,
     /// The next answer suffers this.
     armed: Option<FaultKind>,
+    /// What the last answer that was struck suffers.
+    answer: Option<Injector>,
 }
 
 impl RobotLine {
     fn advance(&mut self, tick: Tick, cell: &mut Cell, outputs: &DeviceOutputs) -> DeviceInputs {
-        let Some(injector) = &mut self.injector else {
-            let mut inputs = cell.step(outputs);
-            self.strike(tick, &mut inputs);
-            return inputs;
+        let mut inputs = match &mut self.file {
+            None => cell.step(outputs),
+            Some(injector) => {
+                let (rx, ready) = injector.carry(Direction::ToController, tick, &outputs.link_tx, true);
+                cell.set_host_ready(ready);
+                let mut inputs = cell.step(&DeviceOutputs { link_tx: rx, ..*outputs });
+                (inputs.link_rx, inputs.link_ready) =
+                    injector.carry(Direction::ToHost, tick, &inputs.link_rx, inputs.link_ready);
+                inputs
+            }
         };
-        let (rx, ready) = injector.carry(Direction::ToController, tick, &outputs.link_tx, true);
-        cell.set_host_ready(ready);
-        let mut inputs = cell.step(&DeviceOutputs { link_tx: rx, ..*outputs });
-        (inputs.link_rx, inputs.link_ready) =
-            injector.carry(Direction::ToHost, tick, &inputs.link_rx, inputs.link_ready);
+        self.strike(tick, &inputs);
+        if let Some(injector) = &mut self.answer {
+            (inputs.link_rx, inputs.link_ready) =
+                injector.carry(Direction::ToHost, tick, &inputs.link_rx, inputs.link_ready);
+        }
         inputs
     }
 
-    /// The answer that was waited for has come: from now on the line has a fault in this tick.
-    fn strike(&mut self, tick: Tick, inputs: &mut DeviceInputs) {
+    /// The answer that was waited for has come: the line has a fault in this tick.
+    fn strike(&mut self, tick: Tick, inputs: &DeviceInputs) {
         let Some(kind) = self.armed.filter(|_| inputs.link_rx.length > 0) else { return };
         self.armed = None;
         let rule = Rule::new(kind).at(tick.0).only(Direction::ToHost);
@@ -110,10 +119,7 @@ impl RobotLine {
         let mut plan = Plan::new(tick.0);
         // A rule for a single tick is never refused as the only one of its plan.
         if plan.add(rule).is_ok() {
-            let mut injector = Injector::new(&plan);
-            (inputs.link_rx, inputs.link_ready) =
-                injector.carry(Direction::ToHost, tick, &inputs.link_rx, inputs.link_ready);
-            self.injector = Some(injector);
+            self.answer = Some(Injector::new(&plan));
         }
     }
 }
@@ -315,7 +321,7 @@ impl<'f> Branch<'f> {
 
     /// From now on the line has the faults of a plan.
     pub fn spoil_line(&mut self, plan: &Plan) {
-        self.control.line.injector = Some(Injector::new(plan));
+        self.control.line.file = Some(Injector::new(plan));
     }
 
     /// The tick that was run last.

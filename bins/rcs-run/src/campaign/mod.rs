@@ -8,7 +8,7 @@
 //!                   interruption ──► PAUSE, the same command, up to three tries ──► next command ──► verdict
 //! ```
 //!
-//! A branch does in a tick what a run does ([`branch`]); what it knows of the control processes is their interfaces.
+//! With `--random` ticks and series of interruptions are drawn. A branch does in a tick what a run does ([`branch`]); what it knows of the control processes is their interfaces.
 //! docs/campaign.md says what is judged how.
 
 mod arguments;
@@ -19,7 +19,10 @@ mod markdown;
 mod operator;
 mod parent;
 mod pool;
+mod random;
 mod report;
+mod rows;
+mod series;
 mod story;
 #[cfg(test)]
 mod tests;
@@ -43,8 +46,11 @@ use self::{
     branch::Facility,
     interruption::Kind,
     parent::{Parent, Ticks},
+    pool::Plan,
+    random::Draw,
     report::CampaignReport,
-    trial::{BranchResult, Procedure, Verdict},
+    series::Series,
+    trial::{BranchResult, NoObserver, Procedure, Verdict},
 };
 use crate::error::Error;
 
@@ -75,23 +81,18 @@ pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
 /// The campaign of a job; its column of the table, none if a single branch was printed.
 fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::Column>, Error> {
     let facility = facility(arguments, job)?;
-    let kinds = kinds(arguments, &facility)?;
     let procedure =
         Procedure { recovery: arguments.recovery, tries: arguments.tries, until: arguments.judge };
     let parent = Parent::run(&facility)?;
-    let forks = parent.forks(&ticks(arguments));
-    if forks.is_empty() {
-        let ticks = parent.ticks;
-        return Err(Error::Campaign(format!("no tick to fork at: the job has ticks 1 to {}", ticks - 1)));
-    }
-    if let ([tick], [kind], false) = (&forks[..], &kinds[..], arguments.json) {
-        let fork = pool::fork_at(&facility, *tick)?;
-        let mut story = story::Story::new(*tick, arguments.around);
-        let result = trial::run(&facility, &parent, &fork, kind, procedure, &mut story)?;
+    let plans = plans(arguments, &facility, &parent, procedure)?;
+    if let ([Plan { at, series, .. }], false) = (&plans[..], arguments.json) {
+        let fork = pool::fork_at(&facility, *at)?;
+        let mut story = story::Story::new(*at, arguments.around);
+        let result = trial::run(&facility, &parent, &fork, series, procedure, &mut story)?;
         console::answer(&story.told(&result))?;
         return Ok(None);
     }
-    let bar = bar(forks.len() * kinds.len());
+    let bar = bar(plans.len());
     let done = |result: &BranchResult| {
         if let Some(bar) = &bar {
             bar.inc(1);
@@ -100,15 +101,53 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
             }
         }
     };
-    let threads = usize::from(arguments.threads);
-    let results = pool::run(&facility, &parent, &forks, &kinds, procedure, threads, &done)?;
+    let mut outcome = pool::run(&facility, &parent, &plans, usize::from(arguments.threads), &done)?;
     if let Some(bar) = &bar {
         bar.finish_and_clear();
     }
+    for (plan, result) in plans.iter().zip(&mut outcome.results) {
+        if plan.series.interruptions().len() > 1 && !matches!(result.verdict, Verdict::Done | Verdict::Apart)
+        {
+            let fork = pool::fork_at(&facility, plan.at)?;
+            let smallest = random::smallest(&plan.series, |series| {
+                trial::run(&facility, &parent, &fork, series, procedure, &mut NoObserver)
+                    .map(|other| (other.verdict, &other.reason) == (result.verdict, &result.reason))
+            })?;
+            result.smallest = Some(smallest.to_string());
+        }
+    }
     let called = format!("rcs-run campaign {job} --seed {}", arguments.seed);
-    let report = CampaignReport::new(&facility.job.name, called, &parent, &results);
+    let report = CampaignReport::new(&facility.job.name, called, &parent, &outcome);
     console::answer(&if arguments.json { report.json()? } else { report.text() })?;
     Ok(Some(report.column()))
+}
+
+/// The branches that are asked for.
+fn plans(
+    arguments: &CampaignArguments,
+    facility: &Facility,
+    parent: &Parent,
+    procedure: Procedure,
+) -> Result<Vec<Plan>, Error> {
+    let (data, cell) = (&arguments.data, &facility.description);
+    if let Some(branches) = arguments.random {
+        let kinds = arguments.interrupt.iter().map(|text| Kind::named(text, data, cell));
+        let kinds = kinds.collect::<Result<Vec<_>, _>>()?.concat();
+        let draw = Draw { branches, longest: usize::from(arguments.longest), seed: arguments.draw };
+        return Ok(draw.plans(parent, &kinds, procedure));
+    }
+    let series = arguments.interrupt.iter().map(|text| Series::named(text, data, cell));
+    let series = series.collect::<Result<Vec<_>, _>>()?.concat();
+    let forks = parent.forks(&ticks(arguments));
+    if forks.is_empty() {
+        let ticks = parent.ticks;
+        return Err(Error::Campaign(format!("no tick to fork at: the job has ticks 1 to {}", ticks - 1)));
+    }
+    let of = |series: &Series| {
+        let plan = |at: &u64| Plan { at: *at, series: series.clone(), procedure };
+        forks.iter().map(plan).collect::<Vec<_>>()
+    };
+    Ok(series.iter().flat_map(of).collect())
 }
 
 fn facility(arguments: &CampaignArguments, job: &str) -> Result<Facility, Error> {
@@ -116,12 +155,6 @@ fn facility(arguments: &CampaignArguments, job: &str) -> Result<Facility, Error>
     let TaskFiles { store, job, job_path, .. } = TaskFiles::load(data, Some(job))?;
     let CellFile { description, .. } = CellFile::load(data, &store, &job, &job_path)?;
     Ok(Facility { store, job, description, seed: arguments.seed })
-}
-
-fn kinds(arguments: &CampaignArguments, facility: &Facility) -> Result<Vec<Kind>, Error> {
-    let named =
-        arguments.interrupt.iter().map(|text| Kind::named(text, &arguments.data, &facility.description));
-    Ok(named.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 fn ticks(arguments: &CampaignArguments) -> Ticks {

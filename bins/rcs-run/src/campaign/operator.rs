@@ -142,11 +142,17 @@ impl<'f> Operator<'f> {
         self
     }
 
-    /// The first command that is sent again is paused after so many ticks.
+    /// The branch is interrupted, for the first time or once more: all tries are left. The first command that is
+    /// sent again is paused after `second_pause` ticks.
+    pub const fn interrupt(&mut self, second_pause: Option<u64>) {
+        self.tried = 0;
+        self.second_pause = second_pause;
+    }
+
+    /// Position in the job.
     #[must_use]
-    pub const fn with_second_pause(mut self, ticks: u64) -> Self {
-        self.second_pause = Some(ticks);
-        self
+    pub const fn current(&self) -> usize {
+        self.current
     }
 
     /// The command of a line; PAUSE for the first one.

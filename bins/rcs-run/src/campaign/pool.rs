@@ -5,29 +5,48 @@ use std::thread;
 
 use super::{
     branch::{Branch, Facility, Fork},
-    interruption::Kind,
     parent::{Parent, emulator},
-    trial::{self, BranchResult, NoObserver, Procedure},
+    rows::RowsFired,
+    series::Series,
+    trial::{self, BranchResult, Procedure},
 };
 use crate::error::Error;
 
-/// A state, and what interrupts it.
+/// A branch that is to be run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The tick after which the job is forked.
+    pub at: u64,
+    /// What interrupts it.
+    pub series: Series,
+    /// How it is recovered and judged.
+    pub procedure: Procedure,
+}
+
+/// A state, and which plan begins with it.
 type Work = (Arc<Fork>, usize);
 
-/// Fork the job after each of `forks`, and run a branch for each kind of interruption. `done` is told of each result as it comes.
+/// What came of all branches.
+#[derive(Debug, Default)]
+pub struct Outcome {
+    /// In the order of the plans.
+    pub results: Vec<BranchResult>,
+    /// The rows that have fired in them.
+    pub rows: RowsFired,
+}
+
+/// Run a branch for each plan. `done` is told of each result as it comes. The outcome does not depend on `threads`.
 ///
 /// # Errors
 /// [`Error`] if the run cannot be forked.
 pub fn run(
     facility: &Facility,
     parent: &Parent,
-    forks: &[u64],
-    kinds: &[Kind],
-    procedure: Procedure,
+    plans: &[Plan],
     threads: usize,
     done: &(impl Fn(&BranchResult) + Sync),
-) -> Result<Vec<BranchResult>, Error> {
-    let results = Mutex::new(Vec::with_capacity(forks.len() * kinds.len()));
+) -> Result<Outcome, Error> {
+    let collected = Mutex::new((Vec::with_capacity(plans.len()), RowsFired::default()));
     // A branch takes longer than a fork: what waits is bounded.
     let (send, receive) = mpsc::sync_channel::<Work>(2 * threads);
     let receive = Mutex::new(receive);
@@ -36,26 +55,31 @@ pub fn run(
             .map(|_| {
                 scope.spawn(|| {
                     let mut outcome = Ok(());
-                    while let Some((fork, kind)) = next(&receive) {
+                    let mut rows = RowsFired::default();
+                    while let Some((fork, at)) = next(&receive) {
                         // After an error what waits is taken and left, so that the thread that forks is not kept waiting.
                         if outcome.is_err() {
                             continue;
                         }
-                        match trial::run(facility, parent, &fork, &kinds[kind], procedure, &mut NoObserver) {
+                        let Plan { series, procedure, .. } = &plans[at];
+                        match trial::run(facility, parent, &fork, series, *procedure, &mut rows) {
                             Err(error) => outcome = Err(error),
                             Ok(result) => {
                                 done(&result);
-                                if let Ok(mut results) = results.lock() {
-                                    results.push((fork_order(&result, kind), result));
+                                if let Ok(mut collected) = collected.lock() {
+                                    collected.0.push((at, result));
                                 }
                             }
                         }
+                    }
+                    if let Ok(mut collected) = collected.lock() {
+                        collected.1.append(&mut rows);
                     }
                     outcome
                 })
             })
             .collect();
-        let forked = fork_all(facility, forks, kinds.len(), send);
+        let forked = fork_all(facility, plans, send);
         let worked: Result<Vec<()>, Error> = workers
             .into_iter()
             .map(|worker| {
@@ -65,9 +89,9 @@ pub fn run(
         worked.and(forked)
     });
     outcome?;
-    let mut results = results.into_inner().unwrap_or_default();
-    results.sort_by_key(|(order, _)| *order);
-    Ok(results.into_iter().map(|(_, result)| result).collect())
+    let (mut results, rows) = collected.into_inner().unwrap_or_default();
+    results.sort_by_key(|(at, _)| *at);
+    Ok(Outcome { results: results.into_iter().map(|(_, result)| result).collect(), rows })
 }
 
 /// The next state to interrupt; none if there will be none.
@@ -75,27 +99,19 @@ fn next(receive: &Mutex<mpsc::Receiver<Work>>) -> Option<Work> {
     receive.lock().ok()?.recv().ok()
 }
 
-/// Judgements stand in the order of their ticks, whichever thread was first.
-const fn fork_order(result: &BranchResult, kind: usize) -> (usize, u64) {
-    (kind, result.at)
-}
-
-fn fork_all(
-    facility: &Facility,
-    forks: &[u64],
-    kinds: usize,
-    send: mpsc::SyncSender<Work>,
-) -> Result<(), Error> {
+fn fork_all(facility: &Facility, plans: &[Plan], send: mpsc::SyncSender<Work>) -> Result<(), Error> {
     let mut branch = Branch::start(facility)?;
     let mut hwsc = emulator(facility);
-    for tick in forks {
-        while branch.at().0 < *tick {
+    let mut order: Vec<usize> = (0..plans.len()).collect();
+    order.sort_by_key(|at| plans[*at].at);
+    for same in order.chunk_by(|a, b| plans[*a].at == plans[*b].at) {
+        while branch.at().0 < plans[same[0]].at {
             branch.tick(&mut hwsc);
         }
         let fork = Arc::new(branch.fork()?);
-        for kind in 0..kinds {
+        for at in same {
             // The receiver outlives the workers.
-            let _ = send.send((Arc::clone(&fork), kind));
+            let _ = send.send((Arc::clone(&fork), *at));
         }
     }
     Ok(())

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::{
     markdown::Column,
     parent::Parent,
+    pool::Outcome,
     trial::{BranchResult, Verdict},
 };
 use crate::error::Error;
@@ -56,6 +57,14 @@ impl Row {
     }
 }
 
+/// The row of the table in which a branch is counted: its interruption, or how many there were.
+fn title(result: &BranchResult) -> String {
+    match result.interruption.matches('+').count() {
+        0 => result.interruption.clone(),
+        more => format!("{} interruptions", more + 1),
+    }
+}
+
 /// What branches are counted by: of one that is stranded, who failed in which command and in which row.
 fn cause(result: &BranchResult) -> &str {
     let known = (result.verdict == Verdict::Stranded)
@@ -70,6 +79,9 @@ pub struct CampaignReport<'a> {
     parent: &'a Parent,
     results: &'a [BranchResult],
     rows: Vec<Row>,
+    /// Rows of the decision tables: how many there are, and which have not fired in any branch.
+    decisions: usize,
+    never_fired: Vec<String>,
     command: String,
 }
 
@@ -81,23 +93,26 @@ struct Json<'a> {
     digest: &'a str,
     rows: &'a [Row],
     branches: &'a [BranchResult],
+    /// Rows of the decision tables, and those that have not fired in any branch.
+    decisions: usize,
+    never_fired: &'a [String],
 }
 
 impl<'a> CampaignReport<'a> {
-    /// The report on these branches, which stand in the order of their interruptions; `command` runs the
-    /// campaign again.
+    /// The report on these branches; `command` runs the campaign again.
     #[must_use]
-    pub fn new(job: &'a str, command: String, parent: &'a Parent, results: &'a [BranchResult]) -> Self {
+    pub fn new(job: &'a str, command: String, parent: &'a Parent, outcome: &'a Outcome) -> Self {
         let mut rows: Vec<Row> = Vec::new();
-        for result in results {
-            if rows.last().is_none_or(|row| row.interruption != result.interruption) {
-                rows.push(Row { interruption: result.interruption.clone(), ..Row::default() });
-            }
-            if let Some(row) = rows.last_mut() {
-                row.add(result);
-            }
+        for result in &outcome.results {
+            let title = title(result);
+            let at = rows.iter().position(|row| row.interruption == title).unwrap_or_else(|| {
+                rows.push(Row { interruption: title, ..Row::default() });
+                rows.len() - 1
+            });
+            rows[at].add(result);
         }
-        Self { job, parent, results, rows, command }
+        let (decisions, never_fired) = outcome.rows.missing();
+        Self { job, parent, results: &outcome.results, rows, decisions, never_fired, command }
     }
 
     /// As one JSON object.
@@ -106,8 +121,8 @@ impl<'a> CampaignReport<'a> {
     /// [`Error::Output`] if it cannot be written.
     pub fn json(&self) -> Result<String, Error> {
         let Parent { ticks, digest, .. } = self.parent;
-        let (rows, branches) = (&self.rows, self.results);
-        let json = Json { job: self.job, ticks: *ticks, digest, rows, branches };
+        let Self { job, results: branches, rows, decisions, never_fired, .. } = self;
+        let json = Json { job, ticks: *ticks, digest, rows, branches, decisions: *decisions, never_fired };
         Ok(serde_json::to_string(&json).map_err(io::Error::from)? + "\n")
     }
 
@@ -144,6 +159,8 @@ impl<'a> CampaignReport<'a> {
         {
             self.list(&mut text, verdict, title);
         }
+        let fired = self.decisions - self.never_fired.len();
+        let _ = writeln!(text, "\n{fired} of {} rows of the decision tables have fired", self.decisions);
         text
     }
 
@@ -175,7 +192,8 @@ impl<'a> CampaignReport<'a> {
         for (reason, branches) in reasons {
             let _ = writeln!(text, "{:>6}  {reason}", branches.len());
             for branch in branches.iter().take(LISTED) {
-                let BranchResult { at, interruption, line, detail, .. } = branch;
+                let BranchResult { at, interruption, smallest, line, detail, .. } = branch;
+                let interruption = smallest.as_ref().unwrap_or(interruption);
                 let command = &self.command;
                 let _ = writeln!(text, "        {command} --at {at} --interrupt {interruption}  ({line})");
                 if !detail.ends_with(reason) {

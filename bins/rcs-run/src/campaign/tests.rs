@@ -14,7 +14,9 @@ use super::{
     interruption::Kind,
     operator::Recovery,
     parent::{Parent, Ticks, emulator},
-    pool,
+    pool::{self, Outcome, Plan},
+    random::{self, Draw},
+    series::Series,
     trial::{self, BranchResult, NoObserver, Procedure, Until, Verdict},
 };
 use runtime::{
@@ -42,9 +44,9 @@ fn with_job(text: &str) -> Facility {
     Facility { job, ..shipped }
 }
 
-fn kind(facility: &Facility, text: &str) -> Kind {
-    let mut kinds = Kind::named(text, Path::new(DATA), &facility.description).expect("it is known");
-    kinds.remove(0)
+fn series(facility: &Facility, text: &str) -> Series {
+    let mut all = Series::named(text, Path::new(DATA), &facility.description).expect("it is known");
+    all.remove(0)
 }
 
 /// The emulator, whose commands another branch hears too.
@@ -117,8 +119,8 @@ fn empty_move() -> (Facility, Parent, Fork) {
 }
 
 fn judged(facility: &Facility, parent: &Parent, fork: &Fork, text: &str) -> BranchResult {
-    let kind = kind(facility, text);
-    trial::run(facility, parent, fork, &kind, PROCEDURE, &mut NoObserver).expect("the fork goes on")
+    let series = series(facility, text);
+    trial::run(facility, parent, fork, &series, PROCEDURE, &mut NoObserver).expect("the fork goes on")
 }
 
 #[test]
@@ -184,15 +186,27 @@ fn a_part_that_slides_while_no_point_is_commanded_is_counted_apart() {
 #[test]
 fn all_threads_give_the_same_judgements_in_the_same_order() {
     let (facility, parent, _) = empty_move();
-    let kinds: Vec<Kind> = ["pause", "refused", "hold"].map(|text| kind(&facility, text)).into();
-    let forks = parent.forks(&Ticks::Every(60));
+    let plans: Vec<Plan> = ["pause", "refused", "hold+5:pause"]
+        .iter()
+        .flat_map(|text| {
+            let series = series(&facility, text);
+            let plan = move |at| Plan { at, series: series.clone(), procedure: PROCEDURE };
+            parent.forks(&Ticks::Every(60)).into_iter().map(plan)
+        })
+        .collect();
     let campaign = |threads: usize| {
-        let results = pool::run(&facility, &parent, &forks, &kinds, PROCEDURE, threads, &|_| {});
-        let results = results.expect("the branches can be run");
-        results.into_iter().map(|one| (one.interruption, one.at, one.digest)).collect::<Vec<_>>()
+        let Outcome { results, rows } =
+            pool::run(&facility, &parent, &plans, threads, &|_| {}).expect("the branches can be run");
+        let results = results.into_iter().map(|one| (one.interruption, one.at, one.digest));
+        (results.collect::<Vec<_>>(), rows)
     };
     let one = campaign(1);
-    assert_eq!(one.len(), kinds.len() * forks.len());
+    assert_eq!(one.0.len(), plans.len());
+    assert!(one.0.is_sorted_by_key(|(interruption, ..)| {
+        plans.iter().position(|plan| plan.series.to_string() == *interruption)
+    }));
+    let (rows, missing) = one.1.missing();
+    assert!(missing.len() < rows && missing.iter().all(|row| row.contains(": ")), "{missing:?}");
     assert_eq!(one, campaign(3));
 }
 
@@ -232,4 +246,56 @@ fn forks_are_where_something_changes() {
     let both = parent.forks(&Ticks::Both(50));
     assert!(every.iter().chain(&changes).all(|tick| both.contains(tick)));
     assert!(both.is_sorted_by(|a, b| a < b) && both.iter().all(|tick| *tick < parent.ticks));
+}
+
+#[test]
+fn a_second_interruption_comes_after_the_first() {
+    let (facility, parent, fork) = empty_move();
+    let result = judged(&facility, &parent, &fork, "pause+20:refused+3:hold");
+    assert_eq!((result.verdict, result.detail.as_str()), (Verdict::Done, ""));
+    let refused = result.ended.iter().position(|ended| ended.contains("is not known"));
+    let paused = result.ended.iter().position(|ended| ended.contains("PAUSE: finished"));
+    assert!(paused.expect("PAUSE ended") < refused.unwrap_or(usize::MAX), "{:?}", result.ended);
+}
+
+#[test]
+fn a_series_is_read_back_from_its_name() {
+    let facility = facility("linkbar");
+    let named = |text: &str| Series::named(text, Path::new(DATA), &facility.description);
+    let text = "held:prim+12:fault:air-lost+0:estop";
+    let series = named(text).expect("its words are known");
+    assert_eq!(series.iter().map(ToString::to_string).collect::<Vec<_>>(), [text]);
+    assert_eq!(named("held+3:restart").expect("words stand for several").len(), 4 * 12);
+    for wrong in ["pause+hold", "pause+x:hold", "pause+3:pauze", "+3:pause"] {
+        let error = named(wrong).expect_err(wrong).to_string();
+        assert!(error.contains("expected"), "{error}");
+    }
+}
+
+#[test]
+fn a_draw_repeats_and_another_seed_draws_other_branches() {
+    let (facility, parent, _) = empty_move();
+    let kinds = Kind::named("all", Path::new(DATA), &facility.description).expect("there are some");
+    let draw = |seed| Draw { branches: 200, longest: 3, seed }.plans(&parent, &kinds, PROCEDURE);
+    let plans = draw(7);
+    assert_eq!(plans, draw(7));
+    assert_ne!(plans, draw(8));
+    let counts =
+        |count: usize| plans.iter().filter(|plan| plan.series.interruptions().len() == count).count();
+    assert!([1, 2, 3].map(counts).iter().all(|branches| *branches > 40));
+    assert!(plans.iter().all(|plan| (1..parent.ticks).contains(&plan.at)));
+}
+
+#[test]
+fn a_series_is_made_as_small_as_it_goes() {
+    let facility = facility("linkbar");
+    let drawn = series(&facility, "hold+100:pause+70:nudge");
+    // It takes a nudge, 10 ticks after something else at least.
+    let fails = |series: &Series| {
+        let all = series.interruptions();
+        let nudge = all.iter().position(|one| one.kind == Kind::Nudge);
+        Ok::<bool, ()>(nudge.is_some_and(|at| at > 0 && all[at].after >= 10))
+    };
+    let smallest = random::smallest(&drawn, fails).expect("it cannot fail");
+    assert_eq!(smallest.to_string(), "pause+17:nudge");
 }

@@ -10,9 +10,10 @@ use serde::Serialize;
 use super::{
     branch::{Branch, Facility, Fork},
     harm::{HarmMonitor, World, is_commanded},
-    interruption::Kind,
+    interruption::{Kind, Script},
     operator::{Operator, Recovery, Then},
     parent::Parent,
+    series::Series,
 };
 use crate::error::Error;
 
@@ -32,7 +33,7 @@ pub enum Until {
 }
 
 /// How branches are run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Procedure {
     /// What the operator does first.
     pub recovery: Recovery,
@@ -64,6 +65,9 @@ pub struct BranchResult {
     pub at: u64,
     /// How.
     pub interruption: String,
+    /// The smallest series of interruptions with the same verdict and reason, if there were several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smallest: Option<String>,
     /// What became of it.
     pub verdict: Verdict,
     /// Why it is not done; to be counted.
@@ -106,7 +110,14 @@ struct Trial<'f, 'p> {
     branch: Branch<'f>,
     operator: Operator<'f>,
     monitor: HarmMonitor,
-    kind: &'p Kind,
+    series: &'p Series,
+    /// Which interruption goes on or was the last.
+    interruption: usize,
+    /// The tick in which it was over.
+    over: Option<Tick>,
+    /// The job is played on: the command under way goes on, or the operator recovers it.
+    following: bool,
+    until: Until,
     begun_at: Tick,
     line: usize,
     /// The line with whose end the branch is judged.
@@ -125,28 +136,15 @@ pub fn run(
     facility: &Facility,
     parent: &Parent,
     fork: &Fork,
-    kind: &Kind,
+    series: &Series,
     procedure: Procedure,
     observer: &mut impl Observer,
 ) -> Result<BranchResult, Error> {
     let branch = Branch::resume(facility, fork)?;
     let at = branch.at();
     let (line, began) = parent.line_at(at);
-    let mut operator = Operator::new(&facility.job.steps, line, began, branch.command(), procedure.tries)
+    let operator = Operator::new(&facility.job.steps, line, began, branch.command(), procedure.tries)
         .with_recovery(procedure.recovery);
-    if *kind == Kind::PauseTwice {
-        // Another place in each branch, the same in each run.
-        operator = operator.with_second_pause(1 + at.0 * 37 % 120);
-    }
-    let goal = match procedure.until {
-        Until::Job => usize::MAX,
-        Until::Next => {
-            let command = |line: usize| operator.command_at(line).is_some();
-            let commands = (line..=facility.job.steps.len()).filter(|line| command(*line));
-            // The interrupted command, or the next one, and the one after it.
-            commands.take(2).last().unwrap_or(usize::MAX)
-        }
-    };
     let monitor = HarmMonitor::from_now(&branch);
     let doing = present(&branch);
     let trial = Trial {
@@ -154,10 +152,14 @@ pub fn run(
         branch,
         operator,
         monitor,
-        kind,
+        series,
+        interruption: 0,
+        over: None,
+        following: false,
+        until: procedure.until,
         begun_at: at,
         line,
-        goal,
+        goal: usize::MAX,
         ended: Vec::new(),
         mismatch: None,
         tears: false,
@@ -184,50 +186,90 @@ fn present(branch: &Branch<'_>) -> Vec<String> {
 
 impl Trial<'_, '_> {
     fn play(mut self, doing: Vec<String>, observer: &mut impl Observer) -> BranchResult {
-        let mut script = self.kind.script();
-        let mut following = self.kind.leaves_command();
-        let person = matches!(self.kind, Kind::Nudge | Kind::Away);
-        self.first(observer);
-        following |= matches!(self.kind, Kind::Refused | Kind::Replaced);
+        let mut script = self.begin(observer);
         loop {
             if let Some(refused) = script.step(&mut self.branch) {
                 observer.say(self.branch.at(), &format!("the cell refuses: {refused}"));
             }
-            self.operator.is_waiting = !script.is_over();
-            if script.is_over() && !following {
-                following = true;
+            let over = script.is_over();
+            self.operator.is_waiting = !over;
+            if over && !self.following {
+                self.following = true;
                 // PAUSE is what interrupts, or what an operator begins with who has worked at box or panel.
                 self.operator.pause(self.branch.at());
             }
-            if following {
+            if self.following {
                 self.branch.tick(&mut self.operator);
             } else {
                 self.branch.tick(&mut Silent);
             }
-            let at_box = person && !script.is_over();
+            let at_box = !over && matches!(self.kind(), Kind::Nudge | Kind::Away);
             self.tears |= self.takes_from_vise();
             self.monitor.look(&self.branch, at_box || (self.tears && self.operator.has_interjected()));
             observer.tick(&self.branch);
             if let Some(verdict) = self.verdict(observer) {
                 return self.result(verdict, doing);
             }
+            if over {
+                let now = self.branch.at();
+                let since = now.since(*self.over.get_or_insert(now));
+                if self.next().is_some_and(|after| since >= after) {
+                    self.interruption += 1;
+                    script = self.begin(observer);
+                }
+            }
         }
+    }
+
+    /// The interruption that goes on or was the last.
+    fn kind(&self) -> &Kind {
+        &self.series.interruptions()[self.interruption].kind
+    }
+
+    /// Ticks that pass before the next interruption; none if there is none.
+    fn next(&self) -> Option<u64> {
+        self.series.interruptions().get(self.interruption + 1).map(|next| next.after)
+    }
+
+    /// An interruption begins.
+    fn begin(&mut self, observer: &mut impl Observer) -> Script {
+        let (at, kind) = (self.branch.at(), self.kind().clone());
+        if self.interruption > 0 {
+            observer.say(at, &format!("interrupted again: {kind}"));
+        }
+        self.over = None;
+        self.goal = match self.until {
+            Until::Job => usize::MAX,
+            Until::Next => {
+                let steps = self.branch.facility().job.steps.len();
+                let commands = self.operator.current()..=steps;
+                // The interrupted command, or the next one, and the one after it.
+                let commands = commands.filter(|line| self.operator.command_at(*line).is_some());
+                commands.take(2).last().unwrap_or(usize::MAX)
+            }
+        };
+        // Another place in each branch, the same in each run.
+        self.operator.interrupt((kind == Kind::PauseTwice).then_some(1 + at.0 * 37 % 120));
+        self.following = kind.leaves_command();
+        self.send(&kind, observer);
+        kind.script()
     }
 
     /// The operator moves the robot away while fingers and vise both have a part: no sensor of the controller shows
     /// the vise.
     fn takes_from_vise(&self) -> bool {
-        let moves = *self.kind == Kind::Replaced && self.operator.has_interjected();
+        let moves = *self.kind() == Kind::Replaced && self.operator.has_interjected();
         moves && self.branch.workstation.cell.parts().iter().any(|part| part.held && part.clamped)
     }
 
     /// A command that interrupts.
-    fn first(&mut self, observer: &mut impl Observer) {
+    fn send(&mut self, kind: &Kind, observer: &mut impl Observer) {
         let at = self.branch.at();
-        let under_way = self.operator.command_at(self.line).filter(|command| command.destination.is_some());
-        let (command, then) = match self.kind {
+        let current = self.operator.command_at(self.operator.current());
+        let (command, then) = match kind {
             Kind::Refused => {
-                let known = under_way.unwrap_or_else(|| go("HOME"));
+                let known = current.filter(|command| command.destination.is_some());
+                let known = known.unwrap_or_else(|| go("HOME"));
                 (HwsCommand { destination: Some(Name16::clipped(MISSPELT)), ..known }, Then::Recovery)
             }
             Kind::Replaced => (go("HOME"), Then::SameCommand),
@@ -235,6 +277,7 @@ impl Trial<'_, '_> {
         };
         observer.say(at, &format!("the operator sends {command}"));
         self.operator.interject(at, &command, then);
+        self.following = true;
     }
 
     /// Whether the branch can be judged.
@@ -247,7 +290,7 @@ impl Trial<'_, '_> {
             self.ended.push(text);
             if ended.of_job && ended.failure.is_empty() {
                 self.compare(ended.line, &ended.command);
-                reached |= ended.line >= self.goal;
+                reached |= ended.line >= self.goal && self.next().is_none();
             }
         }
         let worst = self.monitor.worst().map(|harm| (harm.commanded, harm.tick));
@@ -303,7 +346,8 @@ impl Trial<'_, '_> {
         };
         BranchResult {
             at: self.begun_at.0,
-            interruption: self.kind.to_string(),
+            interruption: self.series.to_string(),
+            smallest: None,
             verdict,
             reason,
             detail,

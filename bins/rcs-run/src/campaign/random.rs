@@ -1,0 +1,81 @@
+//! Branches drawn at random, and the smallest series of interruptions that does what a drawn one has done.
+
+use rand::{Rng, RngExt as _, SeedableRng as _, seq::IndexedRandom as _};
+use rand_chacha::ChaCha8Rng;
+
+use super::{
+    interruption::Kind,
+    parent::{Parent, Ticks},
+    pool::Plan,
+    series::Series,
+    trial::Procedure,
+};
+
+/// Ticks between two interruptions are drawn up to one of these: at once, within a step, within a command.
+const BETWEEN: [u64; 3] = [3, 60, 600];
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Draw {
+    /// How many branches.
+    pub branches: usize,
+    /// The most interruptions of a branch.
+    pub longest: usize,
+    /// Seed of the draw.
+    pub seed: u64,
+}
+
+impl Draw {
+    /// The branches. One half begins in ticks in which something changes.
+    #[must_use]
+    pub fn plans(&self, parent: &Parent, kinds: &[Kind], procedure: Procedure) -> Vec<Plan> {
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        let changes = parent.forks(&Ticks::Changes);
+        let groups: Vec<&[Kind]> = kinds.chunk_by(|a, b| word(a) == word(b)).collect();
+        let mut draw = || {
+            let change = changes.choose(&mut random).filter(|_| random.random());
+            let at = change.copied().unwrap_or_else(|| random.random_range(1..parent.ticks));
+            let mut series = Series::from(kind(&groups, &mut random)?);
+            for _ in 1..random.random_range(1..=self.longest) {
+                let most = BETWEEN.choose(&mut random).copied()?;
+                series = series.then(random.random_range(0..=most), kind(&groups, &mut random)?);
+            }
+            Some(Plan { at, series, procedure })
+        };
+        (0..self.branches).map_while(|_| draw()).collect()
+    }
+}
+
+/// The word of a kind without its parameter.
+fn word(kind: &Kind) -> String {
+    kind.to_string().split(':').next().unwrap_or_default().to_owned()
+}
+
+/// A kind: each word as often as any other, whatever number of kinds it stands for.
+fn kind(groups: &[&[Kind]], random: &mut impl Rng) -> Option<Kind> {
+    groups.choose(random)?.choose(random).cloned()
+}
+
+/// The smallest series found by leaving interruptions out and putting them nearer to each other, for which
+/// `is_same` holds.
+///
+/// # Errors
+/// Those of `is_same`.
+pub fn smallest<E>(
+    series: &Series,
+    mut is_same: impl FnMut(&Series) -> Result<bool, E>,
+) -> Result<Series, E> {
+    let mut smallest = series.clone();
+    'smaller: loop {
+        let count = smallest.interruptions().len();
+        let shorter = (0..count).filter_map(|at| smallest.without(at));
+        let sooner = (1..count).filter_map(|at| smallest.sooner(at));
+        for candidate in shorter.chain(sooner) {
+            if is_same(&candidate)? {
+                smallest = candidate;
+                continue 'smaller;
+            }
+        }
+        return Ok(smallest);
+    }
+}

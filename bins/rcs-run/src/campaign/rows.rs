@@ -1,0 +1,58 @@
+//! Which rows of the decision tables have fired in branches.
+
+use std::collections::BTreeSet;
+
+use levels::{
+    execution::EXECUTE,
+    ladder::{Ladder, ProcessId},
+};
+use rcs_core::tick::Tick;
+
+use super::{branch::Branch, trial::Observer};
+
+/// The rows of all processes that have fired.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RowsFired(BTreeSet<(ProcessId, u8, u8)>);
+
+impl RowsFired {
+    /// Take in what other branches have fired.
+    pub fn append(&mut self, other: &mut Self) {
+        self.0.append(&mut other.0);
+    }
+
+    /// How many rows there are, and those that have not fired: `Prim: GOTO-PT 3`.
+    #[must_use]
+    pub fn missing(&self) -> (usize, Vec<String>) {
+        let (mut count, mut missing) = (0, Vec::new());
+        for (id, process) in ProcessId::ALL.iter().zip(Ladder::processes()) {
+            for (table, number) in process.tables.iter().zip(1_u8..) {
+                for row in table.rows.iter().filter(|row| is_named(table.name, row.action)) {
+                    count += 1;
+                    if !self.0.contains(&(*id, number, row.number)) {
+                        missing.push(format!("{}: {} {}", process.name, table.name, row.number));
+                    }
+                }
+            }
+        }
+        (count, missing)
+    }
+}
+
+/// Does a header ever name a row with this action? Not those that pass on to the table below, nor those of EXECUTE
+/// that do not refuse.
+fn is_named(table: &str, action: &str) -> bool {
+    action != "consult" && (table != EXECUTE.name || action == "Refuse")
+}
+
+impl Observer for RowsFired {
+    fn tick(&mut self, branch: &Branch<'_>) {
+        let memory = branch.memory();
+        for process in ProcessId::ALL {
+            let header = memory.header(*process);
+            let rows = header.consulted().into_iter().chain(header.beside.into_iter().flatten());
+            self.0.extend(rows.map(|row| (*process, row.decided.table, row.decided.row)));
+        }
+    }
+
+    fn say(&mut self, _: Tick, _: &str) {}
+}

@@ -1,0 +1,99 @@
+//! Interruptions of a branch, one after the other: `hold+35:pause` is Hold, and a PAUSE 35 ticks after it is over.
+
+use std::{fmt, path::Path};
+
+use plant::CellDescription;
+
+use super::interruption::Kind;
+use crate::error::Error;
+
+/// One of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interruption {
+    /// Ticks since the one before was over; of the first, 0.
+    pub after: u64,
+    /// What is done.
+    pub kind: Kind,
+}
+
+/// What interrupts a branch: at least one interruption.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series(Vec<Interruption>);
+
+impl From<Kind> for Series {
+    fn from(kind: Kind) -> Self {
+        Self(vec![Interruption { after: 0, kind }])
+    }
+}
+
+impl fmt::Display for Series {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (at, Interruption { after, kind }) in self.0.iter().enumerate() {
+            if at == 0 {
+                write!(f, "{kind}")?;
+            } else {
+                write!(f, "+{after}:{kind}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Series {
+    /// The same with another interruption at its end.
+    #[must_use]
+    pub fn then(mut self, after: u64, kind: Kind) -> Self {
+        self.0.push(Interruption { after, kind });
+        self
+    }
+
+    /// The interruptions in their order.
+    #[must_use]
+    pub fn interruptions(&self) -> &[Interruption] {
+        &self.0
+    }
+
+    /// The same without one of the interruptions; none if there is no other.
+    #[must_use]
+    pub fn without(&self, at: usize) -> Option<Self> {
+        let mut others = self.0.clone();
+        others.remove(at);
+        others.first_mut()?.after = 0;
+        Some(Self(others))
+    }
+
+    /// The same with half the ticks before one of the interruptions; none if there are none.
+    #[must_use]
+    pub fn sooner(&self, at: usize) -> Option<Self> {
+        let mut sooner = self.clone();
+        let after = &mut sooner.0[at].after;
+        (*after > 0).then(|| *after /= 2)?;
+        Some(sooner)
+    }
+
+    /// The series that a word of the command line stands for: as many as its words stand for kinds.
+    ///
+    /// # Errors
+    /// [`Error::Campaign`] for a word that is no kind, or ticks that are no number.
+    pub fn named(text: &str, data: &Path, cell: &CellDescription) -> Result<Vec<Self>, Error> {
+        let mut parts = text.split('+');
+        let first = parts.next().unwrap_or_default();
+        let mut all: Vec<Self> = Kind::named(first, data, cell)?.into_iter().map(Self::from).collect();
+        for part in parts {
+            let (after, word) = part
+                .split_once(':')
+                .and_then(|(ticks, word)| Some((ticks.parse::<u64>().ok()?, word)))
+                .ok_or_else(|| {
+                    Error::Campaign(format!(
+                        "{text}: expected +TICKS:KIND behind the first interruption, as in hold+35:pause, found \
+                         +{part}"
+                    ))
+                })?;
+            let kinds = Kind::named(word, data, cell)?;
+            let longer =
+                all.iter().flat_map(|one| kinds.iter().map(|kind| one.clone().then(after, kind.clone())));
+            all = longer.collect();
+        }
+        Ok(all)
+    }
+}
