@@ -311,7 +311,7 @@ mod tests {
     #[test]
     fn a_transfer_whose_object_lies_at_its_destination_alone_was_done_before() {
         let (there, here) = (block("VISE", 0, false), block("TRAY", 2, false));
-        assert!(is_done("TRANSFER", &[there.clone()]));
+        assert!(is_done("TRANSFER", std::slice::from_ref(&there)));
         assert!(
             is_done("TRANSFER", &[there.clone(), block("TRAY", 3, false)]),
             "the one of another sector stays"
