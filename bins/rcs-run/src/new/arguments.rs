@@ -27,6 +27,11 @@ pub enum What {
     ///
     /// The data are tried in a copy by check. What fails is not written.
     Place(PlaceArguments),
+    /// A tray that is divided, seen and reached like another one
+    ///
+    /// The data are tried in a copy: check, and three runs of a job of the other tray that takes its part from the new
+    /// one. What fails is not written.
+    Tray(TrayArguments),
 }
 
 /// Arguments of `new part`.
@@ -56,7 +61,7 @@ pub struct PartArguments {
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct PlaceArguments {
-    /// Name of the place: capital letters and digits, 8 at most
+    /// Name of the place: capital letters, digits and _, 8 at most
     #[arg(value_name = "NAME")]
     pub name: String,
     /// The tool point, inches
@@ -73,6 +78,27 @@ pub struct PlaceArguments {
     pub roll: f64,
     /// A location point that is reached as the new one is to be
     #[arg(long, value_name = "PLACE")]
+    pub like: String,
+    /// Write the files; without it they are only shown
+    #[arg(long)]
+    pub write: bool,
+    /// Task data, jobs and cell description
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    pub data: PathBuf,
+}
+
+/// Arguments of `new tray`.
+#[derive(Clone, Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub struct TrayArguments {
+    /// Name of the tray: capital letters, digits and _, 8 at most
+    #[arg(value_name = "NAME")]
+    pub name: String,
+    /// The centre of the tray, inches
+    #[arg(value_names = ["X", "Y"], num_args = 2, required = true)]
+    pub centre: Vec<f64>,
+    /// A tray of the cell that is used as the new one is to be
+    #[arg(long, value_name = "UNIT")]
     pub like: String,
     /// Write the files; without it they are only shown
     #[arg(long)]

@@ -16,12 +16,14 @@ use crate::error::Error;
 const AROUND: usize = 2;
 
 /// The files that change.
+#[derive(Clone)]
 pub struct Change {
     data: PathBuf,
     files: BTreeMap<String, Texts>,
 }
 
 /// A file before and after; a new one is empty before.
+#[derive(Clone)]
 struct Texts {
     before: String,
     after: String,
@@ -81,21 +83,39 @@ impl Change {
         Ok(())
     }
 
-    /// Put a table behind the table of the same kind in `cell.toml` that has a name.
+    /// Give an owner (VII.5) one more member, a location point.
+    ///
+    /// # Errors
+    /// [`Error::New`] if its form is not there.
+    pub fn add_member(&mut self, file: &str, owner: &str, member: &str) -> Result<(), Error> {
+        let text = self.text(file)?;
+        let mut lines: Vec<&str> = text.lines().collect();
+        let begins = |line: &&str| line.split_whitespace().take(2).eq(["-own-", owner]);
+        let first = lines.iter().position(begins);
+        let first = first.ok_or_else(|| Error::New(format!("{file} has no form of the owner {owner}")))?;
+        let more = lines.iter().skip(first + 1).take_while(|line| line.trim_start().starts_with("-m-"));
+        let end = first + 1 + more.count();
+        let line = format!("{:24}-m-   lpt        {member}", "");
+        lines.insert(end, &line);
+        *text = lines.join("\n") + "\n";
+        Ok(())
+    }
+
+    /// Put a table behind the table of the same kind that has an entry, such as `name = "SHAFT"`.
     ///
     /// # Errors
     /// [`Error::New`] if there is none that begins in a line of its own.
     pub fn add_table(&mut self, file: &str, kind: &str, behind: &str, table: &str) -> Result<(), Error> {
         let text = self.text(file)?;
         let mut lines: Vec<&str> = text.lines().collect();
-        let named = format!("name = \"{behind}\"");
         let ends = |line: &&str| line.trim().is_empty() || line.starts_with('[');
         let begin = (0..lines.len()).find(|at| {
             let body = lines.iter().skip(at + 1).take_while(|line| !line.starts_with('['));
             lines.get(*at).is_some_and(|line| line.trim() == format!("[[{kind}]]"))
-                && body.clone().any(|line| line.trim_start().starts_with(&named))
+                && body.clone().any(|line| line.trim_start().starts_with(behind))
         });
-        let begin = begin.ok_or_else(|| Error::New(format!("{file} has no table [[{kind}]] of {behind}")))?;
+        let begin =
+            begin.ok_or_else(|| Error::New(format!("{file} has no table [[{kind}]] with {behind}")))?;
         let end = lines.iter().skip(begin + 1).position(ends).map_or(lines.len(), |at| begin + 1 + at);
         lines.splice(end..end, std::iter::once("").chain(table.lines()));
         *text = lines.join("\n") + "\n";
@@ -136,12 +156,8 @@ impl Change {
     /// Write the files that change.
     ///
     /// # Errors
-    /// [`Error`] if one cannot be written, or the data are those in the program.
+    /// [`Error::Write`] if one cannot be written.
     pub fn write(&self) -> Result<(), Error> {
-        if !self.data.is_dir() {
-            let why = "the data are those in the program: `rcs-run init .` writes a copy that can be changed";
-            return Err(Error::New(why.to_owned()));
-        }
         self.files.iter().try_for_each(|(file, texts)| put(&self.data.join(file), &texts.after))
     }
 }
@@ -150,6 +166,15 @@ impl Texts {
     const fn empty() -> Self {
         Self { before: String::new(), after: String::new() }
     }
+}
+
+/// Whether files of a data directory can be changed.
+///
+/// # Errors
+/// [`Error::New`] if the data are those in the program.
+pub fn changeable(data: &Path) -> Result<(), Error> {
+    let why = "the data are those in the program: `rcs-run init .` writes a copy that can be changed";
+    data.is_dir().then_some(()).ok_or_else(|| Error::New(why.to_owned()))
 }
 
 fn put(path: &Path, text: &str) -> Result<(), Error> {

@@ -49,6 +49,21 @@ impl Entered {
         self.all.iter().find(|(_, entry)| kind(entry)).map(|(block, _)| *block)
     }
 
+    /// The file of a block.
+    pub fn file(&self, block: BlockNumber) -> Option<&str> {
+        self.blocks.iter().find(|loads| loads.block == block).map(|loads| loads.file.as_str())
+    }
+
+    /// The owners that have a location point, with the blocks of their forms.
+    pub fn owners_of(&self, point: &str) -> impl Iterator<Item = (BlockNumber, &str)> {
+        self.all.iter().filter_map(move |(block, entry)| match entry {
+            Entry::Owner(owner) if owner.members.iter().any(|member| member.name.name.as_str() == point) => {
+                Some((*block, owner.name.name.as_str()))
+            }
+            _ => None,
+        })
+    }
+
     /// The directory block that loads a block, and its file.
     pub fn directory(&self, block: BlockNumber) -> Option<(&str, BlockNumber)> {
         let loads = self.blocks.iter().find(|loads| loads.named.contains(&block))?;

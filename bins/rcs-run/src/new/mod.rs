@@ -11,6 +11,7 @@ mod place;
 mod sizes;
 #[cfg(test)]
 mod tests;
+mod tray;
 mod trial;
 
 use std::{path::Path, process::ExitCode};
@@ -23,7 +24,7 @@ use taskdata::load::Store;
 pub use arguments::NewArguments;
 
 use self::{
-    arguments::{PartArguments, PlaceArguments, What},
+    arguments::{PartArguments, PlaceArguments, TrayArguments, What},
     change::Change,
     trial::Trial,
 };
@@ -37,22 +38,30 @@ pub fn new(arguments: &NewArguments) -> Result<ExitCode, Error> {
     match &arguments.what {
         What::Part(arguments) => part(arguments),
         What::Place(arguments) => place(arguments),
+        What::Tray(arguments) => tray(arguments),
     }
 }
 
-fn loaded(data: &Path) -> Result<Store, Error> {
+/// The task data, which are to be changed if `write`.
+fn loaded(data: &Path, write: bool) -> Result<Store, Error> {
+    if write {
+        change::changeable(data)?;
+    }
     let unusable =
         |report| StartError::Data { what: format!("the task data under {}", data.display()), report };
     Ok(Store::load(data).map_err(unusable)?.0)
 }
 
+fn cell(data: &Path) -> Result<CellDescription, Error> {
+    let path = data.join(CELL);
+    CellDescription::load(&path).map_err(|error| Error::New(format!("{}: {error}", path.display())))
+}
+
 /// `new part`.
 fn part(arguments: &PartArguments) -> Result<ExitCode, Error> {
     let PartArguments { name, size, like, write, explain_job, data } = arguments;
-    let store = loaded(data)?;
-    let path = data.join(CELL);
-    let cell =
-        CellDescription::load(&path).map_err(|error| Error::New(format!("{}: {error}", path.display())))?;
+    let store = loaded(data, *write)?;
+    let cell = cell(data)?;
     let made = part::make(name, *size, like, (&store, &cell, data))?;
     let trial = Trial::checked(&made.change, name)?;
     if *explain_job {
@@ -72,7 +81,7 @@ fn part(arguments: &PartArguments) -> Result<ExitCode, Error> {
 /// `new place`.
 fn place(arguments: &PlaceArguments) -> Result<ExitCode, Error> {
     let PlaceArguments { name, point, azimuth, tilt, roll, like, write, data } = arguments;
-    let store = loaded(data)?;
+    let store = loaded(data, *write)?;
     let point = point.as_slice().try_into().map_err(|_| Error::New("X, Y and Z were expected".to_owned()))?;
     let frame = pose::standing(point, *azimuth, *tilt, *roll).map_err(Error::New)?;
     let change = place::make(name, &frame, like, &store, data)?;
@@ -84,6 +93,24 @@ fn place(arguments: &PlaceArguments) -> Result<ExitCode, Error> {
     let next =
         format!("rcs-run check --data {} --explain 'MOVE -- +0 -- 0 +0 {name} 0 -- 0'", data.display());
     finish(&change, lines, write.then_some(next))
+}
+
+/// `new tray`.
+fn tray(arguments: &TrayArguments) -> Result<ExitCode, Error> {
+    let TrayArguments { name, centre, like, write, data } = arguments;
+    let store = loaded(data, *write)?;
+    let cell = cell(data)?;
+    let centre = centre.as_slice().try_into().map_err(|_| Error::New("X and Y were expected".to_owned()))?;
+    let made = tray::make(name, centre, like, (&store, &cell, data))?;
+    let trial = Trial::checked(&made.trial, name)?;
+    let runs = trial.run(&made.job, false)?;
+    let mut lines = vec![("tray", format!("{name}, like {like}"))];
+    lines.push(("tried", format!("check finds no errors; {runs} runs with a part from it finished")));
+    lines.extend(trial.warnings.into_iter().map(|line| ("warning", line)));
+    lines.push(("to teach", format!("robot: the pose {name}-P by joystick, square to the tray (VIII.3)")));
+    lines.push(("to teach", "cell: what the tray stands on, as a [[fixture]] of cell.toml".to_owned()));
+    let next = format!("a job with {name} in the place of {like}, with --data {}", data.display());
+    finish(&made.change, lines, write.then_some(next))
 }
 
 /// Show what changes, and write it if a next command is named.

@@ -97,10 +97,10 @@ pub fn make(
     change.add_to_block(directory, area.number, &format!("  {first:03} load ( {title:<16} )"))?;
     let last = family.parts.last().map_or("", |part| part.name.as_str());
     let described: Vec<String> = sizes.parts.iter().map(|part| table_of_part(part, id)).collect();
-    change.add_table(CELL, "part", last, &described.join("\n"))?;
+    change.add_table(CELL, "part", &format!("name = \"{last}\""), &described.join("\n"))?;
     let program = &sizes.step.program;
     let programs = cell.vise.program.last().map_or("", |program| program.name.as_str());
-    change.add_table(CELL, "vise.program", programs, &table_of_program(program))?;
+    change.add_table(CELL, "vise.program", &format!("name = \"{programs}\""), &table_of_program(program))?;
     change.add(&format!("jobs/{file}.job"), new.job())?;
     let step = if sizes.step.is_new { "a step that is cut for it" } else { "a step that is there" };
     let openings = format!("opens {} in, partially {} in", program.opening_open, program.opening_partial);

@@ -35,28 +35,10 @@ pub fn make(name: &str, frame: &Frame, like: &str, store: &Store, data: &Path) -
         .directory(block)
         .ok_or_else(|| Error::New(format!("no directory block loads the location point {like}")))?;
     let new = New { name: clipped(name), like };
-    let mut ways = Vec::new();
-    let mut count = 0;
-    for entry in entered.all() {
-        match entry.clone() {
-            Entry::Traj(mut way) if new.is_like(&way.start) || new.is_like(&way.end) => {
-                count += 1;
-                let begins: String = name.chars().take(BEGINS).collect();
-                way.name.name = Name::clipped(&format!("{begins}-T{count}"));
-                new.rename(&mut way.start);
-                new.rename(&mut way.end);
-                ways.push(Entry::Traj(way));
-            }
-            Entry::ApprDept(mut way) if way.place.is_none() && new.is_like(&way.subject) => {
-                new.rename(&mut way.subject);
-                ways.push(Entry::ApprDept(way));
-            }
-            _ => {}
-        }
-    }
+    let ways = new.ways(&entered);
     let mut blocks = Blocks::new(name, format!("{like} and the pose"), number.offset);
     blocks.group("pose", &[new.pose(frame)]);
-    blocks.group("location point", &[new.point()]);
+    blocks.group("location point", &[new.point(&clipped("..."))]);
     blocks.group("trajectories, approach and depart", &ways);
     let first = entered.free_blocks(number.offset, blocks.count());
     let first = first.ok_or_else(|| Error::New(format!("the area {} has no free blocks", number.offset)))?;
@@ -67,11 +49,14 @@ pub fn make(name: &str, frame: &Frame, like: &str, store: &Store, data: &Path) -
     Ok(change)
 }
 
-/// Whether a name can be given.
-fn is_name(name: &str, store: &Store) -> Result<(), Error> {
-    let fits = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit();
+/// Whether a name can be given to a place.
+///
+/// # Errors
+/// [`Error::New`] if it is no name, or is there already.
+pub fn is_name(name: &str, store: &Store) -> Result<(), Error> {
+    let fits = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_';
     if name.is_empty() || name.len() > LONGEST || !name.chars().all(fits) {
-        let expected = format!("1 to {LONGEST} capital letters and digits were expected");
+        let expected = format!("1 to {LONGEST} capital letters, digits and _ were expected");
         return Err(Error::New(format!("a place is not named {name}: {expected}")));
     }
     let data = store.view();
@@ -97,28 +82,31 @@ fn unknown(like: &str, store: &Store) -> Error {
 }
 
 /// A name of a form that was not read from a file.
-fn clipped(name: &str) -> Named<10> {
+pub fn clipped(name: &str) -> Named<10> {
     Named { name: Name10::clipped(name), at: At::default() }
 }
 
 /// A place and the one that it is like.
-struct New<'a> {
-    name: Named<10>,
-    like: &'a str,
+pub struct New<'a> {
+    pub name: Named<10>,
+    pub like: &'a str,
 }
 
 impl New<'_> {
-    fn is_like(&self, end: &Typed) -> bool {
+    /// Whether a location is the like place.
+    pub fn is_like(&self, end: &Typed) -> bool {
         end.kind == RefType::LocationPoint && end.name.name.as_str() == self.like
     }
 
-    fn rename(&self, end: &mut Typed) {
+    /// Name the new place where the like place is named.
+    pub fn rename(&self, end: &mut Typed) {
         if self.is_like(end) {
             end.name.name = Name::clipped(self.name.name.as_str());
         }
     }
 
-    fn pose_name(&self) -> Named<10> {
+    /// Name of its pose.
+    pub fn pose_name(&self) -> Named<10> {
         clipped(&format!("{}-P", self.name.name))
     }
 
@@ -133,7 +121,28 @@ impl New<'_> {
         })
     }
 
-    fn point(&self) -> Entry {
-        Entry::Locpt(PointAt { name: self.name, pose: self.pose_name(), movetable: clipped("...") })
+    /// Its location point.
+    pub fn point(&self, movetable: &Named<10>) -> Entry {
+        Entry::Locpt(PointAt { name: self.name, pose: self.pose_name(), movetable: *movetable })
+    }
+
+    /// The trajectories from and to it, and how it is approached and left.
+    pub fn ways(&self, entered: &Entered) -> Vec<Entry> {
+        let begins: String = self.name.name.as_str().chars().take(BEGINS).collect();
+        let mut numbers = 1..;
+        let renamed = entered.all().filter_map(|entry| match entry.clone() {
+            Entry::Traj(mut way) if self.is_like(&way.start) || self.is_like(&way.end) => {
+                way.name.name = Name::clipped(&format!("{begins}-T{}", numbers.next()?));
+                self.rename(&mut way.start);
+                self.rename(&mut way.end);
+                Some(Entry::Traj(way))
+            }
+            Entry::ApprDept(mut way) if way.place.is_none() && self.is_like(&way.subject) => {
+                self.rename(&mut way.subject);
+                Some(Entry::ApprDept(way))
+            }
+            _ => None,
+        });
+        renamed.collect()
     }
 }

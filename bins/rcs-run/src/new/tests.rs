@@ -84,6 +84,26 @@ fn the_forms_move_with_the_size() {
 }
 
 #[test]
+fn a_tray_can_stand_elsewhere() {
+    let (store, cell) = loaded();
+    let made = super::tray::make("UNIT_3", [-40.0, -45.0], "UNIT_1", (&store, &cell, &data()));
+    let diff = made.expect("it can be made").change.diff();
+    for line in [
+        "+centre = [-40.0, -45.0]",
+        "+  -pt- UNIT_3 UNIT_3-P ...",
+        "+  -5050 -5550 -1400",
+        "+                        -m-   lpt        UNIT_3",
+        "+  -vu- LINKBAR1_BH 2 17 lpt UNIT_3 GR-PIC lpt 590 1",
+    ] {
+        assert!(diff.lines().any(|found| found == line), "{line} is not in\n{diff}");
+    }
+    let inside = super::tray::make("UNIT_3", [-50.0, -10.0], "UNIT_1", (&store, &cell, &data()));
+    assert!(inside.err().is_some_and(|error| error.to_string().contains("would stand in UNIT_2")));
+    let unknown = super::tray::make("UNIT_3", [0.0, 0.0], "UNIT_9", (&store, &cell, &data()));
+    assert!(unknown.err().is_some_and(|error| error.to_string().contains("no tray is named UNIT_9")));
+}
+
+#[test]
 fn what_cannot_be_says_why() {
     assert!(refused("LINKBAR1", "4x1x1", "LINKBAR1").contains("choose another name, such as LINKBAR12"));
     assert!(refused("hinge", "4x1x1", "LINKBAR1").contains("capital letters"));
