@@ -430,7 +430,7 @@ pub struct CheckArguments {
     #[arg(long, value_name = "NAME", default_value = "HOME", requires = "explain")]
     pub from: String,
     /// Tell also whether the arm of this robot reaches every taught pose and follows every way of every job: a name in
-    /// data/robots, or a file, with a table [arm] (docs/egm.md)
+    /// data/robots, or a file, with a table `arm` (docs/egm.md)
     #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["explain", "explain_job"])]
     pub robot: Option<String>,
 }
