@@ -85,9 +85,20 @@ impl Terminal {
 
     /// Wait until the screen holds a text.
     fn wait_for(&self, text: &str) {
+        self.wait_while(|screen| !screen.contains(text), &format!("{text:?} did not appear"));
+    }
+
+    /// Press Escape, and wait until the text that it closes is gone. A key that is read together with Escape
+    /// would be taken for that key with Alt.
+    fn escape(&mut self, closes: &str) {
+        self.press("\x1b");
+        self.wait_while(|screen| screen.contains(closes), &format!("{closes:?} did not go away"));
+    }
+
+    fn wait_while(&self, waits: impl Fn(&str) -> bool, failed: &str) {
         let begun = Instant::now();
-        while !self.screen().contains(text) {
-            assert!(begun.elapsed() < PATIENCE, "{text:?} did not appear:\n{}", self.screen());
+        while waits(&self.screen()) {
+            assert!(begun.elapsed() < PATIENCE, "{failed}:\n{}", self.screen());
             thread::sleep(Duration::from_millis(20));
         }
     }
@@ -234,7 +245,7 @@ fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_fi
     console.wait_for("12 == PAUSE -- +0 -- 0 +0 -- 0 -- 0");
     console.press(":TAI\r");
     console.wait_for("command-#-in");
-    console.press("\x1b");
+    console.escape("command-#-in");
     // Tab completes, and a refusal is shown.
     console.press(":job n\r");
     console.wait_for("refused: job wait, job go or job skip was expected");

@@ -170,11 +170,13 @@ fn every_leg_of_the_linkbar_has_its_paths() {
         (vise, unit, 4),
         (unit, safe, 1),
         (home, safe, 3),
+        (safe, vise, 3),
+        (vise, safe, 3),
     ] {
         let path = data.trajectory(&from, &to).unwrap();
         assert_eq!(data.path(path).len(), vias, "{from:?} to {to:?}");
     }
-    assert!(data.trajectory(&vise, &safe).is_none(), "no form has this leg");
+    assert!(data.trajectory(&vise, &plain("TOOL-SAFE")).is_none(), "no form has this leg");
 
     let approach = data.path(data.approach(&blank, 2, &vise).unwrap());
     assert_eq!(approach.len(), 4);
