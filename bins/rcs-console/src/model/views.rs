@@ -52,8 +52,8 @@ pub static SHOW_WORDS: [ShowWord; 5] = [
     },
 ];
 
-/// The vocabularies (IV.2.5; V to VII): the process of each; none for SDEF, which each board has, and for FDEF, that of the
-/// task data. The name of T3 Interface's is lost (VI.1).
+/// The vocabularies (IV.2.5; V to VII): the process of each; none for SDEF, which each board has, and for FDEF,
+/// that of the task data. The name of T3 Interface's is lost (VI.1).
 pub static VOCABULARIES: [(&str, Option<ProcessId>); 10] = [
     ("SDEF", None),
     ("TDEF", Some(ProcessId::Task)),

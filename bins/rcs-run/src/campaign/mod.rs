@@ -8,7 +8,8 @@
 //!                   interruption ──► PAUSE, the same command, up to three tries ──► next command ──► verdict
 //! ```
 //!
-//! With `--random` ticks and series of interruptions are drawn. A branch does in a tick what a run does ([`branch`]); what it knows of the control processes is their interfaces.
+//! With `--random` ticks and series of interruptions are drawn. A branch does in a tick what a run does
+//! ([`branch`]); what it knows of the control processes is their interfaces.
 //! docs/campaign.md says what is judged how.
 
 mod arguments;

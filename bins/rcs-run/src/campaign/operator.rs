@@ -187,10 +187,10 @@ impl<'f> Operator<'f> {
         self.send(tick, command);
     }
 
-    /// A command that is not one of the job is under way.
+    /// The operator has sent the robot elsewhere, instead of the command of the job.
     #[must_use]
-    pub const fn has_interjected(&self) -> bool {
-        matches!(self.doing, Doing::Own(_))
+    pub const fn has_replaced(&self) -> bool {
+        matches!(self.doing, Doing::Own(Then::SameCommand))
     }
 
     /// What has ended since the last call.

@@ -205,7 +205,7 @@ impl Trial<'_, '_> {
             }
             let at_box = !over && matches!(self.kind(), Kind::Nudge | Kind::Away);
             self.tears |= self.takes_from_vise();
-            self.monitor.look(&self.branch, at_box || (self.tears && self.operator.has_interjected()));
+            self.monitor.look(&self.branch, at_box || (self.tears && self.operator.has_replaced()));
             observer.tick(&self.branch);
             if let Some(verdict) = self.verdict(observer) {
                 return self.result(verdict, doing);
@@ -258,8 +258,8 @@ impl Trial<'_, '_> {
     /// The operator moves the robot away while fingers and vise both have a part: no sensor of the controller shows
     /// the vise.
     fn takes_from_vise(&self) -> bool {
-        let moves = *self.kind() == Kind::Replaced && self.operator.has_interjected();
-        moves && self.branch.workstation.cell.parts().iter().any(|part| part.held && part.clamped)
+        self.operator.has_replaced()
+            && self.branch.workstation.cell.parts().iter().any(|part| part.held && part.clamped)
     }
 
     /// A command that interrupts.

@@ -1,4 +1,5 @@
-//! The parts that a new part is made after: blank, what machining makes of it, and the virtual objects of hold and seat.
+//! The parts that a new part is made after: blank, what machining makes of it, and the virtual objects of hold
+//! and seat.
 
 use std::path::Path;
 
@@ -63,7 +64,8 @@ impl Family {
         Ok(Self { parts, stem, job: job.source().clone(), program, entered: Entered::of(store) })
     }
 
-    /// The part of the family that an object is, or is a hold or seat pose of: its number, and whether it is the part itself.
+    /// The part of the family that an object is, or is a hold or seat pose of: its number, and whether it is the
+    /// part itself.
     pub fn part_of(&self, object: &Name16) -> Option<(usize, bool)> {
         let at = |name: &str| self.parts.iter().position(|part| part.name == name);
         let name = object.as_str();

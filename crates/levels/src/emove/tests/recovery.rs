@@ -407,8 +407,9 @@ fn a_robot_beside_its_way_comes_back_to_it_first() {
     }
 }
 
-#[test]
-fn a_robot_that_a_lost_link_stopped_short_is_on_its_way() {
+/// What `cut` makes of the link stops the robot short of where it was sent, or aside: does the command sent again
+/// go on?
+fn stopped_short(cut: impl Fn(&mut Bench)) {
     for (short, aside, end) in
         [(1.5, 0.0, DONE), (1.5, 4.5, error(Reason::UnknownStart)), (4.0, 0.0, error(Reason::UnknownStart))]
     {
@@ -420,12 +421,19 @@ fn a_robot_that_a_lost_link_stopped_short_is_on_its_way() {
         bench.steps(1);
         let along = (bench.world.frame.position - heading).normalize();
         let across = along.cross(&Vector::new(0.0, 0.0, 1.0)).normalize();
-        (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkOff, Reason::LinkOff);
-        assert_eq!(bench.finish(), error(Reason::LinkOff));
+        cut(&mut bench);
         bench.world.frame.position += across * aside - along * short;
         paused(&mut bench);
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), end, "{short} in short, {aside} in aside");
     }
+}
+
+#[test]
+fn a_robot_that_a_lost_link_stopped_short_is_on_its_way() {
+    stopped_short(|bench| {
+        (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkOff, Reason::LinkOff);
+        assert_eq!(bench.finish(), error(Reason::LinkOff));
+    });
 }
 
 #[test]
@@ -464,25 +472,11 @@ fn a_robot_that_moved_while_emove_was_held_is_on_its_way() {
 
 #[test]
 fn a_robot_whose_link_began_anew_short_of_its_point_is_on_its_way() {
-    for (short, aside, end) in
-        [(1.5, 0.0, DONE), (1.5, 4.5, error(Reason::UnknownStart)), (4.0, 0.0, error(Reason::UnknownStart))]
-    {
-        let mut bench = Bench::ready("HOME", 0);
-        bench.prim.by_steps = true;
-        bench.write(MovToLoc, "", 0, "VISE", 0);
-        bench.steps(90);
-        let heading = bench.world.frame.position;
-        bench.steps(1);
-        let along = (bench.world.frame.position - heading).normalize();
-        let across = along.cross(&Vector::new(0.0, 0.0, 1.0)).normalize();
+    stopped_short(|bench| {
         bench.prim.restarts = true;
         bench.steps(3);
-        let commanded = bench.world.frame.position;
         bench.prim.restarts = false;
-        bench.world.frame.position = commanded + across * aside - along * short;
-        paused(&mut bench);
-        assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), end, "{short} in short, {aside} in aside");
-    }
+    });
 }
 
 #[test]
