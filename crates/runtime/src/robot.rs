@@ -14,7 +14,7 @@ use std::{
 
 use depc::{
     Plate,
-    fault::{Counts, Direction, Injector, Plan},
+    fault::{Counts, Injector, Plan},
     wire::FRAME_BYTES,
 };
 use executive::{
@@ -166,14 +166,7 @@ impl Robot {
             }
             Self::Own(own) => cell.step_following(own.position().as_ref(), outputs),
             Self::Simulated(None) => cell.step(outputs),
-            Self::Simulated(Some(injector)) => {
-                let (rx, ready) = injector.carry(Direction::ToController, tick, &outputs.link_tx, true);
-                cell.set_host_ready(ready);
-                let mut inputs = cell.step(&DeviceOutputs { link_tx: rx, ..*outputs });
-                (inputs.link_rx, inputs.link_ready) =
-                    injector.carry(Direction::ToHost, tick, &inputs.link_rx, inputs.link_ready);
-                inputs
-            }
+            Self::Simulated(Some(injector)) => cell.step_behind(injector, tick, outputs),
         }
     }
 

@@ -93,14 +93,7 @@ impl RobotLine {
     fn advance(&mut self, tick: Tick, cell: &mut Cell, outputs: &DeviceOutputs) -> DeviceInputs {
         let mut inputs = match &mut self.file {
             None => cell.step(outputs),
-            Some(injector) => {
-                let (rx, ready) = injector.carry(Direction::ToController, tick, &outputs.link_tx, true);
-                cell.set_host_ready(ready);
-                let mut inputs = cell.step(&DeviceOutputs { link_tx: rx, ..*outputs });
-                (inputs.link_rx, inputs.link_ready) =
-                    injector.carry(Direction::ToHost, tick, &inputs.link_rx, inputs.link_ready);
-                inputs
-            }
+            Some(injector) => cell.step_behind(injector, tick, outputs),
         };
         self.strike(tick, &inputs);
         if let Some(injector) = &mut self.answer {

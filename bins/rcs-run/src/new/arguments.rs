@@ -20,8 +20,8 @@ pub struct NewArguments {
 pub enum What {
     /// A part of another size than one that is there: forms, movetables, cell entries, vise program and job
     ///
-    /// The data are tried in a copy: check, three runs of the job, and if the jaws of the vise get a new step one run of
-    /// each other job. What fails is not written.
+    /// The data are tried in a copy: check, three runs of the job, and if the jaws of the vise get a new step one
+    /// run of each other job. What fails is not written.
     Part(PartArguments),
     /// A place for the robot to stand: a pose, a location point, and the trajectories and approaches of another place
     ///
@@ -29,8 +29,8 @@ pub enum What {
     Place(PlaceArguments),
     /// A tray that is divided, seen and reached like another one
     ///
-    /// The data are tried in a copy: check, and three runs of a job of the other tray that takes its part from the new
-    /// one. What fails is not written.
+    /// The data are tried in a copy: check, and three runs of a job of the other tray that takes its part from the
+    /// new one. What fails is not written.
     Tray(TrayArguments),
 }
 

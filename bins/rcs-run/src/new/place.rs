@@ -10,7 +10,7 @@ use taskdata::{
         Store,
         entries::{Entry, Named, PointAt, PoseEntry, Typed},
         names,
-        source::At,
+        source::{At, BlockNumber},
     },
 };
 
@@ -40,6 +40,20 @@ pub fn make(name: &str, frame: &Frame, like: &str, store: &Store, data: &Path) -
     blocks.group("pose", &[new.pose(frame)]);
     blocks.group("location point", &[new.point(&clipped("..."))]);
     blocks.group("trajectories, approach and depart", &ways);
+    with_blocks(name, &blocks, &entered, (directory, number), data)
+}
+
+/// A file with the blocks of a place, and a line for it in the directory block that loads the place it is like.
+///
+/// # Errors
+/// [`Error::New`] if the area is full, if there is a file of that name, or if the directory block has no room.
+pub fn with_blocks(
+    name: &str,
+    blocks: &Blocks,
+    entered: &Entered,
+    (directory, number): (&str, BlockNumber),
+    data: &Path,
+) -> Result<Change, Error> {
     let first = entered.free_blocks(number.offset, blocks.count());
     let first = first.ok_or_else(|| Error::New(format!("the area {} has no free blocks", number.offset)))?;
     let file = name.to_lowercase();

@@ -15,7 +15,7 @@ use super::{
     change::Change,
     entered::Entered,
     forms::Blocks,
-    place::{New, clipped, is_name},
+    place::{New, clipped, is_name, with_blocks},
 };
 use crate::error::Error;
 
@@ -71,13 +71,8 @@ pub fn make(
     let mut ways = new.ways(&entered);
     ways.extend(kind(|entry| matches!(entry, Entry::ApprDept(_))));
     blocks.group("approaches, departs, trajectories", &ways);
-    let first = entered.free_blocks(number.offset, blocks.count());
-    let first = first.ok_or_else(|| Error::New(format!("the area {} has no free blocks", number.offset)))?;
 
-    let file = name.to_lowercase();
-    let mut change = Change::of(data);
-    change.add(&format!("places/{file}.blk"), blocks.text(first))?;
-    change.add_to_block(directory, number.number, &format!("  {first:03} load ( {file:<16} )"))?;
+    let mut change = with_blocks(name, &blocks, &entered, (directory, number), data)?;
     for (block, owner) in entered.owners_of(like).filter(|(_, owner)| *owner != like) {
         let file = entered.file(block).unwrap_or(directory);
         change.add_member(file, owner, name)?;

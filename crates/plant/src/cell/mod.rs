@@ -15,11 +15,15 @@ mod saving;
 mod sensing;
 mod workstation;
 
-use depc::{Limits, Plate, controller::ControllerState};
+use depc::{
+    Limits, Plate,
+    controller::ControllerState,
+    fault::{Direction, Injector as LineInjector},
+};
 use geometry::{frame::Frame, kinematics::Joints};
 use interfaces::device::{DeviceInputs, DeviceOutputs, LinkBytes};
 use rapier3d_f64::prelude::*;
-use rcs_core::tick::TICK_S;
+use rcs_core::tick::{TICK_S, Tick};
 use serde::{Deserialize, Serialize};
 
 use changing::Changer;
@@ -195,6 +199,21 @@ impl Cell {
         self.advance(outputs);
         self.inputs = self.sense(tx, dtr);
         self.inputs
+    }
+
+    /// Like [`Cell::step`], with a line to the robot controller that may have faults in `tick`.
+    pub fn step_behind(
+        &mut self,
+        line: &mut LineInjector,
+        tick: Tick,
+        outputs: &DeviceOutputs,
+    ) -> DeviceInputs {
+        let (rx, ready) = line.carry(Direction::ToController, tick, &outputs.link_tx, true);
+        self.set_host_ready(ready);
+        let mut inputs = self.step(&DeviceOutputs { link_tx: rx, ..*outputs });
+        (inputs.link_rx, inputs.link_ready) =
+            line.carry(Direction::ToHost, tick, &inputs.link_rx, inputs.link_ready);
+        inputs
     }
 
     /// Like [`Cell::step`], while a robot elsewhere is commanded: the simulated arm, and with it all else in
