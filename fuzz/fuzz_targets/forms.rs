@@ -5,10 +5,9 @@
 
 #![no_main]
 
+use diagnostics::{Problems, Source};
 use libfuzzer_sys::fuzz_target;
-use taskdata::load::{
-    Source, Store, entries::Entry, lex::words, parse::parse, print, report::Problems, source::blocks,
-};
+use taskdata::load::{Store, entries::Entry, lex::words, parse::parse, print, source::blocks};
 
 /// The entries of all blocks that are not broken by their size.
 fn entries(text: &str) -> Vec<Entry> {

@@ -30,6 +30,7 @@ use std::{
 };
 
 use depc::fault::{FaultKind, Plan, Rule};
+use diagnostics::Source;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::{cli::Cli, emulate::Emulation, gateway::Gateway, pty::Pty, shell::Shell};
@@ -86,7 +87,8 @@ fn emulate(cli: &Cli, stop: &Arc<AtomicBool>) -> ExitCode {
 fn plan(path: &Path) -> Result<Plan, String> {
     let refused = |why: String| format!("{}: {why}", path.display());
     let text = os_io::files::read_text(path).map_err(|error| refused(error.to_string()))?;
-    let plan = plant::fault::text::parse_line(&text).map_err(|mistakes| refused(mistakes.to_string()))?;
+    let source = Source { name: path.display().to_string(), text: text.into() };
+    let plan = plant::fault::text::parse_line(&source).map_err(|report| report.render_for_stderr())?;
     let useless = |rule: &Rule| rule.kind == FaultKind::CtsLow && !rule.to_controller;
     if plan.rules().iter().any(useless) {
         let why = "cts-low to-host has no effect, a pseudo-terminal has no modem lines: use to-controller";

@@ -16,21 +16,20 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-use egm_robot::RobotFile;
+use diagnostics::{Diagnostic, Diagnostics, Finding, Problems, Severity, Source, amount};
+use egm_robot::{RobotFile, placement::PlacementError};
 use os_io::{console, files};
 use paths::known::Known;
-use plant::{Cell, CellDescription};
-use serde::Serialize;
-use taskdata::load::{
-    Diagnostic, Diagnostics, Job, Severity, Source, Store,
-    places::Places,
-    report::{Problems, amount},
+use plant::{
+    Cell, CellDescription,
+    description::{CELL, source},
 };
+use serde::Serialize;
+use taskdata::load::{Job, Store};
 
 use runtime::{
-    StartError,
-    agreement::{self, cell_report, source},
-    setup::{CELL, fault_file, jobs},
+    StartError, agreement,
+    setup::{fault_file, jobs},
 };
 
 use crate::{
@@ -40,30 +39,6 @@ use crate::{
     reach::Reach,
     ways,
 };
-
-/// One finding, for editors and scripts.
-#[derive(Serialize)]
-struct Finding {
-    severity: &'static str,
-    code: String,
-    /// The file, relative to the data directory; as given for files that could not be read.
-    file: String,
-    /// `OFFSET` and `BLOCK#`, if it stands in a block.
-    offset: Option<u32>,
-    block: Option<u32>,
-    /// Line of the block from 0, as the manual counts, or of the file from 1 where there is no block.
-    line: Option<u32>,
-    /// Column from 1, and the number of characters from there on.
-    column: Option<u32>,
-    length: Option<u32>,
-    place: String,
-    message: String,
-    /// What was expected there.
-    expected: Option<String>,
-    /// The nearest known name.
-    nearest: Option<String>,
-    help: Option<String>,
-}
 
 /// The outcome, for scripts.
 #[derive(Serialize)]
@@ -221,7 +196,7 @@ impl Checked {
             blocks: data.map_or(0, |report| report.blocks),
             records: loaded.map(|one| (one.file.to_owned(), one.records.into())).collect(),
             jobs: self.jobs.clone(),
-            findings: all().flat_map(|report| report.diagnostics()).map(finding).collect(),
+            findings: all().flat_map(|report| report.diagnostics()).map(Finding::from).collect(),
             reach: None,
         }
     }
@@ -234,19 +209,19 @@ fn cell(path: &Path, store: Option<&Store>) -> (Option<(Cell, Source)>, Diagnost
         Ok(text) => text,
         Err(error) => {
             problems.unreadable(&path.display().to_string(), &error);
-            return (None, Diagnostics::new(problems, Places::in_lines(&[]), 0, Vec::new()));
+            return (None, Diagnostics::without_text(problems));
         }
     };
     let description = match CellDescription::from_toml(&text) {
         Ok(description) => description,
-        Err(error) => return (None, cell_report(text, &error)),
+        Err(report) => return (None, report),
     };
     let cell = Cell::new(&description, 1);
     if let Err(error) = &cell {
         problems.general("cell", error.to_string());
     }
-    let source = source(text);
-    let report = Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new());
+    let source = source(&text);
+    let report = Diagnostics::of_file(problems, &source);
     let report = match store {
         Some(store) => report.with(agreement::of_cell(source.clone(), &description, store)),
         None => report,
@@ -274,7 +249,10 @@ fn robots(data: &Path) -> Diagnostics {
     for path in toml_files(&data.join("robots")) {
         all.files += 1;
         if let Err(error) = RobotFile::load(&path) {
-            all = all.with(one(&path, &error));
+            all = all.with(match error {
+                PlacementError::Text(report) => *report,
+                error @ PlacementError::Read { .. } => one(&path, &error),
+            });
         }
     }
     all
@@ -291,28 +269,7 @@ fn toml_files(directory: &Path) -> Vec<PathBuf> {
 fn one(path: &Path, error: &dyn std::error::Error) -> Diagnostics {
     let mut problems = Problems::default();
     problems.general("file", format!("{}: {error}", path.display()));
-    Diagnostics::new(problems, Places::in_lines(&[]), 0, Vec::new())
-}
-
-fn finding(diagnostic: &Diagnostic) -> Finding {
-    Finding {
-        severity: match diagnostic.severity() {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-        },
-        code: diagnostic.code().to_owned(),
-        file: diagnostic.file().to_owned(),
-        offset: diagnostic.block().map(|block| block.offset),
-        block: diagnostic.block().map(|block| block.number),
-        line: diagnostic.line(),
-        column: diagnostic.column(),
-        length: diagnostic.length(),
-        place: diagnostic.place(),
-        message: diagnostic.message().to_owned(),
-        expected: diagnostic.expected().map(str::to_owned),
-        nearest: diagnostic.nearest().map(str::to_owned),
-        help: diagnostic.help().map(str::to_owned),
-    }
+    Diagnostics::without_text(problems)
 }
 
 fn text(reports: &[(String, Diagnostics)]) -> String {

@@ -3,6 +3,7 @@
 
 use std::{panic::resume_unwind, path::Path, process::ExitCode, thread};
 
+use diagnostics::{At, Diagnostics, Problems, Source};
 use os_io::console;
 use paths::{
     finding::Segment,
@@ -17,7 +18,7 @@ use runtime::{
     setup::{CELL, job_path},
 };
 use serde::Serialize;
-use taskdata::load::{Diagnostics, Job, Source, Store, places::Places, report::Problems, source::At};
+use taskdata::load::{Job, Store};
 
 use crate::{
     cli::CheckArguments,
@@ -60,7 +61,7 @@ fn of_job(job: &Job, walked: &WalkedJob) -> Diagnostics {
         }
         problems.same_as(finding.key.clone());
     }
-    Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(job.source())), 0, Vec::new())
+    Diagnostics::of_file(problems, job.source())
 }
 
 fn of_stored(store: &Store, room: &Room, known: &Known) -> Diagnostics {
@@ -68,7 +69,7 @@ fn of_stored(store: &Store, room: &Room, known: &Known) -> Diagnostics {
     for finding in walk_stored(store, room, known).findings {
         problems.error("path.stored", finding.at, finding.message);
     }
-    Diagnostics::new(problems, Places::in_blocks(store.sources()), 0, Vec::new())
+    Diagnostics::new(problems, store.places(), 0, Vec::new())
 }
 
 /// A line of a file, from 1.

@@ -10,6 +10,7 @@ use std::{
     fmt,
 };
 
+use diagnostics::{Problem, toml::element};
 use egm::{Pose, pose};
 use rs_opw_kinematics::{
     glam::{DQuat, DVec3},
@@ -20,7 +21,7 @@ use rs_opw_kinematics::{
 };
 use serde::Deserialize;
 
-use crate::placement::Place;
+use crate::placement::{KIND, Place};
 
 /// Angles of the axes, radians.
 pub type Axes = [f64; 6];
@@ -105,34 +106,40 @@ pub struct Arm {
 }
 
 impl Arm {
-    pub(crate) fn from_text(text: &ArmText) -> Result<Self, String> {
+    /// The arm of a table; what of it cannot be used goes to `problems`.
+    pub(crate) fn from_text(text: &ArmText, problems: &mut Vec<Problem>) -> Option<Self> {
         let lengths = [text.a1, text.a2, text.b, text.c1, text.c2, text.c3, text.c4];
         let [a1, a2, b, c1, c2, c3, c4] = lengths.map(|mm| mm / 1e3);
-        let all = lengths.iter().chain(&text.offsets).chain(&text.low).chain(&text.high);
-        if !all.copied().all(f64::is_finite) {
-            return Err("the numbers of [arm] must be finite".into());
+        let mut unlike = |list: &str, axis, expected: &str, found: &dyn fmt::Display| {
+            problems.push(Problem::unlike(KIND.value, &element(list, axis), expected, found));
+        };
+        for axis in 0..6 {
+            let (sign, speed) = (text.signs[axis], text.speeds[axis]);
+            if sign.abs() != 1 {
+                unlike("arm.signs", axis, "1 or -1", &sign);
+            }
+            if text.low[axis] >= text.high[axis] {
+                let expected = format!("an angle below {} of arm.high, degrees", text.high[axis]);
+                unlike("arm.low", axis, &expected, &text.low[axis]);
+            }
+            if speed <= 0.0 {
+                unlike("arm.speeds", axis, "more than 0 degrees/s", &speed);
+            }
         }
-        if !text.signs.iter().all(|sign| sign.abs() == 1) {
-            return Err("arm.signs are 1 or -1".into());
-        }
-        if !text.low.iter().zip(&text.high).all(|(low, high)| low < high) {
-            return Err("arm.low must be below arm.high for each axis".into());
-        }
-        if !text.speeds.iter().all(|speed| *speed > 0.0) {
-            return Err("arm.speeds must be positive, degrees/s".into());
-        }
+        let work_object = text.work_object.pose("arm.work_object", problems);
+        let tool = text.tool.pose("arm.tool", problems);
         let offsets = text.offsets.map(f64::to_radians);
         let parameters =
             Parameters { a1, a2, b, c1, c2, c3, c4, offsets, sign_corrections: text.signs, dof: 6 };
         let limits = std::array::from_fn(|axis| [text.low[axis], text.high[axis]].map(f64::to_radians));
-        Ok(Self {
+        Some(Self {
             name: text.name.clone(),
             kinematics: OPWKinematics::new(parameters),
             straight: offsets[4] * f64::from(text.signs[4]),
             limits,
             speeds: text.speeds.map(f64::to_radians),
-            work_object: text.work_object.pose("arm.work_object")?,
-            tool: text.tool.pose("arm.tool")?,
+            work_object: work_object?,
+            tool: tool?,
         })
     }
 
@@ -245,7 +252,7 @@ mod tests {
     const TEXT: &str = include_str!("../../../data/robots/irb6700.toml");
 
     fn arm(text: &str) -> Arm {
-        RobotFile::from_toml(text).unwrap().arm.unwrap()
+        RobotFile::from_toml(&crate::placement::source(text)).unwrap().arm.unwrap()
     }
 
     /// Of the drawing of the IRB 6700-200/2.60: all axes at 0, forearm level, tool0 1662.5 mm in front, 2105 mm high.
@@ -310,16 +317,20 @@ mod tests {
     #[test]
     fn a_file_with_a_mistake_says_which() {
         for (from, to, word) in [
-            ("signs = [1, 1", "signs = [1, 0", "arm.signs"),
-            ("low = [-170.0", "low = [170.0", "arm.low"),
-            ("speeds = [110.0", "speeds = [0.0", "arm.speeds"),
-            ("a1 = 320.0", "a1 = nan", "finite"),
-            ("a1 = 320.0", "a9 = 320.0", "a9"),
+            ("signs = [1, 1", "signs = [1, 0", "arm.signs[1]: expected 1 or -1, found 0"),
+            (
+                "low = [-170.0",
+                "low = [170.0",
+                "arm.low[0]: expected an angle below 170 of arm.high, degrees, found 170",
+            ),
+            ("speeds = [110.0", "speeds = [0.0", "arm.speeds[0]: expected more than 0 degrees/s, found 0"),
+            ("a1 = 320.0", "a1 = nan", "arm.a1: expected a number, found nan"),
+            ("a1 = 320.0", "a9 = 320.0", "arm has no key a9; expected one of name, a1"),
         ] {
             let wrong = TEXT.replace(from, to);
             assert_ne!(wrong, TEXT);
-            let error = RobotFile::from_toml(&wrong).unwrap_err();
-            assert!(error.contains(word), "{error}");
+            let said = RobotFile::from_toml(&crate::placement::source(&wrong)).unwrap_err().in_line();
+            assert!(said.contains(word), "{said}");
         }
     }
 }

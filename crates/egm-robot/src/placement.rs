@@ -4,6 +4,10 @@
 use std::path::{Path, PathBuf};
 
 use depc::{Plate, plate::HALF_TURN};
+use diagnostics::{
+    Diagnostics, Problem, Source,
+    toml::{Document, FileKind, element, join},
+};
 use egm::{Limits, Pose, pose};
 use geometry::{
     frame::{Frame, Vector, rotation_by, rotation_vector},
@@ -22,6 +26,16 @@ const SPEED: f64 = (14.0 + 0.5) * MM_PER_IN;
 /// See [`SPEED`]: each of three angles may turn by 1.0 rad/s.
 const TURN: f64 = 1.75;
 
+/// Lengths in mm, angles in degrees, and quaternions, of which a component may be very small.
+pub(crate) const KIND: FileKind = FileKind {
+    whole: "the file",
+    syntax: "robot.syntax",
+    key: "robot.key",
+    missing: "robot.missing",
+    value: "robot.value",
+    magnitudes: [0.0, 1e6],
+};
+
 /// Why a file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum PlacementError {
@@ -34,13 +48,8 @@ pub enum PlacementError {
         source: std::io::Error,
     },
     /// It is not what was expected.
-    #[error("the robot's frames {} cannot be used: {why}", path.display())]
-    Text {
-        /// Which.
-        path: PathBuf,
-        /// What is wrong, and where.
-        why: String,
-    },
+    #[error("the robot's file cannot be used: {}", .0.in_line())]
+    Text(Box<Diagnostics>),
 }
 
 /// A pose as the file has it.
@@ -54,10 +63,15 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// The pose of the table `name`.
-    pub(crate) fn pose(&self, name: &str) -> Result<Pose, String> {
-        Pose::new(self.position, self.orientation)
-            .map_err(|_| format!("{name}.orientation is a quaternion w, x, y, z of length 1"))
+    /// The pose of the table `name`; what is wrong with it goes to `problems`.
+    pub(crate) fn pose(&self, name: &str, problems: &mut Vec<Problem>) -> Option<Pose> {
+        let pose = Pose::new(self.position, self.orientation);
+        if pose.is_err() {
+            let expected = "a quaternion w, x, y, z of length 1";
+            let found = format!("{:?}", self.orientation);
+            problems.push(Problem::unlike(KIND.value, &join(name, "orientation"), expected, found));
+        }
+        pose.ok()
     }
 }
 
@@ -95,19 +109,33 @@ impl RobotFile {
     pub fn load(path: &Path) -> Result<Self, PlacementError> {
         let text = files::read_text(path)
             .map_err(|source| PlacementError::Read { path: path.to_owned(), source })?;
-        Self::from_toml(&text).map_err(|why| PlacementError::Text { path: path.to_owned(), why })
+        let source = Source { name: path.display().to_string(), text: text.into() };
+        Self::from_toml(&source).map_err(|report| PlacementError::Text(Box::new(report)))
     }
 
     /// Read the text of a file.
     ///
     /// # Errors
-    /// What is wrong, and where.
-    pub fn from_toml(text: &str) -> Result<Self, String> {
-        let text: Text = toml::from_str(text).map_err(|error| error.to_string())?;
-        let placement = Placement::from_text(&text)?;
-        let arm = text.arm.as_ref().map(Arm::from_text).transpose()?;
-        Ok(Self { placement, arm })
+    /// All that is wrong, and where.
+    pub fn from_toml(source: &Source) -> Result<Self, Diagnostics> {
+        let mut file = None;
+        Document::load(source, KIND, |text: &Text, stand_ins, problems| {
+            let mut found = Vec::new();
+            let placement = Placement::from_text(text, &mut found);
+            let arm = text.arm.as_ref().map(|arm| Arm::from_text(arm, &mut found));
+            found.retain(|problem| problem.entry.as_ref().is_none_or(|entry| stand_ins.trusts(entry)));
+            problems.extend(found);
+            file = placement.map(|placement| Self { placement, arm: arm.flatten() });
+        })?;
+        let unusable = || Problem::of_entry(KIND.value, "", "the file has no frames".to_owned());
+        file.ok_or_else(|| Diagnostics::of_file(unusable().into(), source))
     }
+}
+
+/// A text as the file of a robot.
+#[cfg(test)]
+pub(crate) fn source(text: &str) -> Source {
+    Source { name: "robot.toml".to_owned(), text: text.into() }
 }
 
 /// The frames of a robot.
@@ -128,22 +156,24 @@ impl Default for Placement {
 }
 
 impl Placement {
-    fn from_text(text: &Text) -> Result<Self, String> {
-        let (world, tool) = (text.world.pose("world")?, text.tool.pose("tool")?);
+    fn from_text(text: &Text, problems: &mut Vec<Problem>) -> Option<Self> {
+        let (world, tool) = (text.world.pose("world", problems), text.tool.pose("tool", problems));
+        for (axis, (low, high)) in
+            text.space.iter().flat_map(|space| space.low.iter().zip(space.high)).enumerate()
+        {
+            if *low >= high {
+                let expected = format!("less than the {high} of space.high");
+                problems.push(Problem::unlike(KIND.value, &element("space.low", axis), expected, low));
+            }
+        }
+        let (world, tool) = (world?, tool?);
         // The tool turns about the end plate.
         let speed = SPEED + TURN * pose::norm(&tool.position);
         let mut limits = Limits::of_speed(speed, TURN);
         if let Some(Space { low, high }) = text.space {
-            if low
-                .iter()
-                .zip(&high)
-                .any(|(low, high)| low.partial_cmp(high) != Some(std::cmp::Ordering::Less))
-            {
-                return Err("space.low must be below space.high in x, y and z".into());
-            }
             limits.space = [low, high];
         }
-        Ok(Self { world, tool, limits })
+        Some(Self { world, tool, limits })
     }
 
     /// What points and targets are checked against.
@@ -205,7 +235,7 @@ mod tests {
         #[test]
         fn a_plate_comes_back(at in prop::array::uniform3(-80.0_f64..80.0), turn in prop::array::uniform3(-1.7_f64..1.7)) {
             let plate = Frame { position: at.into(), rotation: rotation_by(&turn.into()) };
-            for placement in [Placement::default(), RobotFile::from_toml(TEXT).unwrap().placement] {
+            for placement in [Placement::default(), RobotFile::from_toml(&source(TEXT)).unwrap().placement] {
                 let back = placement.plate_frame(&placement.pose(&plate));
                 let off = back.distance(&plate);
                 prop_assert!(off.inches < 1e-9 && off.radians < 1e-9, "{off:?}");
@@ -219,7 +249,8 @@ mod tests {
         let pose = Placement::default().pose(&home);
         assert!((pose.position[1] + 62.93 * 25.4).abs() < 0.3, "{pose:?}");
         // Turned by 90 degrees about z, y becomes -x, and the world lies 1200 mm in front.
-        let placed = RobotFile::from_toml(&TEXT.replace("100.0", "0.0")).unwrap().placement.pose(&home);
+        let placed =
+            RobotFile::from_toml(&source(&TEXT.replace("100.0", "0.0"))).unwrap().placement.pose(&home);
         assert!((placed.position[0] - (1200.0 + 62.93 * 25.4)).abs() < 0.3, "{placed:?}");
     }
 
@@ -230,8 +261,8 @@ mod tests {
             (TEXT.replace("[tool]", "[tools]"), "tools"),
             (format!("{TEXT}[space]\nlow = [0.0, 0.0, 0.0]\nhigh = [1.0, 1.0, 0.0]\n"), "space.low"),
         ] {
-            let error = RobotFile::from_toml(&wrong).unwrap_err();
-            assert!(error.contains(word), "{error}");
+            let said = RobotFile::from_toml(&source(&wrong)).unwrap_err().in_line();
+            assert!(said.contains(word), "{said}");
         }
     }
 }

@@ -15,7 +15,7 @@ use plant::{
 };
 use taskdata::{
     files::{Direction, LocptId, PathPoint, RefType, Reference, Target, TaskData, TrajPara},
-    load::{Store, source::At},
+    load::{At, Store},
 };
 
 use crate::{

@@ -26,9 +26,8 @@ use rcs_core::{
 use taskdata::{
     files::{Location, MovtabId, PathId, PathPoint, PoseId, Target, TaskData, TrajParaId},
     load::{
-        Store,
+        At, Store,
         guarded::{Beginning, relative_move_named},
-        source::At,
     },
 };
 

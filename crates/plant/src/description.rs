@@ -11,8 +11,12 @@ mod hydraulics;
 mod sensing;
 mod tooling;
 
-use std::{ops::Range, path::Path};
+use std::path::Path;
 
+use diagnostics::{
+    At, Diagnostics, Source,
+    toml::{Document, FileKind},
+};
 use geometry::{
     frame::{Frame, Vector},
     kinematics::Joints,
@@ -20,21 +24,35 @@ use geometry::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    mistake::{Mistakes, TextSpan},
-    reading::{CELL, Document, Found, above_zero},
-};
-
 pub use contact::{Kind, Pattern, Permit, Permits, commands, known};
 pub use hydraulics::{Actuators, Hydraulics};
 pub use sensing::SensorModels;
 pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChange};
 
+/// The file of a cell description in a data directory.
+pub const CELL: &str = "cell.toml";
+
+/// Ten times the largest number that a cell has: beyond it geometry and solver overflow.
+const KIND: FileKind = FileKind {
+    whole: "the description",
+    syntax: "cell.syntax",
+    key: "cell.key",
+    missing: "cell.missing",
+    value: "cell.value",
+    magnitudes: [1e-6, 1e5],
+};
+
+/// The text of a cell description as a source.
+#[must_use]
+pub fn source(text: &str) -> Source {
+    Source { name: CELL.to_owned(), text: text.into() }
+}
+
 /// Why a cell description cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum DescriptionError {
     /// The file cannot be read.
-    #[error("cell description {path}: {source}")]
+    #[error("the cell description {path} cannot be read: {source}")]
     Unreadable {
         /// The file.
         path: String,
@@ -42,8 +60,8 @@ pub enum DescriptionError {
         source: std::io::Error,
     },
     /// The file or the description has mistakes.
-    #[error("cell description: {0}")]
-    Mistakes(Mistakes),
+    #[error("the cell description cannot be used: {}", .0.in_line())]
+    Mistakes(Diagnostics),
 }
 
 /// The whole cell.
@@ -486,36 +504,20 @@ impl CellDescription {
     /// Read a description from TOML text and check it.
     ///
     /// # Errors
-    /// [`DescriptionError::Mistakes`] with all mistakes of the text and their places.
-    pub fn from_toml(text: &str) -> Result<Self, DescriptionError> {
-        let (document, mut found) = Document::parse(text, CELL);
-        // What stands behind a place that is no TOML may be anything.
-        let reading = found.is_empty().then(|| document.read::<Self>());
-        let mut value = None;
-        if let Some(reading) = reading {
-            found = reading.mistakes;
-            value = reading.value;
-            if let Some(description) = &value {
-                let (unfit, positive) = description.mistakes(&reading.stand_ins);
-                let refine = |(mistake, at): Found| {
-                    (if positive.contains(&mistake.entry) { above_zero(mistake) } else { mistake }, at)
-                };
-                found = found.into_iter().map(refine).collect();
-                found.extend(unfit.into_iter().map(|mistake| (mistake, None)));
-            }
-        }
-        match value {
-            Some(description) if found.is_empty() => Ok(description),
-            _ => Err(DescriptionError::Mistakes(document.placed(text, found))),
-        }
+    /// All mistakes of the text with their places.
+    pub fn from_toml(text: &str) -> Result<Self, Diagnostics> {
+        Document::load(&source(text), KIND, |description: &Self, stand_ins, problems| {
+            let (unfit, positive) = description.problems(stand_ins);
+            KIND.above_zero(&positive, problems);
+            problems.extend(unfit);
+        })
     }
 
     /// Where an entry stands in the text of a description, by the way to it: `gripper.parts.body[0]`; if it
     /// is not there, the nearest table around it.
     #[must_use]
-    pub fn place(text: &str, entry: &str) -> TextSpan {
-        let Range { start, end } = Document::parse(text, CELL).0.place(entry);
-        TextSpan::of(text, start, end)
+    pub fn place(text: &Source, entry: &str) -> At {
+        Document::parse(text, KIND).0.place(entry)
     }
 
     /// Read a description from a file and check it.
@@ -525,7 +527,7 @@ impl CellDescription {
     pub fn load(path: &Path) -> Result<Self, DescriptionError> {
         let text = os_io::files::read_text(path)
             .map_err(|source| DescriptionError::Unreadable { path: path.display().to_string(), source })?;
-        Self::from_toml(&text)
+        Self::from_toml(&text).map_err(DescriptionError::Mistakes)
     }
 
     /// The part of a name.

@@ -1,11 +1,12 @@
 //! What is said of a mistyped cell description: every fault, with the text that is to blame, at once.
 
-use plant::{Cell, CellDescription, description::DescriptionError, mistake::Mistake};
+use diagnostics::Diagnostic;
+use plant::{Cell, CellDescription};
 
 const TEXT: &str = include_str!("../../../data/cell.toml");
 
 /// The faults of the description of the project with some texts replaced.
-fn faults(edits: &[(&str, &str)]) -> (String, Vec<Mistake>) {
+fn faults(edits: &[(&str, &str)]) -> (String, Vec<Diagnostic>) {
     let mut text = TEXT.to_owned();
     for (from, to) in edits {
         assert!(text.contains(from), "the description has no {from:?}");
@@ -13,8 +14,7 @@ fn faults(edits: &[(&str, &str)]) -> (String, Vec<Mistake>) {
     }
     match CellDescription::from_toml(&text) {
         Ok(_) => (text, Vec::new()),
-        Err(DescriptionError::Mistakes(faults)) => (text, faults.all().to_vec()),
-        Err(error) => panic!("{error}"),
+        Err(report) => (text, report.diagnostics().to_vec()),
     }
 }
 
@@ -22,11 +22,11 @@ fn faults(edits: &[(&str, &str)]) -> (String, Vec<Mistake>) {
 fn only(from: &str, to: &str) -> (String, String, Option<String>) {
     let (text, faults) = faults(&[(from, to)]);
     let [fault] = &faults[..] else { panic!("{faults:#?}") };
-    let place = fault.place.expect("a fault of a text has a place");
-    let line = text[..place.start].matches('\n').count() + 1;
-    assert_eq!(place.line, line, "{fault}");
-    let underlined = text[place.start..place.start + place.length].to_owned();
-    (underlined, fault.message.clone(), fault.nearest.clone())
+    let start = fault.at().expect("a fault of a text has a place").start as usize;
+    let line = text[..start].matches('\n').count() + 1;
+    assert_eq!(fault.line(), Some(line as u32), "{fault}");
+    assert!(text[start..].starts_with(fault.text()), "{fault}");
+    (fault.text().to_owned(), fault.message().to_owned(), fault.nearest().map(str::to_owned))
 }
 
 fn said(from: &str, to: &str) -> [String; 2] {
@@ -36,7 +36,7 @@ fn said(from: &str, to: &str) -> [String; 2] {
 
 #[test]
 fn the_description_of_the_project_has_no_faults() {
-    assert_eq!(faults(&[]).1, []);
+    assert!(faults(&[]).1.is_empty());
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn a_value_of_another_kind_is_underlined() {
     let told = said("size = [28.0, 28.0, 40.0]", "size = [28.0, 28.0]");
     assert_eq!(told, ["[28.0, 28.0]", "fixture[1].size: expected an array of 3, found an array of 2"]);
     let (_, faults) = faults(&[("sector = 7\n", "sector = -7\n")]);
-    assert_eq!(faults[0].message, "nest[0].sector: expected a whole number from 0 to 65535, found -7");
+    assert_eq!(faults[0].message(), "nest[0].sector: expected a whole number from 0 to 65535, found -7");
 }
 
 #[test]
@@ -150,9 +150,9 @@ fn what_is_no_toml_is_told_with_its_line() {
     let (text, faults) = faults(&[("tilt = 3.0  ", "tilt = = 3.0  ")]);
     let line = text[..text.find("tilt = = 3.0").unwrap()].matches('\n').count() + 1;
     assert!(!faults.is_empty());
-    assert!(faults.iter().all(|fault| fault.code == "cell.syntax"), "{faults:#?}");
-    assert_eq!(faults[0].place.map(|place| place.line), Some(line));
-    assert!(faults[0].message.starts_with("this is not TOML: "), "{}", faults[0].message);
+    assert!(faults.iter().all(|fault| fault.code() == "cell.syntax"), "{faults:#?}");
+    assert_eq!(faults[0].line(), Some(line as u32));
+    assert!(faults[0].message().starts_with("this is not TOML: "), "{}", faults[0].message());
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn all_faults_are_told_at_once_in_the_order_of_the_text() {
         ("name = \"LINKBAR1\"", "name = \"LINKBAR1_BH\""),
         ("vision_id = 14\n", "vision_id = 14\ncolour = \"red\"\n"),
     ]);
-    let entries: Vec<&str> = faults.iter().map(|fault| fault.entry.as_str()).collect();
+    let entries: Vec<&str> = faults.iter().filter_map(Diagnostic::entry).collect();
     assert_eq!(
         entries,
         [
@@ -179,7 +179,7 @@ fn all_faults_are_told_at_once_in_the_order_of_the_text() {
             "part[2].colour",
         ]
     );
-    assert!(faults[2].message.ends_with("the tool length of the arm, 12 in, found 13"), "{}", faults[2]);
+    assert!(faults[2].message().ends_with("the tool length of the arm, 12 in, found 13"), "{}", faults[2]);
 }
 
 #[test]
@@ -194,7 +194,7 @@ fn what_is_measured_by_a_value_that_cannot_be_read_is_not_judged() {
         ("opening = [0.50, 3.50]", "opening = [0.50]", "gripper.v.opening"),
     ] {
         let (_, faults) = faults(&[(from, to)]);
-        let entries: Vec<&str> = faults.iter().map(|fault| fault.entry.as_str()).collect();
+        let entries: Vec<&str> = faults.iter().filter_map(Diagnostic::entry).collect();
         assert_eq!(entries, [entry]);
     }
     let told = said("detent_length = 0.30", "detent_length = 3.0");

@@ -2,6 +2,7 @@
 
 mod rig;
 
+use diagnostics::Source;
 use interfaces::device::{DeviceOutputs, VisionStatus};
 use plant::{
     Cell, CellEvent, Placement, WorkstationAction,
@@ -10,7 +11,8 @@ use plant::{
 use rig::{Rig, description};
 
 fn plan(text: &str) -> FaultPlan {
-    parse(text, &description()).unwrap().cell
+    let source = Source { name: "faults.toml".to_owned(), text: text.into() };
+    parse(&source, &description()).unwrap().cell
 }
 
 fn cell(text: &str) -> Cell {

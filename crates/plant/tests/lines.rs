@@ -5,6 +5,7 @@ mod session;
 
 use std::{fs, path::Path};
 
+use diagnostics::Source;
 use plant::fault::text::parse_line;
 use session::Session;
 
@@ -16,8 +17,9 @@ fn the_link_survives_every_example() {
         let path = entry.unwrap().path();
         assert_eq!(path.extension().and_then(|e| e.to_str()), Some("toml"), "{}", path.display());
         let text = fs::read_to_string(&path).unwrap();
+        let source = Source { name: path.display().to_string(), text: text.into() };
         // Faults of the rest of the cell: tests/faults.rs plays them.
-        let Ok(plan) = parse_line(&text) else { continue };
+        let Ok(plan) = parse_line(&source) else { continue };
         let mut session = Session::new(1, &plan);
         for tick in 0..2000 {
             if tick % 60 == 0 {

@@ -6,8 +6,9 @@ use std::{
     panic::{AssertUnwindSafe, catch_unwind},
 };
 
+use diagnostics::Diagnostic;
 use interfaces::device::DeviceOutputs;
-use plant::{Cell, CellDescription, description::DescriptionError, mistake::Mistake};
+use plant::{Cell, CellDescription};
 
 /// Where the numbers stand in a description: behind an equals sign, or in an array.
 fn numbers(text: &str) -> Vec<Range<usize>> {
@@ -75,9 +76,9 @@ fn every_number_is_refused_in_words_or_runs() {
 /// What a description is refused for in this place of the text: expected values of the entry that stands there.
 fn expected(text: &str, place: &Range<usize>, value: &str) -> Option<String> {
     let changed = format!("{}{value}{}", &text[..place.start], &text[place.end..]);
-    let DescriptionError::Mistakes(faults) = CellDescription::from_toml(&changed).err()? else { return None };
-    let here = |fault: &&Mistake| fault.place.is_some_and(|at| at.start == place.start);
-    faults.all().iter().find(here).and_then(|fault| fault.expected.clone())
+    let report = CellDescription::from_toml(&changed).err()?;
+    let here = |fault: &&Diagnostic| fault.at().is_some_and(|at| at.start as usize == place.start);
+    report.diagnostics().iter().find(here).and_then(|fault| fault.expected().map(str::to_owned))
 }
 
 #[test]

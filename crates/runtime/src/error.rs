@@ -9,7 +9,7 @@ use neighbours::{
 };
 use plant::CellError;
 use record::RecordError;
-use taskdata::load::{Diagnostics, report::amount};
+use taskdata::load::{Diagnostics, amount};
 
 /// Why a run cannot begin.
 #[derive(Debug, thiserror::Error)]

@@ -18,6 +18,7 @@ use os_io::files;
 use plant::{
     Cell, CellDescription,
     camera::Analysis,
+    description,
     fault::text::{self, FaultFile},
 };
 use record::LogFile;
@@ -40,8 +41,8 @@ use crate::{
 pub const JOBS: &str = "jobs";
 /// Extension of job files.
 pub const EXTENSION: &str = "job";
-/// The cell description in the data directory.
-pub const CELL: &str = "cell.toml";
+
+pub use plant::description::CELL;
 
 /// Ticks in 40 ms at most: a tick with the simulated cell takes some 0.2 ms.
 pub const MOST_SPEED: u8 = 20;
@@ -182,11 +183,11 @@ impl CellFile {
         let path = data.join(CELL);
         let text =
             files::read_text(&path).map_err(|source| StartError::Read { path: path.clone(), source })?;
-        let description = CellDescription::from_toml(&text).map_err(|error| StartError::Data {
+        let description = CellDescription::from_toml(&text).map_err(|report| StartError::Data {
             what: format!("the cell description {}", path.display()),
-            report: Box::new(agreement::cell_report(text.clone(), &error)),
+            report: Box::new(report),
         })?;
-        let source = agreement::source(text.clone());
+        let source = description::source(&text);
         let report = agreement::of_cell(source.clone(), &description, store);
         let report = report.with(agreement::of_job(job, &source, &description, store, &path));
         if report.has_errors() {
@@ -281,12 +282,11 @@ fn faults(config: &RunConfig, cell: &CellDescription) -> Result<(FaultFile, Stri
 /// [`StartError`], with all mistakes of the file.
 pub fn fault_file(path: &Path, cell: &CellDescription) -> Result<(FaultFile, String), StartError> {
     let text = files::read_text(path).map_err(|source| StartError::Read { path: path.to_owned(), source })?;
-    let name = path.display().to_string();
-    match text::parse(&text, cell) {
+    let source = Source { name: path.display().to_string(), text: text.clone().into() };
+    match text::parse(&source, cell) {
         Ok(faults) => Ok((faults, text)),
-        Err(mistakes) => {
-            let report = agreement::toml_report(Source { name: name.clone(), text: text.into() }, &mistakes);
-            Err(StartError::Data { what: format!("the faults of {name}"), report: Box::new(report) })
+        Err(report) => {
+            Err(StartError::Data { what: format!("the faults of {}", source.name), report: Box::new(report) })
         }
     }
 }

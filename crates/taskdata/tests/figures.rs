@@ -2,14 +2,12 @@
 
 use std::{collections::BTreeMap, path::Path};
 
+use diagnostics::{BlockNumber, Problems, Source};
 use taskdata::load::{
-    BlockNumber, Source,
     entries::Entry,
     lex::words,
     parse::{Parsed, parse},
-    places::Places,
-    report::Problems,
-    source::{blocks, read_blocks_under},
+    source::{blocks, places_in_blocks, read_blocks_under},
 };
 
 /// Blocks of [`FIGURES`] that print a block a second time (Figures VIII.7 and VIII.10), and the block that they repeat.
@@ -52,7 +50,7 @@ fn parsed(source: &Source) -> Vec<(BlockNumber, Parsed)> {
     });
     let all = read.collect();
     let said: Vec<String> = problems
-        .into_diagnostics(&mut Places::in_blocks(std::slice::from_ref(source)))
+        .into_diagnostics(&mut places_in_blocks(std::slice::from_ref(source)))
         .iter()
         .map(|d| format!("{} {d}", d.place()))
         .collect();

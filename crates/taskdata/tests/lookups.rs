@@ -1,11 +1,12 @@
 //! Look-ups over small data sets that are made for the purpose: order of preference, sectors, and that no input panics.
 
+use diagnostics::{Severity, Source};
 use geometry::frame::Frame;
 use proptest::prelude::*;
 use rcs_core::name::{Name10, Name16};
 use taskdata::{
     files::{LookupError, Place, TaskData},
-    load::{Job, Source, Store, report::Severity},
+    load::{Job, Store},
 };
 
 fn source(text: &str) -> Source {

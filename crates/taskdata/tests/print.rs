@@ -1,12 +1,12 @@
 //! What is printed is read again as what it was: every form, whatever stands in it.
 
+use diagnostics::{At, Problems, Source};
 use geometry::movetable::{MovetableLine, System};
 use proptest::{prelude::*, sample::select};
 use rcs_core::name::Name;
 use taskdata::{
     files::{Direction, RefType, SensorSource, TrajPara},
     load::{
-        Source,
         entries::{
             ApprDeptEntry, ArrayEntry, Entry, FileEntry, GripEntry, MovetableEntry, Named, ObjLocEntry,
             ObjectEntry, OwnerEntry, PointAt, PointEntry, PoseEntry, RelativeEntry, SensorEntry, ShowEntry,
@@ -15,10 +15,8 @@ use taskdata::{
         lex::words,
         parse::parse,
         parser::COMPILING_WORDS,
-        places::Places,
         print,
-        report::Problems,
-        source::{At, BLOCK_COLUMNS, BLOCK_LINES, blocks},
+        source::{BLOCK_COLUMNS, BLOCK_LINES, blocks, places_in_blocks},
         store::FILE_NAMES,
     },
 };
@@ -256,7 +254,7 @@ fn read(text: &str) -> Vec<Entry> {
         entries.extend(parse(&words, block.number, block.header, &mut problems).entries);
     }
     let said: Vec<String> = problems
-        .into_diagnostics(&mut Places::in_blocks(&[source]))
+        .into_diagnostics(&mut places_in_blocks(&[source]))
         .iter()
         .map(|d| format!("{} {d}", d.place()))
         .collect();

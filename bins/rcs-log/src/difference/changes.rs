@@ -8,7 +8,7 @@ use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId};
 use rcs_core::tick::TICK_S;
 use record::remarks::row_text;
 use serde::Serialize;
-use taskdata::load::report::amount;
+use taskdata::load::amount;
 
 use super::{
     Align,

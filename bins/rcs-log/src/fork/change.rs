@@ -10,10 +10,9 @@ use os_io::files;
 use plant::{
     CellDescription,
     fault::text::{self, FaultFile},
-    mistake::Mistakes,
 };
 use runtime::{ChangeError, Run, setup::CELL};
-use taskdata::load::{Job, Source, Step, Store, Workstation, job::JobLine};
+use taskdata::load::{Diagnostics, Job, Source, Step, Store, Workstation, job::JobLine};
 
 use super::datum::{Datum, DatumError, Words};
 
@@ -107,13 +106,8 @@ pub enum RefusedChange {
         source: io::Error,
     },
     /// Nor understood.
-    #[error("{}: {mistakes}", path.display())]
-    Faults {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong in it.
-        mistakes: Mistakes,
-    },
+    #[error("{}", .0.in_line())]
+    Faults(Diagnostics),
     /// There is no such value in the cell description.
     #[error("cell.toml has no value {key}: {known}")]
     Key {
@@ -235,8 +229,8 @@ pub fn deeds(changes: &[Change], store: &Store, cell: &CellDescription) -> Resul
 fn faults(path: &Path, cell: &CellDescription) -> Result<Deed, RefusedChange> {
     let text =
         files::read_text(path).map_err(|source| RefusedChange::Read { path: path.to_owned(), source })?;
-    let faults = text::parse(&text, cell)
-        .map_err(|mistakes| RefusedChange::Faults { path: path.to_owned(), mistakes })?;
+    let source = Source { name: path.display().to_string(), text: text.into() };
+    let faults = text::parse(&source, cell).map_err(RefusedChange::Faults)?;
     Ok(Deed::Faults(Box::new(faults)))
 }
 

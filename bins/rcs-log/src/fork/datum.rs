@@ -5,10 +5,7 @@
 
 use std::{fmt, str::FromStr};
 
-use taskdata::load::{
-    Source, Store,
-    source::{BlockNumber, blocks},
-};
+use taskdata::load::{BlockNumber, Source, Store, source::blocks};
 
 /// Name of the blocks that were changed, among the task data.
 const NAME: &str = "fork.blk";

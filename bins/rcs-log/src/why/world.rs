@@ -9,7 +9,7 @@ use record::{Log, proto::foxglove::Level, replay::generations};
 use serde::Serialize;
 use taskdata::{
     files::{EndEffId, LocptId, MovtabId, PoseId},
-    load::{Store, source::At},
+    load::{At, Store},
 };
 
 use super::{

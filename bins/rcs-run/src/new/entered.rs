@@ -1,13 +1,7 @@
 //! What was entered in the blocks of the task data, and which blocks load which.
 
-use taskdata::load::{
-    Store,
-    entries::Entry,
-    lex,
-    parse::parse,
-    report::Problems,
-    source::{BlockNumber, blocks},
-};
+use diagnostics::{BlockNumber, Problems};
+use taskdata::load::{Store, entries::Entry, lex, parse::parse, source::blocks};
 
 /// The entries of all blocks.
 pub struct Entered {

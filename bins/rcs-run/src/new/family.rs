@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use diagnostics::nearest;
 use plant::{
     CellDescription,
     description::{PartType, ViseProgram},
@@ -10,10 +11,8 @@ use plant::{
 use rcs_core::name::Name16;
 use runtime::setup::jobs;
 use taskdata::load::{
-    Job, Source, Step, Store, Workstation,
+    BlockNumber, Job, Source, Step, Store, Workstation,
     entries::{Entry, GripEntry, MovetableEntry},
-    names,
-    source::BlockNumber,
 };
 
 use super::entered::Entered;
@@ -41,7 +40,7 @@ impl Family {
     pub fn of(like: &str, store: &Store, cell: &CellDescription, data: &Path) -> Result<Self, Error> {
         if cell.part(like).is_none() {
             let known: Vec<_> = cell.part.iter().map(|part| part.name.as_str()).collect();
-            let near = names::nearest(like, known.iter().copied());
+            let near = nearest(like, known.iter().copied());
             let near = near.map_or_else(String::new, |near| format!("; the nearest is {near}"));
             let known = known.join(", ");
             return Err(Error::New(format!("no part is named {like}{near}; the cell has {known}")));

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use diagnostics::{At, BlockNumber, nearest};
 use geometry::{frame::Frame, pose::Pose};
 use rcs_core::name::{Name, Name10};
 use taskdata::{
@@ -9,8 +10,6 @@ use taskdata::{
     load::{
         Store,
         entries::{Entry, Named, PointAt, PoseEntry, Typed},
-        names,
-        source::{At, BlockNumber},
     },
 };
 
@@ -90,7 +89,7 @@ pub fn is_name(name: &str, store: &Store) -> Result<(), Error> {
 
 fn unknown(like: &str, store: &Store) -> Error {
     let known: Vec<String> = store.view().locpts.iter().map(|point| point.name.to_string()).collect();
-    let near = names::nearest(like, known.iter().map(String::as_str));
+    let near = nearest(like, known.iter().map(String::as_str));
     let near = near.map_or_else(String::new, |near| format!("; the nearest is {near}"));
     Error::New(format!("no location point is named {like}{near}; there are {}", known.join(", ")))
 }

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use diagnostics::nearest;
 use os_io::files;
 use plant::{CellDescription, description::Tray};
 use runtime::setup::{CELL, jobs};
 use taskdata::load::{
     Store,
     entries::{Entry, PoseEntry, Typed},
-    names,
 };
 
 use super::{
@@ -87,7 +87,7 @@ pub fn make(
 
 fn unknown(like: &str, cell: &CellDescription) -> Error {
     let known: Vec<_> = cell.tray.iter().map(|tray| tray.unit.as_str()).collect();
-    let near = names::nearest(like, known.iter().copied());
+    let near = nearest(like, known.iter().copied());
     let near = near.map_or_else(String::new, |near| format!("; the nearest is {near}"));
     Error::New(format!("no tray is named {like}{near}; the cell has {}", known.join(", ")))
 }

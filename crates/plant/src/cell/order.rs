@@ -2,13 +2,11 @@
 //!
 //! The cell asks this before it does anything; a reader of jobs can ask it before the first tick.
 
+use diagnostics::nearest;
 use geometry::frame::Frame;
 
 use super::{WorkstationAction, WorkstationError};
-use crate::{
-    description::{CellDescription, Nest, PartType},
-    mistake::nearest,
-};
+use crate::description::{CellDescription, Nest, PartType};
 
 /// Where a part can be put down.
 pub(super) enum Spot<'c> {
@@ -143,8 +141,7 @@ impl WorkstationError {
     #[must_use]
     pub fn blames(&self) -> Option<(String, Option<&str>)> {
         let near = |word: &String, known: &'_ [String]| -> Option<usize> {
-            let names: Vec<&str> = known.iter().map(String::as_str).collect();
-            let name = nearest(word, &names)?;
+            let name = nearest(word, known.iter().map(String::as_str))?;
             known.iter().position(|one| one == name)
         };
         Some(match self {
@@ -161,8 +158,7 @@ impl WorkstationError {
                 if known.iter().any(|(nest, _)| nest == unit) {
                     return Some((sector.to_string(), None));
                 }
-                let names: Vec<&str> = known.iter().map(|(nest, _)| nest.as_str()).collect();
-                (unit.clone(), nearest(unit, &names))
+                (unit.clone(), nearest(unit, known.iter().map(|(nest, _)| nest.as_str())))
             }
             Self::TooLarge { to, .. } => (to.clone(), None),
             _ => return None,

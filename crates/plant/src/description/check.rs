@@ -4,6 +4,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use diagnostics::{
+    Diagnostics, Problem, Problems,
+    toml::{Path, StandIns, element, join},
+};
 use geometry::kinematics::{JOINT_NAMES, T3};
 use rcs_core::name::Name16;
 
@@ -11,11 +15,6 @@ use super::{
     CellDescription, DescriptionError, Gripper, Kind, Nest, PartType, Pattern, Points, Shape, ViseProgram,
     commands, known,
 };
-use crate::{
-    mistake::{Mistake, Mistakes},
-    reading::{Path, element, join},
-};
-
 /// Nests whose seats are so near to each other are at one place, in: less than any part is wide.
 const SAME_PLACE: f64 = 0.1;
 
@@ -25,13 +24,17 @@ impl CellDescription {
     /// # Errors
     /// [`DescriptionError::Mistakes`] with all mistakes, without their places.
     pub fn validate(&self) -> Result<(), DescriptionError> {
-        let (mistakes, _) = self.mistakes(&BTreeSet::new());
-        if mistakes.is_empty() { Ok(()) } else { Err(DescriptionError::Mistakes(Mistakes(mistakes))) }
+        let mut problems = Problems::default();
+        problems.extend(self.problems(&StandIns::default()).0);
+        if problems.is_empty() {
+            return Ok(());
+        }
+        Err(DescriptionError::Mistakes(Diagnostics::without_text(problems)))
     }
 
-    /// All mistakes of the entries that have no stand-ins, and the entries that must be more than 0.
-    pub(super) fn mistakes(&self, stand_ins: &BTreeSet<Path>) -> (Vec<Mistake>, BTreeSet<Path>) {
-        let mut check = Check { mistakes: Vec::new(), positive: BTreeSet::new(), stand_ins };
+    /// All problems of the entries that have no stand-ins, and the entries that must be more than 0.
+    pub(super) fn problems(&self, stand_ins: &StandIns) -> (Vec<Problem>, BTreeSet<Path>) {
+        let mut check = Check { problems: Vec::new(), positive: BTreeSet::new(), stand_ins };
         self.check_physics_and_robot(&mut check);
         self.check_hydraulics(&mut check);
         self.check_sensors(&mut check);
@@ -46,7 +49,7 @@ impl CellDescription {
         self.check_parts_and_boxes(&mut check);
         self.check_nests(&mut check);
         self.check_contacts(&mut check);
-        (check.mistakes, check.positive)
+        (check.problems, check.positive)
     }
 
     fn check_physics_and_robot(&self, check: &mut Check<'_>) {
@@ -491,26 +494,22 @@ fn check_gripper(name: &str, gripper: &Gripper, check: &mut Check<'_>) {
     check.within(&path("sensors.noise"), sensors.noise, 0.0, 100.0);
 }
 
-/// Collects mistakes.
+/// Collects problems.
 struct Check<'s> {
-    mistakes: Vec<Mistake>,
+    problems: Vec<Problem>,
     /// Entries that must be more than 0: radii, lengths, weights.
     positive: BTreeSet<Path>,
-    stand_ins: &'s BTreeSet<Path>,
+    stand_ins: &'s StandIns,
 }
 
 impl Check<'_> {
-    /// What stands at a path is what the text says: neither it, nor a part of it, nor what it is a part of has a stand-in.
     fn trusts(&self, path: &str) -> bool {
-        let holds = |whole: &str, part: &str| {
-            part.strip_prefix(whole).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-        };
-        !self.stand_ins.iter().any(|stand_in| holds(stand_in, path) || holds(path, stand_in))
+        self.stand_ins.trusts(path)
     }
 
     fn that(&mut self, holds: bool, path: &str, expected: &str, found: impl FnOnce() -> String) {
         if !holds && self.trusts(path) {
-            self.mistakes.push(Mistake::unlike("cell.value", path, expected, found()));
+            self.problems.push(Problem::unlike("cell.value", path, expected, found()));
         }
     }
 
@@ -567,7 +566,7 @@ impl Check<'_> {
         let names_are_read =
             !self.stand_ins.iter().any(|path| path.ends_with("name") || path.ends_with("unit"));
         if !known.contains(&name) && names_are_read && self.trusts(path) {
-            self.mistakes.push(Mistake::unlike("cell.name", path, expected, name).near(name, known));
+            self.problems.push(Problem::unlike("cell.name", path, expected, name).near(name, known));
         }
     }
 }

@@ -45,13 +45,22 @@ mod line;
 use std::fmt;
 
 use depc::fault::Plan;
+use diagnostics::{
+    Diagnostics, Problem, Source,
+    toml::{Document, FileKind, element, join},
+};
 use serde::{Deserialize, Deserializer, de};
 
 use super::FaultPlan;
-use crate::{
-    description::CellDescription,
-    mistake::{Mistake, Mistakes},
-    reading::{Document, FAULTS, element, join},
+use crate::description::CellDescription;
+
+const KIND: FileKind = FileKind {
+    whole: "the file",
+    syntax: "fault.syntax",
+    key: "fault.key",
+    missing: "fault.missing",
+    value: "fault.value",
+    magnitudes: [1e-6, 1e5],
 };
 
 /// A file of faults.
@@ -63,20 +72,20 @@ pub struct FaultFile {
     pub cell: FaultPlan,
 }
 
-/// The faults in `text` for a cell.
+/// The faults in a file for a cell.
 ///
 /// # Errors
 /// All mistakes in it.
-pub fn parse(text: &str, cell: &CellDescription) -> Result<FaultFile, Mistakes> {
-    sheet(text, Some(cell))
+pub fn parse(source: &Source, cell: &CellDescription) -> Result<FaultFile, Diagnostics> {
+    sheet(source, Some(cell))
 }
 
-/// The faults in `text`, which has faults of the line only.
+/// The faults in a file that has faults of the line only.
 ///
 /// # Errors
 /// All mistakes in it, faults of the cell among them.
-pub fn parse_line(text: &str) -> Result<Plan, Mistakes> {
-    let read = sheet(text, None)?;
+pub fn parse_line(source: &Source) -> Result<Plan, Diagnostics> {
+    let read = sheet(source, None)?;
     Ok(read.line.unwrap_or_else(|| Plan::new(read.cell.seed)))
 }
 
@@ -196,21 +205,21 @@ struct Entry<'f> {
 
 impl Entry<'_> {
     /// A value that is something else than expected.
-    fn unlike(&self, key: &str, expected: impl fmt::Display, found: impl fmt::Display) -> Box<Mistake> {
-        Box::new(Mistake::unlike("fault.value", &join(&self.path, key), expected, found))
+    fn unlike(&self, key: &str, expected: impl fmt::Display, found: impl fmt::Display) -> Box<Problem> {
+        Box::new(Problem::unlike(KIND.value, &join(&self.path, key), expected, found))
     }
 
     /// A name that there is not.
-    fn unknown(&self, key: &str, found: &str, known: &[&str]) -> Box<Mistake> {
+    fn unknown(&self, key: &str, found: &str, known: &[&str]) -> Box<Problem> {
         let expected = format!("one of {}", known.join(", "));
-        let mistake = Mistake::unlike("fault.name", &join(&self.path, key), expected, format!("{found:?}"));
-        Box::new(mistake.near(found, known))
+        let problem = Problem::unlike("fault.name", &join(&self.path, key), expected, format!("{found:?}"));
+        Box::new(problem.near(found, known))
     }
 
     /// What does not fit together.
-    fn says(&self, message: impl fmt::Display) -> Box<Mistake> {
+    fn says(&self, message: impl fmt::Display) -> Box<Problem> {
         let (path, kind) = (&self.path, &self.form.kind);
-        Box::new(Mistake::new("fault.value", path, format!("{path}: {kind} {message}")))
+        Box::new(Problem::of_entry(KIND.value, path, format!("{path}: {kind} {message}")))
     }
 
     /// A number within a range, which `expected` names.
@@ -220,52 +229,40 @@ impl Entry<'_> {
         found: f64,
         expected: &str,
         range: core::ops::RangeInclusive<f64>,
-    ) -> Result<f64, Box<Mistake>> {
+    ) -> Result<f64, Box<Problem>> {
         if range.contains(&found) { Ok(found) } else { Err(self.unlike(key, expected, found)) }
     }
 
     /// Keys that a kind does not take.
-    fn untaken(&self, takes: &[&str]) -> impl Iterator<Item = Mistake> {
+    fn untaken(&self, takes: &[&str]) -> impl Iterator<Item = Problem> {
         self.form.keys().filter(|key| !takes.contains(key)).map(|key| {
             let message =
                 format!("{}: {} takes no {key}; it takes {}", self.path, self.form.kind, takes.join(", "));
-            Mistake::new("fault.key", &join(&self.path, key), message)
+            Problem::of_entry(KIND.key, &join(&self.path, key), message)
         })
     }
 }
 
 /// Read a file, with all its mistakes. Without a cell faults of the cell are mistakes.
-fn sheet(text: &str, cell: Option<&CellDescription>) -> Result<FaultFile, Mistakes> {
-    let (document, mut found) = Document::parse(text, FAULTS);
-    // What stands behind a place that is no TOML may be anything.
-    let reading = found.is_empty().then(|| document.read::<Sheet>());
+fn sheet(source: &Source, cell: Option<&CellDescription>) -> Result<FaultFile, Diagnostics> {
     let mut file = FaultFile::default();
-    if let Some(reading) = reading {
-        found = reading.mistakes;
-        let sound = |path: &str| !reading.stand_ins.iter().any(|stand_in| stand_in.starts_with(path));
-        if let Some(sheet) = reading.value {
-            let mut mistakes = Vec::new();
-            if sheet.fault.is_empty() && sound("fault") {
-                mistakes.push(Mistake::new(
-                    "fault.missing",
-                    "",
-                    "expected at least one [[fault]], found none".into(),
-                ));
-            }
-            if sheet.most_per_tick == Some(0) {
-                mistakes.push(Mistake::unlike("fault.value", "most_per_tick", "1 to 255 faults", 0));
-            }
-            file.cell.seed = sheet.seed;
-            for (index, form) in sheet.fault.iter().enumerate() {
-                let entry = Entry { form, path: element("fault", index), number: index + 1 };
-                if sound(&entry.path) {
-                    take(&entry, cell, &sheet, &mut file, &mut mistakes);
-                }
-            }
-            found.extend(mistakes.into_iter().map(|mistake| (mistake, None)));
+    Document::load(source, KIND, |sheet: &Sheet, stand_ins, problems| {
+        if sheet.fault.is_empty() && stand_ins.trusts("fault") {
+            let message = "expected at least one [[fault]], found none";
+            problems.add(Problem::of_entry(KIND.missing, "", message.into()));
         }
-    }
-    if found.is_empty() { Ok(file) } else { Err(document.placed(text, found)) }
+        if sheet.most_per_tick == Some(0) {
+            problems.add(Problem::unlike(KIND.value, "most_per_tick", "1 to 255 faults", 0));
+        }
+        file.cell.seed = sheet.seed;
+        for (index, form) in sheet.fault.iter().enumerate() {
+            let entry = Entry { form, path: element("fault", index), number: index + 1 };
+            if stand_ins.trusts(&entry.path) {
+                problems.extend(take(&entry, cell, sheet, &mut file));
+            }
+        }
+    })?;
+    Ok(file)
 }
 
 /// Take an entry into the file, or say what is wrong with it.
@@ -274,42 +271,40 @@ fn take(
     cell: Option<&CellDescription>,
     sheet: &Sheet,
     file: &mut FaultFile,
-    mistakes: &mut Vec<Mistake>,
-) {
-    let before = mistakes.len();
+) -> Vec<Problem> {
+    let mut problems = Vec::new();
     if let Some(kind) = line::kind(&entry.form.kind) {
-        mistakes.extend(entry.untaken(&line::KEYS));
+        problems.extend(entry.untaken(&line::KEYS));
         let plan = file.line.get_or_insert_with(|| line::empty(sheet.seed, sheet.most_per_tick));
         match line::rule(entry, kind) {
-            Ok(rule) if mistakes.len() == before => {
-                mistakes.extend(
-                    plan.add(rule).err().map(|refusal| *entry.says(format_args!("is refused: {refusal}"))),
-                );
+            Ok(rule) if problems.is_empty() => {
+                let refused = |refusal| *entry.says(format_args!("is refused: {refusal}"));
+                problems.extend(plan.add(rule).err().map(refused));
             }
             Ok(_) => {}
-            Err(mistake) => mistakes.push(*mistake),
+            Err(problem) => problems.push(*problem),
         }
-        return;
+        return problems;
     }
     let (Some(cell), Some(kind)) = (cell, cell::kind(&entry.form.kind)) else {
         let kinds = line::kinds().chain(cell.iter().flat_map(|_| cell::kinds()));
         let unknown = entry.unknown("kind", &entry.form.kind, &kinds.collect::<Vec<_>>());
         let elsewhere = cell.is_none() && cell::kind(&entry.form.kind).is_some();
-        let mistake = if elsewhere {
+        let problem = if elsewhere {
             entry.says("is a fault of the cell: such faults are for rcs-run")
         } else {
             unknown
         };
-        mistakes.push(*mistake);
-        return;
+        return vec![*problem];
     };
-    mistakes.extend(entry.untaken(&kind.takes()));
+    problems.extend(entry.untaken(&kind.takes()));
     match cell::fault(entry, kind, cell) {
         Ok(fault) => file.cell.faults.push(fault),
-        Err(mistake) if mistakes.len() == before => mistakes.push(*mistake),
+        Err(problem) if problems.is_empty() => problems.push(*problem),
         // A key that is not taken may be the one that is missing by another name.
         Err(_) => {}
     }
+    problems
 }
 
 #[cfg(test)]

@@ -1,20 +1,19 @@
 //! Task data and cell description side by side: what stands in both, with the places of both.
 
+use diagnostics::{At, Diagnostics, Problems, Source};
 use plant::CellDescription;
 use rcs_core::name::Name16;
 use taskdata::{
     files::{Location, TaskData},
-    load::{Diagnostics, Source, Store, places::Places, report::Problems, source::At},
+    load::Store,
 };
-
-use super::report::at;
 
 /// Both, and what was found wrong with either.
 pub struct Both<'a> {
     pub cell: &'a CellDescription,
     pub store: &'a Store,
     pub data: TaskData<'a>,
-    text: &'a str,
+    source: &'a Source,
     in_data: Problems,
     in_cell: Problems,
 }
@@ -22,18 +21,13 @@ pub struct Both<'a> {
 impl<'a> Both<'a> {
     pub fn new(source: &'a Source, cell: &'a CellDescription, store: &'a Store) -> Self {
         let (in_data, in_cell) = Default::default();
-        Self { cell, store, data: store.view(), text: &source.text, in_data, in_cell }
+        Self { cell, store, data: store.view(), source, in_data, in_cell }
     }
 
     /// The findings.
-    pub fn report(self, source: &Source) -> Diagnostics {
-        let in_data = Diagnostics::new(self.in_data, Places::in_blocks(self.store.sources()), 0, Vec::new());
-        in_data.with(Diagnostics::new(
-            self.in_cell,
-            Places::in_lines(std::slice::from_ref(source)),
-            0,
-            Vec::new(),
-        ))
+    pub fn report(self) -> Diagnostics {
+        let in_data = Diagnostics::new(self.in_data, self.store.places(), 0, Vec::new());
+        in_data.with(Diagnostics::of_file(self.in_cell, self.source))
     }
 
     /// True if no body stands beside its place.
@@ -44,8 +38,9 @@ impl<'a> Both<'a> {
     /// An error of a form, with the entry of the cell description that it does not fit.
     pub fn form(&mut self, origin: &[At], index: Option<usize>, message: String, entry: &str) {
         let place = index.and_then(|index| origin.get(index)).copied().unwrap_or_default();
-        let other = at(&CellDescription::place(self.text, entry));
-        let line = self.text.bytes().take(usize::try_from(other.start).unwrap_or(0)).filter(|b| *b == b'\n');
+        let other = CellDescription::place(self.source, entry);
+        let line =
+            self.source.text.bytes().take(usize::try_from(other.start).unwrap_or(0)).filter(|b| *b == b'\n');
         let help = format!("{entry} stands in cell.toml, line {}: one of the two is wrong", line.count() + 1);
         self.in_data.error_help("cell.form", place, message, help);
     }
@@ -57,8 +52,8 @@ impl<'a> Both<'a> {
 
     /// An error of an entry of the cell description, with the form that it does not fit.
     pub fn entry(&mut self, entry: &str, message: String, form: At) {
-        let place = at(&CellDescription::place(self.text, entry));
-        let form = Places::in_blocks(self.store.sources()).words(form);
+        let place = CellDescription::place(self.source, entry);
+        let form = self.store.places().words(form);
         let help = format!("the form stands in {form}: one of the two is wrong");
         self.in_cell.error_help("cell.place", place, format!("{entry}: {message}"), help);
     }

@@ -8,27 +8,21 @@ mod alike;
 mod both;
 mod job;
 mod places;
-mod report;
 mod sizes;
 
 use std::{collections::BTreeSet, path::Path};
 
+use diagnostics::{At, Diagnostic, Diagnostics, Problems, Severity, Source, nearest};
 use plant::CellDescription;
 use rcs_core::name::Name16;
 use taskdata::{
     files::TaskData,
     load::{
-        Diagnostic, Diagnostics, Job, Severity, Source, Step, Store, Workstation,
+        Job, Step, Store, Workstation,
         job::{JobLine, Reload},
-        names::nearest,
-        places::Places,
-        report::Problems,
-        source::At,
     },
 };
 
-use self::report::at;
-pub use self::report::{cell_report, source, toml_report};
 use crate::workstation::orders;
 
 /// What the lines `**` of a job ask of a cell that does not have it. `source` is the text of the description,
@@ -75,7 +69,7 @@ pub fn of_job(job: &Job, source: &Source, cell: &CellDescription, store: &Store,
             _ => problems.help(format!("what the cell has stands in {}", path.display())),
         }
     }
-    Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(job.source())), 0, Vec::new())
+    Diagnostics::of_file(problems, job.source())
 }
 
 /// Blocks that a line loads are checked against the cell as those of the data directory are. One that ends with
@@ -124,12 +118,12 @@ fn place(source: &Source, line: &JobLine, word: Option<&str>) -> At {
 /// What of the names in a cell description the task data do not have: errors for locations, warnings for what
 /// no job need use.
 pub fn of_cell(source: Source, cell: &CellDescription, store: &Store) -> Diagnostics {
-    let mut names = Names { text: &source.text, data: store.view(), problems: Problems::default() };
+    let mut names = Names { source: &source, data: store.view(), problems: Problems::default() };
     names.locations(cell);
     names.sectors(cell);
     names.objects(cell);
     let problems = names.problems;
-    let report = Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new());
+    let report = Diagnostics::of_file(problems, &source);
     if report.has_errors() {
         return report;
     }
@@ -137,19 +131,19 @@ pub fn of_cell(source: Source, cell: &CellDescription, store: &Store) -> Diagnos
     places::check(&mut both);
     sizes::check(&mut both);
     alike::check(&mut both);
-    report.with(both.report(&source))
+    report.with(both.report())
 }
 
 /// Looks up the names of a cell description.
 struct Names<'a> {
-    text: &'a str,
+    source: &'a Source,
     data: TaskData<'a>,
     problems: Problems,
 }
 
 impl Names<'_> {
     fn at(&self, entry: &str) -> At {
-        at(&CellDescription::place(self.text, entry))
+        CellDescription::place(self.source, entry)
     }
 
     fn warn(&mut self, entry: &str, message: String) {

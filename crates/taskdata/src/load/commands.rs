@@ -6,11 +6,12 @@ use std::{
     fmt,
 };
 
+use diagnostics::{At, BlockNumber, Problems};
+
 use super::{
     Store,
     job::{JobLine, OwnLineError, own_command},
-    report::Problems,
-    source::{At, BLOCK_LINES, Block, BlockNumber},
+    source::{BLOCK_LINES, Block},
 };
 
 /// Offset of the area with Task's blocks (IV.2.7).

@@ -6,6 +6,7 @@
 
 use std::collections::{BTreeSet, HashSet};
 
+use diagnostics::{At, BlockNumber, Problems, Source};
 use rustc_hash::FxHashMap;
 
 use super::{
@@ -16,8 +17,7 @@ use super::{
     orphans::Orphans,
     parallel,
     parse::{Parsed, parse},
-    report::Problems,
-    source::{At, BLOCK_COLUMNS, BLOCK_LINES, Block, BlockFault, BlockNumber, LAST_BLOCK, Source, blocks},
+    source::{BLOCK_COLUMNS, BLOCK_LINES, Block, BlockFault, LAST_BLOCK, blocks},
 };
 
 /// Blocks with which loading begins.

@@ -1,11 +1,10 @@
 //! What a form says, before its names are looked up: one entry for each record or group of records that it makes.
 
+use diagnostics::{At, BlockNumber};
 use geometry::movetable::MovetableLine;
 use rcs_core::name::Name;
 
 use crate::files::{Direction, RefType, SensorSource, TrajPara};
-
-use super::source::{At, BlockNumber};
 
 /// A name and where it stands.
 #[derive(Clone, Copy, Debug)]

@@ -4,6 +4,7 @@
 
 use std::ops::RangeInclusive;
 
+use diagnostics::{At, nearest};
 use geometry::movetable::{MAX_LINES, MovetableLine, System};
 
 use crate::files::{Direction, RefType, TrajPara};
@@ -14,9 +15,7 @@ use super::{
         OwnerEntry, PointAt, PointEntry, PoseEntry, TrajEntry, ViewEntry,
     },
     lex::Word,
-    names::nearest,
     parser::{Parser, Skip, is_integer},
-    source::At,
     store::{FILE_NAMES, FILE_RECORDS},
 };
 

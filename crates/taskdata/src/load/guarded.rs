@@ -13,12 +13,13 @@
 
 use std::ops::RangeInclusive;
 
+use diagnostics::nearest;
+
 use crate::files::SensorSource;
 
 use super::{
     entries::{Entry, RelativeEntry, SensorEntry},
     forms::{PLACES, parameters},
-    names::nearest,
     parser::{BEGINNINGS, Parser, Skip, is_compiling_word, is_integer},
 };
 

@@ -5,10 +5,9 @@
 //! (VIII.9; SPECNOTES.md, Task data). Words are
 //! separated by blanks, so `(` within a word, as in `A(B`, is part of a name.
 
-use super::{
-    report::Problems,
-    source::{At, Block, SourceLine},
-};
+use diagnostics::{At, Problems};
+
+use super::source::{Block, SourceLine};
 
 /// A word and where it stands.
 #[derive(Clone, Copy, Debug)]
@@ -103,7 +102,8 @@ fn scan<'a>(line: &SourceLine<'a>, open: &mut Option<At>, words: &mut Vec<Word<'
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::load::source::{Source, blocks};
+    use crate::load::source::blocks;
+    use diagnostics::Source;
 
     fn texts(block: &str) -> (Vec<String>, bool) {
         let source = Source { name: "t".into(), text: format!("BLOCK# 1 OFFSET 20000\n{block}").into() };

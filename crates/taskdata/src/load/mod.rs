@@ -7,8 +7,8 @@
 //! 3. [`directory`]: which blocks are loaded at all (Figure VIII.12);
 //! 4. `link`: names into record numbers, duplicates, unknown names;
 //! 5. `check`: what a command would run into; every place the robot is sent to can be reached;
-//! 6. [`store`]: the files; [`origins`]: where each record was entered; [`report`]: everything that was found, with its
-//!    [`places`].
+//! 6. [`store`]: the files; [`origins`]: where each record was entered; [`Diagnostics`]: everything that was found, with
+//!    its place.
 //!
 //! [`mod@print`] writes entries as forms again. [`job`] reads the job files, which stand beside the blocks, and
 //! [`commands`] the blocks with commands for Task.
@@ -25,28 +25,24 @@ mod index;
 pub mod job;
 pub mod lex;
 mod link;
-pub mod names;
 pub mod origins;
 mod orphans;
 mod parallel;
 pub mod parse;
 pub mod parser;
-pub mod places;
 pub mod print;
-pub mod report;
 pub mod show;
 pub mod source;
 pub mod store;
 
 use std::{collections::HashSet, path::Path};
 
+use diagnostics::Problems;
+pub use diagnostics::{At, BlockNumber, Diagnostic, Diagnostics, Loaded, Severity, Source, amount};
+
 pub use job::{Job, Step, ViseOpening, Workstation};
 pub use origins::Origins;
-pub use report::{Diagnostic, Diagnostics, Loaded, Severity};
-pub use source::{BlockNumber, Source};
 pub use store::Store;
-
-use {places::Places, report::Problems};
 
 impl Store {
     /// Load all files `*.blk` under a data directory.
@@ -159,7 +155,7 @@ impl Linked {
         let Self { store, problems, blocks, unread } = self;
         let failed = problems.has_errors();
         let loaded = if failed { Vec::new() } else { store.loaded() };
-        let mut report = Diagnostics::new(problems, Places::in_blocks(&store.sources), blocks, loaded);
+        let mut report = Diagnostics::new(problems, store.places(), blocks, loaded);
         report.files = store.sources.len() - before;
         if failed { Err((Box::new(Part { store, unread }), Box::new(report))) } else { Ok((store, report)) }
     }

@@ -1,6 +1,6 @@
 //! Where each record was entered: for messages, and to explain why the robot goes where it goes.
 
-use super::source::At;
+use diagnostics::At;
 
 /// The places of all records, in the order of the record numbers; empty for a load with errors.
 #[derive(Clone, Debug, Default)]

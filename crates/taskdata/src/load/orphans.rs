@@ -3,13 +3,9 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::{
-    entries::LoadLine,
-    parse::Parsed,
-    print,
-    report::{Problems, Severity, amount},
-    source::{At, BlockNumber, LAST_BLOCK},
-};
+use diagnostics::{At, BlockNumber, Problems, Severity, amount, distance};
+
+use super::{entries::LoadLine, parse::Parsed, print, source::LAST_BLOCK};
 
 /// Two numbers that differ by no more keys can be meant for each other.
 const SLIP: usize = 2;
@@ -207,7 +203,7 @@ impl Orphans {
     /// The orphan that a number may be meant for.
     fn meant(&mut self, number: BlockNumber) -> Option<&mut Orphan> {
         let wanted = number.number.to_string();
-        let slip = |orphan: &Orphan| strsim::osa_distance(&wanted, &orphan.number.number.to_string());
+        let slip = |orphan: &Orphan| distance(&wanted, &orphan.number.number.to_string());
         let near = self
             .list
             .iter_mut()

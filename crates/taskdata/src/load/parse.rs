@@ -5,15 +5,14 @@
 //! of the entry is skipped up to the next compiling word or the next line that begins with a number, so that
 //! one mistake gives one message.
 
+use diagnostics::{At, BlockNumber, Problems, nearest};
+
 use super::{
     entries::{Entry, LoadLine},
     forms, guarded,
     lex::Word,
-    names::nearest,
     parser::{BEGINNINGS, COMPILING_WORDS, Parser, Skip, is_integer},
-    report::Problems,
     show,
-    source::{At, BlockNumber},
 };
 
 /// What a block holds.

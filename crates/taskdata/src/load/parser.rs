@@ -2,6 +2,7 @@
 
 use std::{fmt::Display, ops::RangeInclusive};
 
+use diagnostics::{At, BlockNumber, Problems, Severity};
 use rcs_core::name::{Name, NameError};
 
 use crate::files::RefType;
@@ -9,8 +10,6 @@ use crate::files::RefType;
 use super::{
     entries::{Named, Typed},
     lex::Word,
-    report::Problems,
-    source::{At, BlockNumber},
 };
 
 /// Words that begin an entry or a part of one. None of them can be a name.
@@ -126,7 +125,7 @@ impl<'a> Parser<'a, '_> {
     /// Note an error that spoils the entry but lets it be read to its end.
     pub fn flaw(&mut self, code: &'static str, at: At, message: impl Into<String>, help: Option<String>) {
         self.flawed = true;
-        self.problems.push(super::report::Severity::Error, code, at, message.into(), help);
+        self.problems.push(Severity::Error, code, at, message.into(), help);
     }
 
     /// Note that something else was expected here.

@@ -2,11 +2,12 @@
 
 use std::ops::RangeInclusive;
 
+use diagnostics::nearest;
+
 use super::{
     entries::{Entry, Named, ShowEntry},
     forms::{FORCE, GRIP, OPENING},
     lex::Word,
-    names::nearest,
     parser::{Parser, Skip},
 };
 

@@ -6,8 +6,9 @@
 //! explained where it stands without disturbing its block. And a block that was copied from a listing, with
 //! the line numbers 0 to 15 in front, is read without them.
 
-use std::{collections::BTreeSet, fs, io, os::unix::fs::MetadataExt as _, path::Path, sync::Arc};
+use std::{collections::BTreeSet, fs, io, os::unix::fs::MetadataExt as _, path::Path};
 
+use diagnostics::{At, BlockLines, BlockNumber, Places, Source, lines_of};
 use os_io::files;
 
 /// Lines of a block.
@@ -20,56 +21,6 @@ pub const BLOCK_COLUMNS: usize = 64;
 const REMARK: &str = "%%";
 /// Begins the header of a block.
 const HEADER: &str = "BLOCK#";
-
-/// A file of blocks, or of job lines.
-#[derive(Clone, Debug)]
-pub struct Source {
-    /// Path as it is shown.
-    pub name: String,
-    /// Its text.
-    pub text: Arc<str>,
-}
-
-/// A piece of a source: what a diagnostic underlines. Every word of a load has one, so it is small; `Places`
-/// knows its block, line and column.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct At {
-    /// Position of the source in the list of sources.
-    pub source: u32,
-    /// First byte in the source.
-    pub start: u32,
-    /// Number of bytes.
-    pub length: u32,
-}
-
-impl At {
-    /// From the beginning of one piece to the end of another of the same source.
-    #[must_use]
-    pub fn to(self, end: Self) -> Self {
-        let last = end.start.saturating_add(end.length);
-        Self { length: last.saturating_sub(self.start).max(self.length), ..self }
-    }
-}
-
-/// Number of a block and the offset of its area.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct BlockNumber {
-    /// `OFFSET`: 20000 objects, 21000 system data (IV.2.7).
-    pub offset: u32,
-    /// `BLOCK#`.
-    pub number: u32,
-}
-
-impl BlockNumber {
-    /// Stands for the offset of a block whose header cannot be read.
-    pub const UNREADABLE: u32 = u32::MAX;
-}
-
-impl std::fmt::Display for BlockNumber {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "block {} (offset {})", self.number, self.offset)
-    }
-}
 
 /// A line of a block, without its line number.
 #[derive(Clone, Copy, Debug)]
@@ -165,16 +116,6 @@ fn short(value: usize) -> u32 {
     u32::try_from(value).unwrap_or(u32::MAX)
 }
 
-/// Each line of a text with the position of its first byte.
-pub fn lines_of(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let mut start = 0;
-    text.split_inclusive('\n').map(move |line| {
-        let here = start;
-        start += line.len();
-        (here, line.trim_end_matches(['\n', '\r']))
-    })
-}
-
 /// True for a line that is a header, or was meant to be one.
 fn is_header(line: &str) -> bool {
     let start = line.trim_start().as_bytes().get(..HEADER.len());
@@ -243,6 +184,19 @@ pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockF
     }
     faults.extend(tabs.map(|(at, lines)| (at, BlockFault::Tab(lines))));
     (found, faults)
+}
+
+/// Places in files of blocks: by block, line of the block and column.
+#[must_use]
+pub fn places_in_blocks(sources: &[Source]) -> Places<'_> {
+    Places::in_blocks(sources, |source| {
+        let lines = |block: Block<'_>| BlockLines {
+            number: block.number,
+            start: block.header.start,
+            lines: block.lines.into_iter().map(|line| line.at).collect(),
+        };
+        blocks(0, source).0.into_iter().map(lines).collect()
+    })
 }
 
 /// Drop empty lines after the block and the line numbers of a listing, and check the size.
@@ -314,6 +268,29 @@ mod tests {
         let at = blocks[0].lines[2].at;
         assert_eq!(&s.text[at.start as usize..(at.start + at.length) as usize], "  -pt- B");
         assert_eq!(blocks[1].number, BlockNumber { offset: 21_000, number: 722 });
+    }
+
+    #[test]
+    fn lines_count_from_0_in_a_block_and_from_1_in_the_file() {
+        let text =
+            "%% remark\nBLOCK# 7 OFFSET 21000\nA\n%% remark\n  B\n\nBLOCK# 8 OFFSET 21000\n 0 C\n 1   D\n";
+        let sources = [Source { name: "f.blk".to_owned(), text: text.into() }];
+        let mut places = places_in_blocks(&sources);
+        let mut place = |word: &str| {
+            let at = At { source: 0, start: short(text.find(word).unwrap()), length: 1 };
+            let found = places.position(at).unwrap();
+            (found.block.map(|block| block.number), found.line, found.column)
+        };
+        assert_eq!(place("A\n"), (Some(7), 0, 1));
+        assert_eq!(place("B\n"), (Some(7), 1, 3));
+        assert_eq!(place("D\n"), (Some(8), 1, 3));
+        assert_eq!(place("BLOCK# 8"), (None, 7, 1));
+        assert_eq!(place("remark"), (None, 1, 4));
+        assert_eq!(
+            places.words(At { source: 0, start: 32, length: 1 }),
+            "f.blk, block 7 (offset 21000), line 0"
+        );
+        assert_eq!(places.words(At { source: 1, start: 0, length: 1 }), "?");
     }
 
     #[test]

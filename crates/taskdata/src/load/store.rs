@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use diagnostics::{At, BlockNumber, Loaded, Places, Source};
+
 use crate::files::{
     ApprDept, Array, EndEffPara, GripLoc, Locpt, Member, MovtabRecord, ObjGrips, ObjLoc, Object, Owner, Path,
     PathPoint, PedPara, PoseRecord, RelativeMove, SensorPara, TaskData, Traj, TrajPara, VisionPara,
@@ -13,9 +15,7 @@ use super::{
     commands::Commands,
     index::{OwnedIndex, OwnedPlaceIndex},
     origins::Origins,
-    places::Places,
-    report::Loaded,
-    source::{At, BlockNumber, Source},
+    source::places_in_blocks,
 };
 
 /// Records that a file can hold (SPECNOTES.md, Task data); one more is the manual's FILE FULL.
@@ -195,10 +195,16 @@ impl Store {
         &self.origins
     }
 
+    /// Places in the texts that were loaded.
+    #[must_use]
+    pub fn places(&self) -> Places<'_> {
+        places_in_blocks(&self.sources)
+    }
+
     /// A place of the text in words: file, block and line; "?" if the text is not known.
     #[must_use]
     pub fn place(&self, at: At) -> String {
-        Places::in_blocks(&self.sources).words(at)
+        self.places().words(at)
     }
 
     /// How many records each file has, by the manual's names.

@@ -1,12 +1,12 @@
 //! Faults of the cell.
 
+use diagnostics::Problem;
 use rcs_core::tick::TICK_S;
 
 use super::{Entry, Value};
 use crate::{
     description::CellDescription,
     fault::{Disorder, Fault, Mishap, Valve, What, When},
-    mistake::Mistake,
     sensor::Sensor,
 };
 
@@ -76,13 +76,13 @@ pub(super) fn kind(name: &str) -> Option<&'static Kind> {
 }
 
 /// The fault of an entry.
-pub(super) fn fault(entry: &Entry<'_>, kind: &Kind, cell: &CellDescription) -> Result<Fault, Box<Mistake>> {
+pub(super) fn fault(entry: &Entry<'_>, kind: &Kind, cell: &CellDescription) -> Result<Fault, Box<Problem>> {
     let what = what(entry, kind.name, cell)?;
     Ok(Fault { number: entry.number, what, when: when(entry)? })
 }
 
 /// What happens.
-fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, Box<Mistake>> {
+fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, Box<Problem>> {
     let form = entry.form;
     let by = |expected: &str, range: core::ops::RangeInclusive<f64>| {
         let by = form.by.ok_or_else(|| entry.says("needs `by`: how much"))?;
@@ -138,7 +138,7 @@ fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, B
 const ONE_OF: &str = "needs one of `sensor`, `valve` and `device`";
 
 /// What is stuck, if it is no sensor.
-fn stuck(entry: &Entry<'_>) -> Result<What, Box<Mistake>> {
+fn stuck(entry: &Entry<'_>) -> Result<What, Box<Problem>> {
     let form = entry.form;
     match (&form.valve, &form.device) {
         (Some(valve), None) => {
@@ -161,19 +161,19 @@ fn stuck(entry: &Entry<'_>) -> Result<What, Box<Mistake>> {
     }
 }
 
-fn sensor(entry: &Entry<'_>, name: &str) -> Result<Sensor, Box<Mistake>> {
+fn sensor(entry: &Entry<'_>, name: &str) -> Result<Sensor, Box<Problem>> {
     let known = || Sensor::all().map(Sensor::name).collect::<Vec<_>>();
     Sensor::named(name).ok_or_else(|| entry.unknown("sensor", name, &known()))
 }
 
-fn part(entry: &Entry<'_>, key: &str, name: &str, cell: &CellDescription) -> Result<String, Box<Mistake>> {
+fn part(entry: &Entry<'_>, key: &str, name: &str, cell: &CellDescription) -> Result<String, Box<Problem>> {
     let known = || cell.part.iter().map(|part| part.name.as_str()).collect::<Vec<_>>();
     let part = cell.part(name).ok_or_else(|| entry.unknown(key, name, &known()))?;
     Ok(part.name.clone())
 }
 
 /// The count at which a sensor is stuck.
-fn counts(entry: &Entry<'_>, value: &Value) -> Result<i64, Box<Mistake>> {
+fn counts(entry: &Entry<'_>, value: &Value) -> Result<i64, Box<Problem>> {
     let range = match &entry.form.sensor {
         Some(name) => sensor(entry, name)?.range(),
         None => 0..=0,
@@ -185,7 +185,7 @@ fn counts(entry: &Entry<'_>, value: &Value) -> Result<i64, Box<Mistake>> {
 }
 
 /// When it happens.
-fn when(entry: &Entry<'_>) -> Result<When, Box<Mistake>> {
+fn when(entry: &Entry<'_>) -> Result<When, Box<Problem>> {
     let form = entry.form;
     let after = form.after.map(|after| entry.within("after", after, "seconds", 0.0..=1e5)).transpose()?;
     let after = after.map(|seconds| libm::round(seconds / TICK_S) as u64);

@@ -2,8 +2,9 @@
 
 use depc::fault::{ALWAYS, Direction, FaultKind, MOST_TICKS, Plan, Rule};
 
+use diagnostics::Problem;
+
 use super::Entry;
-use crate::mistake::Mistake;
 
 /// Keys of all kinds.
 pub(super) const KEYS: [&str; 7] = ["direction", "rate", "at", "from", "until", "ticks", "byte"];
@@ -25,7 +26,7 @@ pub(super) fn empty(seed: u64, most_per_tick: Option<u8>) -> Plan {
 }
 
 /// The rule of an entry.
-pub(super) fn rule(entry: &Entry<'_>, kind: FaultKind) -> Result<Rule, Box<Mistake>> {
+pub(super) fn rule(entry: &Entry<'_>, kind: FaultKind) -> Result<Rule, Box<Problem>> {
     let form = entry.form;
     let mut rule = Rule::new(kind);
     match form.direction.as_deref() {

@@ -1,6 +1,7 @@
 use std::{fs, path::Path};
 
 use depc::fault::{ALWAYS, Direction, FaultKind, Rule};
+use diagnostics::Diagnostic;
 
 use super::*;
 use crate::fault::When;
@@ -9,8 +10,12 @@ fn cell() -> CellDescription {
     CellDescription::from_toml(include_str!("../../../../../data/cell.toml")).unwrap()
 }
 
+fn source(text: &str) -> Source {
+    Source { name: "faults.toml".to_owned(), text: text.into() }
+}
+
 fn faults(text: &str) -> Vec<(String, When)> {
-    let read = parse(text, &cell()).unwrap();
+    let read = parse(&source(text), &cell()).unwrap();
     read.cell.faults.into_iter().map(|fault| (fault.what.to_string(), fault.when)).collect()
 }
 
@@ -66,19 +71,19 @@ fn every_kind_is_read() {
         assert_eq!(*read, (text.to_owned(), when));
     }
     assert_eq!(read.len(), expected.len());
-    let read = parse(text, &cell()).unwrap();
+    let read = parse(&source(text), &cell()).unwrap();
     assert_eq!((read.cell.seed, read.line.map(|plan| plan.rules().len())), (7, Some(1)));
 }
 
 #[test]
 fn every_rule_of_the_line_is_read() {
-    let read = parse_line(
+    let read = parse_line(&source(
         "seed = 7\nmost_per_tick = 2\n\
          [[fault]]\nkind = \"flip\"\ndirection = \"to-host\"\nrate = 0.001\nfrom = 100\nuntil = 500\n\
          [[fault]]\nkind = \"delay\"\nat = 250\nticks = 3\ndirection = \"both\"\n\
          [[fault]]\nkind = \"insert\"\nrate = 1\nbyte = 0x06\ndirection = \"to-controller\"\n\
          [[fault]]\nkind = \"stall\"\nfrom = 600\n",
-    );
+    ));
     let mut expected = Plan::new(7).most_per_tick(2);
     for rule in [
         Rule::new(FaultKind::Flip).only(Direction::ToHost).rate(1000).window(100, 500),
@@ -89,25 +94,25 @@ fn every_rule_of_the_line_is_read() {
         expected.add(rule).unwrap();
     }
     assert_eq!(read.unwrap(), expected);
-    assert_eq!(parse_line("[[fault]]\nkind = \"drop\"\nat = 1\n").unwrap().seed(), 1);
+    assert_eq!(parse_line(&source("[[fault]]\nkind = \"drop\"\nat = 1\n")).unwrap().seed(), 1);
 }
 
 /// What is said of a second fault behind a good one.
 fn said(entry: &str) -> String {
     let text = format!("[[fault]]\nkind = \"flip\"\nrate = 0.1\n[[fault]]\n{entry}\n");
-    parse(&text, &cell()).unwrap_err().to_string()
+    parse(&source(&text), &cell()).unwrap_err().in_line()
 }
 
 #[test]
 fn mistakes_say_where_what_was_expected_and_what_was_found() {
     for (entry, expected) in [
         ("kind = \"stuk\"", "line 5, column 8: fault[1].kind: expected one of drop, "),
-        ("kind = \"stuk\"", ", found \"stuk\" (the nearest is stuck)"),
+        ("kind = \"stuk\"", ", found \"stuk\" (the nearest one is stuck)"),
         (
             "kind = \"off\"\nsensor = \"grip.potentimeter\"",
             "line 6, column 10: fault[1].sensor: expected one of ",
         ),
-        ("kind = \"off\"\nsensor = \"grip.potentimeter\"", "(the nearest is grip.potentiometer)"),
+        ("kind = \"off\"\nsensor = \"grip.potentimeter\"", "(the nearest one is grip.potentiometer)"),
         (
             "kind = \"stuck\"\nvalve = \"grip.shut\"\nvalue = \"open\"",
             "line 6, column 9: fault[1].valve: expected one",
@@ -155,7 +160,7 @@ fn mistakes_say_where_what_was_expected_and_what_was_found() {
         ("kind = \"air-lost\"\nrate = 0.1\nticks = 0", "fault[1].ticks: expected 1 to 100000, found 0"),
         ("kind = \"turned\"", "turned needs `angle`"),
         ("kind = \"missing\"\nobject = \"LINKBAR1\"\nx = 1", "missing takes no x; it takes object, "),
-        ("kind = \"missing\"\nobject = \"LINKBAR_BH\"", "(the nearest is LINKBAR1_BH)"),
+        ("kind = \"missing\"\nobject = \"LINKBAR_BH\"", "(the nearest one is LINKBAR1_BH)"),
         ("kind = \"wrong-part\"", "wrong-part needs `part`: what comes instead"),
         ("kind = \"pedestal-moved\"\nat = 3", "pedestal-moved takes no at; it takes x, y, angle"),
         ("kind = \"misplaced\"\nx = 101", "fault[1].x: expected -100 to 100 in, found 101"),
@@ -187,9 +192,9 @@ fn all_mistakes_are_found_at_once() {
         [[fault]]\nkind = \"stuk\"\n\
         [[fault]]\nkind = \"slow\"\nsensor = \"beam.1\"\nby = 0\n\
         [[fault]]\nkind = \"flip\"\nrate = \"often\"\n";
-    let mistakes = parse(text, &cell()).unwrap_err();
-    let lines: Vec<_> = mistakes.all().iter().filter_map(|mistake| Some(mistake.place?.line)).collect();
-    assert_eq!(lines, [1, 3, 7, 10], "{mistakes}");
+    let report = parse(&source(text), &cell()).unwrap_err();
+    let lines: Vec<_> = report.diagnostics().iter().filter_map(Diagnostic::line).collect();
+    assert_eq!(lines, [1, 3, 7, 10], "{report}");
 }
 
 #[test]
@@ -205,10 +210,10 @@ fn what_is_no_file_of_faults_is_refused() {
         ("fault = 3\n", "expected an array, found 3"),
         ("colour = 3\n[[fault]]\nkind = \"drop\"\nat = 1\n", "the file has no key colour"),
     ] {
-        let found = parse(text, &cell()).unwrap_err().to_string();
+        let found = parse(&source(text), &cell()).unwrap_err().in_line();
         assert!(found.contains(words), "{text:?}: {found}");
     }
-    let found = parse_line("[[fault]]\nkind = \"air-lost\"\n").unwrap_err().to_string();
+    let found = parse_line(&source("[[fault]]\nkind = \"air-lost\"\n")).unwrap_err().in_line();
     assert!(found.contains("air-lost is a fault of the cell: such faults are for rcs-run"), "{found}");
 }
 
@@ -219,7 +224,7 @@ fn the_files_of_the_project_are_read() {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let text = fs::read_to_string(&path).unwrap();
-        parse(&text, &cell()).unwrap_or_else(|mistakes| panic!("{}: {mistakes}", path.display()));
+        parse(&source(&text), &cell()).unwrap_or_else(|report| panic!("{}: {report}", path.display()));
         count += 1;
     }
     assert!(count > 20, "{count} files");

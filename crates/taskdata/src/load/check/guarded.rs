@@ -1,5 +1,6 @@
 //! Relative moves: that a command looks for each, that guarded ones have a sensor, and that the robot can stop in time.
 
+use diagnostics::nearest;
 use interfaces::device::{ADC_FULL_SCALE, FORCE_COUNTS_PER_LB, FORCE_ZERO, MOMENT_COUNTS_PER_IN_LB};
 
 use rcs_core::name::Name16;
@@ -7,10 +8,7 @@ use rcs_core::name::Name16;
 use crate::files::{RelativeMove, SensorSource, TaskData};
 
 use super::{
-    super::{
-        guarded::{RELATIVE_MOVES, relative_move_named},
-        names::nearest,
-    },
+    super::guarded::{RELATIVE_MOVES, relative_move_named},
     Findings, Origins, origin,
 };
 

@@ -20,13 +20,10 @@ use std::collections::HashMap;
 use crate::files::{
     ArrayId, Location, LocptId, ObjectId, OwnerId, Place, RefType, Reference, TaskData, index::reference_key,
 };
+use diagnostics::{At, Problems, Severity};
 use interfaces::subtask::LocationKind;
 
-use super::{
-    origins::Origins,
-    report::{Problems, Severity},
-    source::At,
-};
+use super::origins::Origins;
 
 pub(super) use reach::check as reach;
 

@@ -13,6 +13,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use diagnostics::{At, Problems};
 use geometry::frame::Frame;
 use rcs_core::name::Name10;
 
@@ -25,8 +26,6 @@ use super::{
     super::{
         guarded::{Beginning, relative_move_named},
         parallel,
-        report::Problems,
-        source::At,
     },
     Findings, Origins,
     arm::{fault, from_vertical, is_vertical},

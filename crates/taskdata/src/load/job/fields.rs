@@ -1,8 +1,9 @@
 //! The words of a line of a job, and what its fields are read into.
 
+use diagnostics::At;
 use rcs_core::name::Name16;
 
-use super::super::{lex::Word, source::At};
+use super::super::lex::Word;
 
 /// The words of one line, taken from left to right.
 pub(super) struct Fields<'a, 'w> {

@@ -46,6 +46,7 @@ mod workstation;
 
 use std::path::Path;
 
+use diagnostics::{At, Diagnostics, Places, Problems, Source, lines_of};
 use interfaces::hws::HwsCommand;
 
 pub use own_line::{OwnLineError, is_command, own_command, own_line};
@@ -57,9 +58,7 @@ pub use action::{
 
 use super::{
     Part, Store,
-    places::Places,
-    report::{Diagnostics, Problems},
-    source::{At, Source, SourceLine, lines_of, read},
+    source::{SourceLine, read},
 };
 
 /// Input commands of Task (V.4.1).
@@ -131,7 +130,7 @@ impl Job {
             Err(error) => {
                 let mut problems = Problems::default();
                 problems.unreadable(&path.display().to_string(), &error);
-                Err(Box::new(Diagnostics::new(problems, Places::in_lines(&[]), 0, Vec::new())))
+                Err(Box::new(Diagnostics::without_text(problems)))
             }
         }
     }
@@ -144,7 +143,7 @@ impl Job {
             Ok(source) => source,
             Err(error) => {
                 problems.unreadable(&path.display().to_string(), &error);
-                return Diagnostics::new(problems, Places::in_lines(&[]), 0, Vec::new());
+                return Diagnostics::without_text(problems);
             }
         };
         let mut reader = read::Reader::new(part.store.view(), Vec::new(), &mut problems).among(part);
@@ -153,7 +152,7 @@ impl Job {
         if steps == 0 && !problems.has_errors() {
             empty(&mut problems);
         }
-        Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new())
+        Diagnostics::of_file(problems, &source)
     }
 
     /// The job and its report, unless it has no line.
@@ -179,8 +178,7 @@ impl Job {
         let steps = source_lines(&source).filter_map(|(number, line)| reader.line(number, &line)).collect();
         reader.end();
         let failed = problems.has_errors();
-        let report =
-            Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new());
+        let report = Diagnostics::of_file(problems, &source);
         if failed {
             return Err(Box::new(report));
         }

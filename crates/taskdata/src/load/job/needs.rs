@@ -2,12 +2,10 @@
 //! regrip on the Active Pedestal implies, a tool in the gripper (V.4.1, V.3.1 FIX-GRIP). Task and Subtask
 //! refuse the command for the same reasons, but only once it is its turn.
 
+use diagnostics::{At, Problems};
 use rcs_core::name::{Name10, Name16};
 
-use super::{
-    super::{report::Problems, source::At},
-    fields::{Field, Number},
-};
+use super::fields::{Field, Number};
 use crate::files::{ArrayId, Direction, LocptId, OwnerId, RefType, Reference, TaskData};
 
 /// Where the Active Pedestal takes an object (V.3.1 FIX-GRIP).

@@ -5,14 +5,10 @@
 
 use std::fmt;
 
+use diagnostics::{At, Diagnostics, Places, Problems, Source};
+
 use super::{
-    super::{
-        Store,
-        lex::words_of_line,
-        places::Places,
-        report::{Diagnostics, Problems},
-        source::{At, Source, SourceLine},
-    },
+    super::{Store, lex::words_of_line, source::SourceLine},
     JobLine, Step, TASK_COMMANDS, Workstation,
     fields::Fields,
     read::Reader,

@@ -1,19 +1,13 @@
 //! The lines of a job, word by word.
 
+use diagnostics::{At, Problems, Severity, nearest};
 use interfaces::hws::HwsCommand;
 use rcs_core::name::Name16;
 
 use crate::files::{Location, LookupError, TaskData};
 
 use super::{
-    super::{
-        Part,
-        lex::words_of_line,
-        names::nearest,
-        parser::is_integer,
-        report::{Problems, Severity},
-        source::{At, SourceLine},
-    },
+    super::{Part, lex::words_of_line, parser::is_integer, source::SourceLine},
     JobLine, Step, TASK_COMMANDS, Workstation,
     fields::{Field, Fields, Number},
     needs::{Command, Endpoint, Held, assigned_to, grips_of, places_of},

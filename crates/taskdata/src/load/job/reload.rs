@@ -4,13 +4,10 @@
 
 use std::path::Path;
 
+use diagnostics::{Problems, Source};
+
 use super::{
-    super::{
-        Store,
-        lex::words_of_line,
-        report::Problems,
-        source::{Source, read},
-    },
+    super::{Store, lex::words_of_line, source::read},
     source_lines,
 };
 

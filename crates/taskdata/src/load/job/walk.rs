@@ -3,14 +3,12 @@
 //! Where the robot is before the first command is not known here. A command whose way leads over the Active Pedestal or to the tool
 //! drum is not followed; the walk begins again at its end.
 
+use diagnostics::{At, Problems};
 use rcs_core::name::Name16;
 
 use crate::files::{Location, RefType, TaskData};
 
-use super::{
-    super::{report::Problems, source::At},
-    needs::approaches_of,
-};
+use super::needs::approaches_of;
 
 /// A location that a command leads to.
 pub(super) struct Visit {

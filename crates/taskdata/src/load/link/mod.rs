@@ -10,6 +10,7 @@ mod places;
 
 use std::collections::{BTreeMap, HashSet};
 
+use diagnostics::{At, Problems, nearest};
 use geometry::frame::Frame;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -24,12 +25,9 @@ use super::{
     collected::Collected,
     entries::{Named, Typed},
     index::{OwnedIndex, OwnedPlaceIndex, Pair},
-    names::nearest,
     origins::Origins,
     orphans::Orphans,
     parallel,
-    report::Problems,
-    source::At,
     store::{FILE_NAMES, FILE_RECORDS, Files, OwnedIndexes},
 };
 

@@ -1,5 +1,6 @@
 //! Poses, movetables, location points, arrays, owners, trajectories and their points (VII.1 to VII.6).
 
+use diagnostics::nearest;
 use geometry::{frame::Frame, movetable::Movetable, pose::Pose};
 use rcs_core::name::Name;
 
@@ -12,7 +13,6 @@ use super::{
     super::{
         collected::Collected,
         entries::{Named, OwnerEntry, PointEntry, PoseEntry, Typed},
-        names::nearest,
         parallel,
     },
     Keyed, Linker, number,

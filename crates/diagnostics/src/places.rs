@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::source::{At, Block, BlockNumber, Source, blocks, lines_of};
+use crate::source::{At, BlockLines, BlockNumber, Source, lines_of};
 
 /// A place as a person finds it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub struct Position {
 /// A source that something is said of.
 struct Lines<'s> {
     text: &'s str,
-    blocks: Vec<Block<'s>>,
+    blocks: Vec<BlockLines>,
     /// First byte of each line of the file.
     starts: Vec<u32>,
 }
@@ -28,8 +28,8 @@ struct Lines<'s> {
 /// The places of pieces of some sources. Each source is gone through once, when its first piece is asked for.
 pub struct Places<'s> {
     sources: &'s [Source],
-    /// True if what stands under a header is a block.
-    in_blocks: bool,
+    /// The blocks of a source, if its lines count in them.
+    blocks: Option<fn(&Source) -> Vec<BlockLines>>,
     known: HashMap<u32, Lines<'s>>,
 }
 
@@ -43,16 +43,16 @@ fn short(value: usize) -> u32 {
 }
 
 impl<'s> Places<'s> {
-    /// Places in files of blocks.
+    /// Places in files of blocks, which `blocks` finds.
     #[must_use]
-    pub fn in_blocks(sources: &'s [Source]) -> Self {
-        Self { sources, in_blocks: true, known: HashMap::new() }
+    pub fn in_blocks(sources: &'s [Source], blocks: fn(&Source) -> Vec<BlockLines>) -> Self {
+        Self { sources, blocks: Some(blocks), known: HashMap::new() }
     }
 
     /// Places in files of lines, such as jobs.
     #[must_use]
     pub fn in_lines(sources: &'s [Source]) -> Self {
-        Self { sources, in_blocks: false, known: HashMap::new() }
+        Self { sources, blocks: None, known: HashMap::new() }
     }
 
     /// The sources.
@@ -72,7 +72,7 @@ impl<'s> Places<'s> {
         let source = self.source(at)?;
         let lines = self.known.entry(at.source).or_insert_with(|| Lines {
             text: &source.text,
-            blocks: if self.in_blocks { blocks(0, source).0 } else { Vec::new() },
+            blocks: self.blocks.map(|blocks| blocks(source)).unwrap_or_default(),
             starts: lines_of(&source.text).map(|(start, _)| short(start)).collect(),
         });
         Some(lines.in_block(at.start).unwrap_or_else(|| lines.in_file(at.start)))
@@ -111,9 +111,9 @@ impl<'s> Places<'s> {
 impl Lines<'_> {
     /// The place in the lines of a block. Headers, and what stands between lines, are in none.
     fn in_block(&self, byte: u32) -> Option<Position> {
-        let block = self.blocks.get(last_begun(&self.blocks, |block| block.header.start, byte)?)?;
-        let number = last_begun(&block.lines, |line| line.at.start, byte)?;
-        let line = block.lines.get(number)?.at;
+        let block = self.blocks.get(last_begun(&self.blocks, |block| block.start, byte)?)?;
+        let number = last_begun(&block.lines, |line| line.start, byte)?;
+        let line = *block.lines.get(number)?;
         let within = byte.saturating_sub(line.start) <= line.length;
         within.then(|| Position {
             block: Some(block.number),
@@ -160,28 +160,12 @@ mod tests {
     }
 
     #[test]
-    fn lines_count_from_0_in_a_block_and_from_1_in_the_file() {
-        let text =
-            "%% remark\nBLOCK# 7 OFFSET 21000\nA\n%% remark\n  B\n\nBLOCK# 8 OFFSET 21000\n 0 C\n 1   D\n";
-        let sources = [Source { name: "f.blk".to_owned(), text: text.into() }];
-        let mut places = Places::in_blocks(&sources);
-        let mut place = |word: &str| {
-            let at = At { source: 0, start: short(text.find(word).unwrap()), length: 1 };
-            let found = places.position(at).unwrap();
-            (found.block.map(|block| block.number), found.line, found.column)
-        };
-        assert_eq!(place("A\n"), (Some(7), 0, 1));
-        assert_eq!(place("B\n"), (Some(7), 1, 3));
-        assert_eq!(place("D\n"), (Some(8), 1, 3));
-        assert_eq!(place("BLOCK# 8"), (None, 7, 1));
-        assert_eq!(place("remark"), (None, 1, 4));
-        assert_eq!(
-            places.words(At { source: 0, start: 32, length: 1 }),
-            "f.blk, block 7 (offset 21000), line 0"
-        );
+    fn lines_count_from_1_and_columns_in_characters() {
         let sources = [Source { name: "cell.toml".to_owned(), text: "a = 1\nb = \"\u{b5}\" # c".into() }];
-        let found = Places::in_lines(&sources).position(At { source: 0, start: 13, length: 1 });
+        let mut places = Places::in_lines(&sources);
+        let found = places.position(At { source: 0, start: 13, length: 1 });
         assert_eq!(found, Some(Position { block: None, line: 2, column: 7, begin: 6 }));
+        assert_eq!(places.words(At { source: 0, start: 13, length: 1 }), "cell.toml, line 2");
         assert_eq!(places.words(At { source: 1, start: 0, length: 1 }), "?");
     }
 }

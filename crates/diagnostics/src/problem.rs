@@ -1,6 +1,8 @@
 //! What was found, before it is tied to the text of its source.
 
-use super::super::source::At;
+use std::fmt::Display;
+
+use crate::{names::nearest, source::At};
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +33,8 @@ pub struct Problem {
     pub code: &'static str,
     /// Where; `None` for a file that could not be read.
     pub at: Option<At>,
+    /// The way to the entry of a file of TOML: `gripper.parts.body[0]`; lists count from 0.
+    pub entry: Option<String>,
     /// One sentence: what was found and what was expected.
     pub message: String,
     /// What to do, or the nearest known name.
@@ -39,6 +43,8 @@ pub struct Problem {
     pub elsewhere: Option<(String, At)>,
     /// What was expected in its place, for programs; the message says it too.
     pub expected: Option<String>,
+    /// What was found, for programs, where the message compares it with what was expected.
+    pub found: Option<String>,
     /// The nearest known name, for programs; the help says it too.
     pub nearest: Option<String>,
     /// What findings have in common that are the same in several lines; the message if nothing is said.
@@ -51,13 +57,43 @@ impl Problem {
             severity,
             code,
             at,
+            entry: None,
             message,
             help: None,
             elsewhere: None,
             expected: None,
+            found: None,
             nearest: None,
             same: None,
         }
+    }
+
+    /// An error of an entry of TOML, whose message says it all.
+    #[must_use]
+    pub fn of_entry(code: &'static str, entry: &str, message: String) -> Self {
+        Self { entry: Some(entry.to_owned()), ..Self::new(Severity::Error, code, None, message) }
+    }
+
+    /// An entry of TOML in which something else was found than was expected.
+    #[must_use]
+    pub fn unlike(code: &'static str, entry: &str, expected: impl Display, found: impl Display) -> Self {
+        let (expected, found) = (expected.to_string(), found.to_string());
+        let message = format!("{entry}: expected {expected}, found {found}");
+        Self { expected: Some(expected), found: Some(found), ..Self::of_entry(code, entry, message) }
+    }
+
+    /// The same with the nearest of the known names, if one is near.
+    #[must_use]
+    pub fn near(mut self, wanted: &str, known: &[&str]) -> Self {
+        if let Some(name) = nearest(wanted, known.iter().copied()) {
+            self.set_nearest("one", name);
+        }
+        self
+    }
+
+    fn set_nearest(&mut self, what: &str, name: &str) {
+        self.help = Some(format!("the nearest {what} is {name}"));
+        self.nearest = Some(name.to_owned());
     }
 }
 
@@ -67,7 +103,42 @@ pub struct Problems {
     pub(super) list: Vec<Problem>,
 }
 
+impl From<Problem> for Problems {
+    fn from(problem: Problem) -> Self {
+        Self { list: vec![problem] }
+    }
+}
+
+impl Extend<Problem> for Problems {
+    fn extend<I: IntoIterator<Item = Problem>>(&mut self, problems: I) {
+        self.list.extend(problems);
+    }
+}
+
 impl Problems {
+    /// Add one.
+    pub fn add(&mut self, problem: Problem) {
+        self.list.push(problem);
+    }
+
+    /// All of them.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Problem> {
+        self.list.iter_mut()
+    }
+
+    /// Give the problems of entries that have no place theirs.
+    pub(crate) fn place_entries(&mut self, place: impl Fn(&str) -> At) {
+        for problem in self.list.iter_mut().filter(|problem| problem.at.is_none()) {
+            problem.at = problem.entry.as_deref().map(&place);
+        }
+    }
+
+    /// True if there are none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
     /// Add an error.
     pub fn error(&mut self, code: &'static str, at: At, message: impl Into<String>) {
         self.push(Severity::Error, code, at, message.into(), None);
@@ -154,8 +225,7 @@ impl Problems {
     /// Note the nearest name, of the sort `what`, to the one of the last problem; it becomes the help too.
     pub fn nearest(&mut self, what: &str, name: &str) {
         if let Some(last) = self.list.last_mut() {
-            last.help = Some(format!("the nearest {what} is {name}"));
-            last.nearest = Some(name.to_owned());
+            last.set_nearest(what, name);
         }
     }
 

@@ -3,7 +3,8 @@
 /// The candidate that differs least from `wanted`, if it is near enough to be a slip of the pen.
 ///
 /// Of several that are equally near the first is taken.
-pub fn nearest<'a>(wanted: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+#[must_use]
+pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (wanted.len() / 3).max(1);
     let folded = wanted.to_ascii_uppercase();
     let mut best: Option<(usize, &str)> = None;
@@ -11,12 +12,18 @@ pub fn nearest<'a>(wanted: &str, candidates: impl Iterator<Item = &'a str>) -> O
         if candidate.len().abs_diff(wanted.len()) > limit {
             continue;
         }
-        let distance = strsim::osa_distance(&folded, &candidate.to_ascii_uppercase());
+        let distance = distance(&folded, &candidate.to_ascii_uppercase());
         if distance <= limit && best.is_none_or(|(least, _)| distance < least) {
             best = Some((distance, candidate));
         }
     }
     best.map(|(_, name)| name)
+}
+
+/// How many slips of the pen make one word of another: a character more, less, other, or swapped with the next.
+#[must_use]
+pub fn distance(one: &str, other: &str) -> usize {
+    strsim::osa_distance(one, other)
 }
 
 #[cfg(test)]
@@ -26,7 +33,7 @@ mod tests {
     #[test]
     fn slips_are_recognised() {
         let known = ["LK-GRP-1", "LK-GRP-FX1", "LK-GRP-FX2", "HOME", "SAFE"];
-        let near = |name: &str| nearest(name, known.iter().copied());
+        let near = |name: &str| nearest(name, known);
         assert_eq!(near("LK-GPR-1"), Some("LK-GRP-1"));
         assert_eq!(near("lk-grp-fx3"), Some("LK-GRP-FX1"));
         assert_eq!(near("HONE"), Some("HOME"));

@@ -1,4 +1,4 @@
-//! Reads TOML text into structures, such as a cell description, and finds at once everything in it that does not fit.
+//! Reads TOML into structures, such as a cell description, and finds at once everything in it that does not fit.
 //!
 //! The structures derive serde's `Deserialize`, which gives up at the first value that does not fit. This
 //! deserializer does not let it: a value of another kind is noted with its place and replaced by one that
@@ -19,82 +19,126 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-use crate::mistake::{Mistake, Mistakes, TextSpan, nearest};
+use crate::{At, Diagnostics, Problem, Problems, Source, nearest};
 
 /// The way to an entry: `gripper.parts.body[0]`.
-pub(crate) type Path = String;
+pub type Path = String;
 
 /// The way to a key of a table.
-pub(crate) fn join(path: &str, key: &str) -> Path {
+#[must_use]
+pub fn join(path: &str, key: &str) -> Path {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
 /// The way to an element of an array.
-pub(crate) fn element(path: &str, index: usize) -> Path {
+#[must_use]
+pub fn element(path: &str, index: usize) -> Path {
     format!("{path}[{index}]")
 }
 
-/// What messages call the whole of a file and its kinds of mistakes.
+/// What messages call the whole of a kind of file, the codes of its problems, and the numbers that it may have.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Words {
+pub struct FileKind {
+    /// The whole, as a message says it: `the description`.
     pub whole: &'static str,
+    /// Code of what is no TOML.
     pub syntax: &'static str,
+    /// Code of a key that there is not.
     pub key: &'static str,
+    /// Code of a key that is missing.
     pub missing: &'static str,
+    /// Code of a value that does not fit.
     pub value: &'static str,
+    /// Smallest and largest magnitude of a number that is not 0.
+    pub magnitudes: [f64; 2],
 }
-
-/// Of a cell description.
-pub(crate) const CELL: Words = Words {
-    whole: "the description",
-    syntax: "cell.syntax",
-    key: "cell.key",
-    missing: "cell.missing",
-    value: "cell.value",
-};
-
-/// Of a file of faults.
-pub(crate) const FAULTS: Words = Words {
-    whole: "the file",
-    syntax: "fault.syntax",
-    key: "fault.key",
-    missing: "fault.missing",
-    value: "fault.value",
-};
 
 /// A text with its tables.
-pub(crate) struct Document<'a> {
+pub struct Document<'a> {
+    source: &'a Source,
     root: Spanned<DeTable<'a>>,
-    words: Words,
+    kind: FileKind,
 }
 
-/// A mistake, and the bytes that are to blame where those are not the entry's.
-pub(crate) type Found = (Mistake, Option<Range<usize>>);
+/// Entries whose values do not come from the text.
+#[derive(Clone, Debug, Default)]
+pub struct StandIns(BTreeSet<Path>);
+
+impl StandIns {
+    /// What stands at a path is what the text says: neither it, nor a part of it, nor what it is a part of has a
+    /// stand-in.
+    #[must_use]
+    pub fn trusts(&self, path: &str) -> bool {
+        let holds = |whole: &str, part: &str| {
+            part.strip_prefix(whole).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        };
+        !self.0.iter().any(|stand_in| holds(stand_in, path) || holds(path, stand_in))
+    }
+
+    /// The ways to the entries.
+    pub fn iter(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().map(String::as_str)
+    }
+}
 
 /// What was read.
-pub(crate) struct Reading<T> {
+pub struct Reading<T> {
     /// The structure; `None` if not even stand-ins make one.
     pub value: Option<T>,
     /// What did not fit.
-    pub mistakes: Vec<Found>,
+    pub problems: Problems,
     /// The entries that have stand-ins.
-    pub stand_ins: BTreeSet<Path>,
+    pub stand_ins: StandIns,
 }
 
 impl<'a> Document<'a> {
     /// Take a text apart; also what is wrong with it as TOML.
-    pub fn parse(text: &'a str, words: Words) -> (Self, Vec<Found>) {
-        let (root, errors) = DeTable::parse_recoverable(text);
-        let mistakes = errors.into_iter().map(|error| {
+    #[must_use]
+    pub fn parse(source: &'a Source, kind: FileKind) -> (Self, Problems) {
+        let (root, errors) = DeTable::parse_recoverable(&source.text);
+        let mut problems = Problems::default();
+        for error in errors {
             let message = format!("this is not TOML: {}", error.message().replace('\n', ", "));
-            (Mistake::new(words.syntax, "", message), Some(error.span().unwrap_or(0..0)))
-        });
-        (Self { root, words }, mistakes.collect())
+            let at = at(&source.text, error.span().unwrap_or(0..0));
+            problems.error(kind.syntax, at, message);
+        }
+        (Self { source, root, kind }, problems)
+    }
+
+    /// Read a structure from a text that is TOML, and check its values: `check` gets the structure and the entries
+    /// that have stand-ins, and adds what it finds to the problems.
+    ///
+    /// # Errors
+    /// All problems of the text.
+    pub fn load<T: serde::de::DeserializeOwned>(
+        source: &Source,
+        kind: FileKind,
+        check: impl FnOnce(&T, &StandIns, &mut Problems),
+    ) -> Result<T, Diagnostics> {
+        let (document, mut problems) = Document::parse(source, kind);
+        // What stands behind a place that is no TOML may be anything.
+        if !problems.is_empty() {
+            return Err(document.report(problems));
+        }
+        let reading = document.read::<T>();
+        problems = reading.problems;
+        if let Some(value) = &reading.value {
+            check(value, &reading.stand_ins, &mut problems);
+        }
+        match reading.value {
+            Some(value) if problems.is_empty() => Ok(value),
+            _ => Err(document.report(problems)),
+        }
     }
 
     /// The bytes of an entry: of its value if that stands on one place, else of its key, else those of the
     /// nearest table around it.
-    pub fn place(&self, path: &str) -> Range<usize> {
+    #[must_use]
+    pub fn place(&self, path: &str) -> At {
+        at(&self.source.text, self.bytes(path))
+    }
+
+    fn bytes(&self, path: &str) -> Range<usize> {
         let mut at = 0..0;
         let mut table = Some(self.root.get_ref());
         for step in path.split('.') {
@@ -112,20 +156,15 @@ impl<'a> Document<'a> {
         at
     }
 
-    /// The mistakes with their places, in the order of the text.
-    pub fn placed(&self, text: &str, found: Vec<Found>) -> Mistakes {
-        let mut mistakes: Vec<Mistake> = found
-            .into_iter()
-            .map(|(mistake, at)| {
-                let Range { start, end } = at.unwrap_or_else(|| self.place(&mistake.entry));
-                Mistake { place: Some(TextSpan::of(text, start, end)), ..mistake }
-            })
-            .collect();
-        mistakes.sort_by_key(|mistake| mistake.place.map(|place| place.start));
-        Mistakes(mistakes)
+    /// The problems with their places, in the order of the text.
+    #[must_use]
+    pub fn report(&self, mut problems: Problems) -> Diagnostics {
+        problems.place_entries(|entry| self.place(entry));
+        Diagnostics::of_file(problems, self.source)
     }
 
     /// Read a structure.
+    #[must_use]
     pub fn read<'s, T: Deserialize<'s>>(&'s self) -> Reading<T>
     where
         'a: 's,
@@ -133,9 +172,10 @@ impl<'a> Document<'a> {
         let mut missing = BTreeSet::new();
         loop {
             let notes = Notes {
-                words: self.words,
+                text: &self.source.text,
+                kind: self.kind,
                 missing: &missing,
-                mistakes: RefCell::default(),
+                problems: RefCell::default(),
                 stand_ins: RefCell::default(),
             };
             let result = T::deserialize(Reader {
@@ -143,17 +183,17 @@ impl<'a> Document<'a> {
                 node: Node::Table(self.root.get_ref()),
                 path: String::new(),
             });
-            let Notes { mistakes, stand_ins, .. } = notes;
-            let (mistakes, stand_ins) = (mistakes.into_inner(), stand_ins.into_inner());
+            let Notes { problems, stand_ins, .. } = notes;
+            let (problems, stand_ins) = (problems.into_inner(), StandIns(stand_ins.into_inner()));
             match result {
                 Err(Stop::Missing(path)) if !missing.contains(&path) => {
                     missing.insert(path);
                 }
-                Err(stop) if mistakes.is_empty() => {
-                    let mistakes = vec![(Mistake::new(self.words.value, "", stop.to_string()), None)];
-                    return Reading { value: None, mistakes, stand_ins };
+                Err(stop) if problems.is_empty() => {
+                    let problems = Problem::of_entry(self.kind.value, "", stop.to_string()).into();
+                    return Reading { value: None, problems, stand_ins };
                 }
-                result => return Reading { value: result.ok(), mistakes, stand_ins },
+                result => return Reading { value: result.ok(), problems, stand_ins },
             }
         }
     }
@@ -203,17 +243,18 @@ impl de::Error for Stop {
 
 /// What is noted on one way through the text.
 struct Notes<'n> {
-    words: Words,
+    text: &'n str,
+    kind: FileKind,
     missing: &'n BTreeSet<Path>,
-    mistakes: RefCell<Vec<Found>>,
+    problems: RefCell<Problems>,
     stand_ins: RefCell<BTreeSet<Path>>,
 }
 
 impl Notes<'_> {
-    /// An entry that is not used, since it has a mistake.
-    fn mistake(&self, mistake: Mistake, at: Option<Range<usize>>) {
-        self.stand_ins.borrow_mut().insert(mistake.entry.clone());
-        self.mistakes.borrow_mut().push((mistake, at));
+    /// An entry that is not used, since something is wrong with it.
+    fn unusable(&self, path: &str, problem: Problem) {
+        self.stand_ins.borrow_mut().insert(path.to_owned());
+        self.problems.borrow_mut().add(problem);
     }
 }
 
@@ -263,24 +304,24 @@ impl<'n, 'a> Reader<'n, 'a> {
             Node::StandIn => return,
         };
         let wanted = self.value().and_then(DeValue::as_str).unwrap_or_default();
-        let mistake = Mistake::unlike(self.notes.words.value, &self.path, expected, found);
-        self.notes.mistake(mistake.near(wanted, known), None);
+        let problem = Problem::unlike(self.notes.kind.value, &self.path, expected, found);
+        self.notes.unusable(&self.path, problem.near(wanted, known));
     }
 
     /// The table, as a message calls it.
     fn whose(&self) -> &str {
-        if self.path.is_empty() { self.notes.words.whole } else { &self.path }
+        if self.path.is_empty() { self.notes.kind.whole } else { &self.path }
     }
 
     /// A whole number of a type, or 1 in its place.
-    fn whole<T: TryFrom<i64> + From<u8>>(&self, low: impl Display, high: impl Display) -> T {
+    fn whole<T: TryFrom<i64> + Default>(&self, low: impl Display, high: impl Display) -> T {
         let number = match self.value() {
             Some(DeValue::Integer(number)) => i64::from_str_radix(number.as_str(), number.radix()).ok(),
             _ => None,
         };
         number.and_then(|number| T::try_from(number).ok()).unwrap_or_else(|| {
             self.unfit(format_args!("a whole number from {low} to {high}"), &[]);
-            T::from(1)
+            T::try_from(1).unwrap_or_default()
         })
     }
 
@@ -294,10 +335,11 @@ impl<'n, 'a> Reader<'n, 'a> {
             self.unfit("a number", &[]);
             return 1.0;
         };
-        if number == 0.0 || (SMALLEST..=LARGEST).contains(&number.abs()) {
+        let [smallest, largest] = self.notes.kind.magnitudes;
+        if number == 0.0 || (smallest..=largest).contains(&number.abs()) {
             return number;
         }
-        self.unfit(any_number(), &[]);
+        self.unfit(self.notes.kind.any_number(), &[]);
         1.0
     }
 
@@ -323,10 +365,14 @@ impl<'n, 'a> Reader<'n, 'a> {
             let name = key.get_ref();
             let expected = format!("one of {}", fields.join(", "));
             let message = format!("{} has no key {name}; expected {expected}", self.whose());
-            let mistake =
-                Mistake::new(self.notes.words.key, &join(&self.path, name), message).near(name, fields);
-            let mistake = Mistake { expected: Some(expected), found: Some(name.to_string()), ..mistake };
-            self.notes.mistakes.borrow_mut().push((mistake, Some(key.span())));
+            let problem =
+                Problem::of_entry(self.notes.kind.key, &join(&self.path, name), message).near(name, fields);
+            self.notes.problems.borrow_mut().add(Problem {
+                at: Some(at(self.notes.text, key.span())),
+                expected: Some(expected),
+                found: Some(name.to_string()),
+                ..problem
+            });
         }
     }
 
@@ -349,37 +395,48 @@ impl<'n, 'a> Reader<'n, 'a> {
             // A key that is misspelt is not missing too.
             let misspelt = table.keys().any(|key| {
                 let name = key.get_ref();
-                !fields.contains(&name.as_ref()) && nearest(name, fields) == Some(*field)
+                !fields.contains(&name.as_ref()) && nearest(name, fields.iter().copied()) == Some(*field)
             });
             if misspelt {
                 self.notes.stand_ins.borrow_mut().insert(path);
             } else {
                 let message = format!("{} has no key {field}, which it needs", self.whose());
-                self.notes.mistake(Mistake::new(self.notes.words.missing, &path, message), None);
+                self.notes.unusable(&path, Problem::of_entry(self.notes.kind.missing, &path, message));
             }
         }
         entries
     }
 }
 
-/// Largest magnitude of a number: ten times the largest that a cell has. Beyond it geometry and solver overflow.
-const LARGEST: f64 = 1e5;
-/// Smallest magnitude of a number that is not 0.
-const SMALLEST: f64 = 1e-6;
-/// What is expected of a number of either sign.
-fn any_number() -> String {
-    format!("0, or a number from {SMALLEST} to {LARGEST} or from -{LARGEST} to -{SMALLEST}")
+impl FileKind {
+    /// What is expected of a number of either sign.
+    fn any_number(&self) -> String {
+        let [smallest, largest] = self.magnitudes;
+        if smallest == 0.0 {
+            return format!("a number from -{largest} to {largest}");
+        }
+        format!("0, or a number from {smallest} to {largest} or from -{largest} to -{smallest}")
+    }
+
+    /// Say of numbers of a wrong magnitude that they must be more than 0, where that holds of their entries.
+    pub fn above_zero(&self, positive: &BTreeSet<Path>, problems: &mut Problems) {
+        let [smallest, largest] = self.magnitudes;
+        for problem in problems.iter_mut() {
+            let (Some(entry), Some(found)) = (&problem.entry, &problem.found) else { continue };
+            if positive.contains(entry) && problem.expected.as_ref() == Some(&self.any_number()) {
+                let expected = format!("a number from {smallest} to {largest}");
+                *problem = Problem::unlike(problem.code, entry, expected, found);
+            }
+        }
+    }
 }
 
-/// The mistake of a number of a wrong magnitude with the range of an entry that must be more than 0; any other as it is.
-pub(crate) fn above_zero(mistake: Mistake) -> Mistake {
-    match (&mistake.expected, &mistake.found) {
-        (Some(expected), Some(found)) if *expected == any_number() => {
-            let expected = format!("a number from {SMALLEST} to {LARGEST}");
-            Mistake::unlike(mistake.code, &mistake.entry, expected, found)
-        }
-        _ => mistake,
-    }
+/// Some bytes of a text. What goes over several lines is underlined in the first.
+fn at(text: &str, bytes: Range<usize>) -> At {
+    let small = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+    let start = (0..=bytes.start.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
+    let line_end = text[start..].find('\n').map_or(text.len(), |at| start + at);
+    At { source: 0, start: small(start), length: small(bytes.end.clamp(start, line_end) - start) }
 }
 
 /// The text of a stand-in.
@@ -414,6 +471,7 @@ impl<'de> de::Deserializer<'de> for Reader<'_, 'de> {
         deserialize_u16, visit_u16, u16;
         deserialize_u32, visit_u32, u32;
         deserialize_u64, visit_u64, u64;
+        deserialize_i8, visit_i8, i8;
         deserialize_i16, visit_i16, i16;
         deserialize_i32, visit_i32, i32;
         deserialize_i64, visit_i64, i64;
@@ -511,7 +569,7 @@ impl<'de> de::Deserializer<'de> for Reader<'_, 'de> {
     }
 
     forward_to_deserialize_any! {
-        i8 i128 u128 f32 char bytes byte_buf unit unit_struct tuple_struct map identifier ignored_any
+        i128 u128 f32 char bytes byte_buf unit unit_struct tuple_struct map identifier ignored_any
     }
 }
 
@@ -557,5 +615,97 @@ impl<'a> SeqAccess<'a> for Elements<'_, 'a> {
         let node = self.array.get(index).map_or(Node::StandIn, |value| Node::Value(value.get_ref()));
         let path = element(&self.reader.path, index);
         seed.deserialize(Reader { notes: self.reader.notes, node, path }).map(Some)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Finding;
+
+    const KIND: FileKind = FileKind {
+        whole: "the file",
+        syntax: "test.syntax",
+        key: "test.key",
+        missing: "test.missing",
+        value: "test.value",
+        magnitudes: [1e-6, 1e5],
+    };
+
+    #[derive(Debug, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Motor {
+        name: String,
+        speed: f64,
+        #[serde(default)]
+        poles: u8,
+    }
+
+    #[derive(Debug, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct File {
+        motor: Vec<Motor>,
+    }
+
+    fn load(text: &str) -> Result<File, Diagnostics> {
+        let source = Source { name: "motors.toml".to_owned(), text: text.into() };
+        Document::load(&source, KIND, |file: &File, stand_ins, problems| {
+            for (index, motor) in file.motor.iter().enumerate() {
+                let path = join(&element("motor", index), "speed");
+                if motor.speed < 0.0 && stand_ins.trusts(&path) {
+                    problems.add(Problem::unlike(KIND.value, &path, "0 or more", motor.speed));
+                }
+            }
+        })
+    }
+
+    #[test]
+    fn all_that_does_not_fit_is_found_in_one_reading_with_its_place() {
+        let file = load("[[motor]]\nname = \"a\"\nspeed = 2\n").unwrap();
+        assert_eq!((&file.motor[0].name[..], file.motor[0].speed, file.motor[0].poles), ("a", 2.0, 0));
+        let text = "[[motor]]\nname = 3\nsped = 1e9\n[[motor]]\nname = \"\u{e9}\"\nspeed = -1\npoles = 256\n";
+        let report = load(text).unwrap_err();
+        let said: Vec<_> =
+            report.diagnostics().iter().map(|one| (one.place(), one.text(), one.message())).collect();
+        let place = |line, column| format!("motors.toml: line {line}, column {column}");
+        assert_eq!(
+            said,
+            [
+                (place(2, 8), "3", "motor[0].name: expected a text in quotes, found 3"),
+                (place(3, 1), "sped", "motor[0] has no key sped; expected one of name, speed, poles"),
+                (place(6, 9), "-1", "motor[1].speed: expected 0 or more, found -1"),
+                (place(7, 9), "256", "motor[1].poles: expected a whole number from 0 to 255, found 256"),
+            ]
+        );
+        let finding = Finding::from(&report.diagnostics()[1]);
+        assert_eq!(finding.nearest.as_deref(), Some("speed"));
+        assert_eq!(
+            (finding.found.as_deref(), finding.entry.as_deref()),
+            (Some("sped"), Some("motor[0].sped"))
+        );
+    }
+
+    #[test]
+    fn what_is_no_toml_is_told_at_its_line_and_a_missing_key_at_its_table() {
+        let at = |text: &str| load(text).unwrap_err().in_line();
+        assert!(
+            at("motor = \n").starts_with("motors.toml: line 1, column 9: this is not TOML: "),
+            "{}",
+            at("motor = \n")
+        );
+        assert_eq!(
+            at("\n[[motor]]\nspeed = 1\n"),
+            "motors.toml: line 2, column 1: motor[0] has no key name, which it needs"
+        );
+        assert_eq!(at(""), "motors.toml: line 1, column 1: the file has no key motor, which it needs");
+    }
+
+    #[test]
+    fn a_piece_ends_with_its_line_and_begins_with_a_character() {
+        let text = "b = \"\u{e9}\" # x\nc = 3\n";
+        let begin = text.find('#').unwrap();
+        assert_eq!(at(text, begin..text.len()).length, 3);
+        assert_eq!(at(text, 6..8).start, 5);
+        assert_eq!(at(text, 400..500).length, 0);
     }
 }

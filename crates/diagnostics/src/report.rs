@@ -1,17 +1,10 @@
 //! What a load found: every error and warning at once, each with its place, and what was loaded.
 
-mod diagnostic;
-mod problem;
-mod same;
-
 use std::{fmt, io::IsTerminal};
 
 use miette::{GraphicalReportHandler, GraphicalTheme};
 
-use super::places::Places;
-
-pub use diagnostic::Diagnostic;
-pub use problem::{Problem, Problems, Severity};
+use crate::{Diagnostic, Places, Problems, Severity, Source};
 
 /// So many things: `1 error`, `2 errors`.
 #[must_use]
@@ -31,7 +24,7 @@ pub struct Loaded {
 /// The outcome of a load.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
-    diagnostics: Vec<Diagnostic>,
+    pub(crate) diagnostics: Vec<Diagnostic>,
     /// Files that were read.
     pub files: usize,
     /// Blocks that were loaded.
@@ -39,7 +32,7 @@ pub struct Diagnostics {
     /// Records in each file; empty if there were errors.
     pub loaded: Vec<Loaded>,
     /// Findings that an earlier report tells.
-    told: usize,
+    pub(crate) told: usize,
 }
 
 impl Diagnostics {
@@ -48,6 +41,18 @@ impl Diagnostics {
     pub fn new(problems: Problems, mut places: Places<'_>, blocks: usize, loaded: Vec<Loaded>) -> Self {
         let files = places.sources().len();
         Self { diagnostics: problems.into_diagnostics(&mut places), files, blocks, loaded, told: 0 }
+    }
+
+    /// What was found in one file of lines.
+    #[must_use]
+    pub fn of_file(problems: Problems, source: &Source) -> Self {
+        Self::new(problems, Places::in_lines(std::slice::from_ref(source)), 0, Vec::new())
+    }
+
+    /// What was found without a text: of a file that cannot be read, or of values that come from no file.
+    #[must_use]
+    pub fn without_text(problems: Problems) -> Self {
+        Self::new(problems, Places::in_lines(&[]), 0, Vec::new())
     }
 
     /// The same with what another look at one of the sources found.
@@ -97,6 +102,13 @@ impl Diagnostics {
             out.push('\n');
         }
         out + &self.summary()
+    }
+
+    /// All findings in one line: each with its place, message and help.
+    #[must_use]
+    pub fn in_line(&self) -> String {
+        let all: Vec<String> = self.diagnostics.iter().map(Diagnostic::in_line).collect();
+        all.join("; ")
     }
 
     /// The report for standard error: graphical on a terminal.

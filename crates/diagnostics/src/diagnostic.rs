@@ -4,12 +4,10 @@ use std::{fmt, ops::Range, sync::Arc};
 
 use miette::{LabeledSpan, NamedSource, Severity as MietteSeverity, SourceCode, SourceSpan};
 
-use super::{
-    super::{
-        places::{Places, Position},
-        source::{At, BlockNumber},
-    },
+use crate::{
+    places::{Places, Position},
     problem::{Problem, Problems, Severity},
+    source::{At, BlockNumber},
 };
 
 impl Problems {
@@ -22,7 +20,7 @@ impl Problems {
     }
 }
 
-/// An error or a warning about a form or a job line.
+/// An error or a warning about a piece of a file.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
     pub(super) problem: Problem,
@@ -81,6 +79,24 @@ impl Diagnostic {
         self.problem.expected.as_deref()
     }
 
+    /// What was found, where the message compares it with what was expected.
+    #[must_use]
+    pub fn found(&self) -> Option<&str> {
+        self.problem.found.as_deref()
+    }
+
+    /// The way to the entry of a file of TOML: `gripper.parts.body[0]`.
+    #[must_use]
+    pub fn entry(&self) -> Option<&str> {
+        self.problem.entry.as_deref()
+    }
+
+    /// The piece that is underlined.
+    #[must_use]
+    pub const fn at(&self) -> Option<At> {
+        self.problem.at
+    }
+
     /// The nearest known name, if one is near.
     #[must_use]
     pub fn nearest(&self) -> Option<&str> {
@@ -133,6 +149,14 @@ impl Diagnostic {
             Some(Position { line, column, .. }) => format!("{}: line {line}, column {column}", self.file),
             None => self.file.clone(),
         }
+    }
+
+    /// Place, message and help in one line.
+    pub(super) fn in_line(&self) -> String {
+        let place = self.place();
+        let colon = if place.is_empty() { "" } else { ": " };
+        let help = self.help().map_or_else(String::new, |help| format!(" ({help})"));
+        format!("{place}{colon}{}{help}", self.problem.message)
     }
 
     /// Plain text: place and message in the first line, then the line with the text underlined, then help.

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Diagnostic, Diagnostics, Severity};
+use crate::{Diagnostic, Diagnostics, Severity};
 
 /// So many of the other lines are named.
 const NAMED: usize = 3;
@@ -53,7 +53,7 @@ impl Diagnostics {
 
 #[cfg(test)]
 mod tests {
-    use crate::load::{Diagnostics, Source, places::Places, report::Problems, source::At};
+    use crate::{At, Diagnostics, Places, Problems, Source};
 
     fn report(name: &str, found: &[(u32, &str, Option<&str>)]) -> Diagnostics {
         let source = Source { name: format!("data/jobs/{name}.job"), text: "a\nb\nc\nd\ne\nf\n".into() };
