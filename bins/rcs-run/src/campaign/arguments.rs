@@ -61,6 +61,11 @@ pub struct CampaignArguments {
     /// Branches that are run at the same time
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=64))]
     pub threads: u8,
+    /// Write each branch into this file as soon as it is judged, and do not run those again that it holds: a
+    /// campaign that was stopped goes on where it was. What other data, seeds, programs or procedures have
+    /// written stays there and does not count
+    #[arg(long, value_name = "FILE")]
+    pub journal: Option<PathBuf>,
     /// Print one JSON object a job on standard output, a line each, and nothing else there
     #[arg(long)]
     pub json: bool,

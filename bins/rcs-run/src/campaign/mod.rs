@@ -16,6 +16,7 @@ mod arguments;
 mod branch;
 mod harm;
 mod interruption;
+mod journal;
 mod markdown;
 mod operator;
 mod parent;
@@ -33,6 +34,7 @@ use std::{
     fs,
     io::{self, IsTerminal as _},
     process::ExitCode,
+    time::Duration,
 };
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -46,10 +48,12 @@ pub use self::arguments::CampaignArguments;
 use self::{
     branch::Facility,
     interruption::Kind,
+    journal::Journal,
     parent::{Parent, Ticks},
-    pool::Plan,
+    pool::{Outcome, Plan},
     random::Draw,
     report::CampaignReport,
+    rows::RowsFired,
     series::Series,
     trial::{BranchResult, NoObserver, Procedure, Verdict},
 };
@@ -93,19 +97,7 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
         console::answer(&story.told(&result))?;
         return Ok(None);
     }
-    let bar = bar(plans.len());
-    let done = |result: &BranchResult| {
-        if let Some(bar) = &bar {
-            bar.inc(1);
-            if result.verdict == Verdict::Hurt {
-                bar.println(format!("hurt: {} at {}: {}", result.interruption, result.at, result.detail));
-            }
-        }
-    };
-    let mut outcome = pool::run(&facility, &parent, &plans, usize::from(arguments.threads), &done)?;
-    if let Some(bar) = &bar {
-        bar.finish_and_clear();
-    }
+    let mut outcome = branches(arguments, &facility, &parent, procedure, &plans)?;
     for (plan, result) in plans.iter().zip(&mut outcome.results) {
         if plan.series.interruptions().len() > 1 && !matches!(result.verdict, Verdict::Done | Verdict::Apart)
         {
@@ -121,6 +113,41 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
     let report = CampaignReport::new(&facility.job.name, called, &parent, &outcome);
     console::answer(&if arguments.json { report.json()? } else { report.text() })?;
     Ok(Some(report.column()))
+}
+
+/// Run the branches that the journal does not have; what came of all of them.
+fn branches(
+    arguments: &CampaignArguments,
+    facility: &Facility,
+    parent: &Parent,
+    procedure: Procedure,
+    plans: &[Plan],
+) -> Result<Outcome, Error> {
+    let journal = match &arguments.journal {
+        Some(path) => Journal::open(path, &journal::campaign(facility, parent, procedure))?,
+        None => Journal::default(),
+    };
+    let missing: Vec<Plan> = plans.iter().filter(|plan| journal.result(plan).is_none()).cloned().collect();
+    let bar = bar(plans.len(), plans.len() - missing.len());
+    let done = |result: &BranchResult, fresh: &RowsFired| {
+        if let Some(bar) = &bar {
+            bar.inc(1);
+            if result.verdict == Verdict::Hurt {
+                bar.println(format!("hurt: {} at {}: {}", result.interruption, result.at, result.detail));
+            }
+        }
+        journal.write(result, fresh)
+    };
+    let Outcome { results, mut rows } =
+        pool::run(facility, parent, &missing, usize::from(arguments.threads), &done)?;
+    if let Some(bar) = &bar {
+        bar.finish_and_clear();
+    }
+    let mut run = results.into_iter();
+    let results = plans.iter().map(|plan| journal.result(plan).cloned().or_else(|| run.next()));
+    let results = results.collect::<Option<_>>().unwrap_or_default();
+    rows.take_in(journal.into_rows());
+    Ok(Outcome { results, rows })
 }
 
 /// The branches that are asked for.
@@ -168,10 +195,12 @@ fn ticks(arguments: &CampaignArguments) -> Ticks {
 }
 
 /// Progress on a terminal; none if standard error is no terminal.
-fn bar(branches: usize) -> Option<ProgressBar> {
+fn bar(branches: usize, known: usize) -> Option<ProgressBar> {
     io::stderr().is_terminal().then(|| {
-        let bar = ProgressBar::new(branches as u64);
-        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} branches, {eta} left") {
+        let bar = ProgressBar::new(branches as u64).with_position(known as u64).with_elapsed(Duration::ZERO);
+        if let Ok(style) =
+            ProgressStyle::with_template("{wide_bar} {pos}/{len} branches, {per_sec}, {eta} left")
+        {
             bar.set_style(style);
         }
         bar

@@ -26,7 +26,7 @@ pub struct Plan {
 /// A state, and which plan begins with it.
 type Work = (Arc<Fork>, usize);
 
-/// What came of all branches.
+/// What came of branches.
 #[derive(Debug, Default)]
 pub struct Outcome {
     /// In the order of the plans.
@@ -35,16 +35,17 @@ pub struct Outcome {
     pub rows: RowsFired,
 }
 
-/// Run a branch for each plan. `done` is told of each result as it comes. The outcome does not depend on `threads`.
+/// Run a branch for each plan. `done` gets each result as it comes, and the rows that no branch before has fired. The
+/// outcome does not depend on `threads`.
 ///
 /// # Errors
-/// [`Error`] if the run cannot be forked.
+/// [`Error`] if the run cannot be forked, and those of `done`.
 pub fn run(
     facility: &Facility,
     parent: &Parent,
     plans: &[Plan],
     threads: usize,
-    done: &(impl Fn(&BranchResult) + Sync),
+    done: &(impl Fn(&BranchResult, &RowsFired) -> Result<(), Error> + Sync),
 ) -> Result<Outcome, Error> {
     let collected = Mutex::new((Vec::with_capacity(plans.len()), RowsFired::default()));
     // A branch takes longer than a fork: what waits is bounded.
@@ -55,25 +56,21 @@ pub fn run(
             .map(|_| {
                 scope.spawn(|| {
                     let mut outcome = Ok(());
-                    let mut rows = RowsFired::default();
                     while let Some((fork, at)) = next(&receive) {
                         // After an error what waits is taken and left, so that the thread that forks is not kept waiting.
                         if outcome.is_err() {
                             continue;
                         }
                         let Plan { series, procedure, .. } = &plans[at];
-                        match trial::run(facility, parent, &fork, series, *procedure, &mut rows) {
-                            Err(error) => outcome = Err(error),
-                            Ok(result) => {
-                                done(&result);
-                                if let Ok(mut collected) = collected.lock() {
-                                    collected.0.push((at, result));
-                                }
-                            }
-                        }
-                    }
-                    if let Ok(mut collected) = collected.lock() {
-                        collected.1.append(&mut rows);
+                        let mut rows = RowsFired::default();
+                        outcome = trial::run(facility, parent, &fork, series, *procedure, &mut rows)
+                            .and_then(|result| {
+                                let Ok(mut collected) = collected.lock() else { return Ok(()) };
+                                let fresh = collected.1.take_in(rows);
+                                done(&result, &fresh)?;
+                                collected.0.push((at, result));
+                                Ok(())
+                            });
                     }
                     outcome
                 })

@@ -7,28 +7,32 @@ use levels::{
     ladder::{Ladder, ProcessId},
 };
 use rcs_core::tick::Tick;
+use serde::{Deserialize, Serialize};
 
 use super::{branch::Branch, trial::Observer};
 
 /// The rows of all processes that have fired.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RowsFired(BTreeSet<(ProcessId, u8, u8)>);
+///
+/// In a journal each is the place of its process among [`ProcessId::ALL`], the number of its table, and its own number.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct RowsFired(BTreeSet<(u8, u8, u8)>);
 
 impl RowsFired {
-    /// Take in what other branches have fired.
-    pub fn append(&mut self, other: &mut Self) {
-        self.0.append(&mut other.0);
+    /// Take in what another branch has fired; what of it is new.
+    pub fn take_in(&mut self, other: Self) -> Self {
+        Self(other.0.into_iter().filter(|row| self.0.insert(*row)).collect())
     }
 
     /// How many rows there are, and those that have not fired: `Prim: GOTO-PT 3`.
     #[must_use]
     pub fn missing(&self) -> (usize, Vec<String>) {
         let (mut count, mut missing) = (0, Vec::new());
-        for (id, process) in ProcessId::ALL.iter().zip(Ladder::processes()) {
+        for (id, process) in (0_u8..).zip(Ladder::processes()) {
             for (table, number) in process.tables.iter().zip(1_u8..) {
                 for row in table.rows.iter().filter(|row| is_named(table.name, row.action)) {
                     count += 1;
-                    if !self.0.contains(&(*id, number, row.number)) {
+                    if !self.0.contains(&(id, number, row.number)) {
                         missing.push(format!("{}: {} {}", process.name, table.name, row.number));
                     }
                 }
@@ -47,10 +51,10 @@ fn is_named(table: &str, action: &str) -> bool {
 impl Observer for RowsFired {
     fn tick(&mut self, branch: &Branch<'_>) {
         let memory = branch.memory();
-        for process in ProcessId::ALL {
+        for (id, process) in (0_u8..).zip(ProcessId::ALL) {
             let header = memory.header(*process);
             let rows = header.consulted().into_iter().chain(header.beside.into_iter().flatten());
-            self.0.extend(rows.map(|row| (*process, row.decided.table, row.decided.row)));
+            self.0.extend(rows.map(|row| (id, row.decided.table, row.decided.row)));
         }
     }
 

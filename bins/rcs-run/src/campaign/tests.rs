@@ -1,6 +1,6 @@
 //! Forks are exact, and the monitor finds what is planted. tests/campaign.rs compares a branch with an ordinary run.
 
-use std::path::Path;
+use std::{fs, path::Path};
 
 use geometry::frame::Frame;
 use interfaces::HwsCommand;
@@ -12,10 +12,12 @@ use taskdata::load::{Job, Source};
 use super::{
     branch::{Branch, Commander, Facility, Fork},
     interruption::Kind,
+    journal::{self, Journal},
     operator::Recovery,
     parent::{Parent, Ticks, emulator},
     pool::{self, Outcome, Plan},
     random::{self, Draw},
+    rows::RowsFired,
     series::Series,
     trial::{self, BranchResult, NoObserver, Procedure, Until, Verdict},
 };
@@ -196,7 +198,7 @@ fn all_threads_give_the_same_judgements_in_the_same_order() {
         .collect();
     let campaign = |threads: usize| {
         let Outcome { results, rows } =
-            pool::run(&facility, &parent, &plans, threads, &|_| {}).expect("the branches can be run");
+            pool::run(&facility, &parent, &plans, threads, &|_, _| Ok(())).expect("the branches can be run");
         let results = results.into_iter().map(|one| (one.interruption, one.at, one.digest));
         (results.collect::<Vec<_>>(), rows)
     };
@@ -208,6 +210,36 @@ fn all_threads_give_the_same_judgements_in_the_same_order() {
     let (rows, missing) = one.1.missing();
     assert!(missing.len() < rows && missing.iter().all(|row| row.contains(": ")), "{missing:?}");
     assert_eq!(one, campaign(3));
+}
+
+/// A campaign that was killed while it wrote a line goes on with the branches whose lines are whole.
+#[test]
+fn a_campaign_goes_on_from_its_journal() {
+    let (facility, parent, _) = empty_move();
+    let plan = |at| Plan { at, series: series(&facility, "pause"), procedure: PROCEDURE };
+    let plans = [60, 120].map(plan);
+    let directory = tempfile::tempdir().expect("there is room");
+    let path = directory.path().join("journal");
+    let campaign = journal::campaign(&facility, &parent, PROCEDURE);
+    let journal = Journal::open(&path, &campaign).expect("the journal is made");
+    let done = |result: &BranchResult, rows: &RowsFired| journal.write(result, rows);
+    let first = pool::run(&facility, &parent, &plans[..1], 1, &done).expect("the branch can be run");
+    let whole = fs::read(&path).expect("the journal is there");
+
+    let other = Journal::open(&path, "another campaign").expect("the journal is read");
+    assert!(other.result(&plans[0]).is_none(), "a branch of another campaign counts");
+
+    fs::write(&path, [&whole[..], &whole[..whole.len() / 2]].concat()).expect("the journal can be written");
+    let again = Journal::open(&path, &campaign).expect("a torn line is cut off");
+    let known = again.result(&plans[0]).map(|known| (&known.digest, known.verdict));
+    assert_eq!(known, Some((&first.results[0].digest, first.results[0].verdict)));
+    assert!(again.result(&plans[1]).is_none());
+    assert_eq!(fs::read(&path).expect("the journal is there"), whole);
+    assert_eq!(again.into_rows(), first.rows);
+
+    fs::write(&path, [b"{}\n", &whole[..]].concat()).expect("the journal can be written");
+    let error = Journal::open(&path, &campaign).expect_err("a line is no branch").to_string();
+    assert!(error.contains("journal:1: expected a branch of a campaign"), "{error}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use interfaces::HwsCommand;
 use levels::ladder::{Ladder, ProcessId};
 use neighbours::workstation::player::Workstation as _;
 use rcs_core::{name::Name16, tick::Tick};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{
     branch::{Branch, Facility, Fork},
@@ -44,7 +44,7 @@ pub struct Procedure {
 }
 
 /// What became of a branch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// The job went on.
@@ -59,14 +59,14 @@ pub enum Verdict {
 }
 
 /// The verdict on a branch.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct BranchResult {
     /// The tick after which it was interrupted.
     pub at: u64,
     /// How.
     pub interruption: String,
     /// The smallest series of interruptions with the same verdict and reason, if there were several.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub smallest: Option<String>,
     /// What became of it.
     pub verdict: Verdict,

@@ -1,0 +1,119 @@
+//! The file into which a campaign writes each branch as soon as it is judged, so that it can be stopped and go on.
+//!
+//! Each line is a JSON object: the campaign, the branch, and the rows that it was the first one to fire. A line counts if it
+//! is of the same campaign: same undisturbed run, program and procedure.
+
+use std::{
+    borrow::Cow,
+    collections::HashMap,
+    fs::{File, OpenOptions},
+    io::{self, Read as _, Seek as _, Write as _},
+    path::{Path, PathBuf},
+};
+
+use cli_pages::VERSION;
+use runtime::StartError;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    branch::Facility,
+    parent::Parent,
+    pool::Plan,
+    rows::RowsFired,
+    trial::{BranchResult, Procedure},
+};
+use crate::error::Error;
+
+/// A line.
+#[derive(Deserialize, Serialize)]
+struct Line<'a> {
+    campaign: String,
+    #[serde(flatten)]
+    branch: Cow<'a, BranchResult>,
+    rows: RowsFired,
+}
+
+/// What was judged before, and where more is written; the default one has nothing and writes nothing.
+#[derive(Debug, Default)]
+pub struct Journal {
+    file: Option<(PathBuf, File)>,
+    campaign: String,
+    known: HashMap<(u64, String), BranchResult>,
+    rows: RowsFired,
+}
+
+/// What tells a campaign from others: a branch of the same one ends the same.
+#[must_use]
+pub fn campaign(facility: &Facility, parent: &Parent, procedure: Procedure) -> String {
+    let Procedure { recovery, tries, until } = procedure;
+    format!(
+        "{} seed {} digest {} by {VERSION}: {recovery:?}, {tries} tries, judged at {until:?}",
+        facility.job.name, facility.seed, parent.digest
+    )
+}
+
+impl Journal {
+    /// Read what the file has of a campaign. It is made if there is none. A last line that is not whole, as a program leaves
+    /// it that was killed, is cut off.
+    ///
+    /// # Errors
+    /// [`Error`] if the file cannot be read or written, or is no journal.
+    pub fn open(path: &Path, campaign: &str) -> Result<Self, Error> {
+        let read = |source| StartError::Read { path: path.to_owned(), source };
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(path)
+            .map_err(read)?;
+        let mut text = String::new();
+        file.read_to_string(&mut text).map_err(read)?;
+        let whole = text.rfind('\n').map_or(0, |end| end + 1);
+        let mut journal = Self { campaign: campaign.to_owned(), ..Self::default() };
+        for (number, line) in (1_usize..).zip(text[..whole].lines()) {
+            let line: Line<'_> = serde_json::from_str(line).map_err(|error| {
+                Error::Campaign(format!(
+                    "{}:{number}: expected a branch of a campaign: {error}; name another file with --journal, or \
+                     remove the line",
+                    path.display()
+                ))
+            })?;
+            if line.campaign == campaign {
+                let branch = line.branch.into_owned();
+                journal.rows.take_in(line.rows);
+                journal.known.insert((branch.at, branch.interruption.clone()), branch);
+            }
+        }
+        let write = |source| Error::Write { path: path.to_owned(), source };
+        file.set_len(whole as u64).and_then(|()| file.seek(io::SeekFrom::End(0))).map_err(write)?;
+        journal.file = Some((path.to_owned(), file));
+        Ok(journal)
+    }
+
+    /// What became of a branch, if it was judged before.
+    #[must_use]
+    pub fn result(&self, plan: &Plan) -> Option<&BranchResult> {
+        self.known.get(&(plan.at, plan.series.to_string()))
+    }
+
+    /// A branch is judged.
+    ///
+    /// # Errors
+    /// [`Error`] if it cannot be written.
+    pub fn write(&self, result: &BranchResult, rows: &RowsFired) -> Result<(), Error> {
+        let Some((path, file)) = &self.file else { return Ok(()) };
+        let line =
+            Line { campaign: self.campaign.clone(), branch: Cow::Borrowed(result), rows: rows.clone() };
+        let mut text = serde_json::to_string(&line).map_err(io::Error::from)?;
+        text.push('\n');
+        // In one piece: two lines never mix.
+        (&*file).write_all(text.as_bytes()).map_err(|source| Error::Write { path: path.clone(), source })
+    }
+
+    /// The rows that fired in the branches that were judged before.
+    #[must_use]
+    pub fn into_rows(self) -> RowsFired {
+        self.rows
+    }
+}
