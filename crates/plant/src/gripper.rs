@@ -267,6 +267,47 @@ impl Gripper {
         }
     }
 
+    /// Lead the fingers with the hand while they hold nothing and nothing is near them: springs without a load are not
+    /// computed. Otherwise they hang on their springs.
+    pub fn carry_fingers(&self, world: &mut PhysicsWorld) {
+        let groups = |collider: ColliderHandle| world.colliders[collider].collision_groups();
+        // The pair of a part that is held stays in the list, but is not looked at any more.
+        let is_near = |finger: &Finger| {
+            let mut pairs = world.narrow_phase.contact_pairs_with(finger.collider);
+            pairs.any(|pair| groups(pair.collider1).test(groups(pair.collider2)))
+        };
+        if self.fingers.iter().any(is_near) {
+            return self.hang_fingers(world);
+        }
+        self.become_fingers(world, RigidBodyType::KinematicPositionBased);
+        let hand = *world.bodies[self.hand].next_position();
+        for (finger, rest) in self.fingers.iter().zip(self.finger_rests()) {
+            let body = &mut world.bodies[finger.body];
+            let next = hand * rest;
+            let rotation = on_the_side_of(body.rotation(), next.rotation);
+            body.set_next_kinematic_position(Pose { rotation, ..next });
+        }
+    }
+
+    /// From now on the fingers hang on their springs.
+    pub fn hang_fingers(&self, world: &mut PhysicsWorld) {
+        self.become_fingers(world, RigidBodyType::Dynamic);
+    }
+
+    /// The joints of fingers that are led would be solved for nothing.
+    fn become_fingers(&self, world: &mut PhysicsWorld, kind: RigidBodyType) {
+        for finger in &self.fingers {
+            let body = &mut world.bodies[finger.body];
+            if body.body_type() == kind {
+                continue;
+            }
+            body.set_body_type(kind, true);
+            if let Some(joint) = world.impulse_joints.get_mut(finger.joint, false) {
+                joint.data.set_enabled(kind == RigidBodyType::Dynamic);
+            }
+        }
+    }
+
     /// Let the springs of the fingers rest where the air wants the fingers.
     pub fn move_fingers(&mut self, world: &mut PhysicsWorld) {
         let now = (self.air.opening(), self.air.speed());
@@ -427,6 +468,8 @@ impl Finger {
         let collider = ColliderBuilder::cuboid(x, y, z)
             .mass(mass)
             .friction(description.friction)
+            // What stands still is near, too, while the fingers are led.
+            .active_collision_types(ActiveCollisionTypes::all())
             .collision_groups(groups(group, Group::ALL & !group));
         let collider = world.insert_collider(collider, Some(body));
         let linear = newtons(stiffness) / metres(1.0) / 2.0;

@@ -79,7 +79,7 @@ fn from_home_and_safe_it_touches_nothing() {
 }
 
 #[test]
-fn over_the_vise_it_runs_into_it_and_keeps_the_part() {
+fn over_the_vise_it_runs_into_it_and_says_what_becomes_of_the_part() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     rig.vise(WorkstationAction::VisePartial);
@@ -93,6 +93,19 @@ fn over_the_vise_it_runs_into_it_and_keeps_the_part() {
     assert!(droop.touched[0].depth > 0.01 && droop.touched[0].depth < 1.0, "{:?}", droop.touched);
     let said = rig.log.last().unwrap().to_string();
     assert!(said.contains("has come to rest") && said.contains("has run into things: "), "{said}");
+    let lost = rig.log.iter().any(|event| event.to_string() == "LINKBAR1_BH is lost from the fingers");
+    assert!(lost || rig.part().held, "{:?}", rig.part());
+}
+
+#[test]
+fn the_fingers_keep_their_part_while_it_sinks() {
+    let mut rig = Rig::new(&description(), 1);
+    rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
+    rig.pick(0.0, 0.0, 0.0, 40.0);
+    rig.carry();
+    let before = hand(&rig);
+    let droop = stop(&mut rig, EStop::JoystickBox);
+    assert!((hand(&rig) - before).norm() > 2.0, "{droop:?}");
     assert!(rig.part().held, "air remains: {:?}", rig.part());
 }
 

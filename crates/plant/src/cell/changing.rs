@@ -254,6 +254,7 @@ impl Cell {
             let (gripper, world) = self.hand_at_work(hand);
             gripper.air.cut();
             gripper.move_fingers(world);
+            gripper.hang_fingers(world);
         }
     }
 

@@ -134,6 +134,9 @@ impl Cell {
         }
         gripper.air.advance(dt, supply, stop);
         gripper.move_fingers(world);
+        if hand != Hand::Pedestal {
+            gripper.carry_fingers(world);
+        }
         self.update_grip(hand, between);
     }
 
