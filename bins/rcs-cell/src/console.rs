@@ -29,6 +29,7 @@ fault reset                 the red FAULT RESET button
 hydraulics enable|disable   the keyswitch
 manual on|off               the MANUAL ON/OFF button: the robot's hydraulics
 align [AXIS]                teach pendant: move all axes, or one of 1 to 6, to its arrow
+jog AXIS DEGREES            teach pendant: turn one of the axes 1 to 6 by up to 20 degrees, in manual mode
 auto                        the AUTO button: the robot moves to HOME
 cycle start                 two short vertical motions, then the DEPC function
 interrupt, cancel, enter    INTERRUPT button; CANCEL and ENTER keys
@@ -38,6 +39,7 @@ estop [SITE]                E-stop: the robot sinks; control-panel (if none is n
 release [SITE]              pull an E-stop out again, before fault reset
 board in|out                put the RS232 board in, take it out: control power off first
 transmitter good|broken     the transmitter of the RS232 board
+prim box on|off             power of the Prim Interface Box: FAULT RESET needs it
 status                      everything at a glance
 wait SECONDS                wait before the next line (for scripts)
 help, quit";
@@ -60,6 +62,9 @@ impl FromStr for ConsoleCommand {
                 Ok(axis @ 1..=6) => Key::Align(Some(axis)),
                 _ => return Err(format!("an axis from 1 to 6 was expected, found {axis}")),
             },
+            ["jog", axis, degrees] => jog(axis, degrees)?,
+            ["jog", ..] => return Err("jog AXIS DEGREES was expected, such as jog 1 -5".into()),
+            ["prim", "box", switch] => Key::PrimBox(on(switch)?),
             ["auto"] => Key::Auto,
             ["cycle", "start"] => Key::CycleStart,
             ["interrupt"] => Key::Interrupt,
@@ -80,6 +85,18 @@ impl FromStr for ConsoleCommand {
         };
         Ok(Self::Key(key))
     }
+}
+
+/// Degrees that the pendant turns an axis by at most.
+const LONGEST_JOG: i8 = 20;
+
+fn jog(axis: &str, degrees: &str) -> Result<Key, String> {
+    let axis = axis.parse().ok().filter(|axis| (1..=6).contains(axis));
+    let degrees = degrees.parse().ok().filter(|degrees| (-LONGEST_JOG..=LONGEST_JOG).contains(degrees));
+    let key = axis.zip(degrees).map(|(axis, degrees)| Key::Jog { axis, degrees });
+    key.ok_or_else(|| {
+        format!("an axis from 1 to 6 and -{LONGEST_JOG} to {LONGEST_JOG} degrees were expected")
+    })
 }
 
 fn estop(word: &str) -> Result<EStop, String> {
@@ -153,7 +170,7 @@ mod tests {
             let synopsis = line.split("  ").next().unwrap_or_default();
             for one in synopsis.split(", ") {
                 let one = one.split(['|', '[']).next().unwrap_or_default();
-                let one = one.replace("SECONDS", "1.5");
+                let one = one.replace("SECONDS", "1.5").replace("AXIS", "1").replace("DEGREES", "5");
                 assert!(one.parse::<ConsoleCommand>().is_ok(), "{one}");
             }
         }
@@ -172,12 +189,17 @@ mod tests {
             Key::Release(EStop::TeachPendant),
             Key::Board(false),
             Key::Transmitter(true),
+            Key::PrimBox(false),
+            Key::Jog { axis: 1, degrees: -5 },
         ] {
             assert_eq!(key.text().parse(), Ok(ConsoleCommand::Key(key)));
         }
         assert_eq!("wait 0.25".parse(), Ok(ConsoleCommand::Wait(250)));
         for (wrong, says) in [
             ("align 7", "1 to 6"),
+            ("jog 1 90", "-20 to 20 degrees"),
+            ("jog 1", "such as jog 1 -5"),
+            ("prim box maybe", "on or off"),
             ("hold maybe", "on or off"),
             ("board off", "in or out"),
             ("transmitter", "no command"),

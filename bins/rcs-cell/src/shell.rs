@@ -163,8 +163,14 @@ impl Shell {
     }
 
     fn press(&mut self, key: Key) {
+        let before = self.t3.error();
         match self.t3.press(key) {
-            Ok(()) => self.show(),
+            Ok(()) => {
+                self.show();
+                if let Some(error) = self.t3.error().filter(|_| before.is_none()) {
+                    stdout_line!("{error}");
+                }
+            }
             Err(refusal) => stdout_line!("refused: {refusal}"),
         }
     }
@@ -216,6 +222,10 @@ impl Shell {
             counts.reports,
         );
         let mut lines = vec![text, Message::Aligned(t3.aligned()).to_string()];
+        lines.extend(t3.error().map(str::to_owned));
+        if t3.arm().on_shot_pin() {
+            lines.push("[robot] the shoulder lies on the shot pin".to_owned());
+        }
         if depc.warning() != depc::controller::Warning::None {
             lines.push(Message::Warning(depc.warning()).to_string());
         }

@@ -177,7 +177,8 @@ impl Controller {
         if before == ControllerState::Running && self.state != before {
             robot.stop();
         }
-        out.dtr = matches!(self.state, ControllerState::Running | ControllerState::Warning);
+        // A missing board drives no line; DEPC looks for it before it turns DTR on (A 2.3).
+        out.dtr = inputs.board && matches!(self.state, ControllerState::Running | ControllerState::Warning);
         out
     }
 
@@ -454,8 +455,8 @@ mod tests {
         }
         let (mut controller, mut robot) =
             (Controller::new(Limits::NBS), Exact { joints: HOME_JOINTS, at: HOME });
-        controller.step(&ControllerInputs { start: true, board: false, ..well() }, &mut robot);
-        assert_eq!(controller.warning(), Warning::BoardMissing);
+        let out = controller.step(&ControllerInputs { start: true, board: false, ..well() }, &mut robot);
+        assert_eq!((controller.warning(), out.dtr), (Warning::BoardMissing, false));
     }
 
     #[test]

@@ -78,6 +78,13 @@ pub enum Key {
     Manual(bool),
     /// Teach pendant: move an axis, counted from 1, to its arrow (step 9); without one, all of them.
     Align(Option<u8>),
+    /// Teach pendant: turn an axis, counted from 1, by so many degrees (IV.3.4).
+    Jog {
+        /// The axis.
+        axis: u8,
+        /// The degrees.
+        degrees: i8,
+    },
     /// AUTO (step 10).
     Auto,
     /// CYCLE START (step 12).
@@ -98,6 +105,8 @@ pub enum Key {
     Board(bool),
     /// Repair the transmitter of the RS232 board, or break it (A 2.3, D5).
     Transmitter(bool),
+    /// Power of the Prim Interface Box (IV.1 steps 2 and 5).
+    PrimBox(bool),
 }
 
 impl Key {
@@ -112,6 +121,7 @@ impl Key {
             Self::Manual(to) => format!("manual {}", on(to)),
             Self::Align(None) => "align".into(),
             Self::Align(Some(axis)) => format!("align {axis}"),
+            Self::Jog { axis, degrees } => format!("jog {axis} {degrees}"),
             Self::Auto => "auto".into(),
             Self::CycleStart => "cycle start".into(),
             Self::Interrupt => "interrupt".into(),
@@ -121,6 +131,7 @@ impl Key {
             Self::Press(site) => format!("estop {}", site.word()),
             Self::Release(site) => format!("release {}", site.word()),
             Self::Board(to) => format!("board {}", if to { "in" } else { "out" }),
+            Self::PrimBox(to) => format!("prim box {}", on(to)),
             Self::Transmitter(to) => format!("transmitter {}", if to { "good" } else { "broken" }),
         }
     }
@@ -139,6 +150,8 @@ pub enum Cut {
     KeySwitch,
     /// Control power was turned off.
     ControlPower,
+    /// The Prim Interface Box has lost its power.
+    PrimBox,
 }
 
 impl Cut {
@@ -157,6 +170,7 @@ impl fmt::Display for Cut {
             Self::ManualOff => f.write_str("MANUAL ON/OFF was pressed"),
             Self::KeySwitch => f.write_str("the HYDRAULICS keyswitch was turned off"),
             Self::ControlPower => f.write_str("the controller has no power"),
+            Self::PrimBox => f.write_str("the Prim Interface Box has no power"),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What the keys of the console do, and why not.
 
 use depc::controller::ControllerState;
+use geometry::kinematics::T3;
 
 use super::{BY_EYE, Cut, EStop, Key, Refusal, Stage, T3Controller, off_home};
 
@@ -10,7 +11,10 @@ impl T3Controller {
     /// # Errors
     /// [`Refusal`]: what must be done first; then nothing has changed.
     pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
-        let hardware = matches!(key, Key::Board(_) | Key::Transmitter(_) | Key::Press(_) | Key::Release(_));
+        let hardware = matches!(
+            key,
+            Key::Board(_) | Key::Transmitter(_) | Key::PrimBox(_) | Key::Press(_) | Key::Release(_)
+        );
         if self.stage == Stage::Dark && key != Key::ControlPower(true) && !hardware {
             return Err(Refusal::NoPower);
         }
@@ -20,6 +24,7 @@ impl T3Controller {
             Key::Hydraulics(on) => self.hydraulics(on),
             Key::Manual(on) => self.manual(on),
             Key::Align(axis) => self.align(axis),
+            Key::Jog { axis, degrees } => self.jog(axis, degrees),
             Key::Auto => self.auto(),
             Key::CycleStart => self.cycle_start(),
             Key::Interrupt => self.interrupt(),
@@ -42,6 +47,14 @@ impl T3Controller {
             }
             Key::Transmitter(good) => {
                 self.transmitter = good;
+                Ok(())
+            }
+            Key::PrimBox(on) => {
+                self.prim_box = on;
+                // The joystick box's E-stop is wired through it: without power the circuit is open.
+                if !on {
+                    self.fault(Cut::PrimBox);
+                }
                 Ok(())
             }
         }
@@ -103,6 +116,9 @@ impl T3Controller {
         }
         if let Some(site) = EStop::ALL.into_iter().find(|site| self.is_pressed(*site)) {
             return Err(Refusal::Pressed(site));
+        }
+        if !self.prim_box {
+            return Err(Refusal::PrimBoxOff);
         }
         self.enter(Stage::Ready);
         self.lamp("FAULT RESET off");
@@ -170,6 +186,32 @@ impl T3Controller {
             }
             self.aligning[usize::from(number) - 1] = chosen;
         }
+        self.travel(goal);
+        Ok(())
+    }
+
+    /// Teach pendant: turn one axis by some degrees.
+    fn jog(&mut self, axis: u8, degrees: i8) -> Result<(), Refusal> {
+        match self.stage {
+            Stage::Manual | Stage::PreManual => {}
+            Stage::Rising | Stage::Homing => return Err(Refusal::Moving),
+            Stage::Depc | Stage::Rehearsing => return Err(Refusal::Running),
+            Stage::Auto => return Err(Refusal::JogInAuto),
+            _ => return Err(Refusal::NoPressure),
+        }
+        if !self.arm.settled() {
+            return Err(Refusal::Moving);
+        }
+        let at = usize::from(axis).checked_sub(1).filter(|at| *at < self.aligned.len());
+        let at = at.ok_or(Refusal::NoAxis(axis))?;
+        let mut goal = self.arm.command();
+        if let Some(joint) = goal.get_mut(at) {
+            *joint += f64::from(degrees).to_radians();
+        }
+        if T3.margin(&goal).radians < 0.0 {
+            return Err(Refusal::Limit(axis));
+        }
+        self.aligned[at] = false;
         self.travel(goal);
         Ok(())
     }

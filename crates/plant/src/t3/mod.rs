@@ -55,6 +55,14 @@ const LEFT_OFF: f64 = 2.0;
 /// How well a person brings a joint to its arrow: greatest error, degrees (ASSUMED).
 const BY_EYE: f64 = 0.5;
 
+/// What the screen shows while FAULT RESET is lit: after power-up (IV.1 step 2), and ASSUMED the same after an emergency
+/// stop, of which the manual says that an error code appears (IV.3.1).
+const FAULT: &str = "ERROR-E22";
+
+const fn powered() -> bool {
+    true
+}
+
 /// What comes from the line in a period.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepInputs {
@@ -163,6 +171,10 @@ pub struct T3Controller {
     transmitter: bool,
     /// The emergency stops that are in.
     estops: [bool; 5],
+    /// The Prim Interface Box has power. Only the console of `rcs-cell` takes it away, so that no cell that is saved is
+    /// without.
+    #[serde(skip, default = "powered")]
+    prim_box: bool,
     /// The pump and its lines are sound.
     pump: bool,
     /// Why there is no pressure.
@@ -221,6 +233,7 @@ impl T3Controller {
             board: true,
             transmitter: true,
             estops: [false; 5],
+            prim_box: true,
             pump: true,
             cut: Some(Cut::ControlPower),
             counts: Counts::default(),
@@ -232,6 +245,12 @@ impl T3Controller {
     #[must_use]
     pub fn stage(&self) -> Stage {
         self.stage
+    }
+
+    /// The error on the screen while FAULT RESET is lit (IV.1 step 2, IV.3.1).
+    #[must_use]
+    pub fn error(&self) -> Option<&'static str> {
+        (self.stage == Stage::Faulted).then_some(FAULT)
     }
 
     /// The DEPC function; of interest in [`Stage::Depc`].

@@ -47,6 +47,18 @@ pub enum Refusal {
     /// Axes are aligned in manual mode only.
     #[error("axes are aligned in manual mode, before AUTO")]
     NotManual,
+    /// The pendant moves axes in manual mode only.
+    #[error("the pendant moves axes in manual mode: before AUTO, or after INTERRUPT and CANCEL twice")]
+    JogInAuto,
+    /// There is no such axis.
+    #[error("an axis from 1 to 6 was expected, found {0}")]
+    NoAxis(u8),
+    /// The axis cannot turn so far.
+    #[error("axis {0} would turn beyond its limit")]
+    Limit(u8),
+    /// The E-stop circuit is open.
+    #[error("the Prim Interface Box has no power: prim box on comes first (IV.1)")]
+    PrimBoxOff,
     /// The robot is not in auto mode.
     #[error("the robot is not in auto mode at HOME: auto comes first")]
     NotAuto,

@@ -105,6 +105,52 @@ fn a_missing_board_is_found_when_the_function_begins() {
     assert_eq!(t3.depc().warning(), Warning::BoardMissing);
 }
 
+/// IV.1 steps 2 and 5: the error stays, and FAULT RESET does nothing, until the Prim Interface Box has power.
+#[test]
+fn a_fault_shows_its_error_and_resets_only_with_the_prim_interface_box() {
+    let mut t3 = t3();
+    assert_eq!(t3.error(), None);
+    t3.press(Key::PrimBox(false)).unwrap();
+    t3.press(Key::ControlPower(true)).unwrap();
+    assert_eq!(t3.error(), Some("ERROR-E22"));
+    assert_eq!(t3.press(Key::FaultReset), Err(Refusal::PrimBoxOff));
+    t3.press(Key::PrimBox(true)).unwrap();
+    t3.press(Key::FaultReset).unwrap();
+    assert_eq!(t3.error(), None);
+    let mut t3 = running();
+    t3.press(Key::PrimBox(false)).unwrap();
+    assert_eq!((t3.error(), t3.cut()), (Some("ERROR-E22"), Some(Cut::PrimBox)));
+}
+
+/// IV.3.4: after INTERRUPT and CANCEL twice the pendant moves single axes near HOME.
+#[test]
+fn the_pendant_turns_single_axes_in_manual_mode() {
+    let mut t3 = running();
+    let jog = |axis, degrees| Key::Jog { axis, degrees };
+    assert_eq!(t3.press(jog(1, 5)), Err(Refusal::Running));
+    for key in [Key::Interrupt, Key::Cancel, Key::Cancel] {
+        t3.press(key).unwrap();
+        pass(&mut t3, 0.2);
+    }
+    assert_eq!(t3.stage(), Stage::PreManual);
+    let before = *t3.arm().joints();
+    t3.press(jog(1, -5)).unwrap();
+    pass(&mut t3, 4.0);
+    let turned = *t3.arm().joints();
+    assert!((turned[0] - before[0] + 5_f64.to_radians()).abs() < 0.01, "{turned:?}");
+    assert!((1..6).all(|joint| (turned[joint] - before[joint]).abs() < 0.01), "{turned:?}");
+    assert!(!t3.aligned()[0], "it stands off its arrow");
+    assert_eq!(t3.press(jog(7, 5)), Err(Refusal::NoAxis(7)));
+    let far = (0..40).find_map(|_| {
+        let refused = t3.press(jog(4, 20)).err();
+        pass(&mut t3, 8.0);
+        refused
+    });
+    assert_eq!(far, Some(Refusal::Limit(4)));
+    t3.press(Key::Auto).unwrap();
+    assert_eq!(t3.press(jog(1, 5)), Err(Refusal::Moving));
+}
+
 #[test]
 fn a_broken_transmitter_is_noticed_with_the_next_answer_and_repaired() {
     let mut t3 = running();
