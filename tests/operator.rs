@@ -249,11 +249,22 @@ fn boards_are_stopped_executed_and_started_again() {
 /// LOAD (IV.2.4): a block counts from the next command on, and the log has its text.
 #[test]
 fn a_block_is_loaded_while_the_run_goes_on() {
+    load_while_the_run_goes_on(Boards::One);
+}
+
+/// The block reaches every board before the generation counts.
+#[test]
+fn a_block_is_loaded_by_boards_of_other_processes() {
+    load_while_the_run_goes_on(Boards::Split);
+}
+
+fn load_while_the_run_goes_on(boards: Boards) {
     let place = tempfile::tempdir().unwrap();
     let data = place.path().join("data");
     copy(&root().join("data"), &data);
-    let own = data.clone();
-    let cell = Cell::start("== MOVE -- 0 -- 0 0 HOME 0 -- 0\n", |config| RunConfig { data: own, ..config });
+    let (own, program) = (data.clone(), rcs_run().to_path_buf());
+    let with = |config| RunConfig { data: own, boards, program, ..config };
+    let cell = Cell::start("== MOVE -- 0 -- 0 0 HOME 0 -- 0\n", with);
     let mut client = cell.client("anna");
     assert!(client.ask("data").unwrap().unwrap().ends_with(&data.display().to_string()));
     ask_until(&mut client, "job wait", "waits");
@@ -280,6 +291,52 @@ fn a_block_is_loaded_while_the_run_goes_on() {
     assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
     // The data of the repetition have never had line 5.
     assert_repeats(&outcome, &log, &directory);
+    if boards == Boards::Split {
+        let program = rcs_run().to_path_buf();
+        let split = |config| RunConfig { boards, program, ..config };
+        assert_repeats_with(split, &outcome, &log, &directory);
+    }
+}
+
+/// `run JOB`: a job of the data directory in the place of the rest of the one that waits; the log has its text.
+#[test]
+fn another_job_is_played_in_the_place_of_the_rest() {
+    let place = tempfile::tempdir().unwrap();
+    let data = place.path().join("data");
+    copy(&root().join("data"), &data);
+    let job = |name: &str, text: &str| std::fs::write(data.join("jobs").join(name), text).unwrap();
+    job("there.job", "** vise open PFIXTURE\n== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n");
+    job("loads.job", "** load ../commands.blk\n");
+    job("wrong.job", "== MOVE NOBODY\n");
+    job("vise.job", "** vise open TABLE\n");
+    let own = data.clone();
+    let stand_by = |config| RunConfig { data: own, stand_by: true, ..config };
+    let cell = Cell::start("== MOVE -- 0 -- 0 0 HOME 0 -- 0\n", stand_by);
+    let mut client = cell.client("anna");
+    wait_for(&mut client, "the job waits");
+    for (request, why) in [
+        ("run ../../etc/passwd", "the name of a job"),
+        ("run nowhere", "nowhere.job"),
+        ("run loads", "load blocks with `load OFFSET BLOCK`"),
+        ("run wrong", "the job wrong has errors"),
+        ("run vise", "line 1 of the job vise"),
+        ("run", "run JOB was expected"),
+    ] {
+        let refused = client.ask(request).unwrap().unwrap_err();
+        assert!(refused.contains(why), "{request}: {refused}");
+    }
+    let taken = client.ask("run there").unwrap().unwrap();
+    assert!(taken.contains("the job there plays, lines: 2"), "{taken}");
+    let refused = client.ask("run there").unwrap().unwrap_err();
+    assert!(refused.contains("the job plays already"), "{refused}");
+    drop(client);
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}", outcome.result.failure);
+    // The PAUSE of the start, the PAUSE after the interruption, the vise.
+    let expected =
+        [("PAUSE", "finished"), ("PAUSE", "finished"), ("other", "finished"), ("SAFE", "finished")];
+    assert_eq!(outcomes(&outcome), expected);
+    assert_repeats_with(|config| RunConfig { stand_by: true, ..config }, &outcome, &log, &directory);
 }
 
 /// Ask until it is refused for this reason.

@@ -53,7 +53,8 @@ impl Controller {
         let socket = format!("unix:{}", scratch.file("rcs.sock").display());
         let mut child = Command::new(rcs_run())
             .args(["--network", address.unwrap_or(&socket), "--outside", outside])
-            .args(["--shared-memory", "off"])
+            // A run with a name is one that an operator reaches.
+            .args(if more.contains(&"--run") { &[][..] } else { &["--shared-memory", "off"] })
             .args(if more.contains(&"--log") { &[][..] } else { &["--log", "none"] })
             .args(more)
             .current_dir(root())

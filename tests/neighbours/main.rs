@@ -13,6 +13,7 @@ mod python;
 mod silent;
 mod strangers;
 mod switching;
+mod taking_over;
 mod together;
 mod vision;
 mod workstation;

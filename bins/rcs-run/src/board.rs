@@ -14,7 +14,7 @@ use executive::{
     realtime::{self, Verdict},
 };
 use os_io::stderr_line;
-use runtime::{boards, setup::TaskFiles};
+use runtime::{StartError, boards, loads::BoardFiles, setup::TaskFiles};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::{
@@ -43,7 +43,11 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
         }
     };
     let TaskFiles { store, job, .. } = TaskFiles::load(&arguments.data, arguments.played())?;
-    let join = || Member::join(&arguments.run, arguments.board, boards::fingerprint(&store, &job));
+    let fingerprint = boards::fingerprint(&store, &job);
+    // Generation 0 is what was loaded before the first tick, each reload of the job or of an operator the next.
+    let mut files = BoardFiles::new(&arguments.run, store, job.reloads)
+        .map_err(|source| Error::Start(StartError::Thread(source)))?;
+    let join = || Member::join(&arguments.run, arguments.board, fingerprint);
     let mut member = within_limit(SET_UP_LIMIT, Some(stuck as OnStuck), join)?;
     let name = arguments.board;
     let real_time = member.is_real_time().then(|| realtime::acquire(arguments.cpu));
@@ -55,12 +59,8 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
     if arguments.parent.is_none() {
         stderr_line!("rcs-run: {name} of {} waits for the pulse", arguments.run);
     }
-    // Generation 0 is what was loaded before the first tick, each reload of the job the next.
-    let generation = |number: u32| match usize::try_from(number).ok()?.checked_sub(1) {
-        None => Some(store.view()),
-        Some(reload) => job.reloads.get(reload).map(|reload| reload.store.view()),
-    };
-    let end = member.run(generation, punctual, &stop)?;
+    files.catch_up(member.loaded());
+    let end = member.run(files, punctual, &stop)?;
     drop(member);
     Ok(match end {
         MemberEnd::Over => ExitCode::SUCCESS,

@@ -18,7 +18,7 @@ use std::{
 use executive::{
     alloc::Counting,
     boards::{
-        Board, Coordinator, Fingerprint, Lost, Member, MemberError,
+        Board, BoardData, Checked, Coordinator, Fingerprint, Lost, Member, MemberError,
         coordinator::{BoardEvent, How},
         member::MemberEnd,
         pulse::RunCard,
@@ -28,7 +28,7 @@ use executive::{
 };
 use interfaces::{ExternalInputs, HwsCommand, device::single_step};
 use levels::ladder::Ladder;
-use rcs_core::{digest::Digest, name::Name16, tick::Tick};
+use rcs_core::{Plain as _, digest::Digest, name::Name16, tick::Tick};
 use taskdata::{files::TaskData, load::Store};
 
 #[global_allocator]
@@ -96,6 +96,19 @@ where
     (runner, None)
 }
 
+/// Two generations that are the same; nothing is loaded.
+struct Fixed;
+
+impl BoardData for Fixed {
+    fn generation(&mut self, generation: u32, _: u32) -> Option<TaskData<'_>> {
+        (generation < 2).then(|| store().view())
+    }
+
+    fn check(&mut self, _: u32) -> Checked {
+        Checked::ZERO
+    }
+}
+
 /// A board in a thread, as `rcs-run board` does it in a process.
 fn board<'s>(
     scope: &'s thread::Scope<'s, '_>,
@@ -106,7 +119,7 @@ fn board<'s>(
     let name = name.clone();
     scope.spawn(move || {
         let mut member = Member::join(&name, board, FINGERPRINT)?;
-        member.run(|generation| (generation < 2).then(|| store().view()), true, stop)
+        member.run(Fixed, true, stop)
     })
 }
 
@@ -214,7 +227,7 @@ fn a_board_with_other_data_or_in_a_taken_place_is_refused() {
         let first = scope.spawn(move || {
             let mut member = Member::join(&there, Board::Two, FINGERPRINT)?;
             joined.send(()).expect("it is waited for");
-            member.run(|_| Some(store().view()), true, flag)
+            member.run(Fixed, true, flag)
         });
         has_joined.recv().expect("the first one joins");
         let second = Member::join(&name, Board::Two, FINGERPRINT);

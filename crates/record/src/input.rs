@@ -60,6 +60,8 @@ impl Attachment {
     pub const TASK_DATA: &'static str = "taskdata/";
     /// Directory of what was loaded while the robot ran: `reload/<generation>/` and the name of the file.
     pub const RELOAD: &'static str = "reload/";
+    /// Directory of the jobs that operators put in the place of the rest of the job: `played/<number>/` and the file's name.
+    pub const PLAYED: &'static str = "played/";
     /// Name of the job.
     pub const JOB: &'static str = "job";
     /// Name of the cell description.
@@ -98,6 +100,19 @@ impl Attachment {
     pub fn as_reload(&self) -> Option<(u32, Source)> {
         let (generation, name) = self.name.strip_prefix(Self::RELOAD)?.split_once('/')?;
         Some((generation.parse().ok()?, self.source(name)))
+    }
+
+    /// A job that an operator has put in the place of the rest of the job, the first with the number 1.
+    #[must_use]
+    pub fn played(number: u32, job: &Source) -> Self {
+        Self::text(&format!("{}{number}/{}", Self::PLAYED, job.name), &job.text)
+    }
+
+    /// The number and the source of an [`Attachment::played`]; `None` for other attachments.
+    #[must_use]
+    pub fn as_played(&self) -> Option<(u32, Source)> {
+        let (number, name) = self.name.strip_prefix(Self::PLAYED)?.split_once('/')?;
+        Some((number.parse().ok()?, self.source(name)))
     }
 
     /// The text of the attachment, as task data.

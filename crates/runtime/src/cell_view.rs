@@ -38,7 +38,7 @@ impl View {
         let (hand, hand_force) = cell.pedestal_fingers();
         self.shown = CellView {
             tick,
-            controller: controller(cell.t3(), warning),
+            controller: controller(cell.t3(), warning, tick, &self.shown.controller),
             joints: cell.joints(),
             tool: cell.tool().position.into(),
             fingers: [fingers, force],
@@ -55,8 +55,22 @@ impl View {
     }
 }
 
-fn controller(t3: &T3Controller, warning: Option<&(Tick, String)>) -> ControllerView {
+fn controller(
+    t3: &T3Controller,
+    warning: Option<&(Tick, String)>,
+    tick: Tick,
+    before: &ControllerView,
+) -> ControllerView {
     let stage = t3.stage();
+    // While FAULT RESET is lit its error stands on the screen, whatever stood there before.
+    let shown = match t3.error() {
+        Some(error) if before.screen.as_str() == error => (before.screen_tick, before.screen),
+        Some(error) => (tick, Text::clipped(error)),
+        None => {
+            warning.map_or((Tick::BEFORE_START, Text::default()), |(tick, text)| (*tick, Text::clipped(text)))
+        }
+    };
+    let (screen_tick, screen) = shown;
     let is = |stages: &[Stage]| stages.contains(&stage);
     ControllerView {
         stage: Text::clipped(stage.text()),
@@ -68,8 +82,8 @@ fn controller(t3: &T3Controller, warning: Option<&(Tick, String)>) -> Controller
             auto: is(&[Stage::Homing, Stage::Auto, Stage::Rehearsing, Stage::Depc]),
             hold: t3.hold(),
         },
-        screen: warning.map_or_else(Text::default, |(_, text)| Text::clipped(text)),
-        screen_tick: warning.map_or(Tick::BEFORE_START, |(tick, _)| *tick),
+        screen,
+        screen_tick,
         cut: t3.cut().map_or_else(Text::default, |cut| Text::clipped(&cut.to_string())),
         estops: EStop::ALL.map(|site| t3.is_pressed(site)),
         aligned: t3.aligned(),

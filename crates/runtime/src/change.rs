@@ -6,11 +6,11 @@
 use plant::fault::{What, text::FaultFile};
 use record::Level;
 use taskdata::load::{
-    Diagnostics, Source, Store,
+    Diagnostics, Source,
     job::{JobLine, Reload},
 };
 
-use crate::Run;
+use crate::{Run, loads::insert};
 
 /// Source of a line of the log about a change.
 const SOURCE: &str = "change";
@@ -53,27 +53,30 @@ impl Run {
     /// # Errors
     /// [`ChangeError::Data`], [`ChangeError::Reload`]; then nothing has changed.
     pub fn change_data(&mut self, source: Source) -> Result<(), ChangeError> {
-        let with = |store: &Store, source: &Source| store.with_blocks(vec![source.clone()]);
-        let (store, _) = with(self.generations.current(), &source)?;
-        let done = usize::try_from(self.generations.number()).unwrap_or(usize::MAX);
-        let mut reloads: Vec<Reload> = self.job.reloads.iter().take(done).cloned().collect();
-        reloads.push(Reload { source: source.clone(), store: store.clone() });
-        // What the job loads later is loaded upon the change.
-        let mut newest = store.clone();
-        for Reload { source, .. } in self.job.reloads.iter().skip(done) {
-            newest = with(&newest, source)?.0;
-            reloads.push(Reload { source: source.clone(), store: newest.clone() });
-        }
-        if !self.generations.supersede(store) {
-            return Err(ChangeError::Reload);
+        let done = self.generations_done();
+        let reloads = insert(self.generations.current(), &self.job.reloads, done, &source)?;
+        if self.use_reloads(reloads) { Ok(()) } else { Err(ChangeError::Reload) }
+    }
+
+    /// How many reloads count: those of lines of the job, of changes and of operators.
+    pub(crate) fn generations_done(&self) -> usize {
+        usize::try_from(self.generations.number()).unwrap_or(usize::MAX)
+    }
+
+    /// From the next tick on one more of these reloads counts. False, and nothing has changed, if one of the job waits for
+    /// the end of a command.
+    pub(crate) fn use_reloads(&mut self, reloads: Vec<Reload>) -> bool {
+        let Some(next) = reloads.get(self.generations_done()) else { return false };
+        if !self.generations.supersede(next.store.clone()) {
+            return false;
         }
         self.changed += 1;
-        self.job.reloads = reloads;
         let (tick, number) = (self.last_tick().next(), self.generations.number());
         if let Some(log) = &mut self.log {
-            log.reload(tick, number, &source);
+            log.reload(tick, number, &next.source);
         }
-        Ok(())
+        self.job.reloads = reloads;
+        true
     }
 
     /// From the next tick on the faults of a file can begin, those of the cell and those of the line.

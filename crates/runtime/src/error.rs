@@ -108,6 +108,9 @@ pub enum StartError {
         /// Why.
         source: io::Error,
     },
+    /// A thread of the run cannot be started.
+    #[error("a thread of the run cannot be started: {0}")]
+    Thread(#[source] io::Error),
     /// The system has no random numbers.
     #[error(transparent)]
     NoRandom(#[from] ::live::NoRandom),

@@ -1,104 +1,260 @@
 //! LOAD while the run goes on (IV.2.4): a block of the run's own data directory, as it stands there now, becomes part of
-//! the task data before the next command. The whole of the data is checked with it first.
+//! the task data before the next command. The whole of the data is checked with it first, by all boards.
 //!
 //! The log keeps the text, so that a replay, and the same inputs given again, load what was loaded then.
 
-use std::fmt;
-
-use executive::generations;
-use taskdata::load::{
-    BlockNumber, Source,
-    source::{blocks, read_blocks_under},
+use std::{
+    fmt, fs, io, thread,
+    time::{Duration, Instant},
 };
 
-use crate::{Run, boards::Controller, change::ChangeError};
+use executive::{
+    boards::{Board, Coordinator},
+    generations,
+    memory::load_file,
+};
+use rcs_core::tick::{TICK_MS, Tick};
+use taskdata::load::{BlockNumber, Source};
+
+use crate::{
+    Run,
+    boards::Controller,
+    loads::{Loaded, Loader, Order},
+    operator::Input,
+};
+
+/// How long boards have to check what is loaded.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// The same in ticks.
+const BOARDS_LIMIT: u64 = PATIENCE.as_secs() * 1000 / TICK_MS;
+/// Time between two looks at the boards, where nothing else goes on meanwhile.
+const LOOK: Duration = Duration::from_millis(5);
 
 /// Why a block is not loaded.
 #[derive(Debug)]
 pub enum LoadError {
-    /// Boards of other processes have read their data before the first tick.
-    Boards,
-    /// The link to a robot would be silent while the data are checked.
-    Robot,
     /// A command is executed.
     Busy,
+    /// Another block is being loaded.
+    Loading,
     /// The data directory has no such block.
     NoBlock(BlockNumber),
     /// The log whose inputs are given again has not the text.
     NotRecorded,
     /// The data have errors with it.
-    Change(ChangeError),
+    Data(String),
+    /// The job has loaded blocks meanwhile, or waits for the end of a command with some.
+    Reload,
+    /// What the boards read cannot be written.
+    Write(io::Error),
+    /// A board has not checked it in time.
+    Late,
+    /// A board has come to other data.
+    Differs(Board),
+    /// The thread that checks is gone.
+    NoThread,
 }
 
 impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Boards => f.write_str(
-                "boards of other processes read their blocks before the first tick: a line `** load` of the job \
-                 reaches them, or --boards one",
-            ),
-            Self::Robot => f.write_str(
-                "the data are checked between two ticks, and the link to the robot would be silent meanwhile: load \
-                 with the simulated robot, or begin a new run",
-            ),
-            Self::Busy => f.write_str("a command is executed, and keeps its records: PAUSE, or wait for its end"),
+            Self::Busy => {
+                f.write_str("a command is executed, and keeps its records: PAUSE, or wait for its end")
+            }
+            Self::Loading => f.write_str("another block is being checked: ask again when that is answered"),
             Self::NoBlock(block) => write!(f, "the run's data directory has no {block}"),
             Self::NotRecorded => f.write_str("the log has no text of the block"),
-            Self::Change(error) => error.fmt(f),
+            Self::Data(report) => write!(f, "the task data have errors with it:\n{report}"),
+            Self::Reload => f.write_str("the job loads blocks at this moment: ask again"),
+            Self::Write(error) => write!(f, "the blocks for the boards cannot be written: {error}"),
+            Self::Late => write!(
+                f,
+                "not all boards have checked it within {} s; nothing has changed",
+                PATIENCE.as_secs()
+            ),
+            Self::Differs(board) => {
+                write!(
+                    f,
+                    "{board} has come to other task data: it was started with others; nothing has changed"
+                )
+            }
+            Self::NoThread => f.write_str("the thread that checks blocks has ended; nothing has changed"),
         }
     }
+}
+
+/// What operators let a run read while it goes on.
+#[derive(Default)]
+pub struct Loads {
+    /// Reads and checks; none where no operator can connect.
+    loader: Option<Loader>,
+    loading: Option<Loading>,
+    /// Number of the last load that boards of other processes were told of.
+    last: u32,
+    /// Jobs that were put in the place of the rest.
+    pub played: u32,
+}
+
+impl Loads {
+    /// Nothing was read yet.
+    #[must_use]
+    pub fn with(loader: Option<Loader>) -> Self {
+        Self { loader, ..Self::default() }
+    }
+
+    /// A block is being checked.
+    #[must_use]
+    pub const fn is_loading(&self) -> bool {
+        self.loading.is_some()
+    }
+
+    /// Blocks can be checked beside the ticks.
+    #[must_use]
+    pub const fn can_load(&self) -> bool {
+        self.loader.is_some()
+    }
+}
+
+/// A load that was asked for and is not answered yet.
+struct Loading {
+    input: Input,
+    number: BlockNumber,
+    stage: Stage,
+}
+
+enum Stage {
+    /// The thread of the run reads and checks.
+    Checking,
+    /// The boards check.
+    Announced { loaded: Loaded, since: Tick },
 }
 
 impl Run {
-    /// Load a block before the next tick. Says what has come of it.
+    /// Begin to load a block beside the ticks; the answer comes later.
+    ///
+    /// # Errors
+    /// The input back, and why not.
+    pub(crate) fn begin_load(&mut self, number: BlockNumber, input: Input) -> Result<(), (Input, LoadError)> {
+        if self.loads.loading.is_some() {
+            return Err((input, LoadError::Loading));
+        }
+        if generations::is_busy(self.runner.memory()) {
+            return Err((input, LoadError::Busy));
+        }
+        let order = self.order(number, None);
+        let Some(loader) = &self.loads.loader else { return Err((input, LoadError::NoThread)) };
+        loader.begin(order);
+        self.loads.loading = Some(Loading { input, number, stage: Stage::Checking });
+        Ok(())
+    }
+
+    /// Once a tick, between two of them: what has become of the block that is being loaded, with the input that it answers.
+    pub(crate) fn follow_load(&mut self, tick: Tick) -> Option<(Input, Result<String, LoadError>)> {
+        let Loading { input, number, stage } = self.loads.loading.take()?;
+        let stage = match stage {
+            Stage::Checking => match self.loads.loader.as_ref()?.look() {
+                None => Stage::Checking,
+                Some(Err(why)) => return Some((input, Err(why))),
+                Some(Ok(loaded)) => {
+                    let Some(load) = self.announce() else {
+                        return Some((input, self.take_up(number, loaded)));
+                    };
+                    self.loads.last = load;
+                    Stage::Announced { loaded, since: tick }
+                }
+            },
+            Stage::Announced { loaded, since } => match self.boards_have_checked(&loaded) {
+                Ok(true) => return Some((input, self.take_up(number, loaded))),
+                Ok(false) if tick.since(since) < BOARDS_LIMIT => Stage::Announced { loaded, since },
+                Ok(false) => return Some((input, Err(self.take_back(LoadError::Late)))),
+                Err(board) => return Some((input, Err(self.take_back(LoadError::Differs(board))))),
+            },
+        };
+        self.loads.loading = Some(Loading { input, number, stage });
+        None
+    }
+
+    /// Load a block before the next tick, as a log says that it was.
     ///
     /// # Errors
     /// [`LoadError`]; then nothing has changed.
-    pub(crate) fn load_block(&mut self, number: BlockNumber) -> Result<String, LoadError> {
-        if matches!(self.runner.levels(), Controller::Split(_)) {
-            return Err(LoadError::Boards);
-        }
-        if self.robot.is_elsewhere() {
-            return Err(LoadError::Robot);
-        }
-        if generations::is_busy(self.runner.memory()) {
-            return Err(LoadError::Busy);
-        }
-        let generation = self.generations.number().saturating_add(1);
-        let source = match self.asked.recorded_block(generation) {
-            Some(recorded) => recorded.ok_or(LoadError::NotRecorded)?,
-            None => {
-                let (sources, _) = read_blocks_under(&self.config.data);
-                sources.iter().find_map(|file| cut(file, number)).ok_or(LoadError::NoBlock(number))?
+    pub(crate) fn load_recorded(&mut self, number: BlockNumber) -> Result<String, LoadError> {
+        let recorded = self.asked.recorded_block(self.generations.number().saturating_add(1));
+        let source = recorded.ok_or(LoadError::NotRecorded)?;
+        let loaded = self.order(number, Some(source)).carry_out()?;
+        if let Some(load) = self.announce() {
+            self.loads.last = load;
+            let begun = Instant::now();
+            loop {
+                match self.boards_have_checked(&loaded) {
+                    Ok(true) => break,
+                    Ok(false) if begun.elapsed() < PATIENCE => thread::sleep(LOOK),
+                    Ok(false) => return Err(self.take_back(LoadError::Late)),
+                    Err(board) => return Err(self.take_back(LoadError::Differs(board))),
+                }
             }
-        };
-        let said = format!("{number} of {} is loaded; the data have generation {generation}", source.name);
-        self.change_data(source).map_err(LoadError::Change)?;
-        Ok(said)
+        }
+        self.take_up(number, loaded)
     }
-}
 
-/// One block of a file, under the name of the file.
-fn cut(file: &Source, number: BlockNumber) -> Option<Source> {
-    let (found, _) = blocks(0, file);
-    let at = found.iter().position(|block| block.number == number)?;
-    let start = |at: usize| found.get(at).and_then(|block| usize::try_from(block.header.start).ok());
-    let end = start(at + 1).unwrap_or(file.text.len());
-    let text = file.text.get(start(at)?..end)?;
-    Some(Source { name: file.name.clone(), text: text.into() })
-}
+    fn order(&self, number: BlockNumber, source: Option<Source>) -> Order {
+        let is_split = matches!(self.runner.levels(), Controller::Split(_));
+        Order {
+            number,
+            source,
+            directory: self.config.data.clone(),
+            base: self.generations.current().clone(),
+            reloads: self.job.reloads.clone(),
+            done: self.generations_done(),
+            file: is_split.then(|| load_file(&self.name, self.loads.last.saturating_add(1))),
+        }
+    }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+    fn coordinator(&mut self) -> Option<&mut Coordinator> {
+        match self.runner.levels_mut() {
+            Controller::Split(coordinator) => Some(coordinator),
+            Controller::One(_) => None,
+        }
+    }
 
-    #[test]
-    fn a_block_is_cut_out_of_its_file() {
-        let text = "%% about the file\nBLOCK# 1 OFFSET 21000\n  a\nBLOCK# 2 OFFSET 21000\n  b\n";
-        let file = Source { name: "x.blk".into(), text: text.into() };
-        let block = |number| cut(&file, BlockNumber { offset: 21_000, number });
-        assert_eq!(block(1).unwrap().text.as_ref(), "BLOCK# 1 OFFSET 21000\n  a\n");
-        assert_eq!(block(2).unwrap().text.as_ref(), "BLOCK# 2 OFFSET 21000\n  b\n");
-        assert!(block(3).is_none() && block(2).unwrap().name == "x.blk");
+    /// Let the boards of other processes check what was written for them; the number of the load. None on one board.
+    fn announce(&mut self) -> Option<u32> {
+        let load = self.loads.last.saturating_add(1);
+        self.coordinator()?.announce(load);
+        Some(load)
+    }
+
+    fn boards_have_checked(&mut self, loaded: &Loaded) -> Result<bool, Board> {
+        let load = self.loads.last;
+        self.coordinator().map_or(Ok(true), |coordinator| coordinator.have_checked(load, loaded.data))
+    }
+
+    /// A load that boards were told of does not count: a board that joins later is not to read it.
+    fn take_back(&self, why: LoadError) -> LoadError {
+        // It goes with the run otherwise.
+        let _ = fs::remove_file(load_file(&self.name, self.loads.last));
+        why
+    }
+
+    /// The task data have the block from the next tick on.
+    fn take_up(&mut self, number: BlockNumber, loaded: Loaded) -> Result<String, LoadError> {
+        let Loaded { reloads, done, .. } = loaded;
+        let refused = if generations::is_busy(self.runner.memory()) {
+            Some(LoadError::Busy)
+        } else if done != self.generations_done() || !self.use_reloads(reloads) {
+            Some(LoadError::Reload)
+        } else {
+            None
+        };
+        if let Some(why) = refused {
+            return Err(self.take_back(why));
+        }
+        let load = self.loads.last;
+        if let Some(coordinator) = self.coordinator() {
+            coordinator.commit(load);
+        }
+        let generation = self.generations.number();
+        let name = self.job.reload(generation).map_or("", |reload| &reload.source.name);
+        Ok(format!("{number} of {name} is loaded; the data have generation {generation}"))
     }
 }

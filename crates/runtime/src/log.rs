@@ -25,7 +25,7 @@ use crate::{
     config::{ClockKind, RobotKind, RunConfig},
     egm::FRAMES,
     live::Live,
-    setup::Setup,
+    setup::{EXTENSION, Setup},
 };
 
 /// Name of the fault plan among the attachments.
@@ -195,6 +195,12 @@ impl Log {
         }
         let text = format!("task data, generation {generation}: {} is loaded", source.name);
         self.recorder.note(tick, Level::Info, "executive", &text);
+    }
+
+    /// From `tick` on this job is played in the place of the rest of the one before; before [`Log::tick`] of that tick.
+    pub fn played(&mut self, tick: Tick, number: u32, job: &Job) {
+        let source = Source { name: format!("{}.{EXTENSION}", job.name), text: job.source().text.clone() };
+        self.recorder.attach(tick, Attachment::played(number, &source));
     }
 
     /// How punctual the tick is; before [`Log::tick`] of the same tick. Not for runs in fast clock: their

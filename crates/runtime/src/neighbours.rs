@@ -29,7 +29,7 @@ use record::Level;
 use taskdata::load::Store;
 
 use super::{
-    outside::OutsideWorkstation,
+    commanded::Commanded,
     switched::{Around, Switched},
     workstation::SimulatedWorkstation,
 };
@@ -53,7 +53,7 @@ pub enum WorkstationSource {
     /// The emulator, with a job.
     Emulator(Box<Emulator>),
     /// Another process.
-    Outside(Box<OutsideWorkstation>),
+    Outside(Box<Commanded>),
     /// The emulator, whose job hands over to another process.
     Switched(Box<Switched>),
 }
@@ -69,7 +69,7 @@ impl WorkstationSource {
     /// Another process commands.
     #[must_use]
     pub fn outside(endpoint: Endpoint) -> Self {
-        Self::Outside(Box::new(OutsideWorkstation::new(endpoint)))
+        Self::Outside(Box::new(Commanded::new(endpoint)))
     }
 }
 
@@ -83,15 +83,15 @@ pub struct Network {
 
 /// The neighbours of a run.
 pub struct Neighbours {
-    gate: Gate,
-    workstation: WorkstationSource,
+    pub(crate) gate: Gate,
+    pub(crate) workstation: WorkstationSource,
     data_system: DataSystem,
     /// None: the pedestal's processes are among the controller's.
     pedestal: Option<Box<pedestal::Agent>>,
     /// Vision; without it the cell analyses its pictures itself.
     vision: Option<vision::Port>,
     /// Accepts neighbours as long as the run lasts; none without it.
-    network: Option<Network>,
+    pub(crate) network: Option<Network>,
     notes: Vec<Note>,
     /// No command is given any more.
     is_ending: bool,
@@ -165,7 +165,7 @@ impl Neighbours {
     pub fn are_commanding(&self) -> bool {
         match &self.workstation {
             WorkstationSource::Emulator(_) => false,
-            WorkstationSource::Outside(_) => true,
+            WorkstationSource::Outside(commanded) => !commanded.is_stand_alone(),
             WorkstationSource::Switched(switched) => switched.is_handed_over(),
         }
     }
@@ -191,7 +191,9 @@ impl Neighbours {
         match &mut self.workstation {
             WorkstationSource::Emulator(emulator) => Ok(&mut emulator.hwsc),
             WorkstationSource::Switched(switched) => switched.job_under_way().ok_or_else(|| other.to_owned()),
-            WorkstationSource::Outside(_) => Err(other.to_owned()),
+            WorkstationSource::Outside(commanded) => {
+                commanded.job_under_way().ok_or_else(|| format!("{other}, and `stand-alone` takes over"))
+            }
         }
     }
 
@@ -200,7 +202,7 @@ impl Neighbours {
         match &mut self.workstation {
             WorkstationSource::Emulator(emulator) => emulator.hwsc.operator_news(),
             WorkstationSource::Switched(switched) => switched.job_under_way()?.operator_news(),
-            WorkstationSource::Outside(_) => None,
+            WorkstationSource::Outside(commanded) => commanded.job_under_way()?.operator_news(),
         }
     }
 
@@ -261,7 +263,7 @@ impl Neighbours {
     pub fn begun_steps(&self) -> &[BegunStep] {
         match &self.workstation {
             WorkstationSource::Emulator(emulator) => emulator.hwsc.begun_steps(),
-            WorkstationSource::Outside(outside) => outside.begun_steps(),
+            WorkstationSource::Outside(commanded) => commanded.begun_steps(),
             WorkstationSource::Switched(switched) => switched.begun_steps(),
         }
     }
@@ -271,7 +273,8 @@ impl Neighbours {
     pub fn all_steps(&self) -> Vec<BegunStep> {
         match &self.workstation {
             WorkstationSource::Switched(switched) => switched.all_steps(),
-            _ => self.begun_steps().to_vec(),
+            WorkstationSource::Outside(commanded) => commanded.all_steps(),
+            WorkstationSource::Emulator(_) => self.begun_steps().to_vec(),
         }
     }
 
@@ -323,8 +326,9 @@ impl Neighbours {
             WorkstationSource::Emulator(emulator) => {
                 emulator.step(tick, &mut self.gate, workstation, &mut self.notes)
             }
-            WorkstationSource::Outside(outside) => {
-                outside.step(tick, &mut self.gate, &memory.task, workstation, store, &mut self.notes)
+            WorkstationSource::Outside(commanded) => {
+                let (gate, task) = (&mut self.gate, &memory.task);
+                commanded.step(tick, gate, task, workstation, store, &mut self.notes)
             }
             WorkstationSource::Switched(switched) => {
                 let data_system = self.network.iter().flat_map(|network| &network.handles);

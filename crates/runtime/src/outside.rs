@@ -80,6 +80,20 @@ impl OutsideWorkstation {
         &self.endpoint
     }
 
+    /// An operator has taken the command: what is executed is replaced.
+    pub fn interrupt(&mut self, tick: Tick) {
+        if let Some(step) = self.begun_steps.last_mut().filter(|step| step.outcome == Outcome::Executing) {
+            (step.outcome, step.ticks) = (Outcome::Interrupted, tick.since(step.began));
+        }
+    }
+
+    /// It commands again: what has come meanwhile is not read.
+    pub fn pass_over(&mut self, gate: &mut Gate) {
+        gate.pass_over(self.endpoint.incoming(HWSC_COMMAND));
+        self.line_read = self.endpoint.incoming(CELL_COMMAND).mailgram();
+        self.refused = None;
+    }
+
     /// The commands that were taken since the last call.
     pub fn take_steps(&mut self) -> Vec<BegunStep> {
         std::mem::take(&mut self.begun_steps)

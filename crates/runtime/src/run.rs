@@ -15,7 +15,7 @@ use executive::{
     boards::Lost,
     failure::Failure,
     generations::Generations,
-    memory::Mirror,
+    memory::{Mirror, RunName},
     rest::{AT_LAST, RestWatch},
     runner::Runner,
     timing::Stage,
@@ -34,6 +34,7 @@ use crate::{
     config::{ClockKind, RunConfig},
     contacts::ContactCheck,
     live::Live,
+    load::Loads,
     log::Log,
     neighbours::Neighbours,
     observer::{Observer, TickReport},
@@ -69,6 +70,10 @@ pub struct Run {
     /// Where operators' requests come from, and what becomes of them.
     pub(crate) asked: Inputs,
     operator: Operator,
+    /// What operators let the run read while it goes on.
+    pub(crate) loads: Loads,
+    /// Name of the run.
+    pub(crate) name: RunName,
     inputs: DeviceInputs,
     pub(crate) robot: Robot,
     pub(crate) log: Option<Log>,

@@ -122,7 +122,7 @@ impl Switched {
 
     /// The line `** workstation` has come.
     fn hand_over(&mut self, around: &Around<'_>, gate: &mut Gate, notes: &mut Vec<Note>) -> Progress {
-        if let Some(obstacle) = obstacle(around, gate.command()) {
+        if let Some(obstacle) = obstacle(around.memory, gate.command(), around.has_data_system) {
             return self.refuse(around.tick, obstacle);
         }
         notes.push((Level::Info, "HWSC", "the workstation controller commands from here on".to_owned()));
@@ -188,9 +188,9 @@ impl Switched {
 }
 
 /// What keeps the workstation controller from taking over (IV.4.1).
-fn obstacle(around: &Around<'_>, last: &HwsCommand) -> Option<String> {
+pub fn obstacle(memory: &CommonMemory, last: &HwsCommand, has_data_system: bool) -> Option<String> {
     let needs = "the workstation controller is connected with";
-    let place = around.memory.emove.beliefs.place.map(|place| place.location);
+    let place = memory.emove.beliefs.place.map(|place| place.location);
     if place.is_none_or(|location| location.as_str() != HOME) {
         let found = place.map_or("no known location".to_owned(), |location| location.to_string());
         return Some(format!("{needs} the robot at {HOME}, it is at {found}: move it there before the line"));
@@ -201,7 +201,7 @@ fn obstacle(around: &Around<'_>, last: &HwsCommand) -> Option<String> {
             last.command
         ));
     }
-    (!around.has_data_system).then(|| {
+    (!has_data_system).then(|| {
         "the Data System is connected before the workstation controller: start it, then the job again"
             .to_owned()
     })

@@ -24,7 +24,9 @@ use taskdata::files::TaskData;
 use super::{
     BOARDS, Board,
     exchange::Readers,
-    pulse::{BoardReport, Epochs, Fingerprint, PulseGiver, ReportReader, RunCard, SystemPulse, sleep},
+    pulse::{
+        BoardReport, Checked, Epochs, Fingerprint, PulseGiver, ReportReader, RunCard, SystemPulse, sleep,
+    },
 };
 use crate::{
     failure,
@@ -439,6 +441,41 @@ impl Coordinator {
     #[must_use]
     pub const fn epochs(&self) -> &Epochs {
         &self.pulse.epochs
+    }
+
+    /// Let the boards check a load beside their ticks: its file is there.
+    pub fn announce(&mut self, load: u32) {
+        self.pulse.load = load;
+        if let Some((giver, _)) = &self.ports {
+            giver.give(&self.pulse);
+        }
+    }
+
+    /// True if all boards have checked the load and have come to task data with this fingerprint.
+    ///
+    /// # Errors
+    /// A board that has come to others.
+    pub fn have_checked(&mut self, load: u32, data: u64) -> Result<bool, Board> {
+        let mut all = true;
+        for seat in &mut self.seats {
+            // A report that cannot be read is found with the next stamp.
+            if let Some((_, reports)) = &seat.ports
+                && let Ok((_, report)) = reports.read()
+            {
+                seat.report = report;
+            }
+            let Checked { load: checked, data: found } = seat.report.checked;
+            if checked == load && found != data {
+                return Err(seat.board);
+            }
+            all &= checked == load;
+        }
+        Ok(all)
+    }
+
+    /// From the next pulse on the load counts.
+    pub const fn commit(&mut self, load: u32) {
+        self.pulse.loaded = load;
     }
 
     /// Wait until all boards have stamped the tick, or one is lost.

@@ -26,7 +26,7 @@ use super::{
     BOARDS, Board,
     coordinator::BOARD_0,
     exchange::{Readers, Writers},
-    pulse::{BoardReport, Fingerprint, PulseTaker, ReportWriter, RunCard, SystemPulse, sleep},
+    pulse::{BoardReport, Checked, Fingerprint, PulseTaker, ReportWriter, RunCard, SystemPulse, sleep},
 };
 use crate::{
     alloc::{self, Section},
@@ -100,6 +100,15 @@ pub enum MemberError {
     },
 }
 
+/// The task data of a board, with what is loaded while the run goes on.
+pub trait BoardData {
+    /// A generation, when the loads up to `loaded` count; `None` if it was never loaded. Called in a tick.
+    fn generation(&mut self, generation: u32, loaded: u32) -> Option<TaskData<'_>>;
+
+    /// Begin to check a load beside the ticks, if it is a new one. What has been checked last.
+    fn check(&mut self, load: u32) -> Checked;
+}
+
 /// How a board's part in a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MemberEnd {
@@ -145,6 +154,7 @@ pub struct Member {
     /// Common memory by tick parity, as far as this board knows it.
     halves: [CommonMemory; 2],
     tick: Tick,
+    loaded: u32,
     report: BoardReport,
     allocations_at_start: u64,
 }
@@ -202,6 +212,7 @@ impl Member {
             ladder: Ladder::default(),
             halves,
             tick,
+            loaded: pulse.loaded,
             report,
             allocations_at_start: alloc::allocations(),
         })
@@ -213,14 +224,20 @@ impl Member {
         self.card.real_time
     }
 
-    /// Step the board's processes, once a pulse, until the run is over. `data` gives a generation of the task
-    /// data; `stop` asks to leave. `punctual` says whether everything that real time needs was granted.
+    /// The loads up to this one counted when the board joined.
+    #[must_use]
+    pub const fn loaded(&self) -> u32 {
+        self.loaded
+    }
+
+    /// Step the board's processes, once a pulse, until the run is over. `data` gives the task data; `stop` asks
+    /// to leave. `punctual` says whether everything that real time needs was granted.
     ///
     /// # Errors
     /// [`MemberError`] if the run does what no run does.
-    pub fn run<'a>(
+    pub fn run(
         &mut self,
-        data: impl Fn(u32) -> Option<TaskData<'a>>,
+        mut data: impl BoardData,
         punctual: bool,
         stop: &AtomicBool,
     ) -> Result<MemberEnd, MemberError> {
@@ -236,12 +253,14 @@ impl Member {
                 self.leave();
                 return Ok(MemberEnd::Asked);
             }
+            self.tell(data.check(pulse.load));
             if !self.follow(&pulse)? {
                 std::thread::sleep(AGAIN);
                 silent += 1;
             } else if pulse.tick == self.tick.next() {
-                let data = data(pulse.external.generation)
-                    .ok_or(MemberError::Generation(pulse.external.generation))?;
+                let generation = pulse.external.generation;
+                let data =
+                    data.generation(generation, pulse.loaded).ok_or(MemberError::Generation(generation))?;
                 self.step(&pulse, &data)?;
                 silent = 0;
             } else if pulse.tick == self.tick {
@@ -328,6 +347,16 @@ impl Member {
         ports.reports.write(tick, &self.report);
         ports.taker.done();
         Ok(())
+    }
+
+    /// Say what has been checked, if that is news.
+    fn tell(&mut self, checked: Checked) {
+        let Some(ports) = &self.ports else { return };
+        if self.report.checked != checked {
+            self.report.checked = checked;
+            ports.reports.write(self.tick, &self.report);
+            ports.taker.done();
+        }
     }
 
     /// Say that no further tick will be stamped.

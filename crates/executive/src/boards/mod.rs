@@ -42,8 +42,8 @@ use std::{fmt, str::FromStr};
 use levels::ladder::ProcessId;
 
 pub use coordinator::{Coordinator, Lost, SplitError};
-pub use member::{Member, MemberError};
-pub use pulse::{Epochs, Fingerprint};
+pub use member::{BoardData, Member, MemberError};
+pub use pulse::{Checked, Epochs, Fingerprint};
 
 /// A board with control processes; board 0 has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

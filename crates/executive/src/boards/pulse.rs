@@ -103,8 +103,21 @@ pub struct SystemPulse {
     pub over: bool,
     /// The present epoch of each board.
     pub epochs: Epochs,
+    /// The load that boards are to check beside their ticks ([`load_file`](crate::memory::load_file)); 0 for none.
+    pub load: u32,
+    /// The loads up to this one count, but for those that were refused.
+    pub loaded: u32,
     /// What came from outside for the tick.
     pub external: ExternalInputs,
+}
+
+/// What a board has made of a load.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct Checked {
+    /// The load.
+    pub load: u32,
+    /// [`Fingerprint::data`] of the task data with it; 0 if they have errors, or if it could not be read.
+    pub data: u64,
 }
 
 /// What a board says of itself, after each tick.
@@ -122,6 +135,8 @@ pub struct BoardReport {
     pub allocations: u64,
     /// Nanoseconds from its wake-up to its stamp in the last tick.
     pub step_ns: u64,
+    /// The load that it has checked last.
+    pub checked: Checked,
 }
 
 /// Bytes of the entries.

@@ -41,7 +41,7 @@ pub use limit::{OnStuck, SET_UP_LIMIT, within_limit};
 pub use mirror::Mirror;
 pub use name::{NameError, RunName};
 pub(crate) use place::{have_room, reserve};
-pub use place::{layout, operator_socket, prefix, root};
+pub use place::{layout, load_file, operator_socket, prefix, root};
 pub use publish::Publisher;
 pub use runs::{clean, clean_objects, list, traces};
 pub use text::Text;

@@ -68,6 +68,13 @@ pub fn operator_socket(name: &RunName) -> PathBuf {
     files(&prefix(name, &layout())).join("operator")
 }
 
+/// What boards of other processes are to load: the generation and the name of the blocks in the first line, then the
+/// blocks. The file goes with the run.
+#[must_use]
+pub fn load_file(name: &RunName, load: u32) -> PathBuf {
+    files(&prefix(name, &layout())).join(format!("load-{load}"))
+}
+
 /// What the names of a run's objects in shared memory start with: short, since it stands in paths of sockets too.
 #[must_use]
 pub fn prefix(name: &RunName, layout: &str) -> String {

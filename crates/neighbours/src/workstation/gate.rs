@@ -121,6 +121,11 @@ impl Gate {
         self.status_box.initialize();
     }
 
+    /// What stands in the mailbox was sent before it is read again, and is not to be executed.
+    pub fn pass_over(&mut self, command_box: &Mailbox) {
+        self.read = command_box.mailgram();
+    }
+
     /// READ-HWS-COMMAND, once a tick: look into the mailbox. Some if a mailgram has come that is refused.
     pub fn read(&mut self, command_box: &Mailbox) -> Option<Refusal> {
         debug_assert_eq!(command_box.place(), HWSC_COMMAND);

@@ -27,8 +27,8 @@ use rcs_core::tick::Tick;
 use serde::Serialize;
 use taskdata::load::{BlockNumber, Store};
 
-pub use self::source::Inputs;
-use self::{request::Request, source::Input, terminals::Terminals};
+pub use self::source::{Input, Inputs};
+use self::{request::Request, terminals::Terminals};
 use crate::{neighbours::Neighbours, workstation::SimulatedWorkstation};
 
 /// Requests that are taken in a tick; more wait for the next one.
@@ -42,8 +42,8 @@ pub struct Operator {
     shown: JoystickBox,
     /// What is entered at the terminals of the boards.
     terminals: Terminals,
-    /// The block that is to be loaded before the next tick.
-    load: Option<BlockNumber>,
+    /// What the run itself is to do.
+    later: Option<Later>,
     /// The velocity knob is at zero until `go`.
     is_stopped: bool,
     /// Who is connected.
@@ -64,6 +64,15 @@ pub struct Requests {
     pub refused: u64,
 }
 
+/// What a request asks of the run itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Later {
+    /// A block is to be loaded.
+    Load(BlockNumber),
+    /// A job is to be played in the place of the rest of the present one.
+    Play(String),
+}
+
 /// What a request works on.
 pub struct Around<'a> {
     /// The tick that is over.
@@ -78,6 +87,8 @@ pub struct Around<'a> {
     pub neighbours: &'a mut Neighbours,
     /// The cell.
     pub workstation: &'a mut SimulatedWorkstation,
+    /// A block is being checked: what moves the robot waits for it.
+    pub loading: bool,
 }
 
 impl Operator {
@@ -88,7 +99,7 @@ impl Operator {
             hand: Joystick::default(),
             shown: JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() },
             terminals: Terminals::default(),
-            load: None,
+            later: None,
             is_stopped: false,
             sessions: Vec::new(),
             commander: None,
@@ -133,14 +144,17 @@ impl Operator {
         self.terminals.end_tick();
     }
 
-    /// The block that is to be loaded: the run does it.
-    pub const fn take_load(&mut self) -> Option<BlockNumber> {
-        self.load.take()
+    /// What the run itself is to do for the last request.
+    pub const fn take_later(&mut self) -> Option<Later> {
+        self.later.take()
     }
 
-    /// A request turned out to be refused.
-    pub const fn refused(&mut self) {
-        self.counts.refused += 1;
+    /// A request is answered.
+    pub fn count(&mut self, input: &Input, verdict: &Result<String, String>) {
+        if matches!(input.event(), Event::Line(_)) && !input.is_question() {
+            self.counts.requests += 1;
+            self.counts.refused += u64::from(verdict.is_err());
+        }
     }
 
     /// How many requests there were; none if nobody has connected.
@@ -163,10 +177,7 @@ impl Operator {
                     Ok(Request::Data) => return Ok(directory(around.data)),
                     _ => {}
                 }
-                let carried_out = request.and_then(|request| self.obey(who, request, around));
-                self.counts.requests += 1;
-                self.counts.refused += u64::from(carried_out.is_err());
-                carried_out
+                request.and_then(|request| self.obey(who, request, around))
             }
         }
     }
@@ -209,6 +220,11 @@ impl Operator {
     fn obey(&mut self, who: &str, request: Request, around: &mut Around<'_>) -> Result<String, String> {
         if !request.is_stop() {
             self.take_command(who)?;
+            if around.loading && request.is_of_the_job() {
+                return Err(
+                    "a block is being checked, which counts from the next command on: ask again".to_owned()
+                );
+            }
         }
         let done = String::new();
         let tick = around.tick;
@@ -244,9 +260,15 @@ impl Operator {
                 Ok(done)
             }
             Request::Load(block) => {
-                self.load = Some(block);
+                self.later = Some(Later::Load(block));
                 Ok(done)
             }
+            Request::Play(job) => {
+                self.later = Some(Later::Play(job));
+                Ok(done)
+            }
+            Request::StandAlone { now } => around.neighbours.take_command(tick, around.memory, now),
+            Request::Workstation => around.neighbours.give_command(tick, around.memory),
             Request::Terminal(entry) => self.terminals.enter(entry, around.memory),
             Request::Cell(action, line) => around.workstation.begin_line(&action, &line).map(|()| done),
         }
@@ -267,7 +289,9 @@ impl Operator {
 
     /// How things stand, in a line.
     fn status(&self, around: &mut Around<'_>) -> String {
+        let stand_alone = around.neighbours.is_stand_alone();
         let job = match around.neighbours.job_under_way() {
+            Ok(job) if job.is_waiting() && stand_alone => "stand-alone, no job plays",
             Ok(job) if job.is_waiting() => "the job waits",
             Ok(_) => "the job plays",
             Err(_) => "the workstation controller commands",

@@ -39,6 +39,15 @@ pub enum Request {
     Terminal(Entry),
     /// A block of the data directory is loaded.
     Load(BlockNumber),
+    /// A job of the data directory is played in the place of the rest of the present one.
+    Play(String),
+    /// The workstation controller of another process commands no more.
+    StandAlone {
+        /// Also in the middle of a command.
+        now: bool,
+    },
+    /// It commands again.
+    Workstation,
     /// Something else in the cell, and its line.
     Cell(Workstation, String),
 }
@@ -60,6 +69,9 @@ const WORDS: &[(&str, Request)] = &[
     ("job wait", Request::Wait),
     ("job go", Request::GoOn),
     ("job skip", Request::Skip),
+    ("stand-alone", Request::StandAlone { now: false }),
+    ("stand-alone now", Request::StandAlone { now: true }),
+    ("workstation", Request::Workstation),
 ];
 
 impl Request {
@@ -83,7 +95,7 @@ impl Request {
         if let Some(entry) = Entry::read(&each) {
             return entry.map(Self::Terminal);
         }
-        if let Some(request) = line_load(&each, store).or_else(|| load(&each)) {
+        if let Some(request) = line_load(&each, store).or_else(|| load(&each)).or_else(|| play(&each)) {
             return request;
         }
         if job::is_command(line) {
@@ -115,8 +127,29 @@ impl Request {
                 )
             }
             Self::Terminal(entry) => entry.is_stop(),
-            Self::Load(_) | Self::Go | Self::GoOn | Self::Skip | Self::Command(..) | Self::Box(_) => false,
+            Self::Load(_)
+            | Self::Play(_)
+            | Self::StandAlone { .. }
+            | Self::Workstation
+            | Self::Go
+            | Self::GoOn
+            | Self::Skip
+            | Self::Command(..)
+            | Self::Box(_) => false,
         }
+    }
+
+    /// A command for Task comes of it.
+    pub const fn is_of_the_job(&self) -> bool {
+        matches!(
+            self,
+            Self::GoOn
+                | Self::Skip
+                | Self::Command(..)
+                | Self::Play(_)
+                | Self::Workstation
+                | Self::StandAlone { .. }
+        )
     }
 }
 
@@ -141,4 +174,13 @@ fn load(words: &[&str]) -> Option<Result<Request, String>> {
     let numbers = offset.parse().ok().zip(block.parse().ok());
     let expected = || "load OFFSET BLOCK was expected, such as load 21000 610".to_owned();
     Some(numbers.map(|(offset, number)| Request::Load(BlockNumber { offset, number })).ok_or_else(expected))
+}
+
+/// `run JOB`; none if the words begin another request.
+fn play(words: &[&str]) -> Option<Result<Request, String>> {
+    match words {
+        ["run", job] => Some(Ok(Request::Play((*job).to_owned()))),
+        ["run", ..] => Some(Err("run JOB was expected, such as run linkbar".to_owned())),
+        _ => None,
+    }
 }

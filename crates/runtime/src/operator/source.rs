@@ -21,8 +21,17 @@ pub enum Inputs {
     None,
     /// Operators who connect.
     Sessions(Listener),
-    /// A log, tick by tick, with the blocks that were loaded meanwhile, by their generation.
-    Recorded(VecDeque<OperatorLine>, Vec<(u32, Source)>),
+    /// A log, tick by tick, with the texts that were read meanwhile.
+    Recorded(VecDeque<OperatorLine>, Texts),
+}
+
+/// What operators have let a run read, as its log has it.
+#[derive(Default)]
+pub struct Texts {
+    /// Blocks by the generation of the task data that they made.
+    blocks: Vec<(u32, Source)>,
+    /// Jobs by their number.
+    jobs: Vec<(u32, Source)>,
 }
 
 /// An input, from wherever.
@@ -58,13 +67,17 @@ impl Input {
         }
     }
 
+    /// It changes nothing.
+    pub fn is_question(&self) -> bool {
+        QUESTIONS.contains(&self.event().to_string().as_str())
+    }
+
     /// How it stands in the log, with the tick that sees it first; none for what changes nothing.
     pub fn line(&self, tick: Tick, verdict: &Result<String, String>) -> Option<OperatorLine> {
-        let line = self.event().to_string();
-        (!QUESTIONS.contains(&line.as_str())).then(|| OperatorLine {
+        (!self.is_question()).then(|| OperatorLine {
             tick,
             source: self.source().to_owned(),
-            line,
+            line: self.event().to_string(),
             answer: verdict.clone().unwrap_or_default(),
             refused: verdict.clone().err(),
         })
@@ -120,8 +133,11 @@ impl Inputs {
 
     fn recorded(path: &Path) -> Result<Self, StartError> {
         let log = Log::open(path).map_err(|source| StartError::Inputs(Box::new(source)))?;
-        let loaded = log.attachments.iter().filter_map(Attachment::as_reload).collect();
-        Ok(Self::Recorded(log.operator_lines().collect(), loaded))
+        let texts = Texts {
+            blocks: log.attachments.iter().filter_map(Attachment::as_reload).collect(),
+            jobs: log.attachments.iter().filter_map(Attachment::as_played).collect(),
+        };
+        Ok(Self::Recorded(log.operator_lines().collect(), texts))
     }
 
     /// Where operators connect, if they can.
@@ -133,11 +149,18 @@ impl Inputs {
         }
     }
 
-    /// The block that a log has for a generation of the task data; none if inputs do not come from a log.
+    /// The block that a log has for a generation of the task data.
     #[must_use]
-    pub fn recorded_block(&self, generation: u32) -> Option<Option<Source>> {
-        let Self::Recorded(_, loaded) = self else { return None };
-        let found = loaded.iter().find(|(number, _)| *number == generation);
+    pub fn recorded_block(&self, generation: u32) -> Option<Source> {
+        let Self::Recorded(_, texts) = self else { return None };
+        texts.blocks.iter().find(|(number, _)| *number == generation).map(|(_, source)| source.clone())
+    }
+
+    /// The job that a log has as the one of this number; none if inputs do not come from a log.
+    #[must_use]
+    pub fn recorded_job(&self, played: u32) -> Option<Option<Source>> {
+        let Self::Recorded(_, texts) = self else { return None };
+        let found = texts.jobs.iter().find(|(number, _)| *number == played);
         Some(found.map(|(_, source)| source.clone()))
     }
 

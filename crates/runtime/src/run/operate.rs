@@ -1,14 +1,28 @@
 //! Between two ticks: what operators ask for.
 
+use std::path::{Component, Path};
+
+use os_io::files;
 use rcs_core::tick::Tick;
+use taskdata::load::{
+    Job, Source,
+    job::{JobLine, Step, Workstation},
+};
 
 use super::Run;
-use crate::operator::{A_TICK, Around};
+use crate::{
+    operator::{A_TICK, Around, Input, Later},
+    setup::{EXTENSION, JOBS},
+    workstation::orders,
+};
 
 impl Run {
     /// What operators have asked for since the last tick. The next tick is the first to see it.
     pub(super) fn operate(&mut self, tick: Tick) {
         let first = tick.next();
+        if let Some((input, verdict)) = self.follow_load(tick) {
+            self.settle(first, input, verdict.map_err(|error| error.to_string()));
+        }
         for _ in 0..A_TICK {
             let Some(input) = self.asked.next(first) else { break };
             let mut around = Around {
@@ -18,26 +32,93 @@ impl Run {
                 data: &self.config.data,
                 neighbours: &mut self.neighbours,
                 workstation: &mut self.workstation,
+                loading: self.loads.is_loading(),
             };
-            let mut verdict = self.operator.carry_out(&input, &mut around);
-            if let Some(block) = self.operator.take_load() {
-                // A log has no text of what was not loaded.
-                verdict = match input.refusal() {
-                    Some(why) => Err(why.to_owned()),
-                    None => self.load_block(block).map_err(|error| error.to_string()),
-                };
-                if verdict.is_err() {
-                    self.operator.refused();
+            let verdict = self.operator.carry_out(&input, &mut around);
+            let verdict = match (self.operator.take_later(), input.refusal()) {
+                (None, _) => verdict,
+                // A log has no text of what was not read.
+                (Some(_), Some(why)) => Err(why.to_owned()),
+                (Some(Later::Play(job)), None) => self.play(tick, &job),
+                (Some(Later::Load(block)), None) if !self.loads.can_load() => {
+                    self.load_recorded(block).map_err(|error| error.to_string())
                 }
-            }
-            let line = input.line(first, &verdict);
-            if let Some(difference) = input.answer(first, &verdict) {
-                self.observer.message(&format!("tick {first}: {difference}"));
-            }
-            if let (Some(log), Some(line)) = (&mut self.log, line) {
-                log.operator(line);
-            }
+                (Some(Later::Load(block)), None) => match self.begin_load(block, input) {
+                    Ok(()) => continue,
+                    Err((input, why)) => {
+                        self.settle(first, input, Err(why.to_string()));
+                        continue;
+                    }
+                },
+            };
+            self.settle(first, input, verdict);
         }
         self.operator.end_tick();
     }
+
+    /// Answer an input, and let it stand in the log.
+    fn settle(&mut self, first: Tick, input: Input, verdict: Result<String, String>) {
+        self.operator.count(&input, &verdict);
+        let line = input.line(first, &verdict);
+        if let Some(difference) = input.answer(first, &verdict) {
+            self.observer.message(&format!("tick {first}: {difference}"));
+        }
+        if let (Some(log), Some(line)) = (&mut self.log, line) {
+            log.operator(line);
+        }
+    }
+
+    /// Play a job of the data directory in the place of the rest of the present one.
+    fn play(&mut self, tick: Tick, name: &str) -> Result<String, String> {
+        let number = self.loads.played.saturating_add(1);
+        let source = match self.asked.recorded_job(number) {
+            Some(recorded) => recorded.ok_or("the log has no text of the job")?,
+            None => job_named(name, &self.config.data)?,
+        };
+        let (job, _) = Job::from_source(source, self.generations.current()).map_err(|report| {
+            let errors: Vec<_> = report.errors().map(|error| error.to_string()).collect();
+            format!("the job {name} has errors: {}", errors.join("; "))
+        })?;
+        self.can_be_played(&job)?;
+        self.neighbours.job_under_way()?.play(tick, job.steps.clone()).map_err(|error| error.to_string())?;
+        self.loads.played = number;
+        if let Some(log) = &mut self.log {
+            log.played(tick.next(), number, &job);
+        }
+        let lines = job.steps.len();
+        self.job.steps = job.steps;
+        Ok(format!("the job {name} plays, lines: {lines}"))
+    }
+
+    /// A job that is begun while a run goes on loads nothing and hands nothing over, and the cell has what it needs.
+    fn can_be_played(&self, job: &Job) -> Result<(), String> {
+        if job.steps.is_empty() {
+            return Err(format!("the job {} has no line", job.name));
+        }
+        let cell = self.workstation.cell.description();
+        job.steps.iter().try_for_each(|JobLine { step, line, .. }| {
+            let (Step::Workstation(action) | Step::After { action, .. }) = step else { return Ok(()) };
+            let cannot = |why: String| Err(format!("line {line} of the job {}: {why}", job.name));
+            match action {
+                Workstation::Load { .. } => {
+                    cannot("load blocks with `load OFFSET BLOCK`, or start the run with this job".to_owned())
+                }
+                Workstation::HandOver => cannot("start the run with this job".to_owned()),
+                action => orders(action, cell)
+                    .and_then(|orders| orders.iter().try_for_each(|order| cell.admits(order)))
+                    .or_else(|error| cannot(error.to_string())),
+            }
+        })
+    }
+}
+
+/// The text of a job of the data directory.
+fn job_named(name: &str, data: &Path) -> Result<Source, String> {
+    let mut parts = Path::new(name).components();
+    if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None)) {
+        return Err(format!("the name of a job under {}/{JOBS} was expected; found {name}", data.display()));
+    }
+    let path = data.join(JOBS).join(name).with_added_extension(EXTENSION);
+    let text = files::read_text(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    Ok(Source { name: path.display().to_string(), text: text.into() })
 }

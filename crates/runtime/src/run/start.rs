@@ -15,6 +15,8 @@ use crate::{
     config::{RobotKind, RunConfig},
     contacts::ContactCheck,
     error::StartError,
+    load::Loads,
+    loads::Loader,
     log::Log,
     observer::Observer,
     operator::{Inputs, Operator},
@@ -100,6 +102,8 @@ impl Run {
         if let Some(live) = &mut live {
             live.start(&config, &job.name, asked.socket(), &mut *observer)?;
         }
+        // It begins before this process asks for real time.
+        let loader = asked.socket().map(|_| Loader::start()).transpose().map_err(StartError::Thread)?;
         let mirror = runner.publisher().and_then(|publisher| mirror(publisher, &mut *observer));
         Ok(Self {
             runner,
@@ -110,6 +114,8 @@ impl Run {
             workstation,
             asked,
             operator,
+            loads: Loads::with(loader),
+            name,
             log,
             log_path,
             live,

@@ -15,7 +15,7 @@
 
 use interfaces::HwsCommand;
 use rcs_core::{handshake::Lower, tick::Tick};
-use taskdata::load::job::Step;
+use taskdata::load::job::{JobLine, Step};
 
 use super::{BegunStep, Hwsc, JobFailure, Outcome, Progress};
 use crate::workstation::status::Status;
@@ -126,6 +126,57 @@ impl Hwsc {
     /// [`OperatorError`].
     pub fn skip(&mut self, tick: Tick) -> Result<(), OperatorError> {
         self.resume(tick, true)
+    }
+
+    /// Play other lines in the place of the rest of the job, which waits: PAUSE, then the first of them. What the rest was
+    /// to do later is dropped, too, and what has failed of it.
+    ///
+    /// # Errors
+    /// [`OperatorError`].
+    pub fn play(&mut self, tick: Tick, steps: Vec<JobLine>) -> Result<(), OperatorError> {
+        self.not_ended()?;
+        let State::Waits { failure, before_line, command } = &self.intervention.state else {
+            return Err(OperatorError::Plays);
+        };
+        if let Some(step) = command.and_then(|entry| self.begun_steps.get(entry)) {
+            return Err(OperatorError::Executes(step.text.clone()));
+        }
+        let (has_failed, before_line) = (failure.is_some(), *before_line);
+        if !has_failed && !before_line && !self.is_commanding() {
+            self.finish(Outcome::Interrupted);
+        }
+        let kept = if before_line { self.current.saturating_sub(1) } else { self.current };
+        self.steps.truncate(kept);
+        self.current = self.steps.len().saturating_add(1);
+        self.steps.extend(steps);
+        self.later.clear();
+        self.failed.clear();
+        self.intervention.state = State::Plays;
+        self.tried = 0;
+        self.pause(tick);
+        Ok(())
+    }
+
+    /// An emulator without a job, for commands of an operator in the place of a workstation controller, whose last command
+    /// had this number.
+    #[must_use]
+    pub fn stand_alone(last: u32, time_limit: u64) -> Self {
+        let mut hwsc = Self::new(Vec::new(), time_limit);
+        // The last command may not be echoed yet: its number is known, and the next one follows it.
+        (hwsc.commander.number, hwsc.commander.started) = (last, true);
+        hwsc.attend(true);
+        hwsc.wait_without_job();
+        hwsc
+    }
+
+    /// What was played is over, or has failed: the emulator waits for an operator.
+    pub fn wait_without_job(&mut self) {
+        self.steps.clear();
+        self.later.clear();
+        self.failed.clear();
+        (self.current, self.began, self.pausing) = (0, None, false);
+        self.progress = Progress::Running;
+        self.intervention.state = State::Waits { failure: None, before_line: true, command: None };
     }
 
     /// Send a command of the operator in the place of the job's, which waits from now on.

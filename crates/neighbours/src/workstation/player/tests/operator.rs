@@ -194,3 +194,36 @@ fn an_emergency_waits_for_the_operator() {
     stage.until(is_over);
     assert_eq!(stage.received(), "PAUSE MOVE PAUSE MOVE ACQUIRE");
 }
+
+#[test]
+fn other_lines_take_the_place_of_the_rest() {
+    let mut stage = Stage::commands();
+    assert_eq!(stage.hwsc.play(Tick(1), vec![command("POSITION")]), Err(OperatorError::Plays));
+    stage.until(|stage| stage.received().contains("MOVE"));
+    stage.order("PAUSE");
+    let executed = stage.hwsc.play(Tick(stage.tick), vec![command("POSITION")]);
+    assert!(matches!(executed, Err(OperatorError::Executes(_))), "{executed:?}");
+    stage.until(|stage| stage.outcomes().last() == Some(&("PAUSE", Outcome::Finished)));
+    stage.hwsc.play(Tick(stage.tick), vec![command("POSITION"), command("ACQUIRE")]).unwrap();
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE MOVE PAUSE PAUSE POSITION ACQUIRE");
+}
+
+#[test]
+fn without_a_job_the_emulator_waits_again() {
+    let mut stage = Stage::commands();
+    stage.hwsc = Hwsc::stand_alone(41, 100);
+    for _ in 0..5 {
+        stage.step();
+    }
+    assert!(stage.hwsc.is_waiting() && stage.received().is_empty());
+    stage.order("MOVE");
+    stage.until(|stage| stage.outcomes().last() == Some(&("MOVE", Outcome::Finished)));
+    assert!(stage.hwsc.command().number > 41, "it goes on from the last number");
+    stage.hwsc.play(Tick(stage.tick), vec![command("ACQUIRE")]).unwrap();
+    stage.until(is_over);
+    stage.hwsc.wait_without_job();
+    stage.step();
+    assert!(stage.hwsc.is_waiting());
+    assert_eq!(stage.received(), "MOVE PAUSE ACQUIRE");
+}

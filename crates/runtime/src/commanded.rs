@@ -1,0 +1,214 @@
+//! A run that a workstation controller in another process commands from the start, and that an operator can take over and
+//! give back (IV.4.1).
+//!
+//! ```text
+//!                        `stand-alone`: no command is executed; `now`: PAUSE takes its place
+//!   workstation controller ─────────────────────────────────────────────────────────────► operator
+//!            ▲                                                                                │
+//!            └──── `workstation`: robot at HOME, PAUSE last, Data System connected ◄──────────┘
+//! ```
+//!
+//! The numbers of the commands are one sequence. Meanwhile the workstation controller reads a status mailbox that is
+//! initialized, as one that has connected before its time, and what it sends is never executed.
+
+use interfaces::{CommonMemory, TaskOutputs, hws::HwsReport};
+use neighbours::{
+    network::{Endpoint, EndpointHandle, Role},
+    workstation::{
+        Gate,
+        player::{BegunStep, Hwsc, Progress, TIME_LIMIT, pause},
+    },
+};
+use rcs_core::tick::Tick;
+use record::Level;
+use taskdata::load::Store;
+
+use crate::{
+    neighbours::{Emulator, Neighbours, Note, WorkstationSource},
+    outside::OutsideWorkstation,
+    switched::obstacle,
+    workstation::SimulatedWorkstation,
+};
+
+/// A workstation controller in another process, and in its place an operator for a time.
+pub struct Commanded {
+    outside: OutsideWorkstation,
+    /// Sends what the operator commands; none while the workstation controller commands.
+    alone: Option<Emulator>,
+    /// Commands of the times before.
+    before: Vec<BegunStep>,
+}
+
+impl Commanded {
+    /// The workstation controller commands.
+    #[must_use]
+    pub const fn new(endpoint: Endpoint) -> Self {
+        Self { outside: OutsideWorkstation::new(endpoint), alone: None, before: Vec::new() }
+    }
+
+    /// An operator commands.
+    #[must_use]
+    pub const fn is_stand_alone(&self) -> bool {
+        self.alone.is_some()
+    }
+
+    /// What sends the commands of an operator, if it commands.
+    pub fn job_under_way(&mut self) -> Option<&mut Hwsc> {
+        self.alone.as_mut().map(|emulator| &mut emulator.hwsc)
+    }
+
+    /// Commands of who commands now.
+    #[must_use]
+    pub fn begun_steps(&self) -> &[BegunStep] {
+        match &self.alone {
+            Some(emulator) => emulator.hwsc.begun_steps(),
+            None => self.outside.begun_steps(),
+        }
+    }
+
+    /// Commands of all, in their order.
+    #[must_use]
+    pub fn all_steps(&self) -> Vec<BegunStep> {
+        [&self.before, self.begun_steps()].concat()
+    }
+
+    /// Once a tick, after controller and cell.
+    pub fn step(
+        &mut self,
+        tick: Tick,
+        gate: &mut Gate,
+        task: &TaskOutputs,
+        workstation: &mut SimulatedWorkstation,
+        store: &Store,
+        notes: &mut Vec<Note>,
+    ) -> Progress {
+        let Some(emulator) = &mut self.alone else {
+            return self.outside.step(tick, gate, task, workstation, store, notes);
+        };
+        self.outside.attend(tick, notes);
+        match emulator.step(tick, gate, workstation, notes) {
+            Progress::Running => {}
+            Progress::Over => emulator.hwsc.wait_without_job(),
+            Progress::Failed(failure) => {
+                notes.push((
+                    Level::Warning,
+                    "HWSC",
+                    format!("the job of the operator has failed: {failure}"),
+                ));
+                emulator.hwsc.wait_without_job();
+            }
+        }
+        Progress::Running
+    }
+
+    /// The operator commands from now on.
+    ///
+    /// # Errors
+    /// Why not, in a sentence.
+    pub fn take_command(
+        &mut self,
+        tick: Tick,
+        task: &TaskOutputs,
+        gate: &mut Gate,
+        now: bool,
+    ) -> Result<String, String> {
+        if self.alone.is_some() {
+            return Err("the run is stand-alone already; `workstation` gives the command back".to_owned());
+        }
+        let last = *gate.command();
+        let executes = task.status.echo != last.number || task.status.report == HwsReport::Executing;
+        if executes && !now {
+            return Err(format!(
+                "{} of the workstation controller, number {}, is executed: wait for its end, or `stand-alone now` \
+                 sends PAUSE in its place",
+                last.command, last.number
+            ));
+        }
+        self.outside.interrupt(tick);
+        self.before.extend(self.outside.take_steps());
+        gate.initialize();
+        let mut hwsc = Hwsc::stand_alone(last.number, TIME_LIMIT);
+        if executes {
+            let paused = hwsc.command_by_operator(tick, "PAUSE".to_owned(), pause());
+            paused.map_err(|error| error.to_string())?;
+        }
+        self.alone = Some(Emulator::new(hwsc));
+        Ok("the workstation controller commands no more; `workstation` gives the command back".to_owned())
+    }
+
+    /// The workstation controller commands from now on.
+    ///
+    /// # Errors
+    /// Why not, in a sentence.
+    pub fn give_command(
+        &mut self,
+        tick: Tick,
+        memory: &CommonMemory,
+        has_data_system: bool,
+        gate: &mut Gate,
+    ) -> Result<String, String> {
+        let Some(emulator) = &self.alone else {
+            return Err("the workstation controller commands already".to_owned());
+        };
+        if let Some(obstacle) = obstacle(memory, gate.command(), has_data_system) {
+            return Err(obstacle);
+        }
+        let status = &memory.task.status;
+        if status.echo != gate.command().number || status.report != HwsReport::Finished {
+            return Err(format!("PAUSE is not finished in tick {tick}: ask again"));
+        }
+        self.before.extend_from_slice(emulator.hwsc.begun_steps());
+        self.alone = None;
+        gate.initialize();
+        self.outside.pass_over(gate);
+        Ok("the workstation controller commands".to_owned())
+    }
+}
+
+impl Neighbours {
+    /// An operator commands in the place of the workstation controller.
+    #[must_use]
+    pub fn is_stand_alone(&self) -> bool {
+        matches!(&self.workstation, WorkstationSource::Outside(commanded) if commanded.is_stand_alone())
+    }
+
+    /// Take the command from the workstation controller that commands since the run began; `now`: in the middle of a
+    /// command, too.
+    ///
+    /// # Errors
+    /// Why not, in a sentence.
+    pub fn take_command(&mut self, tick: Tick, memory: &CommonMemory, now: bool) -> Result<String, String> {
+        match &mut self.workstation {
+            WorkstationSource::Outside(commanded) => {
+                commanded.take_command(tick, &memory.task, &mut self.gate, now)
+            }
+            WorkstationSource::Emulator(_) => Err("no workstation controller commands this run".to_owned()),
+            WorkstationSource::Switched(_) => {
+                Err("the job commands when the workstation controller disconnects (IV.4.1)".to_owned())
+            }
+        }
+    }
+
+    /// Give the command back to it (IV.4.1).
+    ///
+    /// # Errors
+    /// Why not, in a sentence.
+    pub fn give_command(&mut self, tick: Tick, memory: &CommonMemory) -> Result<String, String> {
+        let mut data_system = self.network.iter().flat_map(|network| &network.handles);
+        let has_data_system = data_system
+            .by_ref()
+            .filter(|handle| handle.role() == Role::DataSystem)
+            .all(EndpointHandle::is_connected);
+        match &mut self.workstation {
+            WorkstationSource::Outside(commanded) => {
+                commanded.give_command(tick, memory, has_data_system, &mut self.gate)
+            }
+            WorkstationSource::Emulator(_) => {
+                Err("no workstation controller can connect to this run: --outside workstation".to_owned())
+            }
+            WorkstationSource::Switched(_) => {
+                Err("a line ** workstation of the job hands over (IV.4.1)".to_owned())
+            }
+        }
+    }
+}

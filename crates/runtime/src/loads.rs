@@ -1,0 +1,301 @@
+//! What is loaded while a run goes on: read, checked and told to the boards beside the ticks.
+//!
+//! ```text
+//!   operator: load ──► thread of the run: reads the block, checks all data with it, writes the file
+//!                                │
+//!                                ▼  the number of the file comes with the pulse
+//!                      thread of each board: reads the file, checks all data with it
+//!                                │
+//!                                ▼  its report says which data it has come to
+//!                      all boards have the same: the generation counts from the next tick on
+//! ```
+//!
+//! On one board the middle is left out. The threads begin before the process asks for real time, and keep their
+//! ordinary priority.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        mpsc::{Receiver, Sender, TryRecvError, channel},
+    },
+    thread,
+};
+
+use executive::{
+    boards::{BoardData, Checked, Fingerprint},
+    memory::{RunName, load_file},
+};
+use rcs_core::Plain as _;
+use taskdata::{
+    files::TaskData,
+    load::{
+        BlockNumber, Diagnostics, Source, Store,
+        job::Reload,
+        source::{blocks, read_blocks_under},
+    },
+};
+
+use crate::load::LoadError;
+
+/// The reloads of a run with one more behind the first `done`, which have led to `base`. Those that are to come later are
+/// loaded upon it.
+///
+/// # Errors
+/// The report of the first that has errors now.
+pub fn insert(
+    base: &Store,
+    reloads: &[Reload],
+    done: usize,
+    source: &Source,
+) -> Result<Vec<Reload>, Box<Diagnostics>> {
+    let mut all: Vec<Reload> = reloads.iter().take(done).cloned().collect();
+    let later = reloads.iter().skip(done).map(|reload| &reload.source);
+    for source in std::iter::once(source).chain(later) {
+        let newest = all.get(done..).and_then(<[_]>::last).map_or(base, |reload| &reload.store);
+        let (store, _) = newest.with_blocks(vec![source.clone()])?;
+        all.push(Reload { source: source.clone(), store });
+    }
+    Ok(all)
+}
+
+/// A load that has been checked.
+pub struct Loaded {
+    /// The reloads of the run with it.
+    pub reloads: Vec<Reload>,
+    /// How many come before it.
+    pub done: usize,
+    /// [`Fingerprint::data`] with it.
+    pub data: u64,
+}
+
+/// What is to be loaded.
+pub struct Order {
+    /// The block.
+    pub number: BlockNumber,
+    /// Its text, if it does not come from the directory.
+    pub source: Option<Source>,
+    /// The directory of the run's task data.
+    pub directory: PathBuf,
+    /// The task data in use.
+    pub base: Store,
+    /// The reloads of the run.
+    pub reloads: Vec<Reload>,
+    /// How many of them count.
+    pub done: usize,
+    /// Where the boards of other processes read it.
+    pub file: Option<PathBuf>,
+}
+
+impl Order {
+    /// Read the block, check all data with it, and write what the boards read.
+    ///
+    /// # Errors
+    /// [`LoadError`].
+    pub fn carry_out(self) -> Result<Loaded, LoadError> {
+        let Self { number, source, directory, base, reloads, done, file } = self;
+        let read = || read_blocks_under(&directory).0.iter().find_map(|file| cut(file, number));
+        let source = source.or_else(read).ok_or(LoadError::NoBlock(number))?;
+        let reloads =
+            insert(&base, &reloads, done, &source).map_err(|report| LoadError::Data(report.render(false)))?;
+        let data = reloads.get(done).map_or(0, |reload| fingerprint(&reload.store));
+        if let Some(path) = &file {
+            write(path, done, &source).map_err(LoadError::Write)?;
+        }
+        Ok(Loaded { reloads, done, data })
+    }
+}
+
+/// One block of a file, under the name of the file.
+fn cut(file: &Source, number: BlockNumber) -> Option<Source> {
+    let (found, _) = blocks(0, file);
+    let at = found.iter().position(|block| block.number == number)?;
+    let start = |at: usize| found.get(at).and_then(|block| usize::try_from(block.header.start).ok());
+    let end = start(at + 1).unwrap_or(file.text.len());
+    let text = file.text.get(start(at)?..end)?;
+    Some(Source { name: file.name.clone(), text: text.into() })
+}
+
+fn fingerprint(store: &Store) -> u64 {
+    Fingerprint::of("", store.sources(), []).data
+}
+
+/// Write what boards are to load. No board sees half of it.
+fn write(path: &Path, done: usize, source: &Source) -> io::Result<()> {
+    let new = path.with_added_extension("new");
+    fs::write(&new, format!("{done} {}\n{}", source.name, source.text))?;
+    fs::rename(new, path)
+}
+
+/// What boards are to load, and how many reloads come before it.
+fn read(path: &Path) -> Option<(usize, Source)> {
+    let text = fs::read_to_string(path).ok()?;
+    let (head, text) = text.split_once('\n')?;
+    let (done, name) = head.split_once(' ')?;
+    Some((done.parse().ok()?, Source { name: name.to_owned(), text: text.into() }))
+}
+
+/// The thread in which a run reads and checks.
+pub struct Loader {
+    orders: Sender<Order>,
+    done: Receiver<Result<Loaded, LoadError>>,
+}
+
+impl Loader {
+    /// Start the thread; it ends with the run.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn start() -> io::Result<Self> {
+        let (orders, received) = channel::<Order>();
+        let (sender, done) = channel();
+        let work = move || {
+            while let Ok(order) = received.recv() {
+                if sender.send(order.carry_out()).is_err() {
+                    return;
+                }
+            }
+        };
+        thread::Builder::new().name("load".into()).spawn(work)?;
+        Ok(Self { orders, done })
+    }
+
+    /// Begin to read and check.
+    pub fn begin(&self, order: Order) {
+        // Without the thread the next look says so.
+        let _ = self.orders.send(order);
+    }
+
+    /// What has come of it; `None` while it goes on.
+    pub fn look(&self) -> Option<Result<Loaded, LoadError>> {
+        match self.done.try_recv() {
+            Ok(done) => Some(done),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => Some(Err(LoadError::NoThread)),
+        }
+    }
+}
+
+/// The reloads of a board, from the first on.
+type Reloads = Arc<Vec<Reload>>;
+/// A load as a board has checked it: its number, and the reloads with it unless there are errors.
+type Candidate = (u32, Option<(Reloads, u64)>);
+
+/// The task data of a board in a process of its own.
+pub struct BoardFiles {
+    run: RunName,
+    store: Store,
+    reloads: Reloads,
+    loaded: u32,
+    asked: u32,
+    checked: Checked,
+    candidate: Option<(u32, Reloads)>,
+    orders: Sender<(u32, Reloads)>,
+    done: Receiver<Candidate>,
+}
+
+impl BoardFiles {
+    /// With what the job loads on the way. Starts the thread that checks.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn new(run: &RunName, store: Store, reloads: Vec<Reload>) -> io::Result<Self> {
+        let (orders, received) = channel::<(u32, Reloads)>();
+        let (sender, done) = channel();
+        let (name, first) = (run.clone(), store.clone());
+        let work = move || {
+            while let Ok((load, reloads)) = received.recv() {
+                if sender.send((load, with_load(&name, &first, &reloads, load))).is_err() {
+                    return;
+                }
+            }
+        };
+        thread::Builder::new().name("load".into()).spawn(work)?;
+        Ok(Self {
+            run: run.clone(),
+            store,
+            reloads: Arc::new(reloads),
+            loaded: 0,
+            asked: 0,
+            checked: Checked::ZERO,
+            candidate: None,
+            orders,
+            done,
+        })
+    }
+
+    /// Load what was loaded before this board joined. The file of a load that was refused is gone.
+    pub fn catch_up(&mut self, loaded: u32) {
+        for load in self.loaded.saturating_add(1)..=loaded {
+            if let Some((reloads, _)) = with_load(&self.run, &self.store, &self.reloads, load) {
+                self.reloads = reloads;
+            }
+        }
+        (self.loaded, self.asked) = (loaded, loaded);
+    }
+}
+
+/// The reloads with the one of a file; `None` if it is not there, or if there are errors.
+fn with_load(run: &RunName, first: &Store, reloads: &[Reload], load: u32) -> Option<(Reloads, u64)> {
+    let (done, source) = read(&load_file(run, load))?;
+    let base = match done.checked_sub(1) {
+        None => first,
+        Some(last) => &reloads.get(last)?.store,
+    };
+    let reloads = insert(base, reloads, done, &source).ok()?;
+    let data = fingerprint(&reloads.get(done)?.store);
+    Some((Arc::new(reloads), data))
+}
+
+impl BoardData for BoardFiles {
+    fn generation(&mut self, generation: u32, loaded: u32) -> Option<TaskData<'_>> {
+        if loaded != self.loaded {
+            let (_, reloads) = self.candidate.take_if(|(load, _)| *load == loaded)?;
+            (self.reloads, self.loaded) = (reloads, loaded);
+        }
+        match usize::try_from(generation).ok()?.checked_sub(1) {
+            None => Some(self.store.view()),
+            Some(reload) => self.reloads.get(reload).map(|reload| reload.store.view()),
+        }
+    }
+
+    fn check(&mut self, load: u32) -> Checked {
+        if load != self.asked {
+            self.asked = load;
+            // Without the thread nothing is ever checked, and the run says so.
+            let _ = self.orders.send((load, Arc::clone(&self.reloads)));
+        }
+        while let Ok((load, made)) = self.done.try_recv() {
+            self.checked = Checked { load, data: made.as_ref().map_or(0, |(_, data)| *data) };
+            self.candidate = made.map(|(reloads, _)| (load, reloads));
+        }
+        self.checked
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_block_is_cut_out_of_its_file() {
+        let text = "%% about the file\nBLOCK# 1 OFFSET 21000\n  a\nBLOCK# 2 OFFSET 21000\n  b\n";
+        let file = Source { name: "x.blk".into(), text: text.into() };
+        let block = |number| cut(&file, BlockNumber { offset: 21_000, number });
+        assert_eq!(block(1).unwrap().text.as_ref(), "BLOCK# 1 OFFSET 21000\n  a\n");
+        assert_eq!(block(2).unwrap().text.as_ref(), "BLOCK# 2 OFFSET 21000\n  b\n");
+        assert!(block(3).is_none() && block(2).unwrap().name == "x.blk");
+    }
+
+    #[test]
+    fn what_boards_are_to_load_comes_back() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("load-1");
+        assert!(read(&path).is_none());
+        let source = Source { name: "a b.blk".into(), text: "BLOCK# 1 OFFSET 21000\n  a\n".into() };
+        write(&path, 3, &source).unwrap();
+        let (done, again) = read(&path).unwrap();
+        assert_eq!((done, again.name.as_str(), &again.text), (3, "a b.blk", &source.text));
+    }
+}
