@@ -389,6 +389,9 @@ pub struct PoseArguments {
     /// Movetable of the form
     #[arg(long, value_name = "NAME", default_value = "...", requires = "write")]
     pub movetable: String,
+    /// Write a movetable that leads from this pose of the task data to the one that is shown, and no pose
+    #[arg(long, value_name = "POSE", requires = "write", conflicts_with = "movetable")]
+    pub relative: Option<String>,
     /// Task data and cell description
     #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,

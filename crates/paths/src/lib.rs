@@ -25,6 +25,7 @@ pub mod judge;
 pub mod known;
 pub mod plan;
 mod presence;
+pub mod stand;
 pub mod state;
 pub mod steps;
 pub mod stored;

@@ -1,6 +1,5 @@
-//! The form of a pose (VII.1) in the text of a file of blocks.
+//! The form of a pose or a movetable in the text of a file of blocks.
 
-use geometry::pose::Pose;
 use taskdata::load::{
     Source,
     source::{BLOCK_LINES, blocks},
@@ -19,24 +18,58 @@ pub struct Changed {
     pub added: Vec<String>,
 }
 
-/// Put the form of a pose into a text: in the place of the form of that name, or behind the last line of the block.
+/// What a form is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A pose (VII.1).
+    Pose,
+    /// A movetable (VII.2).
+    Movetable,
+}
+
+impl Kind {
+    /// The compiling word, which stands in the last line.
+    const fn word(self) -> &'static str {
+        match self {
+            Self::Pose => "-pose-",
+            Self::Movetable => "-mtb-",
+        }
+    }
+
+    /// How many lines the form has that ends with line `last`.
+    fn lines(self, lines: &[String], last: usize) -> usize {
+        match self {
+            Self::Pose => 3,
+            Self::Movetable => {
+                let before = lines.get(..last).unwrap_or_default().iter().rev();
+                let is_of_it = |line: &&String| line.trim_end().ends_with("----");
+                before.take_while(is_of_it).count() + 1
+            }
+        }
+    }
+}
+
+/// Put a form into a text: in the place of the form of that name, or behind the last line of the block.
 ///
 /// # Errors
 /// What is missing: no block of that number, or no room in it.
 pub fn put(
     text: &str,
     block: Option<u32>,
+    kind: Kind,
     name: &str,
-    movetable: &str,
-    pose: &Pose,
+    form: Vec<String>,
 ) -> Result<Changed, String> {
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
-    let form = form(name, movetable, pose);
     let of_name =
-        |line: &String| line.contains("-pose-") && line.split_whitespace().next_back() == Some(name);
+        |line: &String| line.contains(kind.word()) && line.split_whitespace().next_back() == Some(name);
     let (at, removed) = match lines.iter().position(of_name) {
-        Some(last) => (last.checked_sub(2).ok_or("the form of that name has no three lines")?, 3),
-        None => (end_of(text, block)?, 0),
+        Some(last) => {
+            let old = kind.lines(&lines, last);
+            let first = (last + 1).checked_sub(old);
+            (first.ok_or_else(|| format!("the form of that name has no {old} lines"))?, old)
+        }
+        None => (end_of(text, block, form.len())?, 0),
     };
     let mut added = form;
     if removed == 0
@@ -48,15 +81,8 @@ pub fn put(
     Ok(Changed { text: lines.join("\n") + "\n", line: at + 1, removed, added })
 }
 
-/// The three lines of the form.
-fn form(name: &str, movetable: &str, pose: &Pose) -> Vec<String> {
-    let [wrist, tool, finger] =
-        [pose.wrist, pose.tool, pose.finger].map(|[x, y, z]| format!("{x:>8} {y:>8} {z:>8}"));
-    vec![wrist, tool, format!("{finger}   -pose-   {movetable:<11} {name}")]
-}
-
-/// The number of lines up to the end of what stands in a block, where a form of three lines and a blank one have room.
-fn end_of(text: &str, block: Option<u32>) -> Result<usize, String> {
+/// The number of lines up to the end of what stands in a block, where a form of so many lines and a blank one have room.
+fn end_of(text: &str, block: Option<u32>, form: usize) -> Result<usize, String> {
     let block = block.ok_or("there is no form of that name: say with --block where it is to stand")?;
     let source = Source { name: String::new(), text: text.into() };
     let (blocks, _) = blocks(0, &source);
@@ -66,9 +92,9 @@ fn end_of(text: &str, block: Option<u32>) -> Result<usize, String> {
     let found = blocks.iter().find(|found| found.number.number == block);
     let found = found.ok_or_else(|| format!("there is no block {block} in the file; {there}"))?;
     let used = found.lines.len();
-    if used + 4 > BLOCK_LINES {
+    if used + form + 1 > BLOCK_LINES {
         return Err(format!(
-            "block {block} has {used} of {BLOCK_LINES} lines: three and a blank one have no room"
+            "block {block} has {used} of {BLOCK_LINES} lines: {form} and a blank one have no room"
         ));
     }
     let last = found.lines.last().map_or(found.header, |line| line.at);
@@ -79,6 +105,12 @@ fn end_of(text: &str, block: Option<u32>) -> Result<usize, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use geometry::pose::Pose;
+    use paths::stand::pose_form;
+
+    fn put_pose(text: &str, block: Option<u32>, name: &str, movetable: &str) -> Result<Changed, String> {
+        put(text, block, Kind::Pose, name, pose_form(name, movetable, &POSE))
+    }
 
     const POSE: Pose = Pose { wrist: [1, -2, 3], tool: [40_000, 5, 6], finger: [7, 8, -9] };
     const TEXT: &str = "\
@@ -94,20 +126,20 @@ BLOCK# 612 OFFSET 21000
 
     #[test]
     fn a_new_form_stands_behind_the_block() {
-        let changed = put(TEXT, Some(610), "NEW-P", "...", &POSE).unwrap();
+        let changed = put_pose(TEXT, Some(610), "NEW-P", "...").unwrap();
         assert_eq!(changed.line, 7);
         assert!(changed.removed.is_empty());
         let form = "\n\n       1       -2        3\n   40000        5        6\n       7        8       -9   -pose-   ...         NEW-P\n";
         assert!(changed.text.contains(&format!("HOME-POS{form}\nBLOCK# 612")), "{}", changed.text);
         let source = Source { name: String::new(), text: changed.text.as_str().into() };
         assert!(blocks(0, &source).1.is_empty());
-        let in_an_empty_block = put(TEXT, Some(612), "NEW-P", "...", &POSE).unwrap();
+        let in_an_empty_block = put_pose(TEXT, Some(612), "NEW-P", "...").unwrap();
         assert!(in_an_empty_block.text.ends_with("NEW-P\n"), "{}", in_an_empty_block.text);
     }
 
     #[test]
     fn a_form_of_that_name_is_replaced() {
-        let changed = put(TEXT, None, "HOME-POS", "M-1", &POSE).unwrap();
+        let changed = put_pose(TEXT, None, "HOME-POS", "M-1").unwrap();
         assert_eq!((changed.line, changed.removed.len(), changed.added.len()), (4, 3, 3));
         assert_eq!(changed.removed[0], "       0    -5022      636");
         assert!(!changed.text.contains("5022"));
@@ -116,11 +148,20 @@ BLOCK# 612 OFFSET 21000
 
     #[test]
     fn what_has_no_place_is_refused() {
-        let refused = |block| put(TEXT, block, "NEW-P", "...", &POSE).unwrap_err();
+        let refused = |block| put_pose(TEXT, block, "NEW-P", "...").unwrap_err();
         assert!(refused(None).contains("--block"));
         assert!(refused(Some(99)).contains("it has 610, 612"));
-        assert!(put("", Some(1), "NEW-P", "...", &POSE).unwrap_err().contains("it has none"));
+        assert!(put_pose("", Some(1), "NEW-P", "...").unwrap_err().contains("it has none"));
         let full = TEXT.replace("( HOME )", &"(x)\n".repeat(9));
-        assert!(put(&full, Some(610), "NEW-P", "...", &POSE).unwrap_err().contains("no room"));
+        assert!(put_pose(&full, Some(610), "NEW-P", "...").unwrap_err().contains("no room"));
+    }
+
+    #[test]
+    fn a_movetable_takes_the_place_of_all_its_lines() {
+        let text = "BLOCK# 1 OFFSET 21000\n    1    t 1 2 3  -mtb-   A\n    1    t 1 2 3  ----\n    2    ro 5  -mtb-   B\n";
+        let form = vec!["    1    t 9 9 9      -mtb-   B".to_owned()];
+        let changed = put(text, None, Kind::Movetable, "B", form).unwrap();
+        assert_eq!((changed.removed.len(), changed.line), (2, 3));
+        assert!(changed.text.contains("-mtb-   A\n    1    t 9 9 9      -mtb-   B\n"), "{}", changed.text);
     }
 }
