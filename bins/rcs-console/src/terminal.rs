@@ -371,6 +371,7 @@ fn key(pressed: &KeyEvent) -> Option<Key> {
         KeyCode::Left => Key::Left,
         KeyCode::Right => Key::Right,
         KeyCode::F(1) => Key::F1,
+        KeyCode::F(2) => Key::F2,
         KeyCode::PageUp => Key::PageUp,
         KeyCode::PageDown => Key::PageDown,
         KeyCode::Home => Key::Home,
@@ -392,6 +393,7 @@ mod tests {
         assert_eq!(key(&event(KeyCode::Char('q'), KeyModifiers::CONTROL)), None);
         assert_eq!(key(&event(KeyCode::Char('N'), KeyModifiers::SHIFT)), Some(Key::Char('N')));
         assert_eq!(key(&event(KeyCode::F(1), KeyModifiers::NONE)), Some(Key::F1));
-        assert_eq!(key(&event(KeyCode::F(2), KeyModifiers::NONE)), None);
+        assert_eq!(key(&event(KeyCode::F(2), KeyModifiers::NONE)), Some(Key::F2));
+        assert_eq!(key(&event(KeyCode::F(3), KeyModifiers::NONE)), None);
     }
 }

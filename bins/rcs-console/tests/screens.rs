@@ -12,7 +12,7 @@ use executive::memory::{
 use interfaces::ProcessId;
 use ratatui::{Terminal, backend::TestBackend};
 use rcs_console::{
-    model::{Effect, Key, Model, Operating, Pane, Place, Screen, terminal::library::Library},
+    model::{Effect, Key, Model, Operating, Pane, Place, Prompt, Screen, terminal::library::Library},
     once,
     picture::Picture,
     source::{About, Cell, Recorded, Source, State},
@@ -173,6 +173,58 @@ fn a_wide_ladder_has_the_text_of_the_rows() {
     insta::assert_snapshot!("ladder-wide", drawn(&Scene::Source(&model, &log), PLAIN, 160, 30));
 }
 
+/// VI.6.2: boxes with lines between them, where there is room.
+#[test]
+fn a_large_ladder_has_boxes() {
+    let log = log();
+    let model = model(Screen::Ladder, ProcessId::Emove, FAILURE + 2, &log);
+    insta::assert_snapshot!("ladder-boxes", drawn(&Scene::Source(&model, &log), PLAIN, 120, 40));
+    let look = Look { ascii: true, colour: false };
+    let ascii = drawn(&Scene::Source(&model, &log), look, 120, 40);
+    assert!(ascii.is_ascii() && ascii.contains("!!E-move <= CAUSE"), "{ascii}");
+}
+
+#[test]
+fn process_with_the_text_of_its_table() {
+    let log = log();
+    let mut model = model(Screen::Process, ProcessId::Emove, FAILURE, &log);
+    keys(&mut model, &log, "s");
+    insta::assert_snapshot!("process-source", screen(&model, &log));
+    keys(&mut model, &log, "s");
+    assert!(!model.shows_source);
+}
+
+/// The workstation controller of another process commands: a console that wants to is asked how.
+#[test]
+fn the_command_is_taken_over_from_a_workstation_controller() {
+    let run = As(log(), State::Runs);
+    let mut model = operating(Screen::Ladder, &run);
+    let refusal = "the workstation controller commands this run: ask there, or end its session; stops are possible, \
+                   and `stand-alone` takes over";
+    model.operating.as_mut().unwrap().answered(3, Err(refusal.into()));
+    insta::assert_snapshot!("take-over", screen(&model, &run));
+    let asked = |model: &mut Model| std::mem::take(&mut model.operating.as_mut().unwrap().outbox).join("; ");
+    keys(&mut model, &run, " ");
+    assert_eq!(asked(&mut model), "stop", "a stop needs no taking over");
+    keys(&mut model, &run, "\n");
+    assert_eq!(asked(&mut model), "stand-alone");
+    insta::assert_snapshot!("take-over-waits", screen(&model, &run));
+    let operating = model.operating.as_mut().unwrap();
+    operating.sent(4, "stand-alone".into());
+    operating.answered(4, Err("MOVE of the workstation controller, number 5, is executed".into()));
+    let later = |tick| Picture { tick: rcs_core::tick::Tick(tick), ..run.picture(625).unwrap() };
+    operating.look(&later(640));
+    assert!(operating.outbox.is_empty(), "it has been asked just now");
+    operating.look(&later(655));
+    assert_eq!(asked(&mut model), "stand-alone");
+    keys(&mut model, &run, "P");
+    assert_eq!(asked(&mut model), "stand-alone now");
+    let operating = model.operating.as_mut().unwrap();
+    operating.sent(5, "stand-alone now".into());
+    operating.answered(5, Ok("tick 656: the workstation controller commands no more".into()));
+    assert!(model.taking_over().is_none());
+}
+
 #[test]
 fn process() {
     let log = log();
@@ -211,6 +263,18 @@ fn cell() {
     insta::assert_snapshot!("cell", screen(&model(Screen::Cell, ProcessId::Task, FAILURE, &log), &log));
 }
 
+#[test]
+fn cell_drawn_from_above_and_from_the_side() {
+    let log = log();
+    let mut model = model(Screen::Cell, ProcessId::Task, FAILURE, &log);
+    keys(&mut model, &log, "v");
+    insta::assert_snapshot!("cell-above", screen(&model, &log));
+    let large = drawn(&Scene::Source(&model, &log), PLAIN, 80, 50);
+    assert!(large.contains("from the side") && large.contains("nearest to the robot"), "{large}");
+    keys(&mut model, &log, "v");
+    assert!(model.drawing.is_none());
+}
+
 /// A console that operates a run in which a command was sent and another one refused.
 fn operating(kind: Screen, run: &dyn Source) -> Model {
     let mut model = model(kind, ProcessId::Emove, 300, run);
@@ -240,12 +304,18 @@ fn the_keys_of_an_operator_ask_the_run() {
     let asked = |model: &mut Model| std::mem::take(&mut model.operating.as_mut().unwrap().outbox).join("; ");
     keys(&mut model, &run, " h:job w\t\n");
     assert_eq!(asked(&mut model), "stop; joystick hold PRIM; job wait");
+    model.robot_elsewhere = false;
     model.key(Key::F1, &run);
     keys(&mut model, &run, "j");
     model.key(Key::F1, &run);
     assert_eq!(asked(&mut model), "", "another key takes the first F1 back");
     model.key(Key::F1, &run);
     assert_eq!(asked(&mut model), "estop terminals");
+    keys(&mut model, &run, "!!");
+    assert_eq!(asked(&mut model), "estop terminals", "some terminals keep F1 for themselves");
+    model.robot_elsewhere = true;
+    keys(&mut model, &run, "!!");
+    assert_eq!(asked(&mut model), "joystick hold PRIM; board 4 stop", "the E-stops are at the robot");
     keys(&mut model, &run, "6w35jjj\n");
     assert_eq!(
         asked(&mut model),
@@ -305,6 +375,58 @@ fn at_the_terminal(log: &dyn Source, typed: &str) -> Model {
 fn terminal_with_a_block_of_commands() {
     let log = log();
     insta::assert_snapshot!("terminal-list", screen(&at_the_terminal(&log, ":863 LIST\n"), &log));
+}
+
+/// IV.2.3: the board is stopped first; the checker's messages stand at their lines, then the change is shown.
+#[test]
+fn a_block_is_edited_while_its_board_is_stopped() {
+    let data = tempfile::tempdir().expect("a directory can be made");
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+    for source in taskdata::load::source::read_blocks_under(&shipped).0 {
+        let path = data.path().join(&source.name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, source.text.as_bytes()).unwrap();
+    }
+    let run = As(log(), State::Runs);
+    let mut model = operating(Screen::Terminal, &run);
+    model.terminal.library = Library::of(data.path().to_owned());
+    let says = |model: &Model, text: &str| {
+        assert!(model.answer.as_ref().is_some_and(|answer| answer.contains(text)), "{:?}", model.answer);
+    };
+    keys(&mut model, &run, ":863 EDIT\n");
+    says(&model, "board 6 runs: ^C stops it");
+    keys(&mut model, &run, ":863 LIST\n");
+    model.picture.as_mut().unwrap().external.operator.stopped = interfaces::operator::board_bit(6);
+    model.key(Key::F2, &run);
+    let place = data.path().display().to_string();
+    let shown = |model: &Model| screen(model, &run).replace(&place, "DATA");
+    let lines =
+        |text: &str| text.lines().filter(|line| !line.contains("DATA")).collect::<Vec<_>>().join("\n");
+    (0..5).for_each(|_| _ = model.key(Key::Down, &run));
+    keys(&mut model, &run, "== MOVE -- 0 -- 0 0 NOWHERE 0 -- 0");
+    model.key(Key::F2, &run);
+    says(&model, "nothing is written");
+    insta::assert_snapshot!("editor-errors", lines(&shown(&model)));
+    (0..14).for_each(|_| _ = model.key(Key::Backspace, &run));
+    keys(&mut model, &run, "SAFE 0 -- 0");
+    model.key(Key::F2, &run);
+    insta::assert_snapshot!("editor-change", lines(&shown(&model)));
+    std::mem::take(&mut model.operating.as_mut().unwrap().outbox);
+    keys(&mut model, &run, "\n");
+    assert_eq!(model.operating.as_mut().unwrap().outbox, ["load 16000 863"]);
+    assert!(model.terminal.editor.is_none());
+    let text = std::fs::read_to_string(data.path().join("commands.blk")).unwrap();
+    assert!(text.contains("\n== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n"), "{text}");
+}
+
+/// Tab knows the names of the task data.
+#[test]
+fn names_are_completed_in_the_terminal() {
+    let log = log();
+    let mut model = at_the_terminal(&log, ":send MOVE LINKBAR1_B\t");
+    assert_eq!(model.prompt, Some(Prompt::Request("send MOVE LINKBAR1_BH ".to_owned())));
+    keys(&mut model, &log, "\t");
+    assert!(model.answer.as_ref().is_some_and(|answer| answer.contains("+2")), "{:?}", model.answer);
 }
 
 #[test]
@@ -453,6 +575,36 @@ fn keys_turn_to_screens_and_out() {
     assert_eq!(keys(&mut model, &log, "o"), Effect::OpenLog);
     assert_eq!(keys(&mut model, &log, "q"), Effect::Quit);
     assert_eq!(model.key(Key::Interrupt, &log), Effect::Quit);
+}
+
+/// The states of a run that a ladder can show: frozen, silent, torn, ended.
+#[test]
+fn ladder_in_every_state_of_a_run() {
+    for (name, state, place) in [
+        ("frozen", State::Runs, Place::At(600)),
+        ("silent", State::Silent(4), Place::Last),
+        ("torn", State::Torn, Place::Last),
+        ("ended", State::Over, Place::Last),
+    ] {
+        let run = As(log(), state);
+        let mut model = Model::new(Screen::Ladder);
+        model.take(&run);
+        model.place = place;
+        model.take(&run);
+        insta::assert_snapshot!(format!("state-{name}"), screen(&model, &run));
+    }
+}
+
+/// Screens for work, on a console that looks only; and all screens in ASCII.
+#[test]
+fn every_screen_without_an_operator_and_in_ascii() {
+    let log = log();
+    for kind in Screen::ALL {
+        let model = model(kind, ProcessId::Emove, FAILURE, &log);
+        let look = Look { ascii: true, colour: false };
+        let text = drawn(&Scene::Source(&model, &log), look, 80, 24);
+        insta::assert_snapshot!(format!("ascii-{}", kind.name().to_lowercase()), text);
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::{
     io::{Read, Write},
     num::NonZero,
     os::fd::OwnedFd,
-    path::Path,
+    path::{Path, PathBuf},
     process::{Child, Command},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
@@ -160,7 +160,7 @@ fn run(
     job: &str,
     speed: u8,
 ) -> (thread::JoinHandle<Vec<&'static str>>, Arc<AtomicBool>) {
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+    let data = shipped();
     let config = RunConfig {
         clock: ClockKind::Real,
         speed,
@@ -168,6 +168,15 @@ fn run(
         log: LogTarget::File(log.to_owned()),
         ..RunConfig::new(data, job)
     };
+    begin(config)
+}
+
+fn shipped() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data")
+}
+
+fn begin(config: RunConfig) -> (thread::JoinHandle<Vec<&'static str>>, Arc<AtomicBool>) {
+    let name = config.name.clone().unwrap();
     let stop = Arc::clone(&config.stop);
     let run = thread::spawn(move || {
         let outcome = Run::new(config, Box::new(Silent)).unwrap().complete();
@@ -175,8 +184,7 @@ fn run(
     });
     // A run is there when it has published its first tick.
     let begun = Instant::now();
-    let listed =
-        || executive::memory::list().unwrap().iter().any(|run| run.name.as_str() == name && run.alive);
+    let listed = || executive::memory::list().unwrap().iter().any(|run| run.name == name && run.alive);
     while !listed() {
         assert!(begun.elapsed() < PATIENCE, "the run does not begin");
         thread::sleep(Duration::from_millis(50));
@@ -290,6 +298,85 @@ fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_fi
     assert_eq!(console.end(), Some(0));
     let outcomes = run.join().unwrap();
     assert_eq!(outcomes.last(), Some(&"finished"), "{outcomes:?}");
+}
+
+/// III.3.3: a via point is taught with the joystick box, a route is changed to lead through it, and the job goes that way.
+#[test]
+fn a_via_point_is_taught_and_the_job_goes_through_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let data = directory.path().join("data");
+    for from in [shipped(), shipped().join("objects")] {
+        let to = data.join(from.strip_prefix(shipped()).unwrap());
+        std::fs::create_dir_all(&to).unwrap();
+        for file in std::fs::read_dir(from).unwrap().map(|entry| entry.unwrap().path()) {
+            if file.is_file() {
+                std::fs::copy(&file, to.join(file.file_name().unwrap())).unwrap();
+            }
+        }
+    }
+    let job = directory.path().join("safe.job");
+    std::fs::write(&job, "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n").unwrap();
+    let name = format!("taught-{}", std::process::id());
+    let (run, _) = begin(RunConfig {
+        clock: ClockKind::Real,
+        speed: 10,
+        stand_by: true,
+        name: Some(name.parse().unwrap()),
+        log: LogTarget::File(directory.path().join("taught.mcap")),
+        ..RunConfig::new(&data, job.to_string_lossy())
+    });
+    let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);
+    console.wait_for("JOB WAITS");
+    console.press("6ssw");
+    console.wait_for("a key moves 2.00 in");
+    console.wait_for("frame   WORLD");
+    // Up, record, down again.
+    console.press("\x1b[5~");
+    console.wait_for("joystick up");
+    thread::sleep(Duration::from_secs(1));
+    console.press("m");
+    console.wait_for("joystick record: tick");
+    thread::sleep(Duration::from_secs(1));
+    console.press("M");
+    console.wait_for("joystick resume: tick");
+    thread::sleep(Duration::from_secs(1));
+    console.press("\x1b[6~");
+    console.wait_for("joystick down");
+    thread::sleep(Duration::from_secs(1));
+    console.press("x");
+    console.wait_for("no frame is on");
+    // On screen 6 a digit turns the knob.
+    console.escape("joystick box");
+    console.press("5:^C\r");
+    console.wait_for("6 STOPPED");
+    console.press(":21000 OFFSET !\r");
+    console.wait_for("offset 21000");
+    console.press(":610 TEACH VIA-1\r");
+    console.wait_for("nearest to its limit");
+    console.wait_for("-pose-   ...         VIA-1");
+    console.press("\x1bOQ");
+    console.wait_for("asks for: load 21000 610");
+    console.press("\r");
+    console.wait_for("generation 1");
+    console.press(":852 EDIT\r");
+    console.wait_for("HOME-SAFE");
+    console.press("\x1b[B\x1b[B\x1b[B\x1b[B\x1b[B\x1b[B\x1b[F");
+    console.press(&"\x7f".repeat("HOM-SAF-1".len()));
+    console.press("VIA-1\x1bOQ");
+    console.wait_for("asks for: load 21000 852");
+    console.press("\r");
+    console.wait_for("generation 2");
+    console.press(":GO\r");
+    console.wait_for("6 runs");
+    console.press(":job go\r");
+    console.wait_for("ENDED at tick");
+    console.press("q");
+    assert_eq!(console.end(), Some(0));
+    let outcomes = run.join().unwrap();
+    assert_eq!(outcomes.last(), Some(&"finished"), "{outcomes:?}");
+    let text = |file: &str| std::fs::read_to_string(data.join(file)).unwrap();
+    assert!(text("poses.blk").contains("-pose-   ...         VIA-1"));
+    assert!(text("trajectories.blk").contains("pos    VIA-1"));
 }
 
 #[test]

@@ -130,22 +130,24 @@ enum Stage {
 }
 
 impl Run {
-    /// Begin to load a block beside the ticks; the answer comes later.
+    /// Whether a block can be loaded now.
     ///
     /// # Errors
-    /// The input back, and why not.
-    pub(crate) fn begin_load(&mut self, number: BlockNumber, input: Input) -> Result<(), (Input, LoadError)> {
+    /// Why not.
+    pub(crate) fn can_load(&self) -> Result<(), LoadError> {
         if self.loads.loading.is_some() {
-            return Err((input, LoadError::Loading));
+            return Err(LoadError::Loading);
         }
-        if generations::is_busy(self.runner.memory()) {
-            return Err((input, LoadError::Busy));
-        }
+        if generations::is_busy(self.runner.memory()) { Err(LoadError::Busy) } else { Ok(()) }
+    }
+
+    /// Begin to load a block beside the ticks; the input is answered later.
+    pub(crate) fn begin_load(&mut self, number: BlockNumber, input: Input) {
         let order = self.order(number, None);
-        let Some(loader) = &self.loads.loader else { return Err((input, LoadError::NoThread)) };
-        loader.begin(order);
+        if let Some(loader) = &self.loads.loader {
+            loader.begin(order);
+        }
         self.loads.loading = Some(Loading { input, number, stage: Stage::Checking });
-        Ok(())
     }
 
     /// Once a tick, between two of them: what has become of the block that is being loaded, with the input that it answers.

@@ -9,7 +9,7 @@ use interfaces::{
     device::{DeviceInputs, RESOLVER_COUNTS},
 };
 
-use super::{Section, Text, Tone};
+use super::{Section, Text, Tone, drawing::Drawing};
 use crate::{picture::Picture, source::Cell};
 
 /// The emergency stops, in the order of the cell (III.6).
@@ -26,6 +26,16 @@ const LONGEST: f64 = 12.0;
 pub fn sections(picture: &Picture, cell: &Cell) -> Vec<Section> {
     let devices = &picture.external.devices;
     vec![joints(devices), hand(&picture.memory, devices), holsters(devices), parts(cell), surroundings(cell)]
+}
+
+/// The cell in two views, with the arm as the resolvers tell it.
+#[must_use]
+pub fn drawn(picture: &Picture, drawing: &Drawing) -> Vec<Section> {
+    let devices = &picture.external.devices;
+    if !devices.resolvers.valid {
+        return vec![joints(devices)];
+    }
+    drawing.sections(&angles(devices))
 }
 
 /// The joint angles that the resolvers tell, radians, turned into the limits of the arm.

@@ -2,7 +2,7 @@
 
 use interfaces::ProcessId;
 
-use super::{Model, Pane, Place, Prompt, Screen, buffers, ladder, views::fields_named};
+use super::{Model, Pane, Place, Prompt, Screen, buffers, drawing::Drawing, ladder, views::fields_named};
 use crate::source::{Source, State};
 
 /// Ticks of a second.
@@ -43,6 +43,8 @@ pub enum Key {
     Backspace,
     /// F1.
     F1,
+    /// F2.
+    F2,
     /// Control and C.
     Interrupt,
 }
@@ -62,6 +64,9 @@ impl Model {
     /// Take a key.
     pub fn key(&mut self, key: Key, source: &dyn Source) -> Effect {
         self.answer = None;
+        if self.screen == Screen::Terminal && self.prompt.is_none() && self.edit(key) {
+            return Effect::Draw;
+        }
         if key == Key::Interrupt && !(self.screen == Screen::Terminal && self.operating.is_some()) {
             return Effect::Quit;
         }
@@ -69,7 +74,10 @@ impl Model {
             self.type_on(prompt, key, source);
         } else if self.help {
             self.help = false;
-        } else if !self.is_of_the_terminal(key) && !self.operate(key) && !self.is_of_a_procedure(key, source)
+        } else if !self.take_over(key)
+            && !self.is_of_the_terminal(key)
+            && !self.operate(key)
+            && !self.is_of_a_procedure(key, source)
         {
             return self.command(key, source);
         }
@@ -96,6 +104,11 @@ impl Model {
             Key::Char('/') => self.prompt = Some(Prompt::Filter(self.filter.clone())),
             Key::Char('g') => self.prompt = Some(Prompt::Tick(String::new())),
             Key::Char('a') => self.acknowledged = self.tick(),
+            Key::Char('v') if self.screen == Screen::Cell => self.draw_or_not(source),
+            Key::Char('s') if self.screen == Screen::Process => {
+                (self.pane, self.scroll) = (Pane::Table, 0);
+                self.shows_source = !self.shows_source;
+            }
             Key::Char('v') if self.screen == Screen::Process => self.turn_to_watch(),
             Key::Char('w') if self.screen == Screen::Process => {
                 self.prompt = Some(Prompt::Watch(String::new()));
@@ -152,6 +165,22 @@ impl Model {
         match self.screen {
             Screen::Ladder => self.process = ladder::neighbour(self.process, by, false),
             _ => self.scroll = self.scroll.saturating_sub_unsigned(by),
+        }
+    }
+
+    /// The cell screen shows the cell drawn, or its values again.
+    fn draw_or_not(&mut self, source: &dyn Source) {
+        self.scroll = 0;
+        if self.drawing.take().is_some() {
+            return;
+        }
+        let drawing = match source.cell_text() {
+            Some(text) => Drawing::of(text),
+            None => Drawing::load(self.terminal.library.directory()),
+        };
+        match drawing {
+            Ok(drawing) => self.drawing = Some(drawing),
+            Err(why) => self.answer = Some(format!("the cell cannot be drawn: {why}")),
         }
     }
 

@@ -2,6 +2,7 @@
 
 pub mod buffers;
 pub mod cell;
+pub mod drawing;
 pub mod frames;
 mod keys;
 pub mod ladder;
@@ -10,23 +11,29 @@ pub mod operating;
 pub mod panels;
 pub mod procedures;
 pub mod process;
+mod take_over;
 pub mod terminal;
+pub mod text_of;
 pub mod units;
 pub mod views;
 
 use interfaces::{ProcessId, device::JoystickBox};
 
-use self::procedures::{Begun, Sight};
+use self::{
+    drawing::Drawing,
+    procedures::{Begun, Sight},
+};
 
 pub use self::{
     keys::{Effect, Key},
     operating::Operating,
     procedures::Progress,
+    take_over::{TakeOver, sections as take_over_sections},
     terminal::BoardTerminal,
 };
 use crate::{
     picture::Picture,
-    source::{Source, State},
+    source::{Cell, Source, State},
 };
 
 /// A screen.
@@ -189,6 +196,8 @@ pub struct Model {
     pub answer: Option<String>,
     /// How far the procedures have come.
     pub procedures: Progress,
+    /// The robot is at a port, and its E-stops with it.
+    pub robot_elsewhere: bool,
     /// What an operator asks for; none on a console that looks only.
     pub operating: Option<Operating>,
     /// The terminal of a board.
@@ -197,6 +206,10 @@ pub struct Model {
     pub watch: Vec<String>,
     /// The process screen shows them in the place of the buffers.
     pub shows_watch: bool,
+    /// The cell screen shows the cell drawn.
+    pub drawing: Option<Drawing>,
+    /// It shows the table as it stands in the code.
+    pub shows_source: bool,
     /// The picture.
     pub picture: Option<Picture>,
     /// The picture before it on the screen.
@@ -219,10 +232,13 @@ impl Model {
             acknowledged: 0,
             answer: None,
             procedures: Progress::default(),
+            robot_elsewhere: false,
             operating: None,
             terminal: BoardTerminal::default(),
             watch: Vec::new(),
             shows_watch: false,
+            drawing: None,
+            shows_source: false,
             picture: None,
             last: None,
         }
@@ -255,6 +271,7 @@ impl Model {
     fn look_at_procedures(&mut self, source: &dyn Source) {
         if let (Some(picture), Place::Last) = (&self.picture, self.place) {
             let cell = source.cell(picture.tick.0);
+            self.robot_elsewhere = matches!(cell, Cell::NotPublished);
             if let Some(operating) = &mut self.operating {
                 operating.look(picture);
             }
@@ -267,6 +284,12 @@ impl Model {
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.picture.as_ref().map_or(0, |picture| picture.tick.0)
+    }
+
+    /// A person is asked whether this console takes the command over.
+    #[must_use]
+    pub fn taking_over(&self) -> Option<TakeOver> {
+        self.operating.as_ref()?.take_over
     }
 
     /// The joystick box as the controller reads it.

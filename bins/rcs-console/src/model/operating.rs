@@ -2,51 +2,17 @@
 
 use interfaces::device::{KNOB_FULL, single_step};
 
-use super::{Key, Model, Prompt, Screen, panels, terminal::follow};
+use super::{
+    Key, Model, Prompt, Screen, panels,
+    take_over::{TakeOver, is_due},
+    terminal::{complete::complete, follow, known},
+};
 use crate::picture::Picture;
 
 /// Exchanges that are kept.
 const KEPT: usize = 200;
 /// Lengths of a jog, in.
 pub const JOGS: [f64; 4] = [0.10, 0.50, 2.00, 0.02];
-/// Requests that Tab completes: how they begin.
-const FORMS: [&str; 34] = [
-    "stop",
-    "go",
-    "leave",
-    "job wait",
-    "job go",
-    "job skip",
-    "board 2 stop",
-    "board 2 go",
-    "board 6 stop",
-    "board 6 go",
-    "execute PRIM",
-    "robot-init",
-    "line-load 863 ",
-    "PAUSE",
-    "STARTUP",
-    "SHUTDOWN",
-    "MOVE -- 0 -- 0 0 HOME 0 -- 0",
-    "MOVE -- 0 -- 0 0 SAFE 0 -- 0",
-    "TRANSFER ",
-    "POSITION ",
-    "ACQUIRE ",
-    "REFIXTURE ",
-    "joystick frame ",
-    "joystick stick ",
-    "joystick velocity ",
-    "joystick hold ",
-    "joystick free ",
-    "joystick step ",
-    "estop ",
-    "release ",
-    "panel ",
-    "tray ",
-    "vise ",
-    "drum ",
-];
-
 /// A request, and what became of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exchange {
@@ -83,6 +49,8 @@ pub struct Operating {
     pub is_armed: bool,
     /// How many requests back the arrow keys of the prompt have gone.
     pub back: usize,
+    /// A person is asked whether this console takes the command over.
+    pub take_over: Option<TakeOver>,
 }
 
 impl Operating {
@@ -110,12 +78,19 @@ impl Operating {
     /// What a picture shows of the commands that were given.
     pub fn look(&mut self, picture: &Picture) {
         self.exchanges.iter_mut().for_each(|exchange| follow(exchange, picture));
+        if is_due(self.take_over, picture.tick) && self.outbox.is_empty() {
+            self.take_over = Some(TakeOver::Waits { since: picture.tick });
+            self.ask("stand-alone");
+        }
     }
 
     /// An answer has come: to a request, or about the status.
     pub fn answered(&mut self, number: u32, verdict: Result<String, String>) {
         match self.exchanges.iter_mut().rev().find(|exchange| exchange.number == number) {
-            Some(exchange) => exchange.answer = Some(verdict),
+            Some(exchange) => {
+                self.take_over = TakeOver::after(self.take_over, &exchange.line, &verdict);
+                exchange.answer = Some(verdict);
+            }
             None => {
                 let status = verdict.unwrap_or_else(|why| why);
                 self.status = status.split_once(": ").map_or(status.as_str(), |(_, rest)| rest).to_owned();
@@ -157,16 +132,6 @@ impl Operating {
     }
 }
 
-/// What Tab makes of a line, and the forms that it could become.
-fn complete(typed: &str) -> (String, Vec<&'static str>) {
-    let fitting: Vec<_> = FORMS.into_iter().filter(|form| form.starts_with(typed)).collect();
-    let Some(first) = fitting.first() else { return (typed.to_owned(), fitting) };
-    let common = fitting.iter().fold(first.len(), |common, form| {
-        first.bytes().zip(form.bytes()).take(common).take_while(|(a, b)| a == b).count()
-    });
-    (first.get(..common).unwrap_or(typed).to_owned(), fitting)
-}
-
 impl Model {
     /// A key that asks something of the run; false if it is none.
     pub(super) fn operate(&mut self, key: Key) -> bool {
@@ -182,13 +147,19 @@ impl Model {
             Key::Char(' ') => operating.ask("stop"),
             Key::Char('h') if holds_prim => operating.ask("joystick free PRIM"),
             Key::Char('h') => operating.ask("joystick hold PRIM"),
-            Key::F1 if was_armed => operating.ask("estop terminals"),
-            Key::F1 => {
+            Key::F1 | Key::Char('!') if was_armed && self.robot_elsewhere => {
+                operating.ask("joystick hold PRIM");
+                operating.ask("board 4 stop");
+            }
+            Key::F1 | Key::Char('!') if was_armed => operating.ask("estop terminals"),
+            Key::F1 | Key::Char('!') => {
                 operating.is_armed = true;
-                self.answer = Some(
+                let what = if self.robot_elsewhere {
+                    "the E-stops are at the robot; F1 again holds Prim and drops the link: its controller warns (WD)"
+                } else {
                     "F1 again presses the E-stop near the terminals: the arm sinks; Space is gentler (IV.3.1)"
-                        .to_owned(),
-                );
+                };
+                self.answer = Some(what.to_owned());
             }
             Key::Char(':') => {
                 operating.back = 0;
@@ -267,11 +238,13 @@ impl Model {
             Key::Up => text = recall(true).unwrap_or(text),
             Key::Down => text = recall(false).unwrap_or(text),
             Key::Tab => {
-                let (completed, fitting) = complete(&text);
-                if fitting.len() != 1 {
-                    let words: Vec<_> = fitting.iter().map(|form| form.trim_end()).collect();
-                    self.answer = Some(words.join(", "));
-                }
+                let words = known(self.terminal.board.number);
+                let (completed, fitting) = complete(&text, self.terminal.library.names(), &words);
+                self.answer = match fitting.len() {
+                    0 => Some("nothing that is known can stand here".to_owned()),
+                    1 => None,
+                    _ => Some(fitting.join(" ")),
+                };
                 text = completed;
             }
             Key::Enter if text.trim().is_empty() => return,
@@ -308,15 +281,6 @@ fn button_ticks(inches: f64) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn tab_completes_as_far_as_it_is_clear() {
-        assert_eq!(complete("job").0, "job ");
-        assert_eq!(complete("job g").0, "job go");
-        assert_eq!(complete("joy").0, "joystick ");
-        assert_eq!(complete("xyz"), ("xyz".to_owned(), Vec::new()));
-        assert_eq!(complete("st"), ("stop".to_owned(), vec!["stop"]));
-    }
 
     #[test]
     fn a_jog_has_its_length() {

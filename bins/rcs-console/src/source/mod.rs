@@ -32,6 +32,11 @@ pub trait Source {
     /// The cell as it was in a tick.
     fn cell(&self, tick: u64) -> Cell;
 
+    /// The description of the cell, if the source holds it.
+    fn cell_text(&self) -> Option<&str> {
+        None
+    }
+
     /// The blocks of the task data, if the source holds them.
     fn blocks(&self) -> Option<&[Blocks]> {
         None

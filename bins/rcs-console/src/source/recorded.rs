@@ -31,6 +31,7 @@ pub struct Recorded {
     contacts: Option<String>,
     damage: Option<String>,
     blocks: Vec<Blocks>,
+    cell_text: Option<String>,
 }
 
 impl Recorded {
@@ -81,6 +82,9 @@ impl Recorded {
             contacts,
             damage,
             blocks: blocks(&log),
+            cell_text: log
+                .attachment(Attachment::CELL)
+                .map(|cell| String::from_utf8_lossy(&cell.data).into_owned()),
         })
     }
 
@@ -134,6 +138,10 @@ impl Source for Recorded {
 
     fn story(&self) -> &Story {
         &self.story
+    }
+
+    fn cell_text(&self) -> Option<&str> {
+        self.cell_text.as_deref()
     }
 
     fn blocks(&self) -> Option<&[Blocks]> {

@@ -10,7 +10,7 @@ const KEYS: [(&str, &str); 16] = [
     ("1 ... 7", "screens: ladder, process, link, cell, terminal, panels, procedures"),
     ("j k, arrows, PgUp PgDn", "choose a process; scroll"),
     ("Enter, Esc", "the process under the cursor; back to the ladder"),
-    ("Tab, w, v", "on screen 2: pane, watch a field, what is watched"),
+    ("Tab, w, v, s", "screen 2: pane, watch, what is watched, source; v on 4: drawing"),
     ("/", "show only lines with a text; Esc shows all again"),
     ("p", "freeze the picture; the run goes on"),
     ("[ ]  { }  Home End", "a tick, a second, first and last tick"),

@@ -4,7 +4,7 @@ use interfaces::ProcessId;
 use ratatui::{style::Modifier, text::Line};
 
 use super::{
-    Look,
+    Look, boxes,
     text::{fit, rule, wrap},
 };
 use crate::{
@@ -45,6 +45,14 @@ pub fn body(
     width: usize,
     room: usize,
 ) -> Vec<Line<'static>> {
+    if width >= boxes::LEAST.0 && room >= boxes::LEAST.1 {
+        let drawn = ladder::lines(picture, model.last.as_ref(), source.story());
+        let mut lines = boxes::lines(&drawn, model.process, look, width);
+        lines.push(look.line(Tone::Plain, rule("", width)));
+        let below = explanation(model.process, picture, source, width, room.saturating_sub(lines.len()));
+        lines.extend(below.into_iter().map(|text| look.line(Tone::Plain, text)));
+        return lines;
+    }
     let widths = Widths::of(width);
     let head = columns(
         &widths,
@@ -102,7 +110,7 @@ fn shortened(mut lines: Vec<String>, share: usize, width: usize) -> Vec<String> 
     lines
 }
 
-fn tone(mark: &Mark) -> Tone {
+pub fn tone(mark: &Mark) -> Tone {
     match mark {
         Mark { trouble: true, .. } => Tone::Trouble,
         Mark { absent: true, .. } => Tone::Faint,

@@ -3,6 +3,7 @@
 //! Line 1 has the screens, line 2 the run, line 3 is a rule; the last line has the keys, the one before it the newest
 //! thing to know. What a colour says, a mark or a word says too.
 
+mod boxes;
 mod help;
 mod ladder;
 mod panes;
@@ -20,7 +21,7 @@ use record::Level;
 use crate::{
     model::{
         Model, Operating, Place, Prompt, Screen, Tone, cell, ladder as lines, link, panels, procedures,
-        terminal,
+        take_over_sections, terminal,
     },
     source::{About, Source, State},
 };
@@ -62,7 +63,7 @@ impl Look {
         let sign = |sign: char| match sign {
             '─' => '-',
             '│' => '|',
-            '├' | '└' => '+',
+            '├' | '└' | '┌' | '┐' | '┘' | '┤' | '┬' | '┴' => '+',
             '…' => '~',
             other if other.is_ascii() => other,
             _ => '?',
@@ -133,6 +134,10 @@ fn screen(
         (None, false) => {
             (vec![look.line(Tone::Plain, " The run has published no tick yet.")], Reach::default())
         }
+        (Some(picture), false) if model.taking_over().is_some() => {
+            let asked = model.taking_over().map(|state| take_over_sections(state, picture));
+            panes::column(&asked.unwrap_or_default(), model, look, width, room)
+        }
         (Some(picture), false) => match model.screen {
             Screen::Ladder => (ladder::body(model, picture, source, look, width, room), Reach::default()),
             Screen::Process => panes::process(model, picture, source, look, width, room),
@@ -140,9 +145,17 @@ fn screen(
                 let cell = source.cell(picture.tick.0);
                 panes::column(&link::sections(picture, source.story(), &cell), model, look, width, room)
             }
+            Screen::Cell if model.drawing.is_some() => {
+                let drawn = model.drawing.iter().flat_map(|drawing| cell::drawn(picture, drawing));
+                panes::column(&drawn.collect::<Vec<_>>(), model, look, width, room)
+            }
             Screen::Cell => {
                 let cell = source.cell(picture.tick.0);
                 panes::column(&cell::sections(picture, &cell), model, look, width, room)
+            }
+            Screen::Terminal if model.terminal.editor.is_some() => {
+                let sections = model.terminal.editor.iter().flat_map(|editor| editor.sections());
+                (panes::list(&sections.collect::<Vec<_>>(), look, width, room), Reach::default())
             }
             Screen::Terminal => {
                 let (operating, last) = (model.operating.as_ref(), model.last.as_ref());
@@ -295,6 +308,12 @@ fn ending(model: &Model) -> String {
 fn keys(model: &Model, state: State) -> &'static str {
     match (model.help, model.screen, state) {
         (true, ..) => " any key goes back",
+        _ if model.taking_over().is_some() => {
+            " Enter=wait  P=PAUSE now  Esc=no  Space=stop, go  h=hold Prim  F1=E-stop"
+        }
+        (_, Screen::Terminal, _) if model.terminal.editor.is_some() => {
+            " arrows, letters=edit  F2=check, show the change  Esc=leave it as it was"
+        }
         (_, Screen::Ladder, State::Over) => " Enter=process  o=open its log at the cause  j k=choose  q=quit",
         (_, Screen::Ladder, State::Log) => {
             " Enter=process  j k=choose  [ ] { }=tick, second  n=change  t=trouble  c=cause"
@@ -303,7 +322,7 @@ fn keys(model: &Model, state: State) -> &'static str {
             " Enter=process  j k=choose  p=freeze  [ ]=tick  n=change  t=trouble  a=ack"
         }
         (_, Screen::Process, _) => {
-            " Esc=back  Tab=pane  j k=scroll  /=filter  w v=watch  [ ]=tick  n=its change"
+            " Esc=back  Tab=pane  j k=scroll  /=filter  w v=watch  s=source  [ ]=tick  n N"
         }
         (_, Screen::Terminal, _) if model.operating.is_none() => " Esc=back  :=words  b=board  j k=scroll",
         (_, Screen::Panels, _) if model.operating.is_none() => " Esc=back",
@@ -318,7 +337,10 @@ fn keys(model: &Model, state: State) -> &'static str {
             " Esc=list  Enter=do it  y=it is so  s=leave out  u=take back  r=anew  Space=stop"
         }
         (_, Screen::Panels, _) => " Esc=back  Space=stop, go  F1=E-stop  :=request  j k Enter=keys  s=jog",
-        (_, Screen::Link | Screen::Cell, _) => {
+        (_, Screen::Cell, _) => {
+            " Esc=back  v=drawing, values  j k=scroll  [ ] { }=tick, second  n=change  t c"
+        }
+        (_, Screen::Link, _) => {
             " Esc=back  j k=scroll  [ ] { }=tick, second  n=change  t=trouble  g=go to tick"
         }
     }

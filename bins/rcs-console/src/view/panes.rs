@@ -7,7 +7,7 @@ use super::{
     text::{rule, wrap},
 };
 use crate::{
-    model::{Model, Pane, Section, Text, Tone, buffers, process, views},
+    model::{Model, Pane, Section, Text, Tone, buffers, process, text_of, views},
     picture::Picture,
     source::Source,
 };
@@ -35,7 +35,11 @@ pub fn process(
     let room = room.saturating_sub(lines.len());
     let (last, story) = (model.last.as_ref(), source.story());
     let sections = [
-        process::table(model.process, picture, &model.filter),
+        if model.shows_source {
+            text_of::section(model.process, picture, &model.filter)
+        } else {
+            process::table(model.process, picture, &model.filter)
+        },
         process::rows(model.process, picture, story),
         if model.shows_watch {
             views::watched(&model.watch, picture, last)

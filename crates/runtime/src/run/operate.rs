@@ -43,12 +43,12 @@ impl Run {
                 (Some(Later::Load(block)), None) if !self.loads.can_load() => {
                     self.load_recorded(block).map_err(|error| error.to_string())
                 }
-                (Some(Later::Load(block)), None) => match self.begin_load(block, input) {
-                    Ok(()) => continue,
-                    Err((input, why)) => {
-                        self.settle(first, input, Err(why.to_string()));
+                (Some(Later::Load(block)), None) => match self.can_load() {
+                    Ok(()) => {
+                        self.begin_load(block, input);
                         continue;
                     }
+                    Err(why) => Err(why.to_string()),
                 },
             };
             self.settle(first, input, verdict);

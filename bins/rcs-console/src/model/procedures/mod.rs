@@ -6,6 +6,7 @@
 //! port or no device shows it, is for a person to say.
 
 mod condition;
+mod controller;
 mod keys;
 mod neighbours;
 mod progress;

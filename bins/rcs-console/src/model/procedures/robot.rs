@@ -2,7 +2,7 @@
 
 use interfaces::{ProcessId, data_base::Connection};
 
-use super::{Ask::Line, Condition, Procedure, Show, Step, Watch, event, real, said, state, step};
+use super::{Ask::Line, Condition, Procedure, Show, Step, Watch, controller, event, real, said, state, step};
 
 /// The levels that take commands from each other.
 const LEVELS: &[ProcessId] = &[ProcessId::Task, ProcessId::Subtask, ProcessId::Emove, ProcessId::Prim];
@@ -22,9 +22,6 @@ const BELOW: &[ProcessId] = &[
 ];
 /// The command that leads to HOME (block 863, line 3).
 pub const HOME: &str = "MOVE -- 0 -- 0 0 HOME 0 -- 0";
-
-/// What hydraulic pressure does.
-const JUMP: &str = "the arm becomes live and jumps by several inches, its end by about 10 in";
 
 /// IV.1.
 pub const POWER_UP: Procedure = Procedure {
@@ -140,59 +137,24 @@ pub const START_UP: Procedure = Procedure {
             show: Show::Screen,
             ..state("4", "CONTROL POWER is on", &[Condition::Reached("fault")])
         },
-        Step {
-            ask: &[super::Ask::ReleaseEStops, Line("panel fault-reset")],
-            how: "It resets only when all emergency stops are out.",
-            show: Show::Screen,
-            ..state("5", "FAULT RESET is out", &[Condition::Reached("hydraulics disabled")])
-        },
+        Step { id: "5", ..controller::FAULT_RESET },
         Step {
             how: "No person stands in the work volume, and nothing that does not belong there. \
                   Each gripper that is not on the robot sits in its own holster.",
             show: Show::Holsters,
             ..said("6", "the work volume is clear, the grippers sit in holsters")
         },
-        Step {
-            ask: &[Line("panel hydraulics enable")],
-            how: "The red lights on the robot and HYD ENABLED come on.",
-            show: Show::Screen,
-            ..state("7", "HYDRAULICS stands at ENABLE", &[Condition::Reached("hydraulics enabled")])
-        },
-        Step {
-            ask: &[Line("panel manual on")],
-            how: "One hand covers the E-stop of the control panel.",
-            warning: JUMP,
-            show: Show::Hand,
-            ..state("8", "MANUAL is on: the hand has jumped and stands", &[Condition::Reached("manual")])
-        },
-        Step {
-            ask: &[Line("panel align")],
-            how: "Base, shoulder and elbow to their arrows; the gripper straight down or out; its line \
-                  through the elbow; the camera on top. Some axes have an asterisk elsewhere, too.",
-            warning: "the arm moves",
-            show: Show::Aligned,
-            until: "10",
-            ..state("9", "all six axes are aligned", &[Condition::Aligned])
-        },
-        Step {
-            ask: &[Line("panel auto")],
-            warning: "the arm jumps again and moves directly to HOME, whatever is in its way",
-            show: Show::Hand,
-            ..state("10", "AUTO: the robot has moved to HOME", &[Condition::Reached("auto, at HOME")])
-        },
+        Step { id: "7", ..controller::HYDRAULICS },
+        Step { id: "8", ..controller::MANUAL },
+        Step { id: "9", until: "10", ..controller::ALIGN },
+        Step { id: "10", ..controller::AUTO },
         Step {
             how: "If not, do the resolver reset, a to q, which is a procedure of its own.",
             show: Show::Frame,
             until: "12",
             ..state("11", "frame-feedback is that of HOME", &[Condition::AtHome])
         },
-        Step {
-            ask: &[Line("panel cycle-start")],
-            how: "If a WD warning comes: the procedure for it stands below this one.",
-            warning: "the robot makes two short vertical motions by itself",
-            show: Show::Screen,
-            ..state("12", "CYCLE START: the program has come to DEPC", &[Condition::Reached("DEPC")])
-        },
+        Step { id: "12", ..controller::CYCLE_START },
         Step {
             ask: &[Line("execute PRIM 2")],
             how: "PRIM-LEVEL PRIM-LEVEL II: Prim runs twice, and what it gives is what it gets.",

@@ -2,9 +2,7 @@
 
 use interfaces::ProcessId;
 
-use super::{
-    Ask::Line, Ask::ReleaseEStops, Condition, Procedure, Show, Step, Watch, event, real, said, state, step,
-};
+use super::{Ask::Line, Condition, Procedure, Show, Step, Watch, controller, event, real, said, state, step};
 
 /// III.6 and IV.3.1.
 pub const E_STOP: Procedure = Procedure {
@@ -43,45 +41,12 @@ pub const E_STOP: Procedure = Procedure {
             show: Show::Hand,
             ..said("5", "it can settle without damage, or power comes back now")
         },
-        Step {
-            ask: &[ReleaseEStops, Line("panel fault-reset")],
-            show: Show::Screen,
-            ..state(
-                "6",
-                "the E-stops are out, and FAULT RESET is out",
-                &[Condition::EStopsOut, Condition::Reached("hydraulics disabled")],
-            )
-        },
-        Step {
-            ask: &[Line("panel hydraulics enable")],
-            show: Show::Screen,
-            ..state("7", "HYDRAULICS stands at ENABLE", &[Condition::Reached("hydraulics enabled")])
-        },
-        Step {
-            ask: &[Line("panel manual on")],
-            warning: "the end of the arm jumps up by about 10 in",
-            show: Show::Hand,
-            ..state("8", "MANUAL is on: the arm stands", &[Condition::Reached("manual")])
-        },
-        Step {
-            ask: &[Line("panel align")],
-            warning: "the arm moves",
-            show: Show::Aligned,
-            until: "10",
-            ..state("9", "all six axes are aligned", &[Condition::Aligned])
-        },
-        Step {
-            ask: &[Line("panel auto")],
-            warning: "the arm moves directly to HOME, whatever is in its way",
-            show: Show::Hand,
-            ..state("10", "AUTO: the robot is at HOME", &[Condition::Reached("auto, at HOME")])
-        },
-        Step {
-            ask: &[Line("panel cycle-start")],
-            warning: "the robot makes two short vertical motions by itself",
-            show: Show::Screen,
-            ..state("11", "CYCLE START: the program has come to DEPC", &[Condition::Reached("DEPC")])
-        },
+        Step { id: "6", ..controller::FAULT_RESET },
+        Step { id: "7", ..controller::HYDRAULICS },
+        Step { id: "8", ..controller::MANUAL },
+        Step { id: "9", until: "10", ..controller::ALIGN },
+        Step { id: "10", ..controller::AUTO },
+        Step { id: "11", ..controller::CYCLE_START },
         Step {
             ask: &[Line("joystick free PRIM"), Line("PAUSE")],
             how: "PAUSE takes the position of the robot over, and starts the link again.",
@@ -123,34 +88,11 @@ pub const WARNING: Procedure = Procedure {
             how: "Screen 3 explains the code.",
             ..said("12", "the warning has been read")
         },
-        Step {
-            ask: &[Line("panel interrupt")],
-            show: Show::Screen,
-            ..event("12a", "INTERRUPT is pressed", &[Condition::Taken])
-        },
-        Step {
-            ask: &[Line("panel cancel")],
-            show: Show::Screen,
-            ..event("12b", "CANCEL is pressed", &[Condition::Taken])
-        },
-        Step {
-            ask: &[Line("panel cancel")],
-            show: Show::Screen,
-            until: "12d",
-            ..state("12c", "CANCEL is pressed again: pre-manual", &[Condition::At("pre-manual")])
-        },
-        Step {
-            ask: &[Line("panel auto")],
-            warning: "the arm moves directly to HOME, whatever is in its way",
-            show: Show::Hand,
-            ..state("12d", "AUTO: the robot is at HOME", &[Condition::Reached("auto, at HOME")])
-        },
-        Step {
-            ask: &[Line("panel cycle-start")],
-            warning: "the robot makes two short vertical motions by itself",
-            show: Show::Screen,
-            ..state("12e", "CYCLE START: the program has come to DEPC", &[Condition::Reached("DEPC")])
-        },
+        Step { id: "12a", ..controller::INTERRUPT },
+        Step { id: "12b", ..controller::CANCEL },
+        Step { id: "12c", until: "12d", ..controller::CANCEL_AGAIN },
+        Step { id: "12d", ..controller::AUTO },
+        Step { id: "12e", ..controller::CYCLE_START },
         Step {
             ask: &[Line("PAUSE")],
             how: ".R: PAUSE lets Prim execute RESTART, and takes the position over.",
@@ -203,22 +145,12 @@ pub const MANUAL_CONTROL: Procedure = Procedure {
     title: "Return the robot to the teach pendant",
     steps: &[
         Step {
-            ask: &[Line("panel interrupt")],
+            id: "1",
             how: "After trouble this may be better than to move to HOME first, or the only way.",
-            show: Show::Screen,
-            ..event("1", "INTERRUPT is pressed", &[Condition::Taken])
+            ..controller::INTERRUPT
         },
-        Step {
-            ask: &[Line("panel cancel")],
-            show: Show::Screen,
-            ..event("2", "CANCEL is pressed", &[Condition::Taken])
-        },
-        Step {
-            ask: &[Line("panel cancel")],
-            show: Show::Screen,
-            until: "4",
-            ..state("3", "CANCEL is pressed again: pre-manual", &[Condition::At("pre-manual")])
-        },
+        Step { id: "2", ..controller::CANCEL },
+        Step { id: "3", until: "4", ..controller::CANCEL_AGAIN },
         Step {
             how: "Near HOME the robot may be shut down: IV.3.4 from step 2 on.",
             show: Show::Hand,

@@ -7,6 +7,8 @@ use taskdata::load::{
     source::{BLOCK_LINES, blocks, read_blocks_under},
 };
 
+use super::complete::Names;
+
 /// The areas of the manual (IV.2.7), and what stands there now.
 pub static AREAS: [(u32, &str, &str); 11] = [
     (12_000, "Prim", "crates/levels/src/prim"),
@@ -30,19 +32,20 @@ const FOUND: usize = 12;
 pub struct Library {
     directory: PathBuf,
     read: Option<Vec<Source>>,
+    names: Option<Names>,
 }
 
 impl Library {
     /// Blocks of a directory.
     #[must_use]
     pub fn of(directory: PathBuf) -> Self {
-        Self { directory, read: None }
+        Self { directory, ..Self::default() }
     }
 
     /// Blocks that were read elsewhere, such as those of a log.
     #[must_use]
     pub fn with(sources: Vec<Source>) -> Self {
-        Self { directory: PathBuf::new(), read: Some(sources) }
+        Self { read: Some(sources), ..Self::default() }
     }
 
     /// The directory; empty for blocks that were read elsewhere.
@@ -54,11 +57,21 @@ impl Library {
     /// Read again what stands in the directory, when a block is asked for.
     pub fn forget(&mut self) {
         if !self.directory.as_os_str().is_empty() {
-            self.read = None;
+            (self.read, self.names) = (None, None);
         }
     }
 
-    fn sources(&mut self) -> &[Source] {
+    /// The names in the blocks, for Tab.
+    pub fn names(&mut self) -> &Names {
+        let directory = self.directory.clone();
+        if self.names.is_none() {
+            self.names = Some(Names::of(self.sources(), &directory));
+        }
+        self.names.get_or_insert_default()
+    }
+
+    /// All texts with blocks.
+    pub fn sources(&mut self) -> &[Source] {
         let directory = &self.directory;
         self.read.get_or_insert_with(|| read_blocks_under(directory).0)
     }

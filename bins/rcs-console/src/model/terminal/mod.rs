@@ -1,23 +1,29 @@
 //! The terminal of a board (IV.2): words that run, show and list, and beside them requests in words of today.
 
+pub mod complete;
+mod disk;
+pub mod editor;
 pub mod library;
 mod said;
 mod screen;
+mod teach;
 mod words;
 
 use std::path::PathBuf;
 
-use interfaces::{ProcessId, hws::HwsReport};
-use taskdata::load::commands;
+use interfaces::{ProcessId, hws::HwsReport, operator::BOARDS as RUNNING};
+use taskdata::load::{BlockNumber, commands};
 
 use self::{
+    editor::{Editor, Wish},
     library::Library,
+    teach::Lesson,
     words::{Interpreter, is_of_terminal},
 };
 use super::{Key, Model, Operating, Text, Tone, operating::Exchange, views::ShowWord};
 use crate::picture::Picture;
 
-pub use self::screen::sections;
+pub use self::{screen::sections, words::known};
 
 /// The boards of the terminals (IV.2.2).
 pub const BOARDS: [u8; 6] = [0, 2, 4, 6, 8, 12];
@@ -101,6 +107,10 @@ pub struct BoardTerminal {
     pub board: Board,
     /// The blocks.
     pub library: Library,
+    /// The block that is edited.
+    pub editor: Option<Editor>,
+    /// The block that was listed last: F2 edits it.
+    listed: Option<BlockNumber>,
     typed: Vec<Typed>,
 }
 
@@ -124,6 +134,8 @@ impl Model {
     pub(super) fn enter(&mut self, line: &str) {
         let terminal = &mut self.terminal;
         let sent = self.operating.as_ref().map_or(0, Operating::count);
+        // As `rcs-run send` has it.
+        let line = line.strip_prefix("send ").map_or(line, str::trim_start);
         if !is_of_terminal(line, terminal.board.mode) {
             match &mut self.operating {
                 Some(operating) => operating.ask(line),
@@ -140,7 +152,91 @@ impl Model {
             None if outcome.asks.is_empty() => {}
             None => said.push(look_only()),
         }
+        terminal.listed = outcome.listed.or(terminal.listed);
+        let (edits, teaches) = (outcome.edits, outcome.teaches);
         terminal.note(line, said, sent);
+        if let Some(number) = edits {
+            self.begin_edit(number);
+        }
+        if let Some(lesson) = teaches {
+            self.begin_lesson(&lesson);
+        }
+    }
+
+    /// Why a board's blocks cannot be edited now (IV.2.3).
+    fn cannot_edit(&self) -> Option<String> {
+        let board = self.terminal.board.number;
+        if self.operating.is_none() {
+            return Some("this console looks only: start it with --operate to edit blocks".to_owned());
+        }
+        if !RUNNING.contains(&board) {
+            return Some(format!("board {board} has no processes to stop: b turns to the next board"));
+        }
+        let picture = self.picture.as_ref()?;
+        let runs = !picture.external.operator.is_stopped(board);
+        runs.then(|| format!("board {board} runs: ^C stops it before its blocks are edited (IV.2.3)"))
+    }
+
+    /// Open the editor, or say why not.
+    fn begin_edit(&mut self, number: BlockNumber) {
+        if let Some(why) = self.cannot_edit() {
+            self.answer = Some(why);
+            return;
+        }
+        let library = &mut self.terminal.library;
+        library.forget();
+        let directory = library.directory().to_owned();
+        match Editor::begin(number, &directory, library.sources()) {
+            Ok(editor) => self.terminal.editor = Some(editor),
+            Err(why) => self.answer = Some(why),
+        }
+    }
+
+    /// Open the editor with the form of the recorded pose, or say why not.
+    fn begin_lesson(&mut self, lesson: &Lesson) {
+        if let Some(why) = self.cannot_edit() {
+            self.answer = Some(why);
+            return;
+        }
+        let Some(picture) = &self.picture else { return };
+        let library = &mut self.terminal.library;
+        library.forget();
+        let directory = library.directory().to_owned();
+        match lesson.begin(picture, &directory, library.sources()) {
+            Ok(editor) => self.terminal.editor = Some(editor),
+            Err(why) => self.answer = Some(why),
+        }
+    }
+
+    /// A key of the editor; false if there is none open.
+    pub(super) fn edit(&mut self, key: Key) -> bool {
+        let Some(editor) = self.terminal.editor.as_mut().filter(|_| key != Key::F1) else { return false };
+        match editor.key(key) {
+            Wish::None => {}
+            Wish::Say(what) => self.answer = Some(what.to_owned()),
+            Wish::Close => self.terminal.editor = None,
+            Wish::Write => self.write_block(),
+        }
+        true
+    }
+
+    /// Write the block, and let the run load it.
+    fn write_block(&mut self) {
+        if let Some(why) = self.cannot_edit() {
+            self.answer = Some(why);
+            return;
+        }
+        let Some(editor) = &self.terminal.editor else { return };
+        if let Err(why) = editor.write() {
+            self.answer = Some(why);
+            return;
+        }
+        let request = editor.request();
+        self.terminal.editor = None;
+        self.terminal.library.forget();
+        if let Some(operating) = &mut self.operating {
+            operating.ask(request);
+        }
     }
 
     /// What stands in front of what is typed.
@@ -162,6 +258,10 @@ impl Model {
             Key::Char('b') => board.turn_to(BOARDS[(at + 1) % BOARDS.len()]),
             Key::Char('B') => board.turn_to(BOARDS[(at + BOARDS.len() - 1) % BOARDS.len()]),
             Key::Char(':') => self.prompt = Some(super::Prompt::Request(String::new())),
+            Key::F2 => match self.terminal.listed {
+                Some(number) => self.begin_edit(number),
+                None => self.answer = Some("n LIST lists a block, F2 edits it; so does n EDIT".to_owned()),
+            },
             Key::Interrupt if self.operating.is_some() => self.enter("^C"),
             Key::Esc if board.shown.is_some() => board.shown = None,
             _ => return false,

@@ -1,15 +1,11 @@
 //! The words of a board's terminal (IV.2, IV.3): numbers go onto a stack, words take them from it, as in FORTH. What a
 //! word asks of the run becomes a request in words of today ([`operator`]); what it shows is said at once.
 
-use interfaces::{ProcessId, operator::board_bit};
+use interfaces::ProcessId;
 use levels::ladder::Ladder;
-use taskdata::load::{BlockNumber, commands, source::BLOCK_LINES};
+use taskdata::load::{BlockNumber, source::BLOCK_LINES};
 
-use super::{
-    BOARDS, Board, Mode,
-    library::{AREAS, Library},
-    said,
-};
+use super::{BOARDS, Board, Mode, library::Library, said, teach::Lesson};
 use crate::{
     model::{
         Text, Tone,
@@ -19,8 +15,23 @@ use crate::{
 };
 
 /// Words that take no name behind them.
-const WORDS: [&str; 13] =
-    ["GO", "SSGO", "^C", ".R", ":R", ":S", "LIST", "LOAD", "OLOAD", "LINE-LOAD", "OFFSET", "LOC", "BOARD"];
+const WORDS: [&str; 15] = [
+    "GO",
+    "SSGO",
+    "^C",
+    ".R",
+    ":R",
+    ":S",
+    "LIST",
+    "LOAD",
+    "OLOAD",
+    "LINE-LOAD",
+    "OFFSET",
+    "LOC",
+    "BOARD",
+    "EDIT",
+    "TEACH",
+];
 
 /// A word that executes a process once, as PRIM-LEVEL (IV.3.3 step 13; VI.2, VI.5; the others are ours).
 static LEVELS: [(&str, ProcessId, &str); 9] = [
@@ -42,6 +53,12 @@ pub struct Outcome {
     pub asks: Vec<String>,
     /// What is said.
     pub said: Vec<Text>,
+    /// The block that is to be edited.
+    pub edits: Option<BlockNumber>,
+    /// What is to be taught.
+    pub teaches: Option<Lesson>,
+    /// The block that was listed.
+    pub listed: Option<BlockNumber>,
 }
 
 /// What words work on.
@@ -55,7 +72,7 @@ pub struct Interpreter<'a> {
     /// The picture before.
     pub last: Option<&'a Picture>,
     stack: Vec<u32>,
-    outcome: Outcome,
+    pub(super) outcome: Outcome,
 }
 
 /// True if a line consists of words of a terminal; else it is a request in words of today.
@@ -68,6 +85,15 @@ pub fn is_of_terminal(line: &str, mode: Mode) -> bool {
         || VOCABULARIES.iter().any(|(word, _)| *word == first)
         || said::of_word(first).is_some();
     is_word || mode == Mode::Show || first.parse::<u32>().is_ok()
+}
+
+/// The words of the terminal of a board that Tab completes.
+#[must_use]
+pub fn known(board: u8) -> Vec<&'static str> {
+    let levels = LEVELS.iter().filter(|(_, process, _)| process.board() == board).map(|(word, ..)| *word);
+    let shown = SHOW_WORDS.iter().filter(|word| word.board == board).map(|word| word.word);
+    let vocabularies = VOCABULARIES.iter().map(|(word, _)| *word);
+    WORDS.into_iter().chain(levels).chain(shown).chain(vocabularies).collect()
 }
 
 impl<'a> Interpreter<'a> {
@@ -87,7 +113,7 @@ impl<'a> Interpreter<'a> {
         let words: Vec<&str> = line.split_whitespace().collect();
         let mut at = 0;
         while let Some(word) = words.get(at) {
-            let behind = words.get(at + 1).copied();
+            let behind = words.get(at + 1..).unwrap_or_default();
             match self.word(word, behind) {
                 Ok(used) => at += 1 + used,
                 Err(why) => {
@@ -99,12 +125,13 @@ impl<'a> Interpreter<'a> {
         self.outcome
     }
 
-    fn say(&mut self, text: impl Into<String>) {
+    pub(super) fn say(&mut self, text: impl Into<String>) {
         self.outcome.said.push(Text::plain(text));
     }
 
     /// One word; how many words behind it belong to it.
-    fn word(&mut self, word: &str, behind: Option<&str>) -> Result<usize, String> {
+    fn word(&mut self, word: &str, rest: &[&str]) -> Result<usize, String> {
+        let behind = rest.first().copied();
         if let Ok(number) = word.parse() {
             self.stack.push(number);
             return Ok(0);
@@ -117,6 +144,8 @@ impl<'a> Interpreter<'a> {
             "^C" => self.stop()?,
             ".R" => self.on(2).map(|()| self.outcome.asks.push("robot-init".to_owned()))?,
             "LIST" => self.list()?,
+            "EDIT" => self.edit()?,
+            "TEACH" => return self.teach(rest),
             "LOAD" => {
                 let number = self.pop("n LOAD")?;
                 self.load(BlockNumber { offset: self.board.offset, number })?;
@@ -202,12 +231,12 @@ impl<'a> Interpreter<'a> {
         Ok(0)
     }
 
-    fn pop(&mut self, form: &str) -> Result<u32, String> {
+    pub(super) fn pop(&mut self, form: &str) -> Result<u32, String> {
         self.stack.pop().ok_or_else(|| format!("a number is missing: {form}"))
     }
 
     /// The terminal must speak to this board.
-    fn on(&self, board: u8) -> Result<(), String> {
+    pub(super) fn on(&self, board: u8) -> Result<(), String> {
         if self.board.number == board {
             return Ok(());
         }
@@ -252,98 +281,6 @@ impl<'a> Interpreter<'a> {
             }
             None => self.outcome.asks.push(request),
         }
-    }
-
-    fn list(&mut self) -> Result<(), String> {
-        let number = BlockNumber { offset: self.board.offset, number: self.pop("n LIST")? };
-        let Some((file, lines)) = self.library.block(number) else { return Err(self.missing(number)) };
-        self.say(format!("  {number}, {file}"));
-        // Empty lines are left out: a screen of 24 lines has no room for a block of 16.
-        for (at, line) in lines.iter().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-            self.say(format!(" {at:>2} {line}"));
-        }
-        Ok(())
-    }
-
-    fn missing(&mut self, number: BlockNumber) -> String {
-        let known = self.library.numbers(number.offset);
-        let known: Vec<String> = known.iter().map(u32::to_string).collect();
-        match (known.as_slice(), AREAS.iter().rev().find(|(offset, ..)| *offset <= number.offset)) {
-            ([], Some((_, process, place))) => {
-                format!("there are no blocks at offset {}; {process} is in {place}", number.offset)
-            }
-            _ => format!("there is no {number}; blocks there: {}", known.join(", ")),
-        }
-    }
-
-    fn load(&mut self, number: BlockNumber) -> Result<(), String> {
-        let of_task = number.offset == commands::OFFSET || number.number == 28;
-        if let Some(text) = said::of_block(number.number).filter(|_| of_task) {
-            self.say(format!("  {text}"));
-            return Ok(());
-        }
-        self.library.forget();
-        if self.library.block(number).is_none() {
-            return Err(self.missing(number));
-        }
-        self.outcome.asks.push(format!("load {} {}", number.offset, number.number));
-        Ok(())
-    }
-
-    fn line_load(&mut self) -> Result<(), String> {
-        let form = "block line line LINE-LOAD";
-        let (to, from) = (self.pop(form)?, self.pop(form)?);
-        let block = self.pop(form)?;
-        self.on(6)?;
-        if self.board.offset != commands::OFFSET {
-            let offset = commands::OFFSET;
-            return Err(format!("blocks of commands stand at offset {offset}: {offset} OFFSET !"));
-        }
-        let is_stopped = self
-            .picture
-            .is_some_and(|picture| picture.external.operator.stopped & (board_bit(6) | board_bit(0)) != 0);
-        if is_stopped {
-            self.say("  boards do not run: GO starts Task and Subtask");
-        }
-        self.outcome.asks.push(format!("line-load {block} {from} {to}"));
-        Ok(())
-    }
-
-    fn offset(&mut self, behind: Option<&str>) -> Result<usize, String> {
-        match behind {
-            Some("!") => {
-                self.board.offset = self.pop("offset OFFSET !")?;
-                Ok(1)
-            }
-            Some("@" | "?") => {
-                let offset = self.board.offset;
-                self.say(format!("  {offset}"));
-                Ok(1)
-            }
-            _ => {
-                for (offset, process, place) in &AREAS {
-                    self.say(format!("  {offset:>5} {process:<24} {place}"));
-                }
-                Ok(0)
-            }
-        }
-    }
-
-    /// LOC: where a word is defined (IV.2.7): an entry of the task data, a decision table, a process.
-    fn locate(&mut self, behind: Option<&str>) -> Result<usize, String> {
-        let name = behind.ok_or("a name is missing: LOC name")?;
-        for (process, info) in ProcessId::ALL.iter().zip(Ladder::processes()) {
-            for table in info.tables.iter().filter(|table| table.name == name) {
-                self.say(format!("  table {} of {process}: {}:{}", table.name, table.file, table.line));
-            }
-        }
-        for (number, line, text) in self.library.find(name) {
-            self.say(format!("  {} at {}, line {line}: {text}", number.number, number.offset));
-        }
-        if self.outcome.said.is_empty() {
-            return Err(format!("no table and no block has {name}"));
-        }
-        Ok(1)
     }
 
     fn turn_to(&mut self, behind: Option<&str>) -> Result<usize, String> {

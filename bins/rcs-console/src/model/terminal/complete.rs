@@ -1,0 +1,271 @@
+//! Tab: what can stand at a place of a line, from the words of the terminals and of the requests, and from the names of
+//! the task data.
+
+use std::{collections::BTreeSet, path::Path};
+
+use taskdata::load::{BlockNumber, Source, Store, job::TASK_COMMANDS, source::blocks};
+
+/// The names of the task data of a run, and its blocks and jobs.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Names {
+    /// Objects, tools among them.
+    pub objects: Vec<String>,
+    /// Locations that a command can name.
+    pub locations: Vec<String>,
+    /// All other names: poses, movetables.
+    pub others: Vec<String>,
+    /// The grips of each object.
+    pub grips: Vec<(String, i32)>,
+    /// Blocks.
+    pub blocks: Vec<BlockNumber>,
+    /// Jobs of the directory.
+    pub jobs: Vec<String>,
+}
+
+impl Names {
+    /// The names in these texts and in the directory that they come from. Of data with errors only the blocks are known.
+    #[must_use]
+    pub fn of(sources: &[Source], directory: &Path) -> Self {
+        let numbers = sources.iter().flat_map(|source| blocks(0, source).0).map(|block| block.number);
+        let numbers: BTreeSet<BlockNumber> = numbers.collect();
+        let jobs = runtime_jobs(directory);
+        let mut names = Self { blocks: numbers.into_iter().collect(), jobs, ..Self::default() };
+        let Ok((store, _)) = Store::from_sources(sources.to_vec()) else { return names };
+        let data = store.view();
+        let sorted = |names: &mut dyn Iterator<Item = String>| {
+            let names: BTreeSet<String> = names.collect();
+            names.into_iter().collect::<Vec<_>>()
+        };
+        let object = |id| data.object_record(id).map(|object| object.name.to_string());
+        names.objects = sorted(&mut data.objects.iter().map(|object| object.name.to_string()));
+        names.locations = sorted(
+            &mut data
+                .owners
+                .iter()
+                .map(|owner| owner.name.to_string())
+                .chain(data.locpts.iter().map(|point| point.name.to_string())),
+        );
+        names.others = sorted(
+            &mut data
+                .poses
+                .iter()
+                .map(|pose| pose.name.to_string())
+                .chain(data.movetables.iter().map(|table| table.name.to_string())),
+        );
+        names.grips =
+            data.end_effs.iter().filter_map(|grip| Some((object(grip.object)?, grip.grip))).collect();
+        names
+    }
+}
+
+/// The jobs of a data directory.
+fn runtime_jobs(directory: &Path) -> Vec<String> {
+    let files = os_io::files::list(&directory.join("jobs")).unwrap_or_default();
+    let jobs = files.iter().filter(|file| file.extension().is_some_and(|extension| extension == "job"));
+    jobs.filter_map(|file| Some(file.file_stem()?.to_string_lossy().into_owned())).collect()
+}
+
+/// What follows the first words of a line. A word of an entry can be `*`, which is any.
+static FOLLOWING: [(&[&str], &[&str]); 24] = [
+    (&["job"], &["wait", "go", "skip"]),
+    (&["board"], &["0", "2", "4", "6", "8"]),
+    (&["board", "*"], &["stop", "go"]),
+    (
+        &["execute"],
+        &["TASK", "SUBTASK", "EMOVE", "PRIM", "T3I", "QUICK-CHANGE", "GRIP", "V-GRIP", "TOOL-GRIP"],
+    ),
+    (&["stand-alone"], &["now"]),
+    (
+        &["joystick"],
+        &[
+            "frame", "stick", "velocity", "hold", "free", "step", "record", "resume", "up", "down", "roll+",
+            "roll-", "open", "close",
+        ],
+    ),
+    (&["joystick", "frame"], &["WORLD", "TOOL", "TOOL-ORIGIN", "WRIST-ORIGIN", "OFF"]),
+    (&["joystick", "hold"], LEVELS),
+    (&["joystick", "free"], LEVELS),
+    (&["joystick", "step"], LEVELS),
+    (&["estop"], ESTOPS),
+    (&["release"], ESTOPS),
+    (
+        &["panel"],
+        &[
+            "power",
+            "fault-reset",
+            "hydraulics",
+            "manual",
+            "align",
+            "auto",
+            "cycle-start",
+            "interrupt",
+            "cancel",
+            "enter",
+            "hold",
+        ],
+    ),
+    (&["panel", "power"], ON_OFF),
+    (&["panel", "manual"], ON_OFF),
+    (&["panel", "hold"], ON_OFF),
+    (&["panel", "hydraulics"], &["enable", "disable"]),
+    (&["vise"], &["open", "close", "partial"]),
+    (&["drum"], &["grip", "release", "tool"]),
+    (&["load"], &["16000", "20000", "21000"]),
+    (&["BOARD"], &["0", "2", "4", "6", "8", "12"]),
+    (&["OFFSET"], &["!", "@"]),
+    (&["*", "OFFSET"], &["!"]),
+    (&["send"], TASK_COMMANDS),
+];
+/// Processes that the joystick box holds.
+const LEVELS: &[&str] = &["TASK", "SUBTASK", "EMOVE", "PRIM"];
+const ESTOPS: &[&str] = &["control-panel", "teach-pendant", "terminals", "joystick-box", "pedestal"];
+const ON_OFF: &[&str] = &["on", "off"];
+/// Requests in words of today.
+const REQUESTS: [&str; 21] = [
+    "board",
+    "drum",
+    "estop",
+    "execute",
+    "go",
+    "job",
+    "joystick",
+    "leave",
+    "line-load",
+    "load",
+    "machine",
+    "note",
+    "panel",
+    "release",
+    "robot-init",
+    "run",
+    "send",
+    "stand-alone",
+    "stop",
+    "tray",
+    "vise",
+];
+/// What stands behind one or more numbers.
+const BEHIND_NUMBERS: [&str; 7] = ["EDIT", "LINE-LOAD", "LIST", "LOAD", "OFFSET", "OLOAD", "TEACH"];
+
+/// Everything that can stand behind these words.
+fn candidates(words: &[&str], names: &Names, terminal: &[&str]) -> Vec<String> {
+    let owned = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
+    let blocks_at = |offset: Option<u32>| {
+        let found = names.blocks.iter().filter(|block| offset.is_none_or(|offset| block.offset == offset));
+        found.map(|block| block.number.to_string()).collect::<Vec<_>>()
+    };
+    match *words {
+        [] => {
+            let first = REQUESTS.iter().chain(TASK_COMMANDS).chain(terminal);
+            let first: BTreeSet<&str> = first.copied().chain(["workstation"]).collect();
+            owned(&first.into_iter().collect::<Vec<_>>())
+        }
+        ["run"] => names.jobs.clone(),
+        ["line-load"] => blocks_at(Some(taskdata::load::commands::OFFSET)),
+        ["load", offset] => blocks_at(offset.parse().ok()),
+        ["LOC"] => [&names.objects[..], &names.locations, &names.others].concat(),
+        ["vise", _] | ["tray"] => names.locations.clone(),
+        ["tray", _, _] | ["drum", "tool"] | ["machine"] | ["machine", _] => names.objects.clone(),
+        ["machine", _, _] => names.locations.clone(),
+        ["send" | "==", ref rest @ ..] if !rest.is_empty() => candidates(rest, names, &[]),
+        [verb, ref fields @ ..] if TASK_COMMANDS.contains(&verb) => field(fields, names),
+        [.., last] if last.parse::<u32>().is_ok() && words.iter().all(|word| word.parse::<u32>().is_ok()) => {
+            owned(&BEHIND_NUMBERS)
+        }
+        _ => {
+            let fits = |front: &[&str]| {
+                front.len() == words.len()
+                    && front.iter().zip(words).all(|(front, word)| *front == "*" || front == word)
+            };
+            let found = FOLLOWING.iter().find(|(front, _)| fits(front));
+            found.map_or_else(Vec::new, |(_, following)| owned(following))
+        }
+    }
+}
+
+/// What can stand in the next field of a command: object, then grip, location and sector of source and destination, then
+/// location and sector of the end (V.4.1).
+fn field(fields: &[&str], names: &Names) -> Vec<String> {
+    let null = || "--".to_owned();
+    match fields.len() {
+        0 => names.objects.iter().cloned().chain([null()]).collect(),
+        1 | 4 => {
+            let object = fields.first().copied().unwrap_or_default();
+            let grips = names.grips.iter().filter(|(name, _)| name == object);
+            let grips: BTreeSet<String> = grips.map(|(_, grip)| format!("{grip:+}")).collect();
+            grips.into_iter().chain(["0".to_owned()]).collect()
+        }
+        2 | 5 | 7 => names.locations.iter().cloned().chain([null()]).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// What Tab makes of a line, and what the word at its end could become. `terminal` are the words of the terminal.
+#[must_use]
+pub fn complete(line: &str, names: &Names, terminal: &[&str]) -> (String, Vec<String>) {
+    let (front, begun) = line.rsplit_once(' ').map_or(("", line), |(front, begun)| (front, begun));
+    let words: Vec<&str> = front.split_whitespace().collect();
+    let mut fitting = candidates(&words, names, terminal);
+    fitting.retain(|word| word.starts_with(begun));
+    let Some(first) = fitting.first() else { return (line.to_owned(), fitting) };
+    let common = fitting.iter().fold(first.len(), |common, word| {
+        let same = first.bytes().zip(word.bytes()).take(common);
+        same.take_while(|(one, other)| one == other).count()
+    });
+    let kept = line.len() - begun.len();
+    let mut completed =
+        format!("{}{}", line.get(..kept).unwrap_or(line), first.get(..common).unwrap_or(begun));
+    if fitting.len() == 1 {
+        completed.push(' ');
+    }
+    (completed, fitting)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use taskdata::load::source::read_blocks_under;
+
+    fn names() -> Names {
+        let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+        Names::of(&read_blocks_under(&directory).0, &directory)
+    }
+
+    #[test]
+    fn words_and_names_are_completed_where_they_can_stand() {
+        let names = names();
+        let completed = |line: &str| complete(line, &names, &["LIST", "TAI"]).0;
+        for (line, full) in [
+            ("job g", "job go "),
+            ("joy", "joystick "),
+            ("joystick frame WO", "joystick frame WORLD "),
+            ("panel hyd", "panel hydraulics "),
+            ("run link", "run linkbar "),
+            ("send TRAN", "send TRANSFER "),
+            ("MOVE LINKBAR1_B", "MOVE LINKBAR1_BH "),
+            ("send MOVE LINKBAR1_B", "send MOVE LINKBAR1_BH "),
+            ("MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIX", "MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE "),
+            ("INSERT-TOOL DRI", "INSERT-TOOL DRILL-2 "),
+            ("line-load 89", "line-load 893 "),
+            ("load 21000 61", "load 21000 61"),
+            ("863 LIS", "863 LIST "),
+            ("TA", "TAI "),
+            ("LOC SAFE-", "LOC SAFE-P "),
+            ("xyz", "xyz"),
+        ] {
+            assert_eq!(completed(line), full, "{line}");
+        }
+        let (_, grips) = complete("MOVE LINKBAR1_BH ", &names, &[]);
+        assert!(grips.contains(&"+2".to_owned()) && grips.contains(&"0".to_owned()), "{grips:?}");
+        let (_, several) = complete("st", &names, &[]);
+        assert_eq!(several, ["stand-alone", "stop"]);
+    }
+
+    #[test]
+    fn of_data_with_errors_the_blocks_are_known() {
+        let wrong = Source { name: "x.blk".into(), text: "BLOCK# 7 OFFSET 21000\nnonsense\n".into() };
+        let names = Names::of(&[wrong], Path::new("nowhere"));
+        assert_eq!(names.blocks, [BlockNumber { offset: 21_000, number: 7 }]);
+        assert!(names.objects.is_empty() && names.jobs.is_empty());
+    }
+}

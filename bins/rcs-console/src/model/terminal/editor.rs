@@ -1,0 +1,498 @@
+//! The block editor (IV.2.3): 16 lines of 64 columns, with the checker's messages at their lines.
+//!
+//! ```text
+//!   n EDIT ──► text ──F2: all data are checked with it──► diff ──Enter──► file of the run's data directory, `load`
+//!               ▲  errors: their lines are shown           │
+//!               └──────────────Esc─────────────────────────┘
+//! ```
+//!
+//! Only the lines of the block change in its file; remarks (`%%`) and other blocks stay as they are. A file that has
+//! changed meanwhile is not overwritten.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use taskdata::load::{
+    BlockNumber, Source, Store,
+    source::{BLOCK_COLUMNS, BLOCK_LINES, blocks},
+};
+
+use crate::model::{Key, Section, Text, Tone};
+
+/// Lines about a form that have room above the 16 of a block in the least terminal; the change shows all.
+const ABOUT: usize = 2;
+
+/// A message of the checker.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Message {
+    /// The line of the block; none if it is about something else.
+    line: Option<usize>,
+    /// It is an error, no warning.
+    is_error: bool,
+    text: String,
+}
+
+/// What is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// The lines, and what was found in them last.
+    Text,
+    /// What writing them would change.
+    Diff,
+}
+
+/// What is to be done after a key.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Wish {
+    /// Nothing.
+    None,
+    /// The editor is to be closed; nothing is written.
+    Close,
+    /// The block is to be written and loaded.
+    Write,
+    /// Something is to be said.
+    Say(&'static str),
+}
+
+/// A block that is edited.
+#[derive(Clone, Debug)]
+pub struct Editor {
+    number: BlockNumber,
+    /// Its file.
+    path: PathBuf,
+    /// The text of the file, as it was when the editor began.
+    before: String,
+    /// All texts of the task data, and which of them is the file.
+    sources: Vec<Source>,
+    at: usize,
+    /// The lines as they were.
+    old: Vec<String>,
+    /// The lines as they are.
+    lines: Vec<String>,
+    row: usize,
+    column: usize,
+    stage: Stage,
+    messages: Vec<Message>,
+    /// What is to be known of what was put in.
+    about: Vec<String>,
+}
+
+/// Why a block is not edited.
+pub type Refused = String;
+
+impl Editor {
+    /// Begin to edit a block of the files under a directory, whose texts are given.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn begin(number: BlockNumber, directory: &Path, sources: &[Source]) -> Result<Self, Refused> {
+        let holds = |source: &Source| blocks(0, source).0.iter().any(|block| block.number == number);
+        let at = sources.iter().rposition(holds).ok_or_else(|| format!("there is no {number}"))?;
+        let source = sources.get(at).ok_or("there is no such file")?;
+        let path = directory.join(&source.name);
+        if !path.is_file() {
+            return Err(format!(
+                "{} is no file: the run's data are those that the program carries; rcs-run init DIR writes them into a \
+                 directory, and --data DIR uses it",
+                path.display()
+            ));
+        }
+        let old = lines_of_block(source, number);
+        let (sources, before) = (sources.to_vec(), source.text.to_string());
+        let (lines, messages) = (old.clone(), Vec::new());
+        Ok(Self {
+            number,
+            path,
+            before,
+            sources,
+            at,
+            old,
+            lines,
+            row: 0,
+            column: 0,
+            stage: Stage::Text,
+            messages,
+            about: Vec::new(),
+        })
+    }
+
+    /// Put a form into the block: in the place of the one with the same last words, or behind the last line.
+    ///
+    /// # Errors
+    /// The block has no room.
+    pub fn with_form(mut self, form: &[String], about: Vec<String>) -> Result<Self, Refused> {
+        let words = |line: &str| line.split_whitespace().rev().take(3).map(str::to_owned).collect::<Vec<_>>();
+        let key = |line: &str| {
+            let words = words(line);
+            // The name, and the compiling word: a pose has its movetable between them.
+            (
+                words.first().cloned(),
+                ["-pose-", "-mtb-"].into_iter().find(|word| words.iter().any(|is| is == word)),
+            )
+        };
+        let wanted = form.last().map(|line| key(line)).unwrap_or_default();
+        let used = self.lines.iter().rposition(|line| !line.is_empty()).map_or(0, |last| last + 1);
+        let old = self.lines.iter().position(|line| wanted.1.is_some() && key(line) == wanted);
+        let first = match old {
+            Some(last) => {
+                let before = self.lines.get(..last).unwrap_or_default().iter().rev();
+                let more = match wanted.1 {
+                    Some("-mtb-") => before.take_while(|line| line.ends_with("----")).count(),
+                    _ => 2.min(last),
+                };
+                self.lines.drain(last - more..=last);
+                last - more
+            }
+            None if used == 0 => 0,
+            None => used + 1,
+        };
+        let after = self.lines.len().min(first);
+        self.lines.splice(after..after, form.iter().cloned());
+        let full = || format!("{} has no room for {} lines", self.number, form.len());
+        if self.lines.iter().skip(BLOCK_LINES).any(|line| !line.is_empty())
+            || first + form.len() > BLOCK_LINES
+        {
+            return Err(full());
+        }
+        self.lines.resize(BLOCK_LINES, String::new());
+        (self.row, self.about) = (first, about);
+        Ok(self)
+    }
+
+    /// The block.
+    #[must_use]
+    pub const fn number(&self) -> BlockNumber {
+        self.number
+    }
+
+    /// A key.
+    pub fn key(&mut self, key: Key) -> Wish {
+        match (self.stage, key) {
+            (Stage::Diff, Key::Enter) => return Wish::Write,
+            (Stage::Diff, Key::Esc) => self.stage = Stage::Text,
+            (Stage::Diff, _) => {
+                return Wish::Say("Enter writes the block and loads it, Esc goes back to the text");
+            }
+            (Stage::Text, Key::Esc) => return Wish::Close,
+            (Stage::Text, Key::F2) => return self.check(),
+            (Stage::Text, key) => return self.edit(key),
+        }
+        Wish::None
+    }
+
+    fn edit(&mut self, key: Key) -> Wish {
+        let Some(line) = self.lines.get_mut(self.row) else { return Wish::None };
+        self.column = self.column.min(line.len());
+        match key {
+            Key::Char(typed) if !(' '..='~').contains(&typed) => {
+                return Wish::Say("a block has ASCII characters only");
+            }
+            Key::Char(_) if line.len() >= BLOCK_COLUMNS => return Wish::Say("a line has 64 columns"),
+            Key::Char(typed) => {
+                line.insert(self.column, typed);
+                self.column += 1;
+            }
+            Key::Backspace if self.column > 0 => {
+                self.column -= 1;
+                line.remove(self.column);
+            }
+            Key::Left => self.column = self.column.saturating_sub(1),
+            Key::Right => self.column = (self.column + 1).min(line.len()),
+            Key::Home => self.column = 0,
+            Key::End => self.column = line.len(),
+            Key::Up => self.row = self.row.saturating_sub(1),
+            Key::Down => self.row = (self.row + 1).min(BLOCK_LINES - 1),
+            Key::Enter => (self.row, self.column) = ((self.row + 1).min(BLOCK_LINES - 1), 0),
+            _ => return Wish::Say("F2 checks the block and shows the change, Esc leaves it as it was"),
+        }
+        Wish::None
+    }
+
+    /// Check all data with the block. Without errors the change is shown.
+    fn check(&mut self) -> Wish {
+        if self.changes().is_empty() {
+            return Wish::Say("nothing has changed");
+        }
+        let mut sources = self.sources.clone();
+        let Some(source) = sources.get_mut(self.at) else { return Wish::None };
+        source.text = self.text().into();
+        let name = source.name.clone();
+        let report = match Store::from_sources(sources) {
+            Ok((_, report)) => report,
+            Err(report) => *report,
+        };
+        let errors = report.errors().map(|found| (true, found));
+        let found = errors.chain(report.warnings().map(|found| (false, found)));
+        self.messages = found
+            .filter_map(|(is_error, found)| {
+                let is_here = found.file() == name && found.block() == Some(self.number);
+                let line = found.line().filter(|_| is_here).and_then(|line| usize::try_from(line).ok());
+                let place = if is_here { String::new() } else { format!("{}: ", found.place()) };
+                // Warnings about other blocks were there before.
+                (is_error || is_here).then(|| Message {
+                    line,
+                    is_error,
+                    text: format!("{place}{}", found.message()),
+                })
+            })
+            .collect();
+        if self.messages.iter().any(|message| message.is_error) {
+            return Wish::Say("the data have errors with it: nothing is written");
+        }
+        self.stage = Stage::Diff;
+        Wish::None
+    }
+
+    /// Write the file with the block.
+    ///
+    /// # Errors
+    /// A sentence; then the file is as it was.
+    pub fn write(&self) -> Result<(), String> {
+        let told = |error: io::Error| format!("{}: {error}", self.path.display());
+        if fs::read_to_string(&self.path).map_err(told)? != self.before {
+            return Err(format!(
+                "{} has changed since: leave the editor and begin anew",
+                self.path.display()
+            ));
+        }
+        let new = self.path.with_added_extension("new");
+        fs::write(&new, self.text()).map_err(told)?;
+        fs::rename(&new, &self.path).map_err(told)
+    }
+
+    /// Number, old and new text of each line that is not what it was.
+    fn changes(&self) -> Vec<(usize, &str, &str)> {
+        let pairs = self.old.iter().zip(&self.lines).enumerate();
+        let pairs = pairs.map(|(at, (old, new))| (at, old.trim_end(), new.trim_end()));
+        pairs.filter(|(_, old, new)| old != new).collect()
+    }
+
+    /// The text of the file with the lines as they are.
+    fn text(&self) -> String {
+        let source = Source { name: String::new(), text: self.before.as_str().into() };
+        let (found, _) = blocks(0, &source);
+        let Some(block) = found.iter().rfind(|block| block.number == self.number) else {
+            return self.before.clone();
+        };
+        let byte = |at: u32| usize::try_from(at).unwrap_or(usize::MAX);
+        let used = self.lines.iter().rposition(|line| !line.trim().is_empty()).map_or(0, |last| last + 1);
+        let mut text = self.before.clone();
+        let header = byte(block.header.start) + byte(block.header.length);
+        let end = block.lines.last().map_or(header, |line| byte(line.at.start) + byte(line.at.length));
+        let end =
+            end + text.get(end..).and_then(|rest| rest.find('\n')).unwrap_or(text.len().saturating_sub(end));
+        let more: String = self
+            .lines
+            .iter()
+            .take(used)
+            .skip(block.lines.len())
+            .map(|line| format!("\n{}", line.trim_end()))
+            .collect();
+        text.insert_str(end, &more);
+        // From the last to the first: what is replaced moves nothing that is yet to come.
+        for (line, old) in self.lines.iter().zip(&block.lines).rev() {
+            let start = byte(old.at.start);
+            text.replace_range(start..start + byte(old.at.length), line.trim_end());
+        }
+        text
+    }
+
+    /// The editor as text, and the keys that it has now.
+    #[must_use]
+    pub fn sections(&self) -> Vec<Section> {
+        let title = format!("{}, {}", self.number, self.path.display());
+        match self.stage {
+            Stage::Text => {
+                vec![Section {
+                    at: self.about.len().min(ABOUT) + self.row,
+                    ..Section::new(title, self.shown())
+                }]
+            }
+            Stage::Diff => {
+                let lines = self.changes().into_iter().flat_map(|(at, old, new)| {
+                    let removed =
+                        (!old.is_empty()).then(|| Text::new(Tone::Faint, format!(" -{at:>2} {old}")));
+                    let added =
+                        (!new.is_empty()).then(|| Text::new(Tone::Marked, format!(" +{at:>2} {new}")));
+                    removed.into_iter().chain(added)
+                });
+                let mut lines: Vec<Text> = lines.collect();
+                lines.extend(self.about.iter().map(|line| Text::new(Tone::Faint, format!("    {line}"))));
+                lines.extend(self.messages.iter().map(said));
+                let load = format!("   Enter writes the file and asks for: {}", self.request());
+                lines.extend([Text::default(), Text::plain(load)]);
+                vec![Section::new(format!("the change of {title}"), lines)]
+            }
+        }
+    }
+
+    /// The lines, each with what the checker says of it; then what it says of other places.
+    fn shown(&self) -> Vec<Text> {
+        let about = self.about.iter().take(ABOUT);
+        let mut shown: Vec<Text> = about.map(|line| Text::new(Tone::Faint, format!("    {line}"))).collect();
+        for (at, line) in self.lines.iter().enumerate() {
+            let mark = if at == self.row { '>' } else { ' ' };
+            let tone = if at == self.row { Tone::Marked } else { Tone::Plain };
+            let text = if at == self.row { with_cursor(line, self.column) } else { line.clone() };
+            shown.push(Text::new(tone, format!("{mark}{at:>2} {text}")));
+            shown.extend(self.messages.iter().filter(|message| message.line == Some(at)).map(said));
+        }
+        shown.extend(self.messages.iter().filter(|message| message.line.is_none()).map(said));
+        shown
+    }
+
+    /// What asks the run to load the block.
+    #[must_use]
+    pub fn request(&self) -> String {
+        format!("load {} {}", self.number.offset, self.number.number)
+    }
+}
+
+/// The line with the place of the next character, without colour too.
+fn with_cursor(line: &str, column: usize) -> String {
+    let (front, behind) = line.split_at(column.min(line.len()));
+    format!("{front}_{behind}")
+}
+
+fn said(message: &Message) -> Text {
+    let (mark, tone) = if message.is_error { ("!!", Tone::Trouble) } else { (" ?", Tone::Marked) };
+    Text::new(tone, format!("{mark}  {}", message.text))
+}
+
+/// The lines of a block of a text, all 16.
+fn lines_of_block(source: &Source, number: BlockNumber) -> Vec<String> {
+    let (found, _) = blocks(0, source);
+    let block = found.iter().rfind(|block| block.number == number);
+    let lines = block.into_iter().flat_map(|block| &block.lines);
+    let mut lines: Vec<String> = lines.map(|line| line.text.trim_end().to_owned()).collect();
+    lines.resize(BLOCK_LINES, String::new());
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use taskdata::load::source::read_blocks_under;
+
+    const POSES: BlockNumber = BlockNumber { offset: 21_000, number: 610 };
+    const COMMANDS: BlockNumber = BlockNumber { offset: 16_000, number: 863 };
+
+    /// A copy of the blocks of the shipped data.
+    fn data() -> tempfile::TempDir {
+        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+        let to = tempfile::tempdir().unwrap();
+        for source in read_blocks_under(&from).0 {
+            let path = to.path().join(&source.name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, source.text.as_bytes()).unwrap();
+        }
+        to
+    }
+
+    fn editor(directory: &Path, number: BlockNumber) -> Editor {
+        Editor::begin(number, directory, &read_blocks_under(directory).0).unwrap()
+    }
+
+    fn typed(editor: &mut Editor, text: &str) {
+        for sign in text.chars() {
+            assert_eq!(editor.key(Key::Char(sign)), Wish::None);
+        }
+    }
+
+    fn screen(editor: &Editor) -> String {
+        let lines = editor.sections().into_iter().flat_map(|section| section.lines);
+        lines.map(|line| format!("{}\n", line.text)).collect()
+    }
+
+    #[test]
+    fn a_line_is_added_shown_as_a_change_and_written() {
+        let directory = data();
+        let before = fs::read_to_string(directory.path().join("commands.blk")).unwrap();
+        let mut editor = editor(directory.path(), COMMANDS);
+        assert_eq!(editor.key(Key::F2), Wish::Say("nothing has changed"));
+        (0..5).for_each(|_| assert_eq!(editor.key(Key::Down), Wish::None));
+        assert_eq!(editor.lines[5], "", "line 5 is free");
+        typed(&mut editor, "== PAUSE -- +0 -- 0 +0 -- 0 -- 0");
+        assert_eq!(editor.key(Key::F2), Wish::None);
+        let shown = screen(&editor);
+        assert!(shown.contains(" + 5 == PAUSE") && shown.contains("asks for: load 16000 863"), "{shown}");
+        assert_eq!(editor.key(Key::Enter), Wish::Write);
+        editor.write().unwrap();
+        let after = fs::read_to_string(directory.path().join("commands.blk")).unwrap();
+        let changed: Vec<_> = before.lines().zip(after.lines()).filter(|(old, new)| old != new).collect();
+        assert_eq!(changed, [("", "== PAUSE -- +0 -- 0 +0 -- 0 -- 0")]);
+        assert_eq!(before.lines().count(), after.lines().count());
+    }
+
+    #[test]
+    fn a_form_stands_behind_the_last_line_or_in_the_place_of_the_old_one() {
+        let directory = data();
+        let form =
+            |name: &str| vec!["1".to_owned(), "2".to_owned(), format!("3   -pose-   ...         {name}")];
+        let about = vec!["limits".to_owned()];
+        let new = editor(directory.path(), POSES).with_form(&form("NEW-P"), about.clone()).unwrap();
+        assert_eq!((new.lines[10].as_str(), new.lines[13].ends_with("NEW-P")), ("", true), "{:?}", new.lines);
+        assert!(screen(&new).starts_with("    limits\n"));
+        let old = editor(directory.path(), POSES).with_form(&form("HOME-POS"), about.clone()).unwrap();
+        assert_eq!(old.lines[3..6].join(" "), "1 2 3   -pose-   ...         HOME-POS", "{:?}", old.lines);
+        assert_eq!(old.changes().len(), 3);
+        let full = new.with_form(&form("MORE-P"), about).map(|_| ());
+        assert!(full.unwrap_err().contains("has no room for 3 lines"));
+    }
+
+    #[test]
+    fn errors_stand_at_their_lines_and_keep_the_file() {
+        let directory = data();
+        let mut editor = editor(directory.path(), COMMANDS);
+        (0..4).for_each(|_| assert_eq!(editor.key(Key::Down), Wish::None));
+        typed(&mut editor, "NONSENSE ");
+        assert!(matches!(editor.key(Key::F2), Wish::Say(why) if why.contains("errors")));
+        let shown = screen(&editor);
+        let lines: Vec<&str> = shown.lines().collect();
+        let at = lines.iter().position(|line| line.starts_with("> 4")).unwrap();
+        assert!(lines[at + 1].starts_with("!!"), "{shown}");
+        assert!(matches!(editor.key(Key::Enter), Wish::None), "it is a new line, and no order to write");
+        assert_eq!(editor.key(Key::Esc), Wish::Close);
+    }
+
+    #[test]
+    fn a_line_has_64_columns_and_lines_go_in_and_out() {
+        let directory = data();
+        let mut editor = editor(directory.path(), POSES);
+        (0..15).for_each(|_| assert_eq!(editor.key(Key::Down), Wish::None));
+        assert_eq!(editor.lines[15], "", "line 15 is free");
+        typed(&mut editor, &"x".repeat(64));
+        assert!(matches!(editor.key(Key::Char('y')), Wish::Say(why) if why.contains("64 columns")));
+        assert!(matches!(editor.key(Key::Char('é')), Wish::Say(why) if why.contains("ASCII")));
+        assert_eq!(editor.key(Key::Home), Wish::None);
+        assert_eq!(
+            editor.key(Key::Backspace),
+            Wish::Say("F2 checks the block and shows the change, Esc leaves it as it was")
+        );
+    }
+
+    #[test]
+    fn lines_that_are_new_stand_behind_the_block_and_removed_ones_are_empty() {
+        let text = "%% file\nBLOCK# 1 OFFSET 21000\n%% remark\na\nb\nBLOCK# 2 OFFSET 21000\nc";
+        let directory = tempfile::tempdir().unwrap();
+        fs::write(directory.path().join("x.blk"), text).unwrap();
+        let one = BlockNumber { offset: 21_000, number: 1 };
+        let mut first = editor(directory.path(), one);
+        first.lines[0] = "A".into();
+        first.lines[1] = String::new();
+        first.lines[2] = "new".into();
+        assert_eq!(
+            first.text(),
+            "%% file\nBLOCK# 1 OFFSET 21000\n%% remark\nA\n\nnew\nBLOCK# 2 OFFSET 21000\nc"
+        );
+        let mut last = editor(directory.path(), BlockNumber { offset: 21_000, number: 2 });
+        last.lines[1] = "d".into();
+        assert!(last.text().ends_with("OFFSET 21000\nc\nd"), "{}", last.text());
+        fs::write(directory.path().join("x.blk"), "other").unwrap();
+        assert!(last.write().unwrap_err().contains("has changed since"));
+        let missing = Editor::begin(BlockNumber { offset: 1, number: 1 }, directory.path(), &[]);
+        assert!(missing.unwrap_err().contains("there is no block 1"));
+    }
+}
