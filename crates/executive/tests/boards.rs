@@ -23,8 +23,9 @@ use executive::{
         member::MemberEnd,
         pulse::RunCard,
     },
+    course::Levels,
     memory::{self, RunName},
-    runner::{Levels, Runner},
+    runner::Runner,
 };
 use interfaces::{ExternalInputs, HwsCommand, device::single_step};
 use levels::ladder::Ladder;

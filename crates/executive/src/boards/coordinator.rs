@@ -29,6 +29,7 @@ use super::{
     },
 };
 use crate::{
+    course::Levels,
     failure,
     histogram::Histogram,
     memory::{
@@ -36,7 +37,6 @@ use crate::{
         publish::FIRST_EPOCH,
         runs::{self, RunNode},
     },
-    runner::Levels,
 };
 
 /// Name of board 0 among the nodes of a run.
