@@ -19,9 +19,7 @@ use executive::{
     alloc::Counting,
     boards::{
         Board, BoardData, Checked, Coordinator, Fingerprint, Lost, Member, MemberError,
-        coordinator::{BoardEvent, How},
-        member::MemberEnd,
-        pulse::RunCard,
+        coordinator::BoardEvent, lost::How, member::MemberEnd, pulse::RunCard,
     },
     course::Levels,
     memory::{self, RunName},
