@@ -123,7 +123,7 @@ fn the_samples_of_the_tutorial_on_failures_are_what_is_printed() {
 fn the_samples_of_the_tutorial_on_new_parts_are_what_is_printed() {
     assert_eq!(
         run_samples("docs/teach-a-part.md"),
-        18,
+        21,
         "the page makes a part, shows its data, and breaks them"
     );
 }

@@ -251,7 +251,7 @@ fn robots(data: &Path) -> Diagnostics {
         if let Err(error) = RobotFile::load(&path) {
             all = all.with(match error {
                 PlacementError::Text(report) => *report,
-                error => one(&path, &error),
+                error @ PlacementError::Read { .. } => one(&path, &error),
             });
         }
     }

@@ -80,7 +80,7 @@ pub enum Command {
     Pose(PoseArguments),
     /// Write the data that comes with the program into DIR/data, to be changed
     Init(InitArguments),
-    /// Make task data and cell entries for a new part, place or tray, try them, and show or write what changes
+    /// Make task data and cell entries for a new part, tool, place or tray, try them, and show or write what changes
     New(NewArguments),
     /// Remove what killed runs left in shared memory
     Clean,

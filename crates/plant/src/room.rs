@@ -26,6 +26,9 @@ use crate::{
 const GRIPPERS: [&str; 3] = ["parts_gripper", "v_gripper", "tool_gripper"];
 /// A part whose middle is nearer than this to that of the seat of a nest is in the nest, in.
 const IN_NEST: f64 = 1.0;
+/// A part is let down in such steps, in, and so often half of one.
+const STEP: f64 = 0.02;
+const HALVES: u32 = 8;
 
 /// A part, and where it is.
 #[derive(Clone, Debug, PartialEq)]
@@ -159,6 +162,25 @@ impl Room {
         nests.into_iter().find(|seat| (seat.position - part.frame.position).norm() < IN_NEST)
     }
 
+    /// Where a part stands that is let down from `above` along the unit vector `down`, among what never moves.
+    /// `None` if it touches something at once, or nothing within `deepest` inches.
+    #[must_use]
+    pub fn let_down(&self, kind: &PartType, above: &Frame, down: &Inches, deepest: f64) -> Option<Frame> {
+        let at = |deep: f64| Frame { position: above.position + down * deep, ..*above };
+        let touches = |deep: &f64| {
+            let body = bodies::held(kind, &to_pose(&at(*deep)));
+            self.look(&[body], &[], 0.0).iter().any(Contact::touches)
+        };
+        let steps = std::iter::successors(Some(0.0), |deep| Some(deep + STEP));
+        let first = steps.take_while(|deep| *deep <= deepest).find(touches).filter(|deep| *deep > 0.0)?;
+        let (mut free, mut met) = (first - STEP, first);
+        for _ in 0..HALVES {
+            let middle = 0.5 * (free + met);
+            *(if touches(&middle) { &mut met } else { &mut free }) = middle;
+        }
+        Some(at(free))
+    }
+
     /// A part in the pedestal's hand after the table has turned from the angle of the layout to another, degrees.
     #[must_use]
     pub fn turned(&self, layout: &Layout, to: f64, frame: &Frame) -> Frame {
@@ -218,6 +240,25 @@ mod tests {
 
     fn cell() -> CellDescription {
         CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap()
+    }
+
+    #[test]
+    fn a_part_that_is_let_down_stands_in_its_nest() {
+        let description = cell();
+        let room = Room::new(&description);
+        for nest in &description.nest {
+            let (seat, kind) = (nest.frame(), description.part(&nest.parts[0]).unwrap());
+            // Parts lie with X down, and stand in the pocket with Z up.
+            let down = if seat.x().z < -0.5 { seat.x() } else { -seat.z() };
+            let above = Frame { position: seat.position - down * 4.0, ..seat };
+            let stands = room.let_down(kind, &above, &down, 5.0).unwrap();
+            let off = (stands.position - seat.position).norm();
+            assert!(off < 0.01, "{kind:?} {off}");
+            assert!(room.let_down(kind, &above, &down, 3.9).is_none());
+            assert!(
+                room.let_down(kind, &Frame { position: seat.position + down, ..seat }, &down, 1.0).is_none()
+            );
+        }
     }
 
     /// What a cell that runs says of where it stands, and what the room says.

@@ -9,10 +9,10 @@
 use std::sync::Arc;
 
 use depc::fault::{Direction, FaultKind, Injector, Plan, Rule};
-use executive::{course::Course, failure::Watch, generations::is_busy};
+use executive::failure::Watch;
 use interfaces::{
     CommonMemory, DataBaseCommand, DeviceInputs, DeviceOutputs, ExternalInputs, HwsCommand, OperatorInputs,
-    OutsidePedestal,
+    OutsidePedestal, StatusReport, hws::HwsReport,
 };
 use levels::ladder::{Ladder, ProcessId};
 use neighbours::{
@@ -25,7 +25,7 @@ use neighbours::{
     },
 };
 use plant::{Cell, CellDescription, CellEvent};
-use rcs_core::{Plain as _, digest::Digest, tick::Tick};
+use rcs_core::{Plain, digest::Digest, tick::Tick};
 use taskdata::{
     files::TaskData,
     load::{Job, Store},
@@ -120,8 +120,13 @@ impl RobotLine {
 /// Everything but the cell and the Data System.
 #[derive(Clone)]
 struct Control {
-    course: Course<Ladder>,
+    ladder: Ladder,
+    tick: Tick,
+    memory: CommonMemory,
     external: ExternalInputs,
+    digest: Digest,
+    scratch: Box<[u8]>,
+    watch: Watch,
     gate: Gate,
     command_box: Mailbox,
     check: ContactCheck,
@@ -160,8 +165,13 @@ impl<'f> Branch<'f> {
     pub fn start(facility: &'f Facility) -> Result<Self, Error> {
         let cell = Cell::new(&facility.description, facility.seed).map_err(StartError::from)?;
         let control = Control {
-            course: Course::new(Ladder::default()),
+            ladder: Ladder::default(),
+            tick: Tick::BEFORE_START,
+            memory: CommonMemory::ZERO,
             external: ExternalInputs::default(),
+            digest: Digest::new(),
+            scratch: vec![0; CommonMemory::SIZE].into_boxed_slice(),
+            watch: Watch::default(),
             gate: Gate::default(),
             command_box: Mailbox::initialized(HWSC_COMMAND),
             check: ContactCheck::new(facility.description.contact.clone()),
@@ -203,11 +213,8 @@ impl<'f> Branch<'f> {
         let mut data_system = data_system()?;
         for (place, (tick, command)) in fork.control.told.iter().enumerate() {
             data_system.step(*tick, command);
-            let next = fork
-                .control
-                .told
-                .get(place + 1)
-                .map_or(fork.control.course.tick(), |(next, _)| next.previous());
+            let next =
+                fork.control.told.get(place + 1).map_or(fork.control.tick, |(next, _)| next.previous());
             let answered = Tick(tick.0.saturating_add(ANSWER_TICKS));
             if answered <= next {
                 data_system.step(answered, command);
@@ -225,6 +232,7 @@ impl<'f> Branch<'f> {
     /// Run a tick.
     pub fn tick(&mut self, commander: &mut impl Commander) {
         let control = &mut self.control;
+        let tick = control.tick.next();
         control.external = ExternalInputs {
             hws: *control.gate.command(),
             devices: control.inputs,
@@ -233,11 +241,14 @@ impl<'f> Branch<'f> {
             pedestal: OutsidePedestal::ZERO,
             operator: OperatorInputs::ZERO,
         };
+        let before = control.memory;
         let data = data(self.facility, control.generation);
-        let Ok(()) = control.course.step(&control.external, &data, &mut |_| {});
-        control.course.sum_up(&control.external);
-        let outputs = control.course.memory().device_outputs();
-        control.inputs = control.line.advance(control.course.tick(), &mut self.workstation.cell, &outputs);
+        control.ladder.step(tick, &before, &control.external, &data, &mut control.memory);
+        control.tick = tick;
+        control.watch.observe(tick, &control.external, &before, &control.memory);
+        control.digest.add_record(&control.memory, &mut control.scratch);
+        let outputs = control.memory.device_outputs();
+        control.inputs = control.line.advance(tick, &mut self.workstation.cell, &outputs);
         self.observe();
         self.tell_data_system();
         self.exchange(commander);
@@ -248,30 +259,29 @@ impl<'f> Branch<'f> {
     /// What has happened in the cell.
     fn observe(&mut self) {
         let control = &mut self.control;
-        let tick = control.course.tick();
-        self.events = self.workstation.events(tick);
-        let commands = control.check.commands(control.course.memory());
-        control.check.look(tick, self.workstation.cell.contacts(), commands);
+        self.events = self.workstation.events(control.tick);
+        let commands = control.check.commands(&control.memory);
+        control.check.look(control.tick, self.workstation.cell.contacts(), commands);
         self.workstation.cell.watch_clearance(control.check.margin());
     }
 
     fn tell_data_system(&mut self) {
         let control = &mut self.control;
-        let (tick, command) = (control.course.tick(), control.course.memory().task.data_base);
+        let command = control.memory.task.data_base;
         if control.told.last().is_none_or(|(_, last)| last.number != command.number) {
-            control.told.push((tick, command));
+            control.told.push((control.tick, command));
         }
-        self.data_system.step(tick, &command);
+        self.data_system.step(control.tick, &command);
     }
 
     /// Task's status goes to the commander, and its command comes back.
     fn exchange(&mut self, commander: &mut impl Commander) {
         let control = &mut self.control;
-        let (tick, memory) = (control.course.tick(), control.course.memory());
-        control.gate.write(memory, task_state(&memory.task.header, tick));
+        let state = task_state(&control.memory.task.header, control.tick);
+        control.gate.write(&control.memory, state);
         let command = status::decode(control.gate.status_box().data())
             .ok()
-            .and_then(|status| commander.step(tick, &status, &mut self.workstation));
+            .and_then(|status| commander.step(control.tick, &status, &mut self.workstation));
         // Commands are those of a job, whose fields fit into the mailbox.
         if let Some(bytes) = command.and_then(|command| command::encode(&command).ok()) {
             let _ = control.command_box.write(&bytes);
@@ -283,14 +293,18 @@ impl<'f> Branch<'f> {
     fn reload(&mut self) {
         let control = &mut self.control;
         control.asked.extend(self.workstation.loads());
-        if !is_busy(control.course.memory()) && !control.asked.is_empty() {
+        let memory = &control.memory;
+        let busy = memory.task.status.report == HwsReport::Executing
+            || memory.subtask.status.report == StatusReport::Executing
+            || memory.emove.status.report == StatusReport::Executing;
+        if !busy && !control.asked.is_empty() {
             control.generation = control.asked.remove(0);
         }
     }
 
     /// A process forgets everything.
     pub fn restart(&mut self, process: ProcessId) {
-        self.control.course.levels_mut().restart(process);
+        self.control.ladder.restart(process);
     }
 
     /// The next answer of the robot controller suffers this.
@@ -306,13 +320,13 @@ impl<'f> Branch<'f> {
     /// The tick that was run last.
     #[must_use]
     pub const fn at(&self) -> Tick {
-        self.control.course.tick()
+        self.control.tick
     }
 
     /// Common memory as the last tick left it.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
-        self.control.course.memory()
+        &self.control.memory
     }
 
     /// What came from outside for the last tick.
@@ -324,7 +338,7 @@ impl<'f> Branch<'f> {
     /// Fingerprint of all ticks so far.
     #[must_use]
     pub const fn digest(&self) -> Digest {
-        self.control.course.digest()
+        self.control.digest
     }
 
     /// What the robot has touched.
@@ -336,7 +350,7 @@ impl<'f> Branch<'f> {
     /// Who failed first, and why.
     #[must_use]
     pub const fn watch(&self) -> &Watch {
-        self.control.course.watch()
+        &self.control.watch
     }
 
     /// Number of the command that Task has.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use cli_pages::shipped_path;
 
-use super::part::Size;
+use super::size::Size;
 
 /// Arguments of `new`.
 #[derive(Clone, Debug, Args)]
@@ -18,11 +18,17 @@ pub struct NewArguments {
 /// What is new.
 #[derive(Clone, Debug, Subcommand)]
 pub enum What {
-    /// A part of another size than one that is there: forms, movetables, cell entries, vise program and job
+    /// A part of another size than one that is there: forms, movetables, entries of the cell and a job
     ///
-    /// The data are tried in a copy: check, three runs of the job, and if the jaws of the vise get a new step one
-    /// run of each other job. What fails is not written.
+    /// A box gets a program of the vise, a cylinder its places in the nests of the like part. The data are tried in
+    /// a copy: check, three runs of the job, and if the jaws of the vise get a new step one run of each other job.
+    /// What fails is not written.
     Part(PartArguments),
+    /// A tool in a holder for the tool gripper: forms, entries of the cell and a job
+    ///
+    /// The data are tried in a copy: check, and three runs each of the job of the like tool with the new one in its
+    /// place, and in the place of each other tool. What fails is not written.
+    Tool(ToolArguments),
     /// A place for the robot to stand: a pose, a location point, and the trajectories and approaches of another place
     ///
     /// The data are tried in a copy by check. What fails is not written.
@@ -40,11 +46,38 @@ pub struct PartArguments {
     /// Name of the part: capital letters and digits, 11 at most
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// Length x width x height of the blank as it lies in its tray, inches; the fingers close on the width
-    #[arg(long, value_name = "LxWxH")]
+    /// Length x width x height of the blank as it lies in its tray, inches, the fingers close on the width; of a
+    /// cylinder length x diameter
+    #[arg(long, value_name = "LxWxH|LxD")]
     pub size: Size,
     /// A part of the cell that is handled as the new one is to be
     #[arg(long, value_name = "PART")]
+    pub like: String,
+    /// Write the files; without it they are only shown
+    #[arg(long)]
+    pub write: bool,
+    /// Print the ways of all lines of the job, as `check --explain-job` does
+    #[arg(long)]
+    pub explain_job: bool,
+    /// Task data, jobs and cell description
+    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    pub data: PathBuf,
+}
+
+/// Arguments of `new tool`.
+#[derive(Clone, Debug, Args)]
+pub struct ToolArguments {
+    /// Name of the tool: capital letters, digits and -, 11 at most
+    #[arg(value_name = "NAME")]
+    pub name: String,
+    /// Length x diameter of the holder, inches [default: those of the like tool]
+    #[arg(long, value_name = "LxD")]
+    pub size: Option<Size>,
+    /// Weight, pounds [default: by the volume and the weight of the like tool]
+    #[arg(long, value_name = "LB")]
+    pub weight: Option<f64>,
+    /// A tool of the cell that is handled as the new one is to be
+    #[arg(long, value_name = "TOOL")]
     pub like: String,
     /// Write the files; without it they are only shown
     #[arg(long)]

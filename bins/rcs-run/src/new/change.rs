@@ -101,7 +101,7 @@ impl Change {
         Ok(())
     }
 
-    /// Put a table behind the table of the same kind that has an entry, such as `name = "SHAFT"`.
+    /// Put a table behind the last table of the same kind that has an entry, such as `name = "SHAFT"`; any has an empty one.
     ///
     /// # Errors
     /// [`Error::New`] if there is none that begins in a line of its own.
@@ -109,7 +109,7 @@ impl Change {
         let text = self.text(file)?;
         let mut lines: Vec<&str> = text.lines().collect();
         let ends = |line: &&str| line.trim().is_empty() || line.starts_with('[');
-        let begin = (0..lines.len()).find(|at| {
+        let begin = (0..lines.len()).rev().find(|at| {
             let body = lines.iter().skip(at + 1).take_while(|line| !line.starts_with('['));
             lines.get(*at).is_some_and(|line| line.trim() == format!("[[{kind}]]"))
                 && body.clone().any(|line| line.trim_start().starts_with(behind))

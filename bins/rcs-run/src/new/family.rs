@@ -24,6 +24,8 @@ pub struct Family {
     pub parts: Vec<PartType>,
     /// What their names have in common.
     pub stem: String,
+    /// Of a tool: the other tools of the job.
+    pub others: Vec<String>,
     /// The text of the job.
     pub job: Source,
     /// The program of the vise in the job, if the vise has a part in it.
@@ -33,25 +35,29 @@ pub struct Family {
 }
 
 impl Family {
-    /// The family of a part: what the job with the fewest parts has beside it.
+    /// The family of a part: what the job with the fewest parts has beside it. A tool is alone.
     ///
     /// # Errors
     /// [`Error::New`] if there is no such part, no job for it, or its parts have nothing in common.
     pub fn of(like: &str, store: &Store, cell: &CellDescription, data: &Path) -> Result<Self, Error> {
-        if cell.part(like).is_none() {
+        let Some(part) = cell.part(like) else {
             let known: Vec<_> = cell.part.iter().map(|part| part.name.as_str()).collect();
             let near = nearest(like, known.iter().copied());
             let near = near.map_or_else(String::new, |near| format!("; the nearest is {near}"));
             let known = known.join(", ");
             return Err(Error::New(format!("no part is named {like}{near}; the cell has {known}")));
-        }
+        };
         let loaded = jobs(data).into_iter().filter_map(|path| Some(Job::load(&path, store).ok()?.0));
         let with_parts = loaded.map(|job| (parts(&job, cell), job));
         let with_it = with_parts.filter(|(parts, _)| parts.iter().any(|part| part.name == like));
-        let (parts, job) = with_it
+        let (all, job) = with_it
             .min_by_key(|(parts, _)| parts.len())
             .ok_or_else(|| Error::New(format!("no job moves {like}: a new part gets a job after another")))?;
-        let stem = stem(&parts).ok_or_else(|| {
+        let others = all.iter().filter(|other| part.tool && other.tool && other.name != like);
+        let others = others.map(|other| other.name.clone()).collect();
+        let parts = if part.tool { vec![part.clone()] } else { all };
+        let stem = if part.tool { Some(like.to_owned()) } else { stem(&parts) };
+        let stem = stem.ok_or_else(|| {
             let names: Vec<_> = parts.iter().map(|part| part.name.as_str()).collect();
             let job = &job.name;
             Error::New(format!(
@@ -60,7 +66,7 @@ impl Family {
             ))
         })?;
         let program = program(&job, cell);
-        Ok(Self { parts, stem, job: job.source().clone(), program, entered: Entered::of(store) })
+        Ok(Self { parts, stem, others, job: job.source().clone(), program, entered: Entered::of(store) })
     }
 
     /// The part of the family that an object is, or is a hold or seat pose of: its number, and whether it is the

@@ -6,8 +6,10 @@ mod entered;
 mod family;
 mod forms;
 mod jaws;
+mod nests;
 mod part;
 mod place;
+mod size;
 mod sizes;
 #[cfg(test)]
 mod tests;
@@ -24,8 +26,9 @@ use taskdata::load::Store;
 pub use arguments::NewArguments;
 
 use self::{
-    arguments::{PartArguments, PlaceArguments, TrayArguments, What},
+    arguments::{PartArguments, PlaceArguments, ToolArguments, TrayArguments, What},
     change::Change,
+    part::Order,
     trial::Trial,
 };
 use crate::{cli::CheckArguments, error::Error, pose, ways};
@@ -36,7 +39,16 @@ use crate::{cli::CheckArguments, error::Error, pose, ways};
 /// [`Error`] with the reason; then nothing is written.
 pub fn new(arguments: &NewArguments) -> Result<ExitCode, Error> {
     match &arguments.what {
-        What::Part(arguments) => part(arguments),
+        What::Part(arguments) => {
+            let PartArguments { name, size, like, write, explain_job, data } = arguments;
+            let order = Order { name, like, tool: false, size: Some(*size), weight: None };
+            part(&order, (*write, *explain_job), data)
+        }
+        What::Tool(arguments) => {
+            let ToolArguments { name, size, weight, like, write, explain_job, data } = arguments;
+            let order = Order { name, like, tool: true, size: *size, weight: *weight };
+            part(&order, (*write, *explain_job), data)
+        }
         What::Place(arguments) => place(arguments),
         What::Tray(arguments) => tray(arguments),
     }
@@ -57,24 +69,25 @@ fn cell(data: &Path) -> Result<CellDescription, Error> {
     CellDescription::load(&path).map_err(|error| Error::New(format!("{}: {error}", path.display())))
 }
 
-/// `new part`.
-fn part(arguments: &PartArguments) -> Result<ExitCode, Error> {
-    let PartArguments { name, size, like, write, explain_job, data } = arguments;
-    let store = loaded(data, *write)?;
+/// `new part` and `new tool`.
+fn part(order: &Order<'_>, (write, explain_job): (bool, bool), data: &Path) -> Result<ExitCode, Error> {
+    let store = loaded(data, write)?;
     let cell = cell(data)?;
-    let made = part::make(name, *size, like, (&store, &cell, data))?;
-    let trial = Trial::checked(&made.change, name)?;
-    if *explain_job {
-        let arguments = CheckArguments::of(trial.data());
-        return ways::explain(&arguments, &made.job);
+    let made = part::make(order, (&store, &cell, data))?;
+    let Order { name, like, tool, .. } = *order;
+    let trial = Trial::checked(&made.trial, name)?;
+    let first = made.jobs.first().map_or(name, String::as_str);
+    if explain_job {
+        return ways::explain(&CheckArguments::of(trial.data()), first);
     }
-    let runs = trial.run(&made.job, made.jaws)?;
-    let mut lines = vec![("part", format!("{name}, {size} in, like {like}"))];
-    lines.extend(made.chosen.into_iter().map(|line| ("vise", line)));
+    let runs = made.jobs.iter().map(|job| trial.run(job, made.others)).sum::<Result<usize, Error>>()?;
+    let mut lines =
+        vec![(if tool { "tool" } else { "part" }, format!("{name}, {} in, like {like}", made.size))];
+    lines.extend(made.chosen);
     lines.push(("tried", format!("check finds no errors; {runs} runs finished")));
     lines.extend(trial.warnings.into_iter().map(|line| ("warning", line)));
     lines.extend(made.to_teach.into_iter().map(|line| ("to teach", line)));
-    let next = format!("rcs-run {} --data {}", made.job, data.display());
+    let next = format!("rcs-run {first} --data {}", data.display());
     finish(&made.change, lines, write.then_some(next))
 }
 

@@ -1,93 +1,124 @@
 //! `rcs-run new part`: forms, movetables, entries of the cell and a job for a part that is like another one.
 
-use std::{fmt, path::Path, str::FromStr};
+use std::path::Path;
 
+use geometry::movetable::MovetableLine;
 use plant::{
     CellDescription,
-    description::{PartType, Shape, ViseProgram},
+    description::{PartType, Shape},
 };
 use rcs_core::name::{Name, Name16};
 use runtime::setup::CELL;
 use taskdata::load::{
     Store,
-    entries::{Entry, GripEntry, MovetableEntry, Named},
+    entries::{Entry, GripEntry, MovetableEntry, Named, Typed},
 };
 
-use super::{change::Change, family::Family, forms::Blocks, sizes::Sizes};
+use super::{change::Change, family::Family, forms::Blocks, nests::Nested, size::Size, sizes::Sizes};
 use crate::error::Error;
 
 /// Longest name: `S-` and `_BH` go around it, and an object has 16 characters.
 const LONGEST: usize = 11;
 /// Characters of the name with which its movetables begin.
 const BEGINS: usize = 6;
-/// Greatest side of a part, in.
-const GREATEST: f64 = 20.0;
 
-/// Length, width and height of a blank as it lies, in.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Size {
-    pub length: f64,
-    pub width: f64,
-    pub height: f64,
-}
-
-impl FromStr for Size {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let sides: Option<Vec<f64>> = text.split('x').map(|side| side.trim().parse().ok()).collect();
-        match sides.as_deref() {
-            Some([length, width, height])
-                if [length, width, height].into_iter().all(|side| (0.1..=GREATEST).contains(side)) =>
-            {
-                Ok(Self { length: *length, width: *width, height: *height })
-            }
-            _ => Err(format!(
-                "length x width x height of the blank as it lies was expected, 0.1 to {GREATEST} in each, such as \
-                 3x1.5x1; found {text}"
-            )),
-        }
-    }
-}
-
-impl fmt::Display for Size {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} x {} x {}", self.length, self.width, self.height)
-    }
+/// What is asked for.
+pub struct Order<'a> {
+    pub name: &'a str,
+    pub like: &'a str,
+    /// A tool, and no part.
+    pub tool: bool,
+    /// That of the like part if it is not given.
+    pub size: Option<Size>,
+    /// Of the blank, lb; if it is not given, by the volume.
+    pub weight: Option<f64>,
 }
 
 /// What a new part changes, and what it leaves to people.
 pub struct Made {
     pub change: Change,
-    /// The job that moves it.
-    pub job: String,
-    /// The vise gets a new step: jobs of other parts are tried, too.
-    pub jaws: bool,
-    /// What was chosen, line by line.
-    pub chosen: Vec<String>,
+    /// The change, with jobs that only try it.
+    pub trial: Change,
+    /// The job that moves it, and those.
+    pub jobs: Vec<String>,
+    /// Jobs of other parts are tried, too.
+    pub others: bool,
+    pub size: Size,
+    /// What was chosen, line by line, each with what it is about.
+    pub chosen: Vec<(&'static str, String)>,
     /// What has to be taught at the machine.
     pub to_teach: Vec<String>,
 }
 
-/// Make the data of a part.
+/// What becomes of the numbers of a family when its parts have other sizes.
+pub trait Numbers {
+    /// The new parts.
+    fn parts(&self) -> &[PartType];
+
+    /// The places of the new grips that come of a grip, and the lines of their movetables.
+    ///
+    /// # Errors
+    /// [`Error::New`] if the grip is at a place of which nothing is known here.
+    fn grips(&self, grip: &GripEntry) -> Result<Vec<(Typed, Vec<MovetableLine>)>, Error>;
+
+    /// Approach, grasp, force and depart of an object, 0.01 in and lb.
+    fn openings(&self, object: &Name16, values: [i32; 4]) -> [i32; 4];
+
+    /// The same of the pedestal: approach, grasp, force, release, table, flip.
+    fn pedestal(&self, _object: &Name16, values: [i32; 6]) -> [i32; 6] {
+        values
+    }
+
+    /// The range of a view, mm.
+    fn range(&self, _object: &Name16, range: i32) -> i32 {
+        range
+    }
+
+    /// Describe vise or nests in the cell.
+    ///
+    /// # Errors
+    /// [`Error::New`] if there is no table to put theirs behind.
+    fn places(&self, change: &mut Change) -> Result<Places, Error>;
+}
+
+/// What vise or nests are for the new parts.
+pub struct Places {
+    pub chosen: Vec<(&'static str, String)>,
+    pub to_teach: Vec<String>,
+    /// Other parts have to be tried, too.
+    pub others: bool,
+}
+
+/// Make the data of a part or a tool.
 ///
 /// # Errors
 /// [`Error::New`] with the reason if there cannot be such a part.
 pub fn make(
-    name: &str,
-    size: Size,
-    like: &str,
+    order: &Order<'_>,
     (store, cell, data): (&Store, &CellDescription, &Path),
 ) -> Result<Made, Error> {
+    let Order { name, like, tool, size, weight } = *order;
     let family = Family::of(like, store, cell, data)?;
-    is_name(name, &family, store, cell)?;
-    if let Some(part) = family.parts.iter().find(|part| part.shape != Shape::Box || part.tool) {
-        let what = "only boxes have sizes that a grip follows; copy its forms, and its nests in cell.toml";
-        return Err(Error::New(format!("{} is no box: {what}", part.name)));
+    is_name(order, &family, store, cell)?;
+    let old = family.parts.first().ok_or_else(|| Error::New(format!("{like} has no blank")))?;
+    if old.tool != tool {
+        let (what, command) = if old.tool { ("a", "tool") } else { ("no", "part") };
+        return Err(Error::New(format!("{} is {what} tool: make it with rcs-run new {command}", old.name)));
     }
-    let sizes = Sizes::new(cell, &family, name, [size.height, size.width, size.length])?;
+    let size = size.unwrap_or_else(|| Size::of(old));
+    let blank = size.like(old).map_err(Error::New)?;
+    let nested = cell.nest.iter().any(|nest| nest.takes(old));
+    let numbers: &dyn Numbers = match old.shape {
+        _ if nested => &Nested::new((store, cell), &family, name, (blank, weight))?,
+        Shape::Box => &Sizes::new(cell, &family, name, blank)?,
+        Shape::CylinderX | Shape::CylinderZ => {
+            let what =
+                "a cylinder without a nest has no forms to follow: give the nests of cell.toml its name";
+            return Err(Error::New(format!("{}: {what}", old.name)));
+        }
+    };
     let (directory, area) = family.directory()?;
-    let new = New { name, family: &family, sizes: &sizes, store, area: area.offset };
+    let new = New { name, family: &family, numbers, store, area: area.offset };
     let id = new.vision_id(cell);
     let (text, first, tables) = new.forms(id)?;
     let file = name.to_lowercase();
@@ -96,36 +127,38 @@ pub fn make(
     let title: String = file.chars().take(16).collect();
     change.add_to_block(directory, area.number, &format!("  {first:03} load ( {title:<16} )"))?;
     let last = family.parts.last().map_or("", |part| part.name.as_str());
-    let described: Vec<String> = sizes.parts.iter().map(|part| table_of_part(part, id)).collect();
+    let described: Vec<String> = numbers.parts().iter().map(|part| table_of_part(part, id)).collect();
     change.add_table(CELL, "part", &format!("name = \"{last}\""), &described.join("\n"))?;
-    let program = &sizes.step.program;
-    let programs = cell.vise.program.last().map_or("", |program| program.name.as_str());
-    change.add_table(CELL, "vise.program", &format!("name = \"{programs}\""), &table_of_program(program))?;
-    change.add(&format!("jobs/{file}.job"), new.job())?;
-    let step = if sizes.step.is_new { "a step that is cut for it" } else { "a step that is there" };
-    let openings = format!("opens {} in, partially {} in", program.opening_open, program.opening_partial);
-    let place = format!("back {}, depth {:.4}, ledge {}", program.back, program.depth, program.ledge);
-    let mut to_teach = vec![format!("vise: program {name}, as above")];
+    let Places { chosen, mut to_teach, others } = numbers.places(&mut change)?;
+    change.add(&format!("jobs/{file}.job"), new.job(&family.stem))?;
+    let mut trial = change.clone();
+    let mut jobs = vec![file];
+    for (number, other) in (1..).zip(&family.others) {
+        let job = format!("trial-{number}");
+        trial.add(&format!("jobs/{job}.job"), new.job(other))?;
+        jobs.push(job);
+    }
     if id != 0 {
-        let blank = sizes.parts.first().map_or("", |part| part.name.as_str());
+        let blank = numbers.parts().first().map_or("", |part| part.name.as_str());
         to_teach.push(format!("vision: {blank} as object {id}"));
     }
-    to_teach.push(format!("robot: {} by joystick, at the first part", tables.join(", ")));
-    Ok(Made {
-        change,
-        job: file,
-        jaws: sizes.step.is_new,
-        chosen: vec![format!("{step}: {place}"), openings],
-        to_teach,
-    })
+    if !tables.is_empty() {
+        to_teach.push(format!("robot: {} by joystick, at the first part", tables.join(", ")));
+    }
+    Ok(Made { change, trial, jobs, others, size, chosen, to_teach })
 }
 
 /// Whether a name can be given.
-fn is_name(name: &str, family: &Family, store: &Store, cell: &CellDescription) -> Result<(), Error> {
-    let fits = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit();
-    if name.is_empty() || name.len() > LONGEST || !name.chars().all(fits) {
-        let expected = format!("1 to {LONGEST} capital letters and digits were expected");
-        return Err(Error::New(format!("a part is not named {name}: {expected}")));
+fn is_name(order: &Order<'_>, family: &Family, store: &Store, cell: &CellDescription) -> Result<(), Error> {
+    let Order { name, tool, .. } = *order;
+    let fits = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || (c == '-' && tool);
+    if !name.starts_with(|c: char| c.is_ascii_uppercase()) || name.len() > LONGEST || !name.chars().all(fits)
+    {
+        let (what, expected) =
+            if tool { ("tool", "letters, digits and -") } else { ("part", "letters and digits") };
+        return Err(Error::New(format!(
+            "a {what} is not named {name}: 1 to {LONGEST} capital {expected} were expected, a letter first"
+        )));
     }
     let data = store.view();
     let objects: Vec<String> = data.objects.iter().map(|object| object.name.to_string()).collect();
@@ -146,7 +179,7 @@ fn is_name(name: &str, family: &Family, store: &Store, cell: &CellDescription) -
 struct New<'a> {
     name: &'a str,
     family: &'a Family,
-    sizes: &'a Sizes<'a>,
+    numbers: &'a dyn Numbers,
     store: &'a Store,
     area: u32,
 }
@@ -174,7 +207,7 @@ impl New<'_> {
         for entry in self.family.entries() {
             match entry.clone() {
                 Entry::Object(mut e) => {
-                    e.values = self.sizes.openings(&e.name.name, e.values);
+                    e.values = self.numbers.openings(&e.name.name, e.values);
                     e.name = self.object(&e.name);
                     objects.push(Entry::Object(e));
                 }
@@ -187,12 +220,12 @@ impl New<'_> {
                     places.push(Entry::ObjLoc(e));
                 }
                 Entry::PedPara(mut e) => {
-                    e.values = self.sizes.pedestal(&e.object.name, e.values);
+                    e.values = self.numbers.pedestal(&e.object.name, e.values);
                     e.object = self.object(&e.object);
                     pedestal.push(Entry::PedPara(e));
                 }
                 Entry::View(mut e) => {
-                    e.range = self.sizes.range(&e.object.name, e.range);
+                    e.range = self.numbers.range(&e.object.name, e.range);
                     e.id = i32::from(id);
                     e.object = self.object(&e.object);
                     views.push(Entry::View(e));
@@ -235,29 +268,36 @@ impl New<'_> {
         let mut free = (1..).map(|number| format!("{begins}-{number}")).filter(|name| !known.contains(name));
         let (mut tables, mut grips): (Vec<MovetableEntry>, Vec<GripEntry>) = (Vec::new(), Vec::new());
         for grip in self.family.grips() {
-            let lines = self.sizes.moved(grip)?;
-            let name = match tables.iter().find(|table| table.lines == lines) {
-                Some(table) => table.name,
-                None => {
-                    let name = Name::clipped(&free.next().unwrap_or_default());
-                    let name = Named { name, ..grip.movetable };
-                    tables.push(MovetableEntry { lines, name });
-                    name
-                }
-            };
-            grips.push(GripEntry { object: self.object(&grip.object), movetable: name, ..grip.clone() });
+            for (place, lines) in self.numbers.grips(grip)? {
+                let name = match tables.iter().find(|table| table.lines == lines) {
+                    _ if lines.is_empty() => grip.movetable,
+                    Some(table) => table.name,
+                    None => {
+                        let name = Name::clipped(&free.next().unwrap_or_default());
+                        let name = Named { name, ..grip.movetable };
+                        tables.push(MovetableEntry { lines, name });
+                        name
+                    }
+                };
+                let object = self.object(&grip.object);
+                grips.push(GripEntry { object, place, movetable: name, ..grip.clone() });
+            }
         }
         Ok((tables, grips))
     }
 
-    /// The job of the like part with other names, and without its comments, which are about the like part.
-    fn job(&self) -> String {
-        let mut text = format!("% {}, made like {} by rcs-run new part.\n\n", self.name, self.family.stem);
+    /// The job of the like part with other names, and without its comments, which are about the like part. A part named
+    /// `like` and its family are the new ones.
+    fn job(&self, like: &str) -> String {
+        let mut text = format!("% {}, made like {} by rcs-run new.\n\n", self.name, self.family.stem);
         let mut opened = false;
         let old = self.family.program.as_ref().map_or("", |program| program.name.as_str());
         for line in self.family.job.text.lines().filter(|line| line.starts_with(['*', '='])) {
             let word = |word: &str| match Name16::new(word) {
-                Ok(name) if self.family.part_of(&name).is_some() => self.family.renamed(word, self.name),
+                _ if word == like => self.name.to_owned(),
+                Ok(name) if like == self.family.stem && self.family.part_of(&name).is_some() => {
+                    self.family.renamed(word, self.name)
+                }
                 _ if line.starts_with("** vise") && word == old => String::new(),
                 _ => word.to_owned(),
             };
@@ -275,10 +315,18 @@ impl New<'_> {
 /// A part in the cell description.
 fn table_of_part(part: &PartType, id: u16) -> String {
     let [x, y, z] = part.size;
+    let shape = match part.shape {
+        Shape::Box => "",
+        Shape::CylinderX => "shape = \"cylinder-x\"\n",
+        Shape::CylinderZ => "shape = \"cylinder-z\"\n",
+    };
     let mut text = format!(
-        "[[part]]\nname = \"{}\"\nsize = [{x:?}, {y:?}, {z:?}]\nweight = {:?}\n",
+        "[[part]]\nname = \"{}\"\n{shape}size = [{x:?}, {y:?}, {z:?}]\nweight = {:?}\n",
         part.name, part.weight
     );
+    if part.tool {
+        text += "tool = true\n";
+    }
     if id != 0 && part.vision_id != 0 {
         text += &format!("vision_id = {id}\n");
     }
@@ -289,13 +337,4 @@ fn table_of_part(part: &PartType, id: u16) -> String {
         text += "other_side = true\n";
     }
     text
-}
-
-/// A program of the vise in the cell description.
-fn table_of_program(program: &ViseProgram) -> String {
-    let ViseProgram { name, back, depth, ledge, opening_open, opening_partial } = program;
-    format!(
-        "[[vise.program]]\nname = \"{name}\"\nback = {back:?}\ndepth = {depth:?}\nledge = {ledge:?}\n\
-         opening_open = {opening_open:?}\nopening_partial = {opening_partial:?}\n"
-    )
 }

@@ -9,6 +9,7 @@ use plant::{
     description::{Gripper, PartType, ViseProgram},
 };
 use rcs_core::name::Name16;
+use runtime::setup::CELL;
 use taskdata::{
     files::RefType,
     load::entries::{GripEntry, MovetableEntry, Typed},
@@ -17,8 +18,10 @@ use taskdata::{
 use geometry::movetable::{MovetableLine, System};
 
 use super::{
+    change::Change,
     family::{Family, subject},
     jaws::{Chosen, Wanted, choose},
+    part::{Numbers, Places},
 };
 use crate::error::Error;
 
@@ -27,7 +30,7 @@ const REACH: f64 = 2.0 / 3.0;
 /// The fingers are so far above jaws and hands, in.
 const CLEAR: f64 = 0.25;
 /// An open gripper has so much room beside a part at least, on both sides together, in.
-const ROOM: f64 = 0.5;
+pub const ROOM: f64 = 0.5;
 /// The fingers bear so many times what weight and lever ask of them.
 const SAFE: f64 = 3.0;
 /// Millimetres in an inch.
@@ -229,22 +232,6 @@ impl<'a> Sizes<'a> {
         }
     }
 
-    /// Approach, grasp, force and depart of an object, 0.01 in and lb.
-    pub fn openings(&self, object: &Name16, [appr, grasp, force, depart]: [i32; 4]) -> [i32; 4] {
-        let Some((wider, new)) = self.wider(object) else { return [appr, grasp, force, depart] };
-        let room = |size: i32| self.opened(size, wider, new, &self.cell.gripper.parts);
-        [room(appr), grasp + hundredths(wider), force.max(whole(self.force.ceil())), room(depart)]
-    }
-
-    /// The same of the pedestal: approach, grasp, force, release, table, flip.
-    pub fn pedestal(&self, object: &Name16, values: [i32; 6]) -> [i32; 6] {
-        let [appr, grasp, force, release, table, flip] = values;
-        let Some((wider, new)) = self.wider(object) else { return values };
-        let room = |size: i32| self.opened(size, wider, new, &self.cell.pedestal.hand);
-        let force = force.max(whole(self.force.ceil()));
-        [room(appr), grasp + hundredths(wider), force, room(release), table, flip]
-    }
-
     /// By how much a part is wider than before, and how wide it is; `None` for a push.
     fn wider(&self, object: &Name16) -> Option<(f64, f64)> {
         let (part, _) = self.family.part_of(object).filter(|(_, own)| *own)?;
@@ -258,13 +245,52 @@ impl<'a> Sizes<'a> {
         let wanted = (f64::from(size) / 100.0 + wider).max(width + ROOM);
         hundredths(wanted.min(most))
     }
+}
 
-    /// The range of a view, mm: to the top of the part.
-    pub fn range(&self, object: &Name16, range: i32) -> i32 {
+impl Numbers for Sizes<'_> {
+    fn parts(&self) -> &[PartType] {
+        &self.parts
+    }
+
+    fn grips(&self, grip: &GripEntry) -> Result<Vec<(Typed, Vec<MovetableLine>)>, Error> {
+        Ok(vec![(grip.place, self.moved(grip)?)])
+    }
+
+    fn openings(&self, object: &Name16, [appr, grasp, force, depart]: [i32; 4]) -> [i32; 4] {
+        let Some((wider, new)) = self.wider(object) else { return [appr, grasp, force, depart] };
+        let room = |size: i32| self.opened(size, wider, new, &self.cell.gripper.parts);
+        [room(appr), grasp + hundredths(wider), force.max(whole(self.force.ceil())), room(depart)]
+    }
+
+    fn pedestal(&self, object: &Name16, values: [i32; 6]) -> [i32; 6] {
+        let [appr, grasp, force, release, table, flip] = values;
+        let Some((wider, new)) = self.wider(object) else { return values };
+        let room = |size: i32| self.opened(size, wider, new, &self.cell.pedestal.hand);
+        let force = force.max(whole(self.force.ceil()));
+        [room(appr), grasp + hundredths(wider), force, room(release), table, flip]
+    }
+
+    /// To the top of the part.
+    fn range(&self, object: &Name16, range: i32) -> i32 {
         let at = self.family.part_of(object).map(|(part, _)| part);
         let height = |parts: &[PartType]| at.and_then(|at| parts.get(at)).map_or(0.0, |part| part.size[0]);
         let nearer = (height(&self.parts) - height(&self.family.parts)) * MM;
         range - whole(nearer)
+    }
+
+    /// The vise gets a program, and perhaps a new step.
+    fn places(&self, change: &mut Change) -> Result<Places, Error> {
+        let program = &self.step.program;
+        let last = self.cell.vise.program.last().map_or("", |program| program.name.as_str());
+        change.add_table(CELL, "vise.program", &format!("name = \"{last}\""), &table_of_program(program))?;
+        let step = if self.step.is_new { "a step that is cut for it" } else { "a step that is there" };
+        let place = format!("back {}, depth {:.4}, ledge {}", program.back, program.depth, program.ledge);
+        let openings = format!("opens {} in, partially {} in", program.opening_open, program.opening_partial);
+        Ok(Places {
+            chosen: vec![("vise", format!("{step}: {place}")), ("vise", openings)],
+            to_teach: vec![format!("vise: program {}, as above", program.name)],
+            others: self.step.is_new,
+        })
     }
 }
 
@@ -332,7 +358,7 @@ fn place(cell: &CellDescription, family: &Family, grip: &GripEntry) -> Option<Pl
 }
 
 /// A part whose blank has another size.
-fn resized(part: &PartType, blank: &PartType, size: [f64; 3], name: &str) -> PartType {
+pub fn resized(part: &PartType, blank: &PartType, size: [f64; 3], name: &str) -> PartType {
     let mut new = part.clone();
     name.clone_into(&mut new.name);
     for (side, (was, to)) in new.size.iter_mut().zip(blank.size.into_iter().zip(size)) {
@@ -344,11 +370,20 @@ fn resized(part: &PartType, blank: &PartType, size: [f64; 3], name: &str) -> Par
 }
 
 /// Inches as numbers of 0.01 in.
-fn hundredths(inches: f64) -> i32 {
+pub fn hundredths(inches: f64) -> i32 {
     whole(inches * 100.0)
 }
 
 /// The nearest whole number; sizes are limited far below what it holds.
 fn whole(number: f64) -> i32 {
     number.round() as i32
+}
+
+/// A program of the vise in the cell description.
+fn table_of_program(program: &ViseProgram) -> String {
+    let ViseProgram { name, back, depth, ledge, opening_open, opening_partial } = program;
+    format!(
+        "[[vise.program]]\nname = \"{name}\"\nback = {back:?}\ndepth = {depth:?}\nledge = {ledge:?}\n\
+         opening_open = {opening_open:?}\nopening_partial = {opening_partial:?}\n"
+    )
 }

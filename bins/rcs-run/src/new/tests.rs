@@ -5,7 +5,8 @@ use taskdata::load::Store;
 
 use super::{
     family::Family,
-    part::{Made, Size, make},
+    part::{Made, Order, make},
+    size::Size,
     sizes::Sizes,
     trial::Trial,
 };
@@ -22,14 +23,16 @@ fn loaded() -> (Store, CellDescription) {
 
 fn made(name: &str, size: &str, like: &str) -> Result<Made, Error> {
     let (store, cell) = loaded();
-    let size: Size = size.parse().expect("it is a size");
-    make(name, size, like, (&store, &cell, &data()))
+    let tool = cell.part(like).is_some_and(|part| part.tool);
+    let size = (!size.is_empty()).then(|| size.parse().expect("it is a size"));
+    make(&Order { name, like, tool, size, weight: None }, (&store, &cell, &data()))
 }
 
 /// Made, checked and run.
 fn tried(name: &str, size: &str, like: &str) -> Result<usize, Error> {
     let made = made(name, size, like)?;
-    Trial::checked(&made.change, name)?.run(&made.job, false)
+    let trial = Trial::checked(&made.trial, name)?;
+    made.jobs.iter().map(|job| trial.run(job, false)).sum()
 }
 
 fn refused(name: &str, size: &str, like: &str) -> String {
@@ -64,6 +67,42 @@ fn a_smaller_clevis_is_machined_on_both_sides() {
 #[test]
 fn a_longer_and_wider_linkbar_comes_back() {
     assert_eq!(tried("BAR", "5x0.8x0.625", "LINKBAR1").map_err(|error| error.to_string()), Ok(3));
+}
+
+#[test]
+fn a_thicker_and_longer_shaft_is_turned() {
+    assert_eq!(tried("PIN", "5x1.55", "SHAFT").map_err(|error| error.to_string()), Ok(3));
+}
+
+#[test]
+fn a_longer_tool_goes_into_the_drum_and_out_of_it() {
+    assert_eq!(tried("REAMER-3", "4x1.75", "DRILL-2").map_err(|error| error.to_string()), Ok(6));
+}
+
+#[test]
+fn what_lies_in_nests_moves_with_its_middle() {
+    let diff =
+        |name, size, like| made(name, size, like).map(|made| made.change.diff()).expect("it can be made");
+    // Another tool in the same holder is held where the like one is.
+    let tool = diff("TAP-4", "", "DRILL-2");
+    for line in [
+        "+  -obj- TAP-4 1 400 175 80 400",
+        "+  -grip- TAP-4 1 $$$ ...",
+        "+size = [3.3, 1.75, 1.75]",
+        "+** drum tool TAP-4",
+    ] {
+        assert!(tool.lines().any(|found| found == line), "{line} is not in\n{tool}");
+    }
+    assert!(!tool.contains("-mtb- TAP"));
+    let round = diff("PIN", "5x1.5", "SHAFT");
+    for line in [
+        "+  -grip- PIN_BH 1  lpt V-VFIXTURE PIN-2",
+        "+  1 t 210 0 205 ----",
+        "+seat = { wrist = [3950, -5600, -200], tool = [6950, -5600, -200], finger = [6950, -2600, -200] }",
+        "+machining = { inches = 0.12, degrees = 3.0 }",
+    ] {
+        assert!(round.lines().any(|found| found == line), "{line} is not in\n{round}");
+    }
 }
 
 #[test]
@@ -108,11 +147,16 @@ fn what_cannot_be_says_why() {
     assert!(refused("LINKBAR1", "4x1x1", "LINKBAR1").contains("choose another name, such as LINKBAR12"));
     assert!(refused("hinge", "4x1x1", "LINKBAR1").contains("capital letters"));
     assert!(refused("NEW", "4x1x1", "LINKBAR3").contains("the nearest is LINKBAR1"));
-    assert!(refused("NEW", "4x1x1", "SHAFT").contains("SHAFT_BH is no box"));
-    assert!(refused("NEW", "3x1.5x1", "DRILL-2").contains("has several parts"));
+    assert!(refused("NEW", "4x1x1", "SHAFT").contains("SHAFT_BH is a cylinder: length x diameter was"));
+    assert!(refused("NEW", "4x1", "LCLEVIS").contains("LCLEVIS_BH is a box"));
+    assert!(refused("NEW", "4x1.8", "SHAFT").contains("into the nest at"));
+    assert!(refused("NEW", "12x1.5", "SHAFT").contains("into the nest at"));
+    assert!(refused("NEW", "4x3.4", "SHAFT").contains("takes diameters from 0.50 to 3.00 in"));
+    assert!(refused("NEW", "3.3x2.2", "DRILL-2").contains("into the nest at UNIT_2 sector 1"));
+    assert!(refused("DRILL-2", "", "ENDMILL-1").contains("choose another name, such as DRILL-22"));
     assert!(refused("NEW", "9x1x1", "LCLEVIS").contains("in of room around its middle"));
     assert!(refused("NEW", "4x4x1.73", "LCLEVIS").contains("the jaws open for parts up to"));
-    for wrong in ["3x1.5", "3x1.5x0", "3x1.5x1x1", "axbxc", "3x1x30"] {
+    for wrong in ["3", "3x1.5x0", "3x1.5x1x1", "axbxc", "3x1x30"] {
         assert!(wrong.parse::<Size>().is_err(), "{wrong}");
     }
 }

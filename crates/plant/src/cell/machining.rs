@@ -20,7 +20,7 @@ impl Cell {
     /// [`WorkstationError`] if it is not what it should be, or not where it should be.
     pub(super) fn machine(&mut self, from: &str, to: &str, location: &str) -> Result<(), WorkstationError> {
         let next = self.description.kind(to)?.clone();
-        let nest = match self.description.machine_at(location)? {
+        let nest = match self.description.machine_at(location, from)? {
             Machine::Vise => return self.machine_in_vise(from, &next),
             Machine::Nest(nest) => nest,
         };

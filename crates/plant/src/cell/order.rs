@@ -47,7 +47,7 @@ impl CellDescription {
             }
             WorkstationAction::Machine { from, to, location } => {
                 let (from, to) = (self.kind(from)?, self.kind(to)?);
-                self.machine_at(location)?;
+                self.machine_at(location, &from.name)?;
                 to.is_made_of(from)
             }
             WorkstationAction::DrumTool { part } => {
@@ -101,13 +101,15 @@ impl CellDescription {
         tray.sector(sector).map(Spot::Sector).ok_or(unknown)
     }
 
-    /// Where something is machined at a location.
-    pub(super) fn machine_at(&self, location: &str) -> Result<Machine<'_>, WorkstationError> {
+    /// Where a part is machined at a location.
+    pub(super) fn machine_at(&self, location: &str, part: &str) -> Result<Machine<'_>, WorkstationError> {
         if location == self.vise.location {
             return Ok(Machine::Vise);
         }
         let nests = || self.nest.iter().filter(|nest| nest.machining.is_some());
-        nests().find(|nest| nest.location == location).map(Machine::Nest).ok_or_else(|| {
+        let there = || nests().filter(|nest| nest.location == location);
+        let its = there().find(|nest| nest.parts.iter().any(|one| one == part));
+        its.or_else(|| there().next()).map(Machine::Nest).ok_or_else(|| {
             let known = [&self.vise.location].into_iter().chain(nests().map(|nest| &nest.location));
             WorkstationError::NoMachine { location: location.into(), known: known.cloned().collect() }
         })
