@@ -98,6 +98,8 @@ mod tests {
     #[derive(Debug, clap::Subcommand)]
     enum Sub {
         /// Do one thing | or another
+        ///
+        /// Then a second one.
         One {
             /// How often
             ///
@@ -120,6 +122,7 @@ mod tests {
             page.contains("- `--times <N>` (default `1`): How often. More than once is unusual."),
             "{page}"
         );
+        assert!(page.contains("Do one thing \\| or another.\n\nThen a second one.\n"), "{page}");
         assert!(page.contains("```text\nExamples:\n  program one\n```"), "{page}");
     }
 }

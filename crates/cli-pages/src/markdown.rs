@@ -18,7 +18,8 @@ fn section(command: &Command, depth: usize, page: &mut String) {
     let name = command.get_bin_name().unwrap_or(command.get_name());
     let usage = command.clone().render_usage().to_string();
     let about = command.get_long_about().or(command.get_about()).map(ToString::to_string).unwrap_or_default();
-    add(page, format_args!("{} {name}\n\n{}\n", "#".repeat(depth), escaped(&sentence(&about))));
+    let about: Vec<String> = about.split("\n\n").map(paragraph).collect();
+    add(page, format_args!("{} {name}\n\n{}\n", "#".repeat(depth), about.join("\n\n")));
     let usage: Vec<_> = usage.trim_start_matches("Usage: ").lines().map(str::trim).collect();
     add(page, format_args!("```text\n{}\n```\n", usage.join("\n")));
     let shown = |argument: &&Arg| {
@@ -73,6 +74,12 @@ fn text(argument: &Arg) -> String {
 /// A text that a page of Markdown shows as it is.
 fn escaped(text: &str) -> String {
     text.replace('<', "\\<").replace('|', "\\|")
+}
+
+/// A paragraph of prose, or one with lines of its own, as it is.
+fn paragraph(text: &str) -> String {
+    let own_lines = text.lines().any(|line| line.starts_with(' '));
+    if own_lines { format!("```text\n{text}\n```") } else { escaped(&sentence(text)) }
 }
 
 /// A text on one line that ends like a sentence.
