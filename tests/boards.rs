@@ -16,7 +16,7 @@ use std::{
 };
 
 use executive::{
-    boards::lost::LOST_AFTER,
+    boards::coordinator::LOST_AFTER,
     memory::{self, Attached, RunName},
 };
 use interfaces::{

@@ -19,11 +19,12 @@ use executive::{
     alloc::Counting,
     boards::{
         Board, BoardData, Checked, Coordinator, Fingerprint, Lost, Member, MemberError,
-        coordinator::BoardEvent, lost::How, member::MemberEnd, pulse::RunCard,
+        coordinator::{BoardEvent, How},
+        member::MemberEnd,
+        pulse::RunCard,
     },
-    course::Levels,
     memory::{self, RunName},
-    runner::Runner,
+    runner::{Levels, Runner},
 };
 use interfaces::{ExternalInputs, HwsCommand, device::single_step};
 use levels::ladder::Ladder;

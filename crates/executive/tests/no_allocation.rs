@@ -11,9 +11,8 @@ use std::convert::Infallible;
 
 use executive::{
     alloc::{self, Counting, Section},
-    course::Levels,
     memory::{Attached, Publisher, RunName},
-    runner::Runner,
+    runner::{Levels, Runner},
 };
 use interfaces::{CommonMemory, ExternalInputs, Reason};
 use rcs_core::tick::Tick;

@@ -20,11 +20,11 @@ use neighbours::{
     },
 };
 use rcs_core::tick::Tick;
+use record::Level;
 use taskdata::load::Store;
 
 use crate::{
-    event::Event,
-    neighbours::{Emulator, Neighbours, WorkstationSource},
+    neighbours::{Emulator, Neighbours, Note, WorkstationSource},
     outside::OutsideWorkstation,
     switched::obstacle,
     workstation::SimulatedWorkstation,
@@ -80,17 +80,21 @@ impl Commanded {
         task: &TaskOutputs,
         workstation: &mut SimulatedWorkstation,
         store: &Store,
-        events: &mut Vec<Event>,
+        notes: &mut Vec<Note>,
     ) -> Progress {
         let Some(emulator) = &mut self.alone else {
-            return self.outside.step(tick, gate, task, workstation, store, events);
+            return self.outside.step(tick, gate, task, workstation, store, notes);
         };
-        self.outside.attend(tick, events);
-        match emulator.step(tick, gate, workstation, events) {
+        self.outside.attend(tick, notes);
+        match emulator.step(tick, gate, workstation, notes) {
             Progress::Running => {}
             Progress::Over => emulator.hwsc.wait_without_job(),
             Progress::Failed(failure) => {
-                events.push(Event::OperatorJobFailed(failure));
+                notes.push((
+                    Level::Warning,
+                    "HWSC",
+                    format!("the job of the operator has failed: {failure}"),
+                ));
                 emulator.hwsc.wait_without_job();
             }
         }

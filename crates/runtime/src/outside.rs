@@ -15,9 +15,13 @@ use neighbours::{
     },
 };
 use rcs_core::{name::Name16, tick::Tick};
+use record::Level;
 use taskdata::load::{Store, job};
 
-use crate::{event::Event, workstation::SimulatedWorkstation};
+use crate::{
+    neighbours::{Note, network_note},
+    workstation::SimulatedWorkstation,
+};
 
 /// Commands that a run remembers; a run of a year must not fill the memory.
 const REMEMBERED: usize = 10_000;
@@ -96,21 +100,21 @@ impl OutsideWorkstation {
     }
 
     /// Once a tick while another one commands: it may come and go, reads no status, and what it writes is not read.
-    pub fn attend(&mut self, tick: Tick, events: &mut Vec<Event>) {
+    pub fn attend(&mut self, tick: Tick, notes: &mut Vec<Note>) {
         for place in [HWSC_STATUS, CELL_STATUS] {
             self.endpoint.outgoing(place).initialize();
         }
-        self.exchange(tick, events);
+        self.exchange(tick, notes);
     }
 
     /// The mailboxes of a tick go out and come in.
-    fn exchange(&mut self, tick: Tick, events: &mut Vec<Event>) -> Presence {
+    fn exchange(&mut self, tick: Tick, notes: &mut Vec<Note>) -> Presence {
         let presence = self.endpoint.exchange(tick.0);
         while let Some(event) = self.endpoint.event() {
-            if let NetEvent::Disconnected(_, reason) = &event {
-                self.disconnect = Some(reason.clone());
+            notes.push(network_note(&event));
+            if let NetEvent::Disconnected(_, reason) = event {
+                self.disconnect = Some(reason);
             }
-            events.push(Event::Network(event));
         }
         if presence.new {
             (self.line_read, self.line, self.refused) = (0, 0, None);
@@ -127,24 +131,24 @@ impl OutsideWorkstation {
         task: &TaskOutputs,
         workstation: &mut SimulatedWorkstation,
         store: &Store,
-        events: &mut Vec<Event>,
+        notes: &mut Vec<Note>,
     ) -> Progress {
         self.follow(tick, gate.command(), task);
         self.endpoint.outgoing(HWSC_STATUS).clone_from(gate.status_box());
-        self.write_cell(workstation, events);
-        let presence = self.exchange(tick, events);
+        self.write_cell(workstation, notes);
+        let presence = self.exchange(tick, notes);
         let gone = self.has_gone(presence);
         if presence.new {
             gate.initialize();
         }
         let before = gate.command().number;
         if let Some(refusal) = gate.read(self.endpoint.incoming(HWSC_COMMAND)) {
-            events.push(Event::CommandRefused(refusal));
+            notes.push((Level::Warning, "HWSC", format!("a command is refused: {refusal}")));
         }
         if gate.command().number != before {
             self.begin(tick, gate.command());
         }
-        self.read_cell(workstation, store, events);
+        self.read_cell(workstation, store, notes);
         if gone { self.end(gate.command(), task, workstation) } else { Progress::Running }
     }
 
@@ -204,7 +208,7 @@ impl OutsideWorkstation {
         };
     }
 
-    fn write_cell(&mut self, workstation: &SimulatedWorkstation, events: &mut Vec<Event>) {
+    fn write_cell(&mut self, workstation: &SimulatedWorkstation, notes: &mut Vec<Note>) {
         let (emergency, fault) = (workstation.emergency(), workstation.fault());
         let (trouble, text) = match (&emergency, &fault, &self.refused) {
             (Some(text), _, _) => (Trouble::Emergency, text.as_str()),
@@ -217,12 +221,12 @@ impl OutsideWorkstation {
         if mailbox.data() != status
             && let Err(error) = mailbox.write(&status)
         {
-            events.push(Event::CellStatusUnsent(error));
+            notes.push((Level::Error, "cell", error.to_string()));
         }
     }
 
     /// Begin what the workstation controller wants of the cell.
-    fn read_cell(&mut self, workstation: &mut SimulatedWorkstation, store: &Store, events: &mut Vec<Event>) {
+    fn read_cell(&mut self, workstation: &mut SimulatedWorkstation, store: &Store, notes: &mut Vec<Note>) {
         let mailbox = self.endpoint.incoming(CELL_COMMAND);
         if mailbox.mailgram() == self.line_read {
             return;
@@ -242,7 +246,7 @@ impl OutsideWorkstation {
         };
         self.refused = begun.err();
         if let Some(why) = &self.refused {
-            events.push(Event::CellLineRefused(why.clone()));
+            notes.push((Level::Warning, "cell", format!("a line of the workstation is refused: {why}")));
         }
     }
 }

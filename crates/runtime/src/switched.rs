@@ -23,10 +23,13 @@ use neighbours::{
     },
 };
 use rcs_core::tick::{TICK_MS, Tick};
+use record::Level;
 use taskdata::load::Store;
 
 use crate::{
-    event::Event, neighbours::Emulator, outside::OutsideWorkstation, workstation::SimulatedWorkstation,
+    neighbours::{Emulator, Note},
+    outside::OutsideWorkstation,
+    workstation::SimulatedWorkstation,
 };
 
 /// Where the robot is to be when the workstation controller is connected (IV.4.1).
@@ -107,22 +110,22 @@ impl Switched {
         around: &Around<'_>,
         gate: &mut Gate,
         workstation: &mut SimulatedWorkstation,
-        events: &mut Vec<Event>,
+        notes: &mut Vec<Note>,
     ) -> Progress {
         if self.is_handed_over() {
-            return self.follow(around, gate, workstation, events);
+            return self.follow(around, gate, workstation, notes);
         }
-        self.outside.attend(around.tick, events);
-        let progress = self.job.step(around.tick, gate, workstation, events);
-        if self.is_handed_over() { self.hand_over(around, gate, events) } else { progress }
+        self.outside.attend(around.tick, notes);
+        let progress = self.job.step(around.tick, gate, workstation, notes);
+        if self.is_handed_over() { self.hand_over(around, gate, notes) } else { progress }
     }
 
     /// The line `** workstation` has come.
-    fn hand_over(&mut self, around: &Around<'_>, gate: &mut Gate, events: &mut Vec<Event>) -> Progress {
+    fn hand_over(&mut self, around: &Around<'_>, gate: &mut Gate, notes: &mut Vec<Note>) -> Progress {
         if let Some(obstacle) = obstacle(around.memory, gate.command(), around.has_data_system) {
             return self.refuse(around.tick, obstacle);
         }
-        events.push(Event::HandedOver);
+        notes.push((Level::Info, "HWSC", "the workstation controller commands from here on".to_owned()));
         gate.initialize();
         (self.since, self.was_connected) = (around.tick, false);
         // In fast clock hours would go by until it comes.
@@ -147,10 +150,10 @@ impl Switched {
         around: &Around<'_>,
         gate: &mut Gate,
         workstation: &mut SimulatedWorkstation,
-        events: &mut Vec<Event>,
+        notes: &mut Vec<Note>,
     ) -> Progress {
         let task = &around.memory.task;
-        let progress = self.outside.step(around.tick, gate, task, workstation, around.store, events);
+        let progress = self.outside.step(around.tick, gate, task, workstation, around.store, notes);
         self.was_connected |= self.outside.is_here();
         if !self.was_connected {
             let waited = match self.outside.endpoint().clock() {
@@ -174,7 +177,7 @@ impl Switched {
         if executes {
             return progress;
         }
-        events.push(Event::TakenBack);
+        notes.push((Level::Info, "HWSC", "the workstation controller has gone; the job goes on".to_owned()));
         self.job.take_back(around.tick, gate, self.outside.take_steps())
     }
 

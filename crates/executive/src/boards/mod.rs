@@ -34,7 +34,6 @@
 
 pub mod coordinator;
 pub mod exchange;
-pub mod lost;
 pub mod member;
 pub mod pulse;
 
@@ -42,8 +41,7 @@ use std::{fmt, str::FromStr};
 
 use levels::ladder::ProcessId;
 
-pub use coordinator::Coordinator;
-pub use lost::{Lost, SplitError};
+pub use coordinator::{Coordinator, Lost, SplitError};
 pub use member::{BoardData, Member, MemberError};
 pub use pulse::{Checked, Epochs, Fingerprint};
 
