@@ -16,7 +16,7 @@ use std::{
 };
 
 use executive::{
-    boards::coordinator::LOST_AFTER,
+    boards::lost::LOST_AFTER,
     memory::{self, Attached, RunName},
 };
 use interfaces::{

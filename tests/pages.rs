@@ -1,4 +1,4 @@
-//! The pages of documentation: every link leads somewhere, and every page is in the table of contents.
+//! The pages of documentation: every link leads somewhere, and every page is in the table of contents. No source is long.
 
 use std::{
     collections::BTreeSet,
@@ -154,4 +154,52 @@ fn programs_are_no_persons() {
         }
     }
     assert!(found.is_empty(), "use the field's terms instead:\n{}", found.join("\n"));
+}
+
+/// Most lines of a source, without comments, blank lines and tests.
+const LONGEST: usize = 400;
+
+/// Lines of code of a source. What stands under `#[cfg(test)]` ends with a `;` or a brace at its own indentation.
+fn lines_of_code(text: &str) -> usize {
+    let mut lines = text.lines();
+    let mut count = 0;
+    while let Some(line) = lines.next() {
+        if line.trim() == "#[cfg(test)]" {
+            let item = lines.by_ref().find(|line| !line.trim().starts_with('#')).unwrap_or_default();
+            let indentation = &item[..item.len() - item.trim_start().len()];
+            if !item.ends_with(';') {
+                let end = format!("{indentation}}}");
+                lines.by_ref().find(|line| line.trim_end_matches([',', ';']) == end);
+            }
+        } else if !line.trim().is_empty() && !line.trim_start().starts_with("//") {
+            count += 1;
+        }
+    }
+    count
+}
+
+#[test]
+fn no_source_is_long() {
+    assert_eq!(
+        lines_of_code(
+            "a\n// b\n\n#[cfg(test)]\n#[path = \"c\"]\nmod c;\nd {\n}\n#[cfg(test)]\nmod e {\n  f\n}\ng\n"
+        ),
+        4
+    );
+    let (mut open, mut long, mut count) = (vec![root().join("crates"), root().join("bins")], Vec::new(), 0);
+    while let Some(directory) = open.pop() {
+        let entries = fs::read_dir(&directory).expect("the directory is there");
+        for path in entries.map(|entry| entry.expect("it can be listed").path()) {
+            let is_of_tests = path.file_stem().is_some_and(|name| name == "tests" || name == "benches");
+            if path.is_dir() && !is_of_tests {
+                open.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") && !is_of_tests {
+                count += 1;
+                let lines = lines_of_code(&fs::read_to_string(&path).expect("the source can be read"));
+                long.extend((lines > LONGEST).then(|| format!("{}: {lines} lines", path.display())));
+            }
+        }
+    }
+    assert!(count > 300, "{count} sources were found");
+    assert!(long.is_empty(), "split these by meaning, {LONGEST} lines at most:\n{}", long.join("\n"));
 }

@@ -120,8 +120,13 @@ impl Story {
     pub fn remark(&mut self, before: &Picture, now: &Picture) {
         let said = remarks::remarks(&self.headers, &now.external.hws, &before.memory, &now.memory);
         for remark in said {
-            let line =
-                LogLine { tick: now.tick, level: remark.level, source: remark.source, text: remark.text };
+            let line = LogLine {
+                tick: now.tick,
+                level: remark.level,
+                source: remark.source,
+                text: remark.text,
+                code: remark.file.to_owned(),
+            };
             keep(&mut self.lines, line, self.limit);
         }
     }
@@ -354,6 +359,7 @@ mod tests {
             level: Level::Error,
             source: source.to_owned(),
             text: "contact".to_owned(),
+            code: "contact.begins".to_owned(),
         };
         story.tell([line(9, "cell")].into_iter());
         assert_eq!(story.first_cause().map(|cause| cause.tick), Some(3), "it came later");

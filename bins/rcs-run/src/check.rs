@@ -251,7 +251,7 @@ fn robots(data: &Path) -> Diagnostics {
         if let Err(error) = RobotFile::load(&path) {
             all = all.with(match error {
                 PlacementError::Text(report) => *report,
-                error @ PlacementError::Read { .. } => one(&path, &error),
+                error => one(&path, &error),
             });
         }
     }

@@ -333,4 +333,13 @@ mod tests {
             assert!(said.contains(word), "{said}");
         }
     }
+
+    #[test]
+    fn all_mistakes_of_a_file_are_told_at_once() {
+        let wrong = TEXT.replace("signs = [1, 1", "signs = [1, 0").replace("low = [-170.0", "low = [170.0");
+        let wrong = wrong.replace("a1 = 320.0", "a9 = 320.0");
+        let report = RobotFile::from_toml(&crate::placement::source(&wrong)).unwrap_err();
+        let entries: Vec<_> = report.diagnostics().iter().filter_map(|one| one.entry()).collect();
+        assert_eq!(entries, ["arm.a9", "arm.signs[1]", "arm.low[0]"], "{report}");
+    }
 }

@@ -38,6 +38,7 @@ pub(crate) const KIND: FileKind = FileKind {
 
 /// Why a file cannot be used.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlacementError {
     /// It cannot be read.
     #[error("the robot's frames {} cannot be read: {source}", path.display())]

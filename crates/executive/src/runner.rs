@@ -1,131 +1,28 @@
 //! Steps the ladder, one tick after the other, and sums up what it did.
 //!
-//! Common memory is doubled by tick parity: the processes read what stands in one half and write the other,
-//! so that their order within a tick cannot matter. After every tick the buffers go into the digest, the
-//! statuses are watched for the first sign of a failure, and, if asked for, the buffers are published in
-//! shared memory.
+//! The ticks themselves are a [`Course`]. A runner times them and, if asked for, publishes their buffers in shared
+//! memory.
 //!
 //! A tick takes some microseconds if its code and its data are in the caches, and ten times as long if they
 //! are not; in the 40 ms between two ticks they go. The processes are pure state machines, so a tick can be
 //! *warmed up* ([`Runner::warm_up`]): a copy of the ladder runs it on what is there already, and the result
 //! is thrown away. The caches, the translation buffers and the branch predictor keep what they have learned.
 
-use std::convert::Infallible;
-
 use interfaces::{CommonMemory, ExternalInputs};
-use levels::ladder::{Ladder, ProcessId};
-use rcs_core::{Plain, digest::Digest, tick::Tick};
-use taskdata::files::TaskData;
+use rcs_core::{digest::Digest, tick::Tick};
 
 use crate::{
     alloc::{self, Section},
+    course::{Course, Levels},
     failure::Watch,
     histogram::Histogram,
     memory::{Publisher, layout::Pulse},
     timing::{Stage, StageTimes},
 };
 
-/// A ladder of control processes that can be stepped: [`Ladder`], or a test's own.
-pub trait Levels<Data: ?Sized> {
-    /// Why a tick could not be finished.
-    type Error;
-
-    /// One tick of all processes: read `before` and `external`, write `after`, all of it.
-    ///
-    /// # Errors
-    /// If processes that run elsewhere did not take part. There must be no further tick then.
-    fn step(
-        &mut self,
-        tick: Tick,
-        before: &CommonMemory,
-        external: &ExternalInputs,
-        data: &Data,
-        after: &mut CommonMemory,
-    ) -> Result<(), Self::Error>;
-
-    /// The same; calls `observe` after each stage, as by
-    /// [`Ladder::step_observed`]. What is not told of counts as the executive's.
-    ///
-    /// # Errors
-    /// Those of [`step`](Self::step).
-    fn step_observed(
-        &mut self,
-        tick: Tick,
-        before: &CommonMemory,
-        external: &ExternalInputs,
-        data: &Data,
-        after: &mut CommonMemory,
-        _observe: &mut dyn FnMut(Option<ProcessId>),
-    ) -> Result<(), Self::Error> {
-        self.step(tick, before, external, data, after)
-    }
-
-    /// A copy that can warm up a tick; `None` if there is nothing here that a warm-up would make faster.
-    fn shadow(&self) -> Option<Box<Self>>
-    where
-        Self: Sized,
-    {
-        None
-    }
-
-    /// Make the shadow equal again. Does not allocate.
-    fn copy_to(&self, _shadow: &mut Self)
-    where
-        Self: Sized,
-    {
-    }
-
-    /// Heap allocations in the ticks of processes that run elsewhere.
-    fn allocations(&self) -> u64 {
-        0
-    }
-}
-
-impl Levels<TaskData<'_>> for Ladder {
-    type Error = Infallible;
-
-    fn step(
-        &mut self,
-        tick: Tick,
-        before: &CommonMemory,
-        external: &ExternalInputs,
-        data: &TaskData<'_>,
-        after: &mut CommonMemory,
-    ) -> Result<(), Infallible> {
-        Self::step(self, tick, before, external, data, after);
-        Ok(())
-    }
-
-    fn step_observed(
-        &mut self,
-        tick: Tick,
-        before: &CommonMemory,
-        external: &ExternalInputs,
-        data: &TaskData<'_>,
-        after: &mut CommonMemory,
-        observe: &mut dyn FnMut(Option<ProcessId>),
-    ) -> Result<(), Infallible> {
-        Self::step_observed(self, ProcessId::ALL, tick, before, external, data, after, observe);
-        Ok(())
-    }
-
-    fn shadow(&self) -> Option<Box<Self>> {
-        Some(Box::new(self.clone()))
-    }
-
-    fn copy_to(&self, shadow: &mut Self) {
-        shadow.clone_from(self);
-    }
-}
-
 /// Runs a ladder.
 pub struct Runner<L> {
-    levels: L,
-    tick: Tick,
-    halves: [CommonMemory; 2],
-    digest: Digest,
-    scratch: Box<[u8]>,
-    watch: Box<Watch>,
+    course: Course<L>,
     times: Box<Histogram>,
     stage_times: StageTimes,
     /// The copy of the ladder that warms up; made by the first warm-up.
@@ -144,12 +41,7 @@ impl<L> Runner<L> {
     #[must_use]
     pub fn new(levels: L, publisher: Option<Publisher>) -> Self {
         Self {
-            levels,
-            tick: Tick::BEFORE_START,
-            halves: [CommonMemory::ZERO; 2],
-            digest: Digest::new(),
-            scratch: vec![0; CommonMemory::SIZE].into_boxed_slice(),
-            watch: Box::default(),
+            course: Course::new(levels),
             times: Box::default(),
             stage_times: StageTimes::default(),
             shadow: None,
@@ -183,37 +75,32 @@ impl<L> Runner<L> {
         let stage_times = &mut self.stage_times;
         stage_times.mark(Stage::Inputs);
         let mut controller_ns = 0;
-        let tick = self.tick.next();
-        let [even, odd] = &mut self.halves;
-        let (before, after) = if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) };
-        self.levels.step_observed(tick, before, external, data, after, &mut |process| {
+        self.course.step(external, data, &mut |process| {
             controller_ns += stage_times.mark(process.map_or(Stage::Buffers, Stage::Process));
         })?;
-        self.tick = tick;
-        self.elsewhere = self.levels.allocations();
+        self.elsewhere = self.course.levels().allocations();
         if let Some(publisher) = &mut self.publisher {
             let pulse = Pulse {
-                tick: self.tick,
+                tick: self.course.tick(),
                 generation: external.generation,
                 skipped,
                 allocations: alloc::allocations() - self.allocations_at_start + self.elsewhere,
                 controller_ns: self.last_ns,
                 over: false,
             };
-            publisher.publish(external, after, pulse);
+            publisher.publish(external, self.course.memory(), pulse);
             *self.published = (*external, pulse);
         }
         self.last_ns = controller_ns + self.stage_times.mark(Stage::Buffers);
         self.times.add(self.last_ns);
-        self.watch.observe(self.tick, external, before, after);
-        self.digest.add_record(after, &mut self.scratch);
+        self.course.sum_up(external);
         self.stage_times.mark(Stage::Bookkeeping);
-        Ok(after)
+        Ok(self.course.memory())
     }
 
     /// The ladder, between two ticks.
     pub const fn levels_mut(&mut self) -> &mut L {
-        &mut self.levels
+        self.course.levels_mut()
     }
 
     /// Run the next tick on a copy and forget it: see the head of this module. Changes nothing that another process
@@ -225,19 +112,13 @@ impl<L> Runner<L> {
         L: Levels<Data>,
     {
         let Some(shadow) = &mut self.shadow else {
-            self.shadow = self.levels.shadow();
+            self.shadow = self.course.levels().shadow();
             return;
         };
         let _section = Section::enter();
-        self.levels.copy_to(shadow);
-        let tick = self.tick.next();
-        let [even, odd] = &mut self.halves;
-        let (before, after) = if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) };
-        // The half that the tick will write anew, all of it.
-        // Whether it succeeds does not matter: the tick itself follows.
-        let _ = shadow.step_observed(tick, before, external, data, after, &mut |_| {});
+        self.course.warm_up(shadow, external, data);
         if let Some(publisher) = &mut self.publisher {
-            publisher.publish(&self.published.0, before, self.published.1);
+            publisher.publish(&self.published.0, self.course.memory(), self.published.1);
         }
     }
 
@@ -256,32 +137,31 @@ impl<L> Runner<L> {
     /// The ladder.
     #[must_use]
     pub const fn levels(&self) -> &L {
-        &self.levels
+        self.course.levels()
     }
 
     /// The tick that was run last.
     #[must_use]
     pub const fn tick(&self) -> Tick {
-        self.tick
+        self.course.tick()
     }
 
     /// Common memory as the last tick left it.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
-        let [even, odd] = &self.halves;
-        if self.tick.0.is_multiple_of(2) { even } else { odd }
+        self.course.memory()
     }
 
     /// Fingerprint of all output buffers of all ticks so far.
     #[must_use]
     pub const fn digest(&self) -> Digest {
-        self.digest
+        self.course.digest()
     }
 
     /// The process that failed first, if one did.
     #[must_use]
     pub const fn watch(&self) -> &Watch {
-        &self.watch
+        self.course.watch()
     }
 
     /// Times of the controller part of all ticks.
@@ -312,6 +192,10 @@ impl<L> Runner<L> {
 
 #[cfg(test)]
 mod tests {
+    use std::convert::Infallible;
+
+    use rcs_core::Plain as _;
+
     use super::*;
 
     /// Adds one to the echo of Task and copies it one process further down a tick; counts its steps.

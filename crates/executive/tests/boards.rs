@@ -19,12 +19,11 @@ use executive::{
     alloc::Counting,
     boards::{
         Board, BoardData, Checked, Coordinator, Fingerprint, Lost, Member, MemberError,
-        coordinator::{BoardEvent, How},
-        member::MemberEnd,
-        pulse::RunCard,
+        coordinator::BoardEvent, lost::How, member::MemberEnd, pulse::RunCard,
     },
+    course::Levels,
     memory::{self, RunName},
-    runner::{Levels, Runner},
+    runner::Runner,
 };
 use interfaces::{ExternalInputs, HwsCommand, device::single_step};
 use levels::ladder::Ladder;

@@ -11,8 +11,9 @@ use std::convert::Infallible;
 
 use executive::{
     alloc::{self, Counting, Section},
+    course::Levels,
     memory::{Attached, Publisher, RunName},
-    runner::{Levels, Runner},
+    runner::Runner,
 };
 use interfaces::{CommonMemory, ExternalInputs, Reason};
 use rcs_core::tick::Tick;

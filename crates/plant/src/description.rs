@@ -50,6 +50,7 @@ pub fn source(text: &str) -> Source {
 
 /// Why a cell description cannot be used.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum DescriptionError {
     /// The file cannot be read.
     #[error("the cell description {path} cannot be read: {source}")]

@@ -4,6 +4,7 @@ mod rig;
 
 use depc::{
     Plate,
+    controller::Warning,
     wire::{DataCommand, NO_FUNCTION, Report},
 };
 use geometry::{
@@ -90,7 +91,7 @@ fn a_leap_is_a_warning_and_the_operator_answers() {
     DataCommand { function: NO_FUNCTION, plate }.emit(&mut frame);
     outputs.link_tx.extend(&frame);
     cell.step(&outputs);
-    assert_eq!(cell.events(), [CellEvent::Warning("WD3 (a step in X, Y, Z is too long)".into())]);
+    assert_eq!(cell.events(), [CellEvent::Warning(Warning::Translation)]);
     outputs = DeviceOutputs::default();
     assert_eq!(cell.step(&outputs).link_rx.length, 0, "silence");
     cell.press(Key::Enter).unwrap();

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 /// Why a log ended before the run did, or never began.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RecordError {
     /// The file or its directory cannot be made.
     #[error("the log {path} cannot be created: {source}")]
@@ -53,6 +54,7 @@ fn deepest(error: &dyn std::error::Error) -> String {
 
 /// Why a file is not a log.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// The file cannot be read.
     #[error("{path}: {source}")]

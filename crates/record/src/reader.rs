@@ -91,6 +91,8 @@ pub struct LogLine {
     pub source: String,
     /// The sentence.
     pub text: String,
+    /// Code of the event, such as `cell.dropped`, or source file of the decision table; empty for neither.
+    pub code: String,
 }
 
 impl Log {
@@ -255,13 +257,14 @@ impl Log {
     /// The lines on `/log`, in order.
     pub fn lines(&self) -> impl Iterator<Item = LogLine> {
         self.messages(LOG_TOPIC).map(|(tick, data)| {
-            let (level, source, text) = (Level::Info, String::new(), String::new());
-            let mut line = LogLine { tick, level, source, text };
+            let (source, text, code) = Default::default();
+            let mut line = LogLine { tick, level: Level::Info, source, text, code };
             for field in Fields(&data) {
                 match field {
                     (2, Value::Number(code)) => line.level = Level::from_code(code),
                     (3, Value::Bytes(text)) => line.text = String::from_utf8_lossy(text).into_owned(),
                     (4, Value::Bytes(source)) => line.source = String::from_utf8_lossy(source).into_owned(),
+                    (5, Value::Bytes(code)) => line.code = String::from_utf8_lossy(code).into_owned(),
                     _ => {}
                 }
             }

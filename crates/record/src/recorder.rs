@@ -69,6 +69,7 @@ struct Note {
     tick: Tick,
     level: Level,
     source: [u8; 16],
+    code: &'static str,
     text: [u8; NOTE],
 }
 
@@ -166,7 +167,7 @@ impl Recorder {
         let (ticks, tick_consumer) = ring(RING, TickRecord { tick, gap: 0, external, memory, timing: None });
         let (states, state_consumer) = ring(STATE_RING, (tick, LadderState::default()));
         let (cells, cell_consumer) = ring(RING, CellFrame::new(tick));
-        let note = Note { tick, level: Level::Info, source: [0; 16], text: [0; NOTE] };
+        let note = Note { tick, level: Level::Info, source: [0; 16], code: "", text: [0; NOTE] };
         let (notes, note_consumer) = ring(NOTE_RING, note);
         let (files, file_consumer) = RingBuffer::new(FILE_RING);
         let (operators, operator_consumer) = RingBuffer::new(OPERATOR_RING);
@@ -214,11 +215,11 @@ impl Recorder {
         }
     }
 
-    /// A line for `/log`; before [`Recorder::tick`] of the same tick.
+    /// A line for `/log` about an event of a kind; before [`Recorder::tick`] of the same tick.
     ///
     /// The writer takes notes when it comes to their tick, so waiting for room here could be for ever.
-    pub fn note(&mut self, tick: Tick, level: Level, source: &str, text: &str) {
-        let note = Note { tick, level, source: clipped(source), text: clipped(text) };
+    pub fn note(&mut self, tick: Tick, level: Level, source: &str, code: &'static str, text: &str) {
+        let note = Note { tick, level, source: clipped(source), code, text: clipped(text) };
         if !has_room(&self.notes, Pace::Drop) || self.notes.push(note).is_err() {
             self.lost.notes += 1;
         }
@@ -401,9 +402,9 @@ impl Drain {
 
     fn write_notes(&mut self, until: Tick) -> Result<(), RecordError> {
         while self.notes.peek().is_ok_and(|note| note.tick <= until) {
-            if let Ok(Note { tick, level, source, text }) = self.notes.pop() {
-                let remark =
-                    Remark { level, source: text_of(&source), text: text_of(&text), ..Remark::default() };
+            if let Ok(Note { tick, level, source, code, text }) = self.notes.pop() {
+                let (source, text) = (text_of(&source), text_of(&text));
+                let remark = Remark { level, source, text, file: code, line: 0 };
                 self.log.remark(tick, &remark)?;
             }
         }

@@ -29,7 +29,7 @@ pub struct Remark {
     pub source: String,
     /// The sentence.
     pub text: String,
-    /// Source file of the decision table; empty for none.
+    /// Source file of the decision table, or the code of an event such as `cell.dropped`; empty for neither.
     pub file: &'static str,
     /// Line of the decision table in it.
     pub line: u32,

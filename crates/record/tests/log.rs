@@ -94,7 +94,7 @@ fn record_run(path: &Path, ticks: u64) -> record::Summary {
         let frame = CellFrame::of(tick, [Transform::IDENTITY, arm], [2.0 * turn]);
         recorder.cell(&frame.with_digest(cell_digest(tick)));
         if tick.0 == 30 {
-            recorder.note(tick, Level::Warning, "cell", "the part slips");
+            recorder.note(tick, Level::Warning, "cell", "cell.slipped", "the part slips");
         }
         recorder.tick(tick, external, memory, || state);
     });
@@ -114,7 +114,9 @@ fn a_recorded_run_is_replayed_bit_for_bit() {
     assert_eq!(log.run["seed"], "7");
     assert_eq!(log.end.as_ref().unwrap()["result"], "finished");
     assert_eq!(log.attachment(Attachment::JOB).unwrap().data, b"TRANSFER");
-    assert!(log.lines().any(|line| line.tick == Tick(30) && line.text == "the part slips"));
+    let told = log.lines().find(|line| line.tick == Tick(30) && line.source == "cell");
+    let told = told.map(|line| (line.code, line.text));
+    assert_eq!(told, Some(("cell.slipped".to_owned(), "the part slips".to_owned())));
     let digests: Vec<(Tick, u64)> = log.cell_digests().collect();
     assert_eq!(digests, (1..=1000).map(|tick| (Tick(tick), cell_digest(Tick(tick)))).collect::<Vec<_>>());
     for (topic, messages) in

@@ -8,8 +8,8 @@ use std::{
 
 use executive::{
     boards::{Board, Coordinator, Fingerprint, Lost, SplitError, coordinator::BoardEvent, pulse::RunCard},
+    course::Levels,
     memory::{RunName, SET_UP_LIMIT, within_limit},
-    runner::Levels,
 };
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::{Ladder, LadderState, ProcessId};

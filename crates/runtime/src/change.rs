@@ -4,19 +4,16 @@
 //! of the log finds them; unlike those of a line `** load` they do not wait for the end of a command.
 
 use plant::fault::{What, text::FaultFile};
-use record::Level;
 use taskdata::load::{
     Diagnostics, Source,
     job::{JobLine, Reload},
 };
 
-use crate::{Run, loads::insert};
-
-/// Source of a line of the log about a change.
-const SOURCE: &str = "change";
+use crate::{Run, event::Event, loads::insert};
 
 /// Why a run cannot be changed.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ChangeError {
     /// The blocks have errors.
     #[error("the task data have errors with it:\n{0}")]
@@ -129,9 +126,6 @@ impl Run {
     }
 
     fn note_change(&mut self, text: &str) {
-        let tick = self.last_tick().next();
-        if let Some(log) = &mut self.log {
-            log.note(tick, Level::Info, SOURCE, text);
-        }
+        self.log_event(self.last_tick().next(), &Event::Changed(text.to_owned()));
     }
 }

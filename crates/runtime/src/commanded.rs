@@ -20,11 +20,11 @@ use neighbours::{
     },
 };
 use rcs_core::tick::Tick;
-use record::Level;
 use taskdata::load::Store;
 
 use crate::{
-    neighbours::{Emulator, Neighbours, Note, WorkstationSource},
+    event::Event,
+    neighbours::{Emulator, Neighbours, WorkstationSource},
     outside::OutsideWorkstation,
     switched::obstacle,
     workstation::SimulatedWorkstation,
@@ -80,21 +80,17 @@ impl Commanded {
         task: &TaskOutputs,
         workstation: &mut SimulatedWorkstation,
         store: &Store,
-        notes: &mut Vec<Note>,
+        events: &mut Vec<Event>,
     ) -> Progress {
         let Some(emulator) = &mut self.alone else {
-            return self.outside.step(tick, gate, task, workstation, store, notes);
+            return self.outside.step(tick, gate, task, workstation, store, events);
         };
-        self.outside.attend(tick, notes);
-        match emulator.step(tick, gate, workstation, notes) {
+        self.outside.attend(tick, events);
+        match emulator.step(tick, gate, workstation, events) {
             Progress::Running => {}
             Progress::Over => emulator.hwsc.wait_without_job(),
             Progress::Failed(failure) => {
-                notes.push((
-                    Level::Warning,
-                    "HWSC",
-                    format!("the job of the operator has failed: {failure}"),
-                ));
+                events.push(Event::OperatorJobFailed(failure));
                 emulator.hwsc.wait_without_job();
             }
         }

@@ -17,6 +17,8 @@ use plant::{clearance::Contact, description::Permits};
 use rcs_core::tick::Tick;
 use serde::Serialize;
 
+use crate::event::Event;
+
 /// Arm, gripper or fingers that are this deep in something, in, end the run.
 pub const DEEPEST: f64 = 1.0;
 /// Distances greater than this are no near miss, in.
@@ -183,12 +185,12 @@ impl ContactCheck {
         self.nearest.as_ref().map_or(MARGIN, |nearest| nearest.distance_in)
     }
 
-    /// Look at what touches or is near after a tick. Returns lines for the log: collisions that have begun or ended.
-    pub fn look(&mut self, tick: Tick, contacts: &[Contact], commands: Commands) -> Vec<String> {
-        let mut lines = Vec::new();
+    /// Look at what touches or is near after a tick. Returns the collisions that have begun or ended.
+    pub fn look(&mut self, tick: Tick, contacts: &[Contact], commands: Commands) -> Vec<Event> {
+        let mut events = Vec::new();
         for contact in contacts {
             if contact.touches() {
-                lines.extend(self.touch(tick, contact, commands));
+                events.extend(self.touch(tick, contact, commands).map(Event::Collides));
             } else {
                 self.near(tick, contact, commands);
             }
@@ -203,12 +205,9 @@ impl ContactCheck {
             let Some(collision) = self.open.remove(&pair).and_then(|at| self.collisions.get(at)) else {
                 continue;
             };
-            lines.push(format!(
-                "{} comes free of {} after {} ticks; it was {:.3} in deep",
-                collision.mover, collision.obstacle, collision.ticks, collision.depth_in
-            ));
+            events.push(Event::CameFree(collision.clone()));
         }
-        lines
+        events
     }
 
     /// The two are in a collision that goes on.
@@ -257,8 +256,8 @@ impl ContactCheck {
         Some(Failure { tick: Tick(*tick), process, table: None, row: None, text, stopped: false })
     }
 
-    /// Two things touch. Returns a line if that is a collision that begins.
-    fn touch(&mut self, tick: Tick, contact: &Contact, commands: Commands) -> Option<String> {
+    /// Two things touch. Returns the collision if one begins.
+    fn touch(&mut self, tick: Tick, contact: &Contact, commands: Commands) -> Option<Collision> {
         let pair = contact.pair();
         let limit =
             self.permits.during(contact.mover(), contact.obstacle(), [commands.emove, commands.subtask]);
@@ -291,10 +290,9 @@ impl ContactCheck {
             commands,
             is_robot: contact.mover_kind.is_robot(),
         };
-        let line = collision.to_string();
         self.open.insert(pair, self.collisions.len());
-        self.collisions.push(collision);
-        Some(line)
+        self.collisions.push(collision.clone());
+        Some(collision)
     }
 
     /// Two things are near each other.
@@ -359,6 +357,7 @@ mod tests {
         let ticks = (1..).zip(ticks);
         ticks
             .flat_map(|(tick, (depth, commands))| check.look(Tick(tick), &finger(*depth), *commands))
+            .map(|event| event.to_string())
             .collect()
     }
 

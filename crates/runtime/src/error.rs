@@ -13,6 +13,7 @@ use taskdata::load::{Diagnostics, amount};
 
 /// Why a run cannot begin.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StartError {
     /// The data directory is not there.
     #[error("there is no task data directory {}; name one with --data", .0.display())]

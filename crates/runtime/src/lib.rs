@@ -2,7 +2,7 @@
 //!
 //! A [`RunConfig`] says what to run: task data, job, clock, robot, faults, boards, neighbours, log. [`Run::new`]
 //! reads and checks all of it and starts what the run needs; [`Run::step`] runs one tick; [`Run::finish`] ends
-//! the log and gives the [`RunOutcome`]. An [`Observer`] hears messages and sees each tick.
+//! the log and gives the [`RunOutcome`]. An [`Observer`] hears messages and each [`Event`] and sees each tick.
 //!
 //! ```no_run
 //! use runtime::{LogTarget, Run, RunConfig};
@@ -27,6 +27,7 @@ pub mod config;
 pub mod contacts;
 mod egm;
 pub mod error;
+pub mod event;
 mod live;
 mod load;
 pub mod loads;
@@ -51,6 +52,7 @@ pub use self::{
     change::ChangeError,
     config::{Boards, ClockKind, LogTarget, OperatorAccess, RobotConfig, RobotKind, RunConfig},
     error::StartError,
+    event::Event,
     observer::{Observer, TickReport},
     own::OwnRobot,
     repeat::RepeatError,

@@ -13,7 +13,7 @@ use levels::ladder::LadderState;
 use plant::{Cell, camera::Subject, clearance::Contact, convert::metres, description::Camera, part_link};
 use rcs_core::{digest::Digest, tick::Tick};
 use record::{
-    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, LogFile, Model, Name, OperatorLine, Pace,
+    Attachment, CellFrame, CellModel, End, Epoch, Link, LogFile, Model, Name, OperatorLine, Pace,
     RecordError, Recorder, Shown, Summary, Timing, Touch, Transform,
 };
 use taskdata::load::{
@@ -24,6 +24,7 @@ use taskdata::load::{
 use crate::{
     config::{ClockKind, RobotKind, RunConfig},
     egm::FRAMES,
+    event::Event,
     live::Live,
     setup::{EXTENSION, Setup},
 };
@@ -166,9 +167,9 @@ impl Log {
         }
     }
 
-    /// Something worth a line; before [`Log::tick`] of the same tick.
-    pub fn note(&mut self, tick: Tick, level: Level, source: &str, text: &str) {
-        self.recorder.note(tick, level, source, text);
+    /// Something has happened; before [`Log::tick`] of the same tick.
+    pub fn event(&mut self, tick: Tick, event: &Event) {
+        self.recorder.note(tick, event.level(), event.source(), event.code(), &event.to_string());
     }
 
     /// What an operator has asked for; before [`Log::tick`] of the tick that sees it first.
@@ -182,7 +183,7 @@ impl Log {
         let fresh = FaultKind::ALL.iter().filter(|kind| counts.of(**kind) > self.faults.of(**kind));
         let kinds: Vec<&'static str> = fresh.map(|kind| kind.text()).collect();
         if !kinds.is_empty() && kinds != self.kinds {
-            self.recorder.note(tick, Level::Warning, "fault", &format!("on the line: {}", kinds.join(", ")));
+            self.event(tick, &Event::LineFaults(kinds.clone()));
         }
         (self.faults, self.kinds) = (counts, kinds);
     }
@@ -193,8 +194,7 @@ impl Log {
         for file in Attachment::reload(generation, std::slice::from_ref(source)) {
             self.recorder.attach(tick, file);
         }
-        let text = format!("task data, generation {generation}: {} is loaded", source.name);
-        self.recorder.note(tick, Level::Info, "executive", &text);
+        self.event(tick, &Event::Loaded { generation, name: source.name.clone() });
     }
 
     /// From `tick` on this job is played in the place of the rest of the one before; before [`Log::tick`] of that tick.

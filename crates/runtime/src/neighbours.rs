@@ -12,9 +12,9 @@ use std::{
 
 use interfaces::{CommonMemory, DataBaseStatus, DeviceInputs, Header, HwsCommand, OutsidePedestal};
 use neighbours::{
-    data_system::{self, DataSystem, Item},
+    data_system::{DataSystem, Item},
     mailbox::{HWSC_COMMAND, Mailbox},
-    network::{Endpoint, EndpointHandle, Listener, NetEvent, Role},
+    network::{Endpoint, EndpointHandle, Listener, Role},
     pedestal,
     vision::{self, picture::Part},
     workstation::{
@@ -25,7 +25,6 @@ use neighbours::{
 };
 use plant::camera::Subject;
 use rcs_core::{Plain as _, tick::Tick};
-use record::Level;
 use taskdata::load::Store;
 
 use super::{
@@ -36,17 +35,9 @@ use super::{
 use crate::{
     config::{ClockKind, RunConfig},
     error::StartError,
+    event::Event,
     observer::Observer,
 };
-
-/// A line for the log: how grave it is, who says it, and the words.
-pub type Note = (Level, &'static str, String);
-
-/// What is said of the network: that a neighbour connects is no warning.
-pub fn network_note(event: &NetEvent) -> Note {
-    let level = if matches!(event, NetEvent::Connected(_)) { Level::Info } else { Level::Warning };
-    (level, "network", event.to_string())
-}
 
 /// The workstation controller of a run: what commands Task.
 pub enum WorkstationSource {
@@ -92,7 +83,7 @@ pub struct Neighbours {
     vision: Option<vision::Port>,
     /// Accepts neighbours as long as the run lasts; none without it.
     pub(crate) network: Option<Network>,
-    notes: Vec<Note>,
+    events: Vec<Event>,
     /// No command is given any more.
     is_ending: bool,
 }
@@ -114,7 +105,7 @@ impl Neighbours {
             pedestal,
             vision,
             network,
-            notes: Vec::new(),
+            events: Vec::new(),
             is_ending: false,
         }
     }
@@ -239,10 +230,7 @@ impl Neighbours {
     fn step_pedestal(&mut self, tick: Tick, memory: &CommonMemory, inputs: &DeviceInputs) {
         let Some(agent) = &mut self.pedestal else { return };
         agent.exchange(tick.next(), &memory.subtask.pedestal, &inputs.pedestal);
-        self.notes.extend(agent.remarks().into_iter().map(|remark| match remark {
-            pedestal::Remark::Network(event) => network_note(&event),
-            own => (Level::Warning, "Active Pedestal", own.to_string()),
-        }));
+        self.events.extend(agent.remarks().into_iter().map(Event::from));
     }
 
     /// Vision reads what E-move asks for, with what the camera sees, and what it answers is among the devices
@@ -252,10 +240,7 @@ impl Neighbours {
         let cell = &mut workstation.cell;
         port.step(tick.0, &memory.emove.vision, || cell.picture().iter().map(pictured).collect());
         cell.hear_vision(port.response());
-        self.notes.extend(port.remarks().iter().map(|remark| match remark {
-            vision::Remark::Network(event) => network_note(event),
-            own => (Level::Warning, "vision", own.to_string()),
-        }));
+        self.events.extend(port.remarks().into_iter().map(Event::from));
     }
 
     /// Steps of the job so far, or commands of the workstation controller.
@@ -311,24 +296,18 @@ impl Neighbours {
         store: &Store,
     ) -> Progress {
         self.data_system.step(tick, &memory.task.data_base);
-        for refusal in self.data_system.refusals() {
-            let text = format!("the Data System refuses: {refusal}");
-            self.notes.push((Level::Warning, "Data System", text));
-        }
-        self.notes.extend(self.data_system.remarks().iter().map(|remark| match remark {
-            data_system::Remark::Network(event) => network_note(event),
-            own => (Level::Warning, "Data System", own.to_string()),
-        }));
+        self.events.extend(self.data_system.refusals().into_iter().map(Event::DataBaseRefuses));
+        self.events.extend(self.data_system.remarks().into_iter().map(Event::from));
         self.step_vision(tick, memory, workstation);
         self.gate.write(memory, task_state(&memory.task.header, tick));
         let progress = match &mut self.workstation {
             _ if self.is_ending => Progress::Running,
             WorkstationSource::Emulator(emulator) => {
-                emulator.step(tick, &mut self.gate, workstation, &mut self.notes)
+                emulator.step(tick, &mut self.gate, workstation, &mut self.events)
             }
             WorkstationSource::Outside(commanded) => {
                 let (gate, task) = (&mut self.gate, &memory.task);
-                commanded.step(tick, gate, task, workstation, store, &mut self.notes)
+                commanded.step(tick, gate, task, workstation, store, &mut self.events)
             }
             WorkstationSource::Switched(switched) => {
                 let data_system = self.network.iter().flat_map(|network| &network.handles);
@@ -339,16 +318,16 @@ impl Neighbours {
                     store,
                     has_data_system: data_system.all(EndpointHandle::is_connected),
                 };
-                switched.step(&around, &mut self.gate, workstation, &mut self.notes)
+                switched.step(&around, &mut self.gate, workstation, &mut self.events)
             }
         };
         self.step_pedestal(tick, memory, inputs);
         progress
     }
 
-    /// What is to be said, since the last call.
-    pub fn notes(&mut self) -> Vec<Note> {
-        std::mem::take(&mut self.notes)
+    /// What has happened since the last call.
+    pub fn events(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.events)
     }
 
     /// The items that the Data System keeps.
@@ -373,7 +352,7 @@ impl Emulator {
         tick: Tick,
         gate: &mut Gate,
         workstation: &mut SimulatedWorkstation,
-        notes: &mut Vec<Note>,
+        events: &mut Vec<Event>,
     ) -> Progress {
         let before = self.hwsc.retried().len();
         let progress = match status::decode(gate.status_box().data()) {
@@ -381,7 +360,7 @@ impl Emulator {
             Err(error) => return Progress::Failed(JobFailure::Refused(error.to_string())),
         };
         let retries = self.hwsc.retried().iter().skip(before);
-        notes.extend(retries.map(|retry| (Level::Warning, "HWSC", retry.to_string())));
+        events.extend(retries.cloned().map(Event::Retries));
         self.post(gate).unwrap_or(progress)
     }
 

@@ -4,7 +4,10 @@ use interfaces::{CommonMemory, HwsCommand};
 use neighbours::workstation::player::BegunStep;
 use rcs_core::tick::Tick;
 
+use crate::event::Event;
+
 /// A tick that is over.
+#[non_exhaustive]
 pub struct TickReport<'a> {
     /// The tick.
     pub tick: Tick,
@@ -18,12 +21,17 @@ pub struct TickReport<'a> {
     pub memory: &'a CommonMemory,
 }
 
-/// Hears messages and sees each tick. It is called between the ticks, and delays the next one for as long as it
+/// Hears messages and events and sees each tick. It is called between the ticks, and delays the next one for as long as it
 /// takes. `()` ignores everything.
 pub trait Observer {
     /// A message for the person at the run: one line, without its end.
     fn message(&mut self, text: &str) {
         let _ = text;
+    }
+
+    /// Something has happened in a tick; what a person at the run is to read of it comes as a message, too.
+    fn event(&mut self, tick: Tick, event: &Event) {
+        let _ = (tick, event);
     }
 
     /// A tick is over.

@@ -15,13 +15,9 @@ use neighbours::{
     },
 };
 use rcs_core::{name::Name16, tick::Tick};
-use record::Level;
 use taskdata::load::{Store, job};
 
-use crate::{
-    neighbours::{Note, network_note},
-    workstation::SimulatedWorkstation,
-};
+use crate::{event::Event, workstation::SimulatedWorkstation};
 
 /// Commands that a run remembers; a run of a year must not fill the memory.
 const REMEMBERED: usize = 10_000;
@@ -100,21 +96,21 @@ impl OutsideWorkstation {
     }
 
     /// Once a tick while another one commands: it may come and go, reads no status, and what it writes is not read.
-    pub fn attend(&mut self, tick: Tick, notes: &mut Vec<Note>) {
+    pub fn attend(&mut self, tick: Tick, events: &mut Vec<Event>) {
         for place in [HWSC_STATUS, CELL_STATUS] {
             self.endpoint.outgoing(place).initialize();
         }
-        self.exchange(tick, notes);
+        self.exchange(tick, events);
     }
 
     /// The mailboxes of a tick go out and come in.
-    fn exchange(&mut self, tick: Tick, notes: &mut Vec<Note>) -> Presence {
+    fn exchange(&mut self, tick: Tick, events: &mut Vec<Event>) -> Presence {
         let presence = self.endpoint.exchange(tick.0);
         while let Some(event) = self.endpoint.event() {
-            notes.push(network_note(&event));
-            if let NetEvent::Disconnected(_, reason) = event {
-                self.disconnect = Some(reason);
+            if let NetEvent::Disconnected(_, reason) = &event {
+                self.disconnect = Some(reason.clone());
             }
+            events.push(Event::Network(event));
         }
         if presence.new {
             (self.line_read, self.line, self.refused) = (0, 0, None);
@@ -131,24 +127,24 @@ impl OutsideWorkstation {
         task: &TaskOutputs,
         workstation: &mut SimulatedWorkstation,
         store: &Store,
-        notes: &mut Vec<Note>,
+        events: &mut Vec<Event>,
     ) -> Progress {
         self.follow(tick, gate.command(), task);
         self.endpoint.outgoing(HWSC_STATUS).clone_from(gate.status_box());
-        self.write_cell(workstation, notes);
-        let presence = self.exchange(tick, notes);
+        self.write_cell(workstation, events);
+        let presence = self.exchange(tick, events);
         let gone = self.has_gone(presence);
         if presence.new {
             gate.initialize();
         }
         let before = gate.command().number;
         if let Some(refusal) = gate.read(self.endpoint.incoming(HWSC_COMMAND)) {
-            notes.push((Level::Warning, "HWSC", format!("a command is refused: {refusal}")));
+            events.push(Event::CommandRefused(refusal));
         }
         if gate.command().number != before {
             self.begin(tick, gate.command());
         }
-        self.read_cell(workstation, store, notes);
+        self.read_cell(workstation, store, events);
         if gone { self.end(gate.command(), task, workstation) } else { Progress::Running }
     }
 
@@ -208,7 +204,7 @@ impl OutsideWorkstation {
         };
     }
 
-    fn write_cell(&mut self, workstation: &SimulatedWorkstation, notes: &mut Vec<Note>) {
+    fn write_cell(&mut self, workstation: &SimulatedWorkstation, events: &mut Vec<Event>) {
         let (emergency, fault) = (workstation.emergency(), workstation.fault());
         let (trouble, text) = match (&emergency, &fault, &self.refused) {
             (Some(text), _, _) => (Trouble::Emergency, text.as_str()),
@@ -221,12 +217,12 @@ impl OutsideWorkstation {
         if mailbox.data() != status
             && let Err(error) = mailbox.write(&status)
         {
-            notes.push((Level::Error, "cell", error.to_string()));
+            events.push(Event::CellStatusUnsent(error));
         }
     }
 
     /// Begin what the workstation controller wants of the cell.
-    fn read_cell(&mut self, workstation: &mut SimulatedWorkstation, store: &Store, notes: &mut Vec<Note>) {
+    fn read_cell(&mut self, workstation: &mut SimulatedWorkstation, store: &Store, events: &mut Vec<Event>) {
         let mailbox = self.endpoint.incoming(CELL_COMMAND);
         if mailbox.mailgram() == self.line_read {
             return;
@@ -246,7 +242,7 @@ impl OutsideWorkstation {
         };
         self.refused = begun.err();
         if let Some(why) = &self.refused {
-            notes.push((Level::Warning, "cell", format!("a line of the workstation is refused: {why}")));
+            events.push(Event::CellLineRefused(why.clone()));
         }
     }
 }

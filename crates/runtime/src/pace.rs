@@ -6,14 +6,13 @@ use executive::{
     clock::Clock,
     histogram::Histogram,
     machine::Machine,
-    overrun::{Overrun, Overruns, PUNCTUAL, Policy},
+    overrun::{Overrun, Overruns, Policy},
     realtime::{self, RealTime},
     timing::{Stage, StageTimes},
 };
 use interfaces::{CommonMemory, DeviceInputs};
-use record::Level;
 
-use crate::result::TickTimes;
+use crate::{event::Event, result::TickTimes};
 
 /// Processes on the page of text: those with the longest times.
 const PROCESSES_SHOWN: usize = 3;
@@ -28,9 +27,6 @@ pub struct Pace {
     verdict: Option<String>,
     was_holding: bool,
 }
-
-/// What the clock has to say for the log: how grave it is, and the words.
-pub type Remark = (Level, String);
 
 impl Pace {
     /// One tick after the other.
@@ -49,14 +45,14 @@ impl Pace {
 
     /// From now on a tick every 40 ms, or `speed` ticks in that time. The threads of log and progress must run already: they keep their
     /// ordinary priority.
-    pub fn ask_for_real_time(&mut self, core: Option<usize>, speed: u8) -> Remark {
+    pub fn ask_for_real_time(&mut self, core: Option<usize>, speed: u8) -> Event {
         let granted = realtime::acquire(core);
-        let text = format!("real time: {}; {}", granted.verdict, Machine::look());
-        let level = if granted.verdict.complete() { Level::Info } else { Level::Warning };
+        let verdict = format!("{}; {}", granted.verdict, Machine::look());
+        let event = Event::RealTime { verdict, complete: granted.verdict.complete() };
         self.granted = Some(granted);
-        self.verdict = Some(text.clone());
+        self.verdict = Some(event.to_string());
         self.clock = Clock::times(speed);
-        (level, text)
+        event
     }
 
     /// Sleep until shortly before the next tick; true if there is time for a warm-up.
@@ -65,7 +61,7 @@ impl Pace {
     }
 
     /// Wait until the tick is due. Returns what was skipped on the way, and what is done about it.
-    pub fn wait(&mut self, stage_times: &StageTimes) -> Vec<Remark> {
+    pub fn wait(&mut self, stage_times: &StageTimes) -> Vec<Event> {
         let slots = self.clock.wait();
         let late = self.clock.late();
         self.late.add(u64::try_from(late.as_nanos()).unwrap_or(u64::MAX));
@@ -74,22 +70,13 @@ impl Pace {
         let (stops, changed) = (matches!(self.policy, Policy::Stop(_)), holding != self.was_holding);
         self.was_holding = holding;
         // An empty vector does not allocate.
-        let mut remarks = Vec::new();
-        if let Some(overrun) = overrun {
-            remarks.push((Level::Warning, overrun.to_string()));
-        }
-        match (changed, holding) {
-            (true, true) if stops => {
-                remarks.push((Level::Error, "the robot is brought to rest, and the run ends".to_owned()));
-            }
-            (true, true) => remarks.push((
-                Level::Warning,
-                format!("the robot holds until {PUNCTUAL} ticks in a row were punctual"),
-            )),
-            (true, false) => remarks.push((Level::Info, "punctual again: the robot goes on".to_owned())),
-            (false, _) => {}
-        }
-        remarks
+        let mut events: Vec<Event> = overrun.map(Event::Overrun).into_iter().collect();
+        events.extend(changed.then_some(match holding {
+            true if stops => Event::Stops,
+            true => Event::Holds,
+            false => Event::Punctual,
+        }));
+        events
     }
 
     /// The inputs as the controller is to see them: a robot that holds has its velocity knob at zero.

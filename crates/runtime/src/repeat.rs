@@ -25,6 +25,7 @@ pub const CHANGES: &str = "changes";
 
 /// Why a recorded run cannot be run again.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RepeatError {
     /// The log does not have something that a run needs.
     #[error(

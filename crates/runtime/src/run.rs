@@ -24,7 +24,6 @@ use geometry::{frame::Frame, pose::WireFrame};
 use interfaces::{CommonMemory, DeviceInputs, DeviceOutputs, ExternalInputs, device::LinkBytes};
 use levels::ladder::LadderState;
 use rcs_core::{digest::Digest, tick::Tick};
-use record::Level;
 use taskdata::load::Job;
 
 pub use self::outcome::RunOutcome;
@@ -33,6 +32,7 @@ use crate::{
     cell_view::View,
     config::{ClockKind, RunConfig},
     contacts::ContactCheck,
+    event::Event,
     live::Live,
     load::Loads,
     log::Log,
@@ -94,7 +94,7 @@ pub struct Run {
     /// What the cell shows to programs outside.
     view: Box<View>,
     /// Events of the cell since the last tick, for the log of the next one.
-    fresh: Vec<(Level, &'static str, String)>,
+    fresh: Vec<Event>,
     /// What has happened, for the result.
     events: Events,
     /// Does the robot rest?
@@ -174,14 +174,11 @@ impl Run {
 
     /// The log's thread runs already: it keeps its ordinary priority.
     fn ask_for_real_time(&mut self, core: Option<usize>) {
-        let (level, text) = self.pace.ask_for_real_time(core, self.config.speed);
-        self.observer.message(&text);
-        if let Some(log) = &mut self.log {
-            log.note(Tick::BEFORE_START.next(), level, "executive", &text);
-            for board in self.runner.levels().unpunctual() {
-                let text = format!("{board}: not everything that real time needs was granted");
-                log.note(Tick::BEFORE_START.next(), Level::Warning, "executive", &text);
-            }
+        let granted = self.pace.ask_for_real_time(core, self.config.speed);
+        self.observer.message(&granted.to_string());
+        let boards = self.runner.levels().unpunctual().into_iter().map(Event::BoardNotPunctual);
+        for event in std::iter::once(granted).chain(boards) {
+            self.log_event(Tick::BEFORE_START.next(), &event);
         }
     }
 
@@ -191,11 +188,10 @@ impl Run {
             let external = self.external();
             self.runner.warm_up(&external, &self.generations.current().view());
         }
-        for (level, text) in self.pace.wait(self.runner.stage_times()) {
-            self.observer.message(&format!("tick {}: {text}", self.runner.tick().next()));
-            if let Some(log) = &mut self.log {
-                log.note(self.runner.tick().next(), level, "executive", &text);
-            }
+        let tick = self.runner.tick().next();
+        for event in self.pace.wait(self.runner.stage_times()) {
+            self.observer.message(&format!("tick {tick}: {event}"));
+            self.log_event(tick, &event);
         }
         self.runner.stage_times_mut().begin();
     }

@@ -23,13 +23,10 @@ use neighbours::{
     },
 };
 use rcs_core::tick::{TICK_MS, Tick};
-use record::Level;
 use taskdata::load::Store;
 
 use crate::{
-    neighbours::{Emulator, Note},
-    outside::OutsideWorkstation,
-    workstation::SimulatedWorkstation,
+    event::Event, neighbours::Emulator, outside::OutsideWorkstation, workstation::SimulatedWorkstation,
 };
 
 /// Where the robot is to be when the workstation controller is connected (IV.4.1).
@@ -110,22 +107,22 @@ impl Switched {
         around: &Around<'_>,
         gate: &mut Gate,
         workstation: &mut SimulatedWorkstation,
-        notes: &mut Vec<Note>,
+        events: &mut Vec<Event>,
     ) -> Progress {
         if self.is_handed_over() {
-            return self.follow(around, gate, workstation, notes);
+            return self.follow(around, gate, workstation, events);
         }
-        self.outside.attend(around.tick, notes);
-        let progress = self.job.step(around.tick, gate, workstation, notes);
-        if self.is_handed_over() { self.hand_over(around, gate, notes) } else { progress }
+        self.outside.attend(around.tick, events);
+        let progress = self.job.step(around.tick, gate, workstation, events);
+        if self.is_handed_over() { self.hand_over(around, gate, events) } else { progress }
     }
 
     /// The line `** workstation` has come.
-    fn hand_over(&mut self, around: &Around<'_>, gate: &mut Gate, notes: &mut Vec<Note>) -> Progress {
+    fn hand_over(&mut self, around: &Around<'_>, gate: &mut Gate, events: &mut Vec<Event>) -> Progress {
         if let Some(obstacle) = obstacle(around.memory, gate.command(), around.has_data_system) {
             return self.refuse(around.tick, obstacle);
         }
-        notes.push((Level::Info, "HWSC", "the workstation controller commands from here on".to_owned()));
+        events.push(Event::HandedOver);
         gate.initialize();
         (self.since, self.was_connected) = (around.tick, false);
         // In fast clock hours would go by until it comes.
@@ -150,10 +147,10 @@ impl Switched {
         around: &Around<'_>,
         gate: &mut Gate,
         workstation: &mut SimulatedWorkstation,
-        notes: &mut Vec<Note>,
+        events: &mut Vec<Event>,
     ) -> Progress {
         let task = &around.memory.task;
-        let progress = self.outside.step(around.tick, gate, task, workstation, around.store, notes);
+        let progress = self.outside.step(around.tick, gate, task, workstation, around.store, events);
         self.was_connected |= self.outside.is_here();
         if !self.was_connected {
             let waited = match self.outside.endpoint().clock() {
@@ -177,7 +174,7 @@ impl Switched {
         if executes {
             return progress;
         }
-        notes.push((Level::Info, "HWSC", "the workstation controller has gone; the job goes on".to_owned()));
+        events.push(Event::TakenBack);
         self.job.take_back(around.tick, gate, self.outside.take_steps())
     }
 

@@ -38,11 +38,11 @@ pub struct World {
 pub fn first(log: &Log, history: &History) -> Option<World> {
     // The cell tells with the next tick what happened in one.
     let grave = log.lines().find(|line| line.source == "cell" && line.level == Level::Error);
-    let (tick, text) = match grave {
-        Some(line) => (line.tick.0.saturating_sub(1), line.text),
+    let (tick, text, code) = match grave {
+        Some(line) => (line.tick.0.saturating_sub(1), line.text, line.code),
         None => {
             let end = log.end.as_ref()?;
-            (end.get("failed_at")?.parse().ok()?, end.get("result")?.clone())
+            (end.get("failed_at")?.parse().ok()?, end.get("result")?.clone(), String::new())
         }
     };
     let (memory, generation) = moments(log)
@@ -50,7 +50,7 @@ pub fn first(log: &Log, history: &History) -> Option<World> {
         .take_while(|moment| moment.tick.0 <= tick)
         .last()
         .map(|moment| (moment.before, moment.external.generation))?;
-    let process = mover(&text, &memory);
+    let process = mover(&code, &memory);
     let commands = chain::commands(history, Root { process, tick });
     let store = generations(log).ok().and_then(|all| all.into_iter().nth(usize::try_from(generation).ok()?));
     let data = store.map_or_else(Vec::new, |store| data(&store, process, &memory));
@@ -59,12 +59,13 @@ pub fn first(log: &Log, history: &History) -> Option<World> {
 
 /// The lowest process whose command did it: the gripper for a part that is lost, T3I for a warning of the
 /// robot controller, Prim for all that moves.
-fn mover(text: &str, memory: &CommonMemory) -> ProcessId {
-    if text.starts_with("the T3 controller shows") {
-        return ProcessId::T3i;
+fn mover(code: &str, memory: &CommonMemory) -> ProcessId {
+    let by_parts_gripper = memory.emove.prim.end_effector_id == Some(PARTS_GRIPPER);
+    match code {
+        "cell.warning" => ProcessId::T3i,
+        "cell.dropped" if by_parts_gripper => ProcessId::Grip,
+        _ => ProcessId::Prim,
     }
-    let grips = text.contains("is lost from") && memory.emove.prim.end_effector_id == Some(PARTS_GRIPPER);
-    if grips { ProcessId::Grip } else { ProcessId::Prim }
 }
 
 /// What the commands in the buffers name, with its file, block and line.

@@ -9,10 +9,10 @@
 use std::sync::Arc;
 
 use depc::fault::{Direction, FaultKind, Injector, Plan, Rule};
-use executive::failure::Watch;
+use executive::{course::Course, failure::Watch, generations::is_busy};
 use interfaces::{
     CommonMemory, DataBaseCommand, DeviceInputs, DeviceOutputs, ExternalInputs, HwsCommand, OperatorInputs,
-    OutsidePedestal, StatusReport, hws::HwsReport,
+    OutsidePedestal,
 };
 use levels::ladder::{Ladder, ProcessId};
 use neighbours::{
@@ -25,7 +25,7 @@ use neighbours::{
     },
 };
 use plant::{Cell, CellDescription, CellEvent};
-use rcs_core::{Plain, digest::Digest, tick::Tick};
+use rcs_core::{Plain as _, digest::Digest, tick::Tick};
 use taskdata::{
     files::TaskData,
     load::{Job, Store},
@@ -120,13 +120,8 @@ impl RobotLine {
 /// Everything but the cell and the Data System.
 #[derive(Clone)]
 struct Control {
-    ladder: Ladder,
-    tick: Tick,
-    memory: CommonMemory,
+    course: Course<Ladder>,
     external: ExternalInputs,
-    digest: Digest,
-    scratch: Box<[u8]>,
-    watch: Watch,
     gate: Gate,
     command_box: Mailbox,
     check: ContactCheck,
@@ -165,13 +160,8 @@ impl<'f> Branch<'f> {
     pub fn start(facility: &'f Facility) -> Result<Self, Error> {
         let cell = Cell::new(&facility.description, facility.seed).map_err(StartError::from)?;
         let control = Control {
-            ladder: Ladder::default(),
-            tick: Tick::BEFORE_START,
-            memory: CommonMemory::ZERO,
+            course: Course::new(Ladder::default()),
             external: ExternalInputs::default(),
-            digest: Digest::new(),
-            scratch: vec![0; CommonMemory::SIZE].into_boxed_slice(),
-            watch: Watch::default(),
             gate: Gate::default(),
             command_box: Mailbox::initialized(HWSC_COMMAND),
             check: ContactCheck::new(facility.description.contact.clone()),
@@ -213,8 +203,11 @@ impl<'f> Branch<'f> {
         let mut data_system = data_system()?;
         for (place, (tick, command)) in fork.control.told.iter().enumerate() {
             data_system.step(*tick, command);
-            let next =
-                fork.control.told.get(place + 1).map_or(fork.control.tick, |(next, _)| next.previous());
+            let next = fork
+                .control
+                .told
+                .get(place + 1)
+                .map_or(fork.control.course.tick(), |(next, _)| next.previous());
             let answered = Tick(tick.0.saturating_add(ANSWER_TICKS));
             if answered <= next {
                 data_system.step(answered, command);
@@ -232,7 +225,6 @@ impl<'f> Branch<'f> {
     /// Run a tick.
     pub fn tick(&mut self, commander: &mut impl Commander) {
         let control = &mut self.control;
-        let tick = control.tick.next();
         control.external = ExternalInputs {
             hws: *control.gate.command(),
             devices: control.inputs,
@@ -241,14 +233,11 @@ impl<'f> Branch<'f> {
             pedestal: OutsidePedestal::ZERO,
             operator: OperatorInputs::ZERO,
         };
-        let before = control.memory;
         let data = data(self.facility, control.generation);
-        control.ladder.step(tick, &before, &control.external, &data, &mut control.memory);
-        control.tick = tick;
-        control.watch.observe(tick, &control.external, &before, &control.memory);
-        control.digest.add_record(&control.memory, &mut control.scratch);
-        let outputs = control.memory.device_outputs();
-        control.inputs = control.line.advance(tick, &mut self.workstation.cell, &outputs);
+        let Ok(()) = control.course.step(&control.external, &data, &mut |_| {});
+        control.course.sum_up(&control.external);
+        let outputs = control.course.memory().device_outputs();
+        control.inputs = control.line.advance(control.course.tick(), &mut self.workstation.cell, &outputs);
         self.observe();
         self.tell_data_system();
         self.exchange(commander);
@@ -259,29 +248,30 @@ impl<'f> Branch<'f> {
     /// What has happened in the cell.
     fn observe(&mut self) {
         let control = &mut self.control;
-        self.events = self.workstation.events(control.tick);
-        let commands = control.check.commands(&control.memory);
-        control.check.look(control.tick, self.workstation.cell.contacts(), commands);
+        let tick = control.course.tick();
+        self.events = self.workstation.events(tick);
+        let commands = control.check.commands(control.course.memory());
+        control.check.look(tick, self.workstation.cell.contacts(), commands);
         self.workstation.cell.watch_clearance(control.check.margin());
     }
 
     fn tell_data_system(&mut self) {
         let control = &mut self.control;
-        let command = control.memory.task.data_base;
+        let (tick, command) = (control.course.tick(), control.course.memory().task.data_base);
         if control.told.last().is_none_or(|(_, last)| last.number != command.number) {
-            control.told.push((control.tick, command));
+            control.told.push((tick, command));
         }
-        self.data_system.step(control.tick, &command);
+        self.data_system.step(tick, &command);
     }
 
     /// Task's status goes to the commander, and its command comes back.
     fn exchange(&mut self, commander: &mut impl Commander) {
         let control = &mut self.control;
-        let state = task_state(&control.memory.task.header, control.tick);
-        control.gate.write(&control.memory, state);
+        let (tick, memory) = (control.course.tick(), control.course.memory());
+        control.gate.write(memory, task_state(&memory.task.header, tick));
         let command = status::decode(control.gate.status_box().data())
             .ok()
-            .and_then(|status| commander.step(control.tick, &status, &mut self.workstation));
+            .and_then(|status| commander.step(tick, &status, &mut self.workstation));
         // Commands are those of a job, whose fields fit into the mailbox.
         if let Some(bytes) = command.and_then(|command| command::encode(&command).ok()) {
             let _ = control.command_box.write(&bytes);
@@ -293,18 +283,14 @@ impl<'f> Branch<'f> {
     fn reload(&mut self) {
         let control = &mut self.control;
         control.asked.extend(self.workstation.loads());
-        let memory = &control.memory;
-        let busy = memory.task.status.report == HwsReport::Executing
-            || memory.subtask.status.report == StatusReport::Executing
-            || memory.emove.status.report == StatusReport::Executing;
-        if !busy && !control.asked.is_empty() {
+        if !is_busy(control.course.memory()) && !control.asked.is_empty() {
             control.generation = control.asked.remove(0);
         }
     }
 
     /// A process forgets everything.
     pub fn restart(&mut self, process: ProcessId) {
-        self.control.ladder.restart(process);
+        self.control.course.levels_mut().restart(process);
     }
 
     /// The next answer of the robot controller suffers this.
@@ -320,13 +306,13 @@ impl<'f> Branch<'f> {
     /// The tick that was run last.
     #[must_use]
     pub const fn at(&self) -> Tick {
-        self.control.tick
+        self.control.course.tick()
     }
 
     /// Common memory as the last tick left it.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
-        &self.control.memory
+        self.control.course.memory()
     }
 
     /// What came from outside for the last tick.
@@ -338,7 +324,7 @@ impl<'f> Branch<'f> {
     /// Fingerprint of all ticks so far.
     #[must_use]
     pub const fn digest(&self) -> Digest {
-        self.control.digest
+        self.control.course.digest()
     }
 
     /// What the robot has touched.
@@ -350,7 +336,7 @@ impl<'f> Branch<'f> {
     /// Who failed first, and why.
     #[must_use]
     pub const fn watch(&self) -> &Watch {
-        &self.control.watch
+        self.control.course.watch()
     }
 
     /// Number of the command that Task has.

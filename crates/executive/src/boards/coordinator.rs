@@ -6,44 +6,36 @@
 //! fingers stay as they are.
 
 use std::{
-    fmt,
     process::{Child, ExitStatus},
     sync::atomic::{AtomicBool, Ordering},
     time::{Duration, Instant},
 };
 
-use interfaces::{CommonMemory, ExternalInputs, HwsCommand};
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::LadderState;
-use rcs_core::{
-    Plain,
-    plain::DecodeError,
-    tick::{TICK_MS, Tick},
-};
+use rcs_core::{Plain, tick::Tick};
 use taskdata::files::TaskData;
 
 use super::{
     BOARDS, Board,
     exchange::Readers,
+    lost::{How, LOST_AFTER, Lost, SplitError},
     pulse::{
         BoardReport, Checked, Epochs, Fingerprint, PulseGiver, ReportReader, RunCard, SystemPulse, sleep,
     },
 };
 use crate::{
-    failure,
+    course::Levels,
     histogram::Histogram,
     memory::{
         self, RunName, SharedMemoryError,
         publish::FIRST_EPOCH,
         runs::{self, RunNode},
     },
-    runner::Levels,
 };
 
 /// Name of board 0 among the nodes of a run.
 pub const BOARD_0: &str = "board-0";
-/// Slots without a stamp after which a board is lost
-/// (docs/design/handshake.md "Lost board"); in fast clock the same time.
-pub const LOST_AFTER: Duration = Duration::from_millis(25 * TICK_MS);
 /// How long board 0 waits before it looks for itself.
 const LOOK: Duration = Duration::from_millis(10);
 /// Time between two looks for boards that are not there yet.
@@ -52,116 +44,6 @@ const GATHER: Duration = Duration::from_millis(20);
 const LIFE: u32 = 25;
 /// How long boards have to end by themselves when the run is over.
 const FAREWELL: Duration = Duration::from_secs(2);
-
-/// Why the boards did not come together.
-#[derive(Debug, thiserror::Error)]
-pub enum SplitError {
-    /// Boards need shared memory.
-    #[error("boards exchange their data in shared memory, and it cannot be had: {0}")]
-    SharedMemory(#[from] SharedMemoryError),
-    /// A board's process could not be started.
-    #[error("{board} cannot be started: {source}")]
-    Start {
-        /// Which.
-        board: Board,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// A board's process ended before the first tick.
-    #[error("{board} ended before the first tick ({status}); its reason stands above")]
-    Ended {
-        /// Which.
-        board: Board,
-        /// How.
-        status: ExitStatus,
-    },
-    /// A board runs with something else.
-    #[error("{board} (process {pid}) cannot take part: {difference}")]
-    Different {
-        /// Which.
-        board: Board,
-        /// Its process.
-        pid: u32,
-        /// In what it differs.
-        difference: &'static str,
-    },
-    /// Boards did not come.
-    #[error("{} did not come within {} s", list(.missing), .patience.as_secs())]
-    Missing {
-        /// Which.
-        missing: Vec<Board>,
-        /// How long they were waited for.
-        patience: Duration,
-    },
-    /// The operator gave up.
-    #[error("interrupted while waiting for {}", list(.0))]
-    Interrupted(Vec<Board>),
-}
-
-/// `board 2, board 8`.
-fn list(boards: &[Board]) -> String {
-    boards.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
-}
-
-/// How a board was lost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum How {
-    /// Its process ended.
-    Ended(ExitStatus),
-    /// It said that it leaves.
-    Left,
-    /// It does not answer.
-    Silent,
-    /// It wrote what no process writes.
-    Garbled(DecodeError),
-    /// It stamped a tick without having written its outputs.
-    Unwritten,
-}
-
-/// A board that was lost. Small and without heap, since it comes up within a tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub struct Lost {
-    /// The board.
-    pub board: Board,
-    /// Its process.
-    pub pid: u32,
-    /// The tick that it did not finish.
-    pub tick: Tick,
-    /// How.
-    pub how: How,
-}
-
-impl fmt::Display for Lost {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { board, pid, tick, how } = self;
-        write!(f, "{board} ({}; process {pid}) ", board.process_names())?;
-        match how {
-            How::Ended(status) => write!(f, "ended ({status})")?,
-            How::Left => f.write_str("left the run")?,
-            How::Silent => write!(f, "has not answered for {:.1} s", LOST_AFTER.as_secs_f64())?,
-            How::Garbled(error) => write!(f, "wrote what no process writes ({error})")?,
-            How::Unwritten => f.write_str("stamped what it had not written")?,
-        }
-        write!(f, " in tick {tick}")
-    }
-}
-
-impl Lost {
-    /// The whole in a sentence: what the board's processes were about, and what follows. `hws` and `memory`
-    /// are those that the tick began with.
-    #[must_use]
-    pub fn explain(&self, hws: &HwsCommand, memory: &CommonMemory) -> String {
-        let doing = failure::unfinished_commands(self.board.processes(), hws, memory);
-        let doing = if doing.is_empty() {
-            "without a command in progress".to_owned()
-        } else {
-            format!("while {doing}")
-        };
-        format!(
-            "{self}, {doing}; there is no pulse without it: the robot gets no further point, what is held stays held"
-        )
-    }
-}
 
 /// A change among the boards while they come together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -34,6 +34,7 @@
 
 pub mod coordinator;
 pub mod exchange;
+pub mod lost;
 pub mod member;
 pub mod pulse;
 
@@ -41,7 +42,8 @@ use std::{fmt, str::FromStr};
 
 use levels::ladder::ProcessId;
 
-pub use coordinator::{Coordinator, Lost, SplitError};
+pub use coordinator::Coordinator;
+pub use lost::{Lost, SplitError};
 pub use member::{BoardData, Member, MemberError};
 pub use pulse::{Checked, Epochs, Fingerprint};
 

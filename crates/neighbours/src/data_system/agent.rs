@@ -40,6 +40,7 @@ const PAUSE: Duration = Duration::from_millis(5);
 
 /// What there is to say of the Data System.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Remark {
     /// It has connected or disconnected, or a connection was refused.
     Network(NetEvent),
@@ -52,6 +53,18 @@ pub enum Remark {
         /// For so long it was waited for.
         patience: Duration,
     },
+}
+
+impl Remark {
+    /// Stable short name of its kind.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::Network(event) => event.code(),
+            Self::Garbled(_) => "data-system.garbled",
+            Self::Silent { .. } => "data-system.silent",
+        }
+    }
 }
 
 impl fmt::Display for Remark {

@@ -37,6 +37,7 @@ impl fmt::Display for Disconnect {
 
 /// What happened on the network.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum NetEvent {
     /// A neighbour has connected.
     Connected(Role),
@@ -44,6 +45,18 @@ pub enum NetEvent {
     Disconnected(Role, Disconnect),
     /// A connection was refused, and why.
     Refused(String),
+}
+
+impl NetEvent {
+    /// Stable short name of its kind.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::Connected(_) => "network.connected",
+            Self::Disconnected(..) => "network.disconnected",
+            Self::Refused(_) => "network.refused",
+        }
+    }
 }
 
 impl fmt::Display for NetEvent {

@@ -35,6 +35,7 @@ const ECHO_TICKS: u64 = 50;
 
 /// What there is to say of the pedestal.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum Remark {
     /// It has connected or disconnected, or a connection was refused.
     Network(NetEvent),
@@ -46,6 +47,20 @@ pub enum Remark {
     Silent(u32),
     /// What is to be sent does not fit its mailbox.
     Unsent(MailboxError),
+}
+
+impl Remark {
+    /// Stable short name of its kind.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::Network(event) => event.code(),
+            Self::Refuses(_) => "pedestal.refuses",
+            Self::Garbled(..) => "pedestal.garbled",
+            Self::Silent(_) => "pedestal.silent",
+            Self::Unsent(_) => "pedestal.unsent",
+        }
+    }
 }
 
 impl std::fmt::Display for Remark {

@@ -25,6 +25,7 @@ use crate::{
 
 /// What is worth a word in the log.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Remark {
     /// Vision has come, or gone.
     Network(NetEvent),
@@ -53,6 +54,22 @@ pub enum Remark {
     Cropped(usize),
     /// A mailbox does not hold what is to be written.
     Mailbox(MailboxError),
+}
+
+impl Remark {
+    /// Stable short name of its kind.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::Network(event) => event.code(),
+            Self::Refused(_) => "vision.garbled",
+            Self::Stranger { .. } => "vision.stranger",
+            Self::Unread { .. } => "vision.unread",
+            Self::Waits { .. } => "vision.waits",
+            Self::Cropped(_) => "vision.cropped",
+            Self::Mailbox(_) => "vision.unsent",
+        }
+    }
 }
 
 impl fmt::Display for Remark {

@@ -36,6 +36,7 @@
 
 mod operator;
 mod outcome;
+mod step;
 
 use interfaces::{Header, HwsCommand, Reason, hws::HwsReport};
 use rcs_core::{
@@ -45,7 +46,7 @@ use rcs_core::{
 };
 use taskdata::load::job::{JobLine, Panel, Step, Workstation as Action};
 
-use self::operator::Intervention;
+use self::{operator::Intervention, step::Later};
 pub use self::{
     operator::OperatorError,
     outcome::{BegunStep, JobFailure, Outcome, Progress, Retry},
@@ -121,24 +122,6 @@ struct FailedCommand {
     step: usize,
     tick: Tick,
     reason: Reason,
-}
-
-/// An action that waits for its time.
-#[derive(Debug)]
-struct Later {
-    /// Ticks from the command.
-    ticks: u64,
-    action: Action,
-    /// The line without what says when.
-    line: String,
-    /// When the command was sent; `None` as long as it was not.
-    since: Option<Tick>,
-}
-
-impl Later {
-    fn is_due(&self, tick: Tick) -> bool {
-        self.since.is_some_and(|since| tick.since(since) >= self.ticks)
-    }
 }
 
 impl Hwsc {
@@ -456,80 +439,6 @@ impl Hwsc {
         self.took(tick);
         self.fail(JobFailure::Workstation(why));
     }
-
-    /// The step that is going on has taken its time.
-    fn took(&mut self, tick: Tick) {
-        if let (Some(step), Some(began)) = (self.begun_steps.get_mut(self.entry), self.began) {
-            step.ticks = tick.since(began);
-        }
-    }
-
-    /// Send a PAUSE before the current step.
-    fn pause(&mut self, tick: Tick) {
-        self.pausing = true;
-        self.send(tick, PAUSE.to_owned(), pause());
-    }
-
-    /// Begin the current step; after the last one the job is over.
-    fn begin(&mut self, tick: Tick, workstation: &mut impl Workstation) {
-        self.began = Some(tick);
-        self.pausing = false;
-        let Some(JobLine { step, text, .. }) = self.step_at(self.current).cloned() else {
-            if self.current == 0 {
-                self.send(tick, PAUSE.to_owned(), pause());
-            } else {
-                self.end(workstation);
-            }
-            return;
-        };
-        let refused = match step {
-            Step::Command(command) => return self.send(tick, text, command),
-            Step::Workstation(Action::Wait { .. }) => None,
-            Step::Workstation(action) => workstation.begin(&action, spoken(&text)).err(),
-            Step::After { ticks, action } => {
-                let line = after(spoken(&text)).to_owned();
-                self.later.push(Later { ticks: u64::from(ticks), action, line, since: None });
-                None
-            }
-        };
-        self.begun(tick, text, false);
-        if let Some(refused) = refused {
-            self.fail(JobFailure::Workstation(refused));
-        }
-    }
-
-    /// Send a command.
-    fn send(&mut self, tick: Tick, text: String, command: HwsCommand) {
-        self.began = Some(tick);
-        self.begun(tick, text, true);
-        self.later.iter_mut().for_each(|later| later.since = later.since.or(Some(tick)));
-        self.command = HwsCommand { number: self.commander.send(tick.next()), ..command };
-        (self.to_send, self.repeated) = (true, false);
-    }
-
-    fn begun(&mut self, tick: Tick, text: String, is_command: bool) {
-        self.entry = self.begun_steps.len();
-        self.begun_steps.push(BegunStep {
-            text,
-            is_command,
-            began: tick,
-            outcome: Outcome::Executing,
-            ticks: 0,
-        });
-    }
-
-    fn fail(&mut self, failure: JobFailure) {
-        self.finish(Outcome::Failed);
-        if !self.waits_for_operator(&failure) {
-            self.progress = Progress::Failed(failure);
-        }
-    }
-
-    fn finish(&mut self, outcome: Outcome) {
-        if let Some(step) = self.begun_steps.get_mut(self.entry) {
-            step.outcome = outcome;
-        }
-    }
 }
 
 /// The command that comes first, and before a command is sent again.
@@ -539,17 +448,6 @@ const PAUSE: &str = "PAUSE";
 #[must_use]
 pub fn pause() -> HwsCommand {
     HwsCommand { command: Name16::clipped(PAUSE), ..HwsCommand::default() }
-}
-
-/// A line for the workstation without the asterisks in front of it.
-fn spoken(line: &str) -> &str {
-    line.trim_start().trim_start_matches('*').trim_start()
-}
-
-/// A line without the `after` and the number in front of it.
-fn after(line: &str) -> &str {
-    let words = |line| str::split_once(line, char::is_whitespace).map_or("", |(_, rest)| rest.trim_start());
-    words(words(line))
 }
 
 const fn lower(report: HwsReport) -> Lower {

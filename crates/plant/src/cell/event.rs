@@ -2,14 +2,19 @@
 
 use std::fmt;
 
-use depc::controller::JointProblem;
+use depc::controller::{JointProblem, Warning};
 use serde::{Deserialize, Serialize};
 
 use super::Droop;
-use crate::{clearance::Contact, description::DescriptionError, t3::DriveError};
+use crate::{
+    clearance::Contact,
+    description::DescriptionError,
+    t3::{DriveError, explained},
+};
 
 /// Why a cell cannot be built.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CellError {
     /// The description has faults.
     #[error(transparent)]
@@ -24,6 +29,7 @@ pub enum CellError {
 
 /// Something that should not happen, or that a person wants to know.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[non_exhaustive]
 pub enum CellEvent {
     /// The robot, or what it carries, has begun to touch something that it may never touch, or deeper than it
     /// ever may. What it may touch during some commands is judged where they are known:
@@ -65,8 +71,8 @@ pub enum CellEvent {
         /// The part.
         part: String,
     },
-    /// The T3 controller shows a warning: its code, and what it means.
-    Warning(String),
+    /// The T3 controller shows a warning.
+    Warning(#[serde(with = "crate::image::record")] Warning),
     /// An arm without pressure has come to rest.
     Sagged(Droop),
     /// Something that a person would see of the robot and its controller: pressure, lamps, jumps.
@@ -107,6 +113,28 @@ impl CellEvent {
                 | Self::Quarantined
         )
     }
+
+    /// Stable short name of its kind.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::Contact(_) => "cell.contact",
+            Self::Slipped { .. } => "cell.slipped",
+            Self::Dropped { .. } => "cell.dropped",
+            Self::ForcedOut { .. } => "cell.forced-out",
+            Self::GripperFell { .. } => "cell.gripper-fell",
+            Self::GripperTorn { .. } => "cell.gripper-torn",
+            Self::Fell { .. } => "cell.fell",
+            Self::Warning(_) => "cell.warning",
+            Self::Sagged(_) => "cell.sagged",
+            Self::T3(_) => "cell.t3",
+            Self::CannotFollow(_) => "cell.cannot-follow",
+            Self::Quarantined => "cell.quarantined",
+            Self::ViseStuck => "cell.vise-stuck",
+            Self::FaultBegins { .. } => "fault.begins",
+            Self::FaultEnds { .. } => "fault.ends",
+        }
+    }
 }
 
 impl fmt::Display for CellEvent {
@@ -127,7 +155,7 @@ impl fmt::Display for CellEvent {
             Self::Fell { part } => write!(f, "{part} lies on the floor"),
             Self::Sagged(droop) => write!(f, "the arm {}", droop.end()),
             Self::T3(text) => write!(f, "T3: {text}"),
-            Self::Warning(code) => write!(f, "the T3 controller shows {code}"),
+            Self::Warning(warning) => write!(f, "the T3 controller shows {}", explained(*warning)),
             Self::CannotFollow(problem) => {
                 write!(f, "the simulated arm cannot follow the robot: {problem:?}")
             }

@@ -50,7 +50,7 @@ use crate::{
     pedestal::Pedestal,
     scene::{Block, FINGER, furniture},
     sensor::DeadTimes,
-    t3::{DriveError, Key, Message, Refusal, StepInputs, StepOutputs, T3Controller, explained},
+    t3::{DriveError, Key, Message, Refusal, StepInputs, StepOutputs, T3Controller},
     vise::Vise,
 };
 
@@ -403,7 +403,7 @@ impl Cell {
     fn hear_t3(&mut self) {
         for message in self.t3.messages() {
             match message {
-                Message::Warning(warning) => self.events.push(CellEvent::Warning(explained(warning))),
+                Message::Warning(warning) => self.events.push(CellEvent::Warning(warning)),
                 Message::Lamp(text) | Message::Robot(text) => self.events.push(CellEvent::T3(text)),
                 _ => {}
             }

@@ -2,21 +2,19 @@
 //!
 //! Every check names its entry by the way to it (`gripper.parts.body[0]`), so that it can be found and underlined in the text.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod collector;
+mod parts;
+
+use std::collections::BTreeSet;
 
 use diagnostics::{
     Diagnostics, Problem, Problems,
     toml::{Path, StandIns, element, join},
 };
 use geometry::kinematics::{JOINT_NAMES, T3};
-use rcs_core::name::Name16;
 
-use super::{
-    CellDescription, DescriptionError, Gripper, Kind, Nest, PartType, Pattern, Points, Shape, ViseProgram,
-    commands, known,
-};
-/// Nests whose seats are so near to each other are at one place, in: less than any part is wide.
-const SAME_PLACE: f64 = 0.1;
+use self::collector::Check;
+use super::{CellDescription, DescriptionError, Gripper, ViseProgram};
 
 impl CellDescription {
     /// Check all numbers and names.
@@ -302,160 +300,6 @@ impl CellDescription {
             }
         }
     }
-
-    fn check_trays(&self, check: &mut Check<'_>) {
-        let shape = &self.tray_shape;
-        check.within("placing_tolerance", self.placing_tolerance, 0.001, 5.0);
-        check.positive(
-            "tray_shape",
-            &[
-                ("inside", shape.inside),
-                ("wall", shape.wall),
-                ("rim", shape.rim),
-                ("floor_thickness", shape.floor_thickness),
-            ],
-        );
-        let inside_is_known = check.trusts("tray_shape.inside");
-        if inside_is_known {
-            check.within("tray_shape.random_offset", shape.random_offset, 0.0, shape.inside / 2.0);
-        }
-        for (number, tray) in self.tray.iter().enumerate() {
-            let path = join(&element("tray", number), "sectors");
-            check.that(!tray.sectors.is_empty(), &path, "at least one", || "none".into());
-            let [x, y] = tray.centre;
-            let is_known = inside_is_known && check.trusts(&join(&element("tray", number), "centre"));
-            for (sector, at) in tray.sectors.iter().enumerate().filter(|_| is_known) {
-                let inside = (at[0] - x).abs().max((at[1] - y).abs()) <= shape.inside / 2.0;
-                let expected = format!("a point in the tray, within {} in of {x}, {y}", shape.inside / 2.0);
-                check.that(inside, &element(&path, sector), &expected, || format!("{at:?}"));
-            }
-        }
-    }
-
-    /// Names are there, fit, and are given once.
-    fn check_names(&self, check: &mut Check<'_>) {
-        let named = |list: &'static str, key: &'static str, names: Vec<&String>| {
-            let paths = (0..names.len()).map(move |number| join(&element(list, number), key));
-            (list, paths.zip(names.into_iter().cloned()).collect::<Vec<_>>())
-        };
-        let lists = [
-            named("part", "name", self.part.iter().map(|part| &part.name).collect()),
-            named("tray", "unit", self.tray.iter().map(|tray| &tray.unit).collect()),
-            named("fixture", "name", self.fixture.iter().map(|fixture| &fixture.name).collect()),
-            named("drum.plate", "name", self.drum.plate.iter().map(|plate| &plate.name).collect()),
-            named("vise.program", "name", self.vise.program.iter().map(|one| &one.name).collect()),
-        ];
-        for (list, names) in &lists {
-            let mut first: BTreeMap<&str, &str> = BTreeMap::new();
-            for (path, name) in names.iter().filter(|(path, _)| check.trusts(path)).collect::<Vec<_>>() {
-                check.that(!name.is_empty(), path, "a name", || "an empty one".into());
-                if let Some(other) = first.insert(name, path) {
-                    let expected = format!("another name than that of {other}");
-                    check.that(false, path, &expected, || name.clone());
-                }
-                if *list == "part" || *list == "tray" {
-                    let fits = Name16::new(name).is_ok();
-                    check.that(fits, path, "a name of at most 16 printable characters", || name.clone());
-                }
-                let group = Kind::ALL.iter().any(|kind| kind.groups().contains(&name.as_str()));
-                check.that(!group, path, "another name than that of a group", || name.clone());
-            }
-        }
-        check.that(!self.vise.location.is_empty(), "vise.location", "a name", || "an empty one".into());
-        check.that(!self.part.is_empty(), "part", "at least one", || "none".into());
-    }
-
-    fn check_parts_and_boxes(&self, check: &mut Check<'_>) {
-        for (number, part) in self.part.iter().enumerate() {
-            let path = element("part", number);
-            let size = join(&path, "size");
-            check.all_positive(&size, &part.size);
-            check.positive(&path, &[("weight", part.weight)]);
-            check.within(&join(&path, "reflectance"), part.reflectance, 0.0, 1.0);
-            let [x, y, z] = part.size;
-            let round = match part.shape {
-                Shape::Box => true,
-                Shape::CylinderX => y == z,
-                Shape::CylinderZ => x == y,
-            };
-            check.that(round, &size, "one diameter across a cylinder", || format!("{:?}", part.size));
-            let inside = self.tray_shape.inside;
-            let fits = self.has_a_nest(part) || y.max(z) < inside;
-            let expected = format!("a part that has a nest, or lies in a tray {inside} in wide");
-            if check.trusts("tray_shape") && check.trusts("nest") {
-                check.that(fits, &size, &expected, || format!("{:?}", part.size));
-            }
-        }
-        for (number, fixture) in self.fixture.iter().enumerate() {
-            check.all_positive(&join(&element("fixture", number), "size"), &fixture.size);
-        }
-    }
-
-    fn has_a_nest(&self, part: &PartType) -> bool {
-        self.nest.iter().any(|nest| nest.takes(part))
-    }
-
-    fn check_nests(&self, check: &mut Check<'_>) {
-        let parts: Vec<&str> = self.part.iter().map(|part| part.name.as_str()).collect();
-        for (number, nest) in self.nest.iter().enumerate() {
-            let path = element("nest", number);
-            check.frame(&join(&path, "seat"), &nest.seat);
-            for (part, name) in nest.parts.iter().enumerate() {
-                let path = element(&join(&path, "parts"), part);
-                check.known(&path, "a part of this description", name, &parts);
-            }
-            let mut earlier = self.nest.iter().take(number);
-            let same = |other: &Nest| {
-                let is_there = other.location == nest.location && other.sector == nest.sector;
-                let near = (other.frame().position - nest.frame().position).norm() < SAME_PLACE;
-                // Parts of another size lie elsewhere in the same nest.
-                (is_there || near) && other.parts.iter().any(|part| nest.parts.contains(part))
-            };
-            if let Some(other) = earlier.position(same) {
-                let expected = format!("another place than that of nest[{other}]");
-                check.that(false, &join(&path, "location"), &expected, || match nest.sector {
-                    0 => nest.location.clone(),
-                    sector => format!("{} sector {sector}", nest.location),
-                });
-            }
-            if let Some(tolerance) = nest.machining {
-                let allowed = [("inches", tolerance.inches), ("degrees", tolerance.degrees)];
-                check.positive(&join(&path, "machining"), &allowed);
-            }
-        }
-    }
-
-    fn check_contacts(&self, check: &mut Check<'_>) {
-        type Side<'a> = (&'static str, &'a [Pattern], fn(Kind) -> bool);
-        let known = known(self);
-        let verbs: Vec<&str> = commands().collect();
-        for (number, permit) in self.contact.0.iter().enumerate() {
-            let path = |key: &str| join(&element("contact", number), key);
-            let mover: Side<'_> = ("mover", &permit.mover, Kind::is_mover);
-            let obstacle: Side<'_> = ("obstacle", &permit.obstacle, Kind::is_obstacle);
-            for (key, patterns, side) in [mover, obstacle] {
-                check.that(!patterns.is_empty(), &path(key), "at least one", || "none".into());
-                let there: Vec<_> = known.iter().filter(|(_, kind)| side(*kind)).collect();
-                let groups = there.iter().flat_map(|(_, kind)| kind.groups().iter().copied());
-                let names: Vec<&str> = there.iter().map(|(name, _)| name.as_str()).chain(groups).collect();
-                for (which, pattern) in patterns.iter().enumerate() {
-                    let means = there.iter().any(|(name, kind)| pattern.matches(name, *kind));
-                    let expected = format!(
-                        "a name or a group of what can be a{} {key}",
-                        if key == "mover" { "" } else { "n" }
-                    );
-                    let wanted = if means { names.first().copied().unwrap_or_default() } else { &pattern.0 };
-                    check.known(&element(&path(key), which), &expected, wanted, &names);
-                }
-            }
-            for (which, verb) in permit.during.iter().enumerate() {
-                let path = element(&path("during"), which);
-                check.known(&path, "a command of E-move or Subtask", verb, &verbs);
-            }
-            check.within(&path("depth"), permit.depth.unwrap_or(1.0), 0.001, 10.0);
-            check.that(!permit.why.is_empty(), &path("why"), "a reason", || "none".into());
-        }
-    }
 }
 
 fn check_gripper(name: &str, gripper: &Gripper, check: &mut Check<'_>) {
@@ -494,81 +338,4 @@ fn check_gripper(name: &str, gripper: &Gripper, check: &mut Check<'_>) {
         check.counts(&element(&path("sensors.strain_scales"), gage), expected, full);
     }
     check.within(&path("sensors.noise"), sensors.noise, 0.0, 100.0);
-}
-
-/// Collects problems.
-struct Check<'s> {
-    problems: Vec<Problem>,
-    /// Entries that must be more than 0: radii, lengths, weights.
-    positive: BTreeSet<Path>,
-    stand_ins: &'s StandIns,
-}
-
-impl Check<'_> {
-    fn trusts(&self, path: &str) -> bool {
-        self.stand_ins.trusts(path)
-    }
-
-    fn that(&mut self, holds: bool, path: &str, expected: &str, found: impl FnOnce() -> String) {
-        if !holds && self.trusts(path) {
-            self.problems.push(Problem::unlike("cell.value", path, expected, found()));
-        }
-    }
-
-    fn within(&mut self, path: &str, value: f64, low: f64, high: f64) {
-        let inside = (low..=high).contains(&value);
-        self.that(inside, path, &format!("{low} to {high}"), || value.to_string());
-    }
-
-    /// From 0 to what another entry says.
-    fn up_to(&mut self, path: &str, value: f64, (other, greatest): (&str, f64)) {
-        if self.trusts(other) {
-            let expected = format!("0 to the {greatest} of {other}");
-            self.that((0.0..=greatest).contains(&value), path, &expected, || value.to_string());
-        }
-    }
-
-    /// A 12-bit converter that has to read `counts` can.
-    fn counts(&mut self, path: &str, expected: &str, counts: f64) {
-        self.that((1.0..=4095.0).contains(&counts), path, expected, || format!("{counts:.0} counts"));
-    }
-
-    fn ascending(&mut self, path: &str, [low, high]: [f64; 2]) {
-        self.that(low < high, path, "two numbers, the second one greater", || format!("{low}, {high}"));
-    }
-
-    fn frame(&mut self, path: &str, points: &Points) {
-        let expected = "three points that do not stand on a line";
-        self.that(points.frame().is_some(), path, expected, || {
-            format!("{:?}, {:?}, {:?}", points.wrist, points.tool, points.finger)
-        });
-    }
-
-    /// Some keys of a table.
-    fn positive(&mut self, table: &str, values: &[(&str, f64)]) {
-        for (key, value) in values {
-            self.above_zero(join(table, key), *value);
-        }
-    }
-
-    /// All elements of an array.
-    fn all_positive(&mut self, array: &str, values: &[f64]) {
-        for (number, value) in values.iter().enumerate() {
-            self.above_zero(element(array, number), *value);
-        }
-    }
-
-    fn above_zero(&mut self, path: Path, value: f64) {
-        self.that(value > 0.0, &path, "more than 0", || value.to_string());
-        self.positive.insert(path);
-    }
-
-    /// A name is one of those that are known. A known name that could not be read may be the one that is meant.
-    fn known(&mut self, path: &str, expected: &str, name: &str, known: &[&str]) {
-        let names_are_read =
-            !self.stand_ins.iter().any(|path| path.ends_with("name") || path.ends_with("unit"));
-        if !known.contains(&name) && names_are_read && self.trusts(path) {
-            self.problems.push(Problem::unlike("cell.name", path, expected, name).near(name, known));
-        }
-    }
 }

@@ -14,6 +14,7 @@ use crate::{
 };
 
 /// What became of a run.
+#[non_exhaustive]
 pub struct RunOutcome {
     /// How it ended.
     pub ending: Ending,

@@ -3,35 +3,25 @@
 use interfaces::CommonMemory;
 use plant::CellEvent;
 use rcs_core::tick::Tick;
-use record::Level;
 
 use super::Run;
-use crate::{contacts::Commands, egm::EgmPort};
-
-/// How much a line of the log about an event matters: what went wrong in the world is an error.
-const fn gravity(event: &CellEvent) -> Level {
-    match event {
-        CellEvent::Warning(_) | CellEvent::ViseStuck => Level::Error,
-        event if event.is_harm() => Level::Error,
-        _ => Level::Warning,
-    }
-}
-
-/// Who a line of the log about an event comes from: what was planned is told apart from what came of it.
-const fn source(event: &CellEvent) -> &'static str {
-    match event {
-        CellEvent::FaultBegins { .. } | CellEvent::FaultEnds { .. } => "fault",
-        _ => "cell",
-    }
-}
+use crate::{contacts::Commands, egm::EgmPort, event::Event};
 
 impl Run {
+    /// An event that belongs to no tick of the cell: for the log, and for the program around the run.
+    pub(crate) fn log_event(&mut self, tick: Tick, event: &Event) {
+        self.observer.event(tick, event);
+        if let Some(log) = &mut self.log {
+            log.event(tick, event);
+        }
+    }
+
     /// Tell the log of the next tick's cell, and of what happened in it.
     pub(super) fn show_cell(&mut self) {
         let tick = self.runner.tick().next();
         let Some(log) = &mut self.log else { return self.fresh.clear() };
-        for (level, source, event) in self.fresh.drain(..) {
-            log.note(tick, level, source, &event);
+        for event in self.fresh.drain(..) {
+            log.event(tick, &event);
         }
         if let Some(counts) = self.robot.faults() {
             log.faults(tick, counts);
@@ -58,18 +48,18 @@ impl Run {
         let before = std::mem::replace(&mut self.trouble, memory.t3i.status.trouble());
         if let Some(trouble) = self.trouble.filter(|_| self.trouble != before) {
             self.observer.message(&format!("{tick}: {trouble}"));
-            self.events.push(tick, trouble);
+            let event = Event::Link(trouble);
+            self.observer.event(tick, &event);
+            self.events.push(tick, &event);
         }
     }
 
     /// The job has begun to wait: who looks at the program or its log is told, too.
     pub(super) fn tell_operators(&mut self, tick: Tick) {
-        let Some(news) = self.neighbours.operator_news() else { return };
-        self.observer.message(&format!("tick {tick}: {news}"));
-        if let Some(log) = &mut self.log {
-            log.note(tick.next(), Level::Warning, "operator", &news);
-        }
-        self.events.push(tick, &news);
+        let Some(event) = self.neighbours.operator_news().map(Event::Waits) else { return };
+        self.observer.message(&format!("tick {tick}: {event}"));
+        self.log_event(tick.next(), &event);
+        self.events.push(tick, &event);
     }
 
     /// What has happened in the cell in a tick, for the log, for the page and for the verdict.
@@ -82,22 +72,20 @@ impl Run {
         if let Some(warning) = events.iter().find_map(shown) {
             self.warning = Some((tick, warning));
         }
-        self.fresh = events.iter().map(|event| (gravity(event), source(event), event.to_string())).collect();
-        let lines = self.check.look(tick, self.workstation.cell.contacts(), commands);
-        self.fresh.extend(lines.into_iter().map(|line| (Level::Error, "cell", line)));
+        self.fresh = events.into_iter().map(Event::Cell).collect();
+        self.fresh.extend(self.check.look(tick, self.workstation.cell.contacts(), commands));
         self.workstation.cell.watch_clearance(self.check.margin());
-        for (_, _, event) in &self.fresh {
+        for event in &self.fresh {
+            self.observer.event(tick, event);
             self.events.push(tick, event);
         }
     }
 
     /// What neighbours say beside their mailboxes is an event of the run; Task learns no more than their statuses tell.
     pub(super) fn note_neighbours(&mut self, tick: Tick) {
-        for (level, source, text) in self.neighbours.notes() {
-            if let Some(log) = &mut self.log {
-                log.note(tick, level, source, &text);
-            }
-            self.events.push(tick, &text);
+        for event in self.neighbours.events() {
+            self.log_event(tick, &event);
+            self.events.push(tick, &event);
         }
     }
 }

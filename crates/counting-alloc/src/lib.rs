@@ -1,16 +1,15 @@
-//! An allocator that counts what the controller allocates.
+//! An allocator that counts what is allocated in some sections of a program.
 //!
-//! Nothing may be allocated after the start
-//! (docs/design/tick.md "No allocation"). The levels cannot allocate, since they are built
-//! without `alloc`; what stands around them in a tick could. So the program installs [`Counting`] as its
-//! allocator, each tick runs inside a [`Section`], and what is allocated there is counted: over the whole
-//! run, in production as in tests. Other threads, and what the same thread does between ticks, are not
-//! counted.
+//! A program that may not allocate after its start installs [`Counting`] as its allocator, and runs what must not
+//! allocate inside a [`Section`]. What is allocated there is counted: over the whole run, in production as in tests.
+//! Other threads, and what the same thread does between sections, are not counted. A control process of RCS-II/T3 cannot
+//! allocate, since it is built without `alloc`; what stands around it in a tick could
+//! (docs/design/tick.md "No allocation").
 //!
-//! This is the only module of the executive with unsafe code: an allocator cannot be written without it. It
-//! does nothing but count and hand over to the system's allocator.
+//! It does nothing but count and hand over to the system's allocator.
 
 #![allow(unsafe_code, reason = "GlobalAlloc is an unsafe trait; every call is passed on unchanged")]
+#![warn(missing_docs)]
 
 use std::{
     alloc::{GlobalAlloc, Layout, System},
@@ -31,9 +30,9 @@ thread_local! {
 ///
 /// ```
 /// #[global_allocator]
-/// static ALLOCATOR: executive::alloc::Counting = executive::alloc::Counting;
+/// static ALLOCATOR: counting_alloc::Counting = counting_alloc::Counting;
 /// # fn main() {
-/// assert!(executive::alloc::is_installed());
+/// assert!(counting_alloc::is_installed());
 /// # }
 /// ```
 pub struct Counting;

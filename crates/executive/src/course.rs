@@ -1,0 +1,219 @@
+//! The ticks of a ladder, and what follows from them alone: common memory, digest, the first failure.
+//!
+//! Common memory is doubled by tick parity: the processes read what stands in one half and write the other,
+//! so that their order within a tick cannot matter. After every tick the buffers go into the digest, and the
+//! statuses are watched for the first sign of a failure.
+//!
+//! A [`Course`] reads no clock and allocates nothing once it is made. It can be cloned: the copy goes on from the same
+//! tick. [`Runner`](crate::runner::Runner) times a course and publishes it; `rcs-run campaign` forks it.
+
+use std::convert::Infallible;
+
+use interfaces::{CommonMemory, ExternalInputs};
+use levels::ladder::{Ladder, ProcessId};
+use rcs_core::{Plain, digest::Digest, tick::Tick};
+use taskdata::files::TaskData;
+
+use crate::failure::Watch;
+
+/// A ladder of control processes that can be stepped: [`Ladder`], or a test's own.
+pub trait Levels<Data: ?Sized> {
+    /// Why a tick could not be finished.
+    type Error;
+
+    /// One tick of all processes: read `before` and `external`, write `after`, all of it.
+    ///
+    /// # Errors
+    /// If processes that run elsewhere did not take part. There must be no further tick then.
+    fn step(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &Data,
+        after: &mut CommonMemory,
+    ) -> Result<(), Self::Error>;
+
+    /// The same; calls `observe` after each stage, as by
+    /// [`Ladder::step_observed`]. What is not told of counts as the executive's.
+    ///
+    /// # Errors
+    /// Those of [`step`](Self::step).
+    fn step_observed(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &Data,
+        after: &mut CommonMemory,
+        _observe: &mut dyn FnMut(Option<ProcessId>),
+    ) -> Result<(), Self::Error> {
+        self.step(tick, before, external, data, after)
+    }
+
+    /// A copy that can warm up a tick; `None` if there is nothing here that a warm-up would make faster.
+    fn shadow(&self) -> Option<Box<Self>>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
+    /// Make the shadow equal again. Does not allocate.
+    fn copy_to(&self, _shadow: &mut Self)
+    where
+        Self: Sized,
+    {
+    }
+
+    /// Heap allocations in the ticks of processes that run elsewhere.
+    fn allocations(&self) -> u64 {
+        0
+    }
+}
+
+impl Levels<TaskData<'_>> for Ladder {
+    type Error = Infallible;
+
+    fn step(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &TaskData<'_>,
+        after: &mut CommonMemory,
+    ) -> Result<(), Infallible> {
+        Self::step(self, tick, before, external, data, after);
+        Ok(())
+    }
+
+    fn step_observed(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &TaskData<'_>,
+        after: &mut CommonMemory,
+        observe: &mut dyn FnMut(Option<ProcessId>),
+    ) -> Result<(), Infallible> {
+        Self::step_observed(self, ProcessId::ALL, tick, before, external, data, after, observe);
+        Ok(())
+    }
+
+    fn shadow(&self) -> Option<Box<Self>> {
+        Some(Box::new(self.clone()))
+    }
+
+    fn copy_to(&self, shadow: &mut Self) {
+        shadow.clone_from(self);
+    }
+}
+
+/// A ladder with the ticks that it has run.
+#[derive(Clone)]
+pub struct Course<L> {
+    levels: L,
+    tick: Tick,
+    halves: [CommonMemory; 2],
+    digest: Digest,
+    scratch: Box<[u8]>,
+    watch: Box<Watch>,
+}
+
+impl<L> Course<L> {
+    /// Before the first tick.
+    #[must_use]
+    pub fn new(levels: L) -> Self {
+        Self {
+            levels,
+            tick: Tick::BEFORE_START,
+            halves: [CommonMemory::ZERO; 2],
+            digest: Digest::new(),
+            scratch: vec![0; CommonMemory::SIZE].into_boxed_slice(),
+            watch: Box::default(),
+        }
+    }
+
+    /// Run the next tick on what came from outside for it, and call `observe` after each stage of it.
+    /// [`sum_up`](Self::sum_up) follows.
+    ///
+    /// # Errors
+    /// Those of the levels. The tick does not count then, and common memory is as the tick before left it.
+    pub fn step<Data: ?Sized>(
+        &mut self,
+        external: &ExternalInputs,
+        data: &Data,
+        observe: &mut dyn FnMut(Option<ProcessId>),
+    ) -> Result<(), L::Error>
+    where
+        L: Levels<Data>,
+    {
+        let tick = self.tick.next();
+        let (before, after) = of_tick(&mut self.halves, tick);
+        self.levels.step_observed(tick, before, external, data, after, observe)?;
+        self.tick = tick;
+        Ok(())
+    }
+
+    /// The buffers of the tick that was run last go into the digest, and its statuses are watched.
+    pub fn sum_up(&mut self, external: &ExternalInputs) {
+        let (before, after) = of_tick(&mut self.halves, self.tick);
+        self.watch.observe(self.tick, external, before, after);
+        self.digest.add_record(after, &mut self.scratch);
+    }
+
+    /// Run the next tick on a copy of the levels and forget it.
+    pub fn warm_up<Data: ?Sized>(&mut self, shadow: &mut L, external: &ExternalInputs, data: &Data)
+    where
+        L: Levels<Data>,
+    {
+        self.levels.copy_to(shadow);
+        let tick = self.tick.next();
+        // The half that the tick will write anew, all of it.
+        let (before, after) = of_tick(&mut self.halves, tick);
+        // Whether it succeeds does not matter: the tick itself follows.
+        let _ = shadow.step_observed(tick, before, external, data, after, &mut |_| {});
+    }
+
+    /// The ladder.
+    #[must_use]
+    pub const fn levels(&self) -> &L {
+        &self.levels
+    }
+
+    /// The ladder, between two ticks.
+    pub const fn levels_mut(&mut self) -> &mut L {
+        &mut self.levels
+    }
+
+    /// The tick that was run last.
+    #[must_use]
+    pub const fn tick(&self) -> Tick {
+        self.tick
+    }
+
+    /// Common memory as the last tick left it.
+    #[must_use]
+    pub const fn memory(&self) -> &CommonMemory {
+        let [even, odd] = &self.halves;
+        if self.tick.0.is_multiple_of(2) { even } else { odd }
+    }
+
+    /// Fingerprint of all output buffers of all ticks so far.
+    #[must_use]
+    pub const fn digest(&self) -> Digest {
+        self.digest
+    }
+
+    /// The process that failed first, if one did.
+    #[must_use]
+    pub const fn watch(&self) -> &Watch {
+        &self.watch
+    }
+}
+
+/// What a tick reads, and what it writes.
+const fn of_tick(halves: &mut [CommonMemory; 2], tick: Tick) -> (&CommonMemory, &mut CommonMemory) {
+    let [even, odd] = halves;
+    if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) }
+}

@@ -1,0 +1,87 @@
+//! Compares values of a description with what is expected of them, and collects what does not fit.
+
+use std::collections::BTreeSet;
+
+use diagnostics::{
+    Problem,
+    toml::{Path, StandIns, element, join},
+};
+
+use crate::description::Points;
+
+/// Collects problems.
+pub(super) struct Check<'s> {
+    pub(super) problems: Vec<Problem>,
+    /// Entries that must be more than 0: radii, lengths, weights.
+    pub(super) positive: BTreeSet<Path>,
+    pub(super) stand_ins: &'s StandIns,
+}
+
+impl Check<'_> {
+    pub(super) fn trusts(&self, path: &str) -> bool {
+        self.stand_ins.trusts(path)
+    }
+
+    pub(super) fn that(&mut self, holds: bool, path: &str, expected: &str, found: impl FnOnce() -> String) {
+        if !holds && self.trusts(path) {
+            self.problems.push(Problem::unlike("cell.value", path, expected, found()));
+        }
+    }
+
+    pub(super) fn within(&mut self, path: &str, value: f64, low: f64, high: f64) {
+        let inside = (low..=high).contains(&value);
+        self.that(inside, path, &format!("{low} to {high}"), || value.to_string());
+    }
+
+    /// From 0 to what another entry says.
+    pub(super) fn up_to(&mut self, path: &str, value: f64, (other, greatest): (&str, f64)) {
+        if self.trusts(other) {
+            let expected = format!("0 to the {greatest} of {other}");
+            self.that((0.0..=greatest).contains(&value), path, &expected, || value.to_string());
+        }
+    }
+
+    /// A 12-bit converter that has to read `counts` can.
+    pub(super) fn counts(&mut self, path: &str, expected: &str, counts: f64) {
+        self.that((1.0..=4095.0).contains(&counts), path, expected, || format!("{counts:.0} counts"));
+    }
+
+    pub(super) fn ascending(&mut self, path: &str, [low, high]: [f64; 2]) {
+        self.that(low < high, path, "two numbers, the second one greater", || format!("{low}, {high}"));
+    }
+
+    pub(super) fn frame(&mut self, path: &str, points: &Points) {
+        let expected = "three points that do not stand on a line";
+        self.that(points.frame().is_some(), path, expected, || {
+            format!("{:?}, {:?}, {:?}", points.wrist, points.tool, points.finger)
+        });
+    }
+
+    /// Some keys of a table.
+    pub(super) fn positive(&mut self, table: &str, values: &[(&str, f64)]) {
+        for (key, value) in values {
+            self.above_zero(join(table, key), *value);
+        }
+    }
+
+    /// All elements of an array.
+    pub(super) fn all_positive(&mut self, array: &str, values: &[f64]) {
+        for (number, value) in values.iter().enumerate() {
+            self.above_zero(element(array, number), *value);
+        }
+    }
+
+    pub(super) fn above_zero(&mut self, path: Path, value: f64) {
+        self.that(value > 0.0, &path, "more than 0", || value.to_string());
+        self.positive.insert(path);
+    }
+
+    /// A name is one of those that are known. A known name that could not be read may be the one that is meant.
+    pub(super) fn known(&mut self, path: &str, expected: &str, name: &str, known: &[&str]) {
+        let names_are_read =
+            !self.stand_ins.iter().any(|path| path.ends_with("name") || path.ends_with("unit"));
+        if !known.contains(&name) && names_are_read && self.trusts(path) {
+            self.problems.push(Problem::unlike("cell.name", path, expected, name).near(name, known));
+        }
+    }
+}

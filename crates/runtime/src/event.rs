@@ -1,0 +1,266 @@
+//! What happens in a run beside what was commanded, as values with a code. Log, result and programs make sentences of
+//! them; nothing inside a run does.
+
+use std::fmt;
+
+use executive::{
+    boards::Board,
+    overrun::{Overrun, PUNCTUAL},
+};
+use neighbours::{
+    data_system,
+    mailbox::MailboxError,
+    network::NetEvent,
+    pedestal, vision,
+    workstation::{
+        self,
+        player::{JobFailure, Retry},
+    },
+};
+use plant::CellEvent;
+use record::Level;
+
+use crate::contacts::Collision;
+
+/// Something that has happened.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Event {
+    /// In the cell. Of contacts the run tells only those that were not permitted: [`Event::Collides`].
+    Cell(CellEvent),
+    /// Two things touch that may not.
+    Collides(Collision),
+    /// They have come apart.
+    CameFree(Collision),
+    /// Faults of these kinds have come up on the line to the robot.
+    LineFaults(Vec<&'static str>),
+    /// What the line to the robot suffers.
+    Link(&'static str),
+    /// A neighbour has connected, disconnected or was refused.
+    Network(NetEvent),
+    /// The Data System refuses a command, and why.
+    DataBaseRefuses(String),
+    /// What there is to say of a Data System in another process.
+    DataSystem(data_system::Remark),
+    /// Of a pedestal that is a system of its own.
+    Pedestal(pedestal::Remark),
+    /// Of vision in another process.
+    Vision(vision::Remark),
+    /// A command that has failed is sent again.
+    Retries(Retry),
+    /// The job that an operator plays has failed; the run goes on.
+    OperatorJobFailed(JobFailure),
+    /// A command of the workstation controller is refused.
+    CommandRefused(workstation::Refusal),
+    /// A line of the workstation controller for the cell is refused, and why.
+    CellLineRefused(String),
+    /// The status of the cell cannot be written for the workstation controller.
+    CellStatusUnsent(MailboxError),
+    /// The job has handed over to the workstation controller.
+    HandedOver,
+    /// The workstation controller has gone, and the job goes on.
+    TakenBack,
+    /// The job has begun to wait for an operator, and why.
+    Waits(String),
+    /// Task data have been loaded while the run went on.
+    Loaded {
+        /// Number of the generation.
+        generation: u32,
+        /// The blocks.
+        name: String,
+    },
+    /// Something of the run was changed from outside.
+    Changed(String),
+    /// Real time was asked for.
+    RealTime {
+        /// What the system granted, and what it is.
+        verdict: String,
+        /// Everything was granted.
+        complete: bool,
+    },
+    /// A board was not granted what real time needs.
+    BoardNotPunctual(Board),
+    /// Slots of the 40 ms grid were skipped.
+    Overrun(Overrun),
+    /// For it, the robot is brought to rest, and the run ends.
+    Stops,
+    /// For it, the robot holds.
+    Holds,
+    /// The robot goes on.
+    Punctual,
+}
+
+impl Event {
+    /// Stable short name of its kind, such as `cell.dropped`.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::Cell(event) => event.code(),
+            Self::Collides(_) => "contact.begins",
+            Self::CameFree(_) => "contact.ends",
+            Self::LineFaults(_) => "fault.line",
+            Self::Link(_) => "link.trouble",
+            Self::Network(event) => event.code(),
+            Self::DataBaseRefuses(_) => "data-system.refuses",
+            Self::DataSystem(remark) => remark.code(),
+            Self::Pedestal(remark) => remark.code(),
+            Self::Vision(remark) => remark.code(),
+            Self::Retries(_) => "command.again",
+            Self::OperatorJobFailed(_) => "operator.job-failed",
+            Self::CommandRefused(_) => "command.refused",
+            Self::CellLineRefused(_) => "workstation.refused",
+            Self::CellStatusUnsent(_) => "workstation.unsent",
+            Self::HandedOver => "command.handed-over",
+            Self::TakenBack => "command.taken-back",
+            Self::Waits(_) => "operator.awaited",
+            Self::Loaded { .. } => "data.loaded",
+            Self::Changed(_) => "run.changed",
+            Self::RealTime { .. } => "time.granted",
+            Self::BoardNotPunctual(_) => "time.board",
+            Self::Overrun(_) => "time.overrun",
+            Self::Stops => "time.stops",
+            Self::Holds => "time.holds",
+            Self::Punctual => "time.punctual",
+        }
+    }
+
+    /// How much it matters: what went wrong in the world is an error.
+    #[must_use]
+    pub fn level(&self) -> Level {
+        match self {
+            Self::Cell(CellEvent::Warning(_) | CellEvent::ViseStuck) => Level::Error,
+            Self::Cell(event) if event.is_harm() => Level::Error,
+            Self::Collides(_) | Self::CameFree(_) | Self::CellStatusUnsent(_) | Self::Stops => Level::Error,
+            Self::RealTime { complete: true, .. } => Level::Info,
+            // That a neighbour connects is no warning.
+            Self::Network(NetEvent::Connected(_)) => Level::Info,
+            Self::HandedOver | Self::TakenBack | Self::Loaded { .. } | Self::Changed(_) | Self::Punctual => {
+                Level::Info
+            }
+            _ => Level::Warning,
+        }
+    }
+
+    /// Who a line of the log about it comes from: what was planned is told apart from what came of it.
+    #[must_use]
+    pub fn source(&self) -> &'static str {
+        match self {
+            Self::Cell(CellEvent::FaultBegins { .. } | CellEvent::FaultEnds { .. }) | Self::LineFaults(_) => {
+                "fault"
+            }
+            Self::Cell(_) | Self::Collides(_) | Self::CameFree(_) => "cell",
+            Self::CellLineRefused(_) | Self::CellStatusUnsent(_) => "cell",
+            Self::Link(_) => "T3I",
+            Self::Network(_) => "network",
+            Self::DataBaseRefuses(_) | Self::DataSystem(_) => "Data System",
+            Self::Pedestal(_) => "Active Pedestal",
+            Self::Vision(_) => "vision",
+            Self::Retries(_)
+            | Self::OperatorJobFailed(_)
+            | Self::CommandRefused(_)
+            | Self::HandedOver
+            | Self::TakenBack => "HWSC",
+            Self::Waits(_) => "operator",
+            Self::Changed(_) => "change",
+            Self::Loaded { .. }
+            | Self::RealTime { .. }
+            | Self::BoardNotPunctual(_)
+            | Self::Overrun(_)
+            | Self::Stops
+            | Self::Holds
+            | Self::Punctual => "executive",
+        }
+    }
+}
+
+impl fmt::Display for Event {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cell(event) => event.fmt(f),
+            Self::Collides(collision) => collision.fmt(f),
+            Self::CameFree(Collision { mover, obstacle, ticks, depth_in, .. }) => {
+                write!(
+                    f,
+                    "{mover} comes free of {obstacle} after {ticks} ticks; it was {depth_in:.3} in deep"
+                )
+            }
+            Self::LineFaults(kinds) => write!(f, "on the line: {}", kinds.join(", ")),
+            Self::Link(trouble) => f.write_str(trouble),
+            Self::Network(event) => event.fmt(f),
+            Self::DataBaseRefuses(why) => write!(f, "the Data System refuses: {why}"),
+            Self::DataSystem(remark) => remark.fmt(f),
+            Self::Pedestal(remark) => remark.fmt(f),
+            Self::Vision(remark) => remark.fmt(f),
+            Self::Retries(retry) => retry.fmt(f),
+            Self::OperatorJobFailed(failure) => write!(f, "the job of the operator has failed: {failure}"),
+            Self::CommandRefused(refusal) => write!(f, "a command is refused: {refusal}"),
+            Self::CellLineRefused(why) => write!(f, "a line of the workstation is refused: {why}"),
+            Self::CellStatusUnsent(error) => error.fmt(f),
+            Self::HandedOver => f.write_str("the workstation controller commands from here on"),
+            Self::TakenBack => f.write_str("the workstation controller has gone; the job goes on"),
+            Self::Loaded { generation, name } => {
+                write!(f, "task data, generation {generation}: {name} is loaded")
+            }
+            Self::Waits(what) | Self::Changed(what) => f.write_str(what),
+            Self::RealTime { verdict, .. } => write!(f, "real time: {verdict}"),
+            Self::BoardNotPunctual(board) => {
+                write!(f, "{board}: not everything that real time needs was granted")
+            }
+            Self::Overrun(overrun) => overrun.fmt(f),
+            Self::Stops => f.write_str("the robot is brought to rest, and the run ends"),
+            Self::Holds => write!(f, "the robot holds until {PUNCTUAL} ticks in a row were punctual"),
+            Self::Punctual => f.write_str("punctual again: the robot goes on"),
+        }
+    }
+}
+
+impl From<data_system::Remark> for Event {
+    fn from(remark: data_system::Remark) -> Self {
+        match remark {
+            data_system::Remark::Network(event) => Self::Network(event),
+            own => Self::DataSystem(own),
+        }
+    }
+}
+
+impl From<pedestal::Remark> for Event {
+    fn from(remark: pedestal::Remark) -> Self {
+        match remark {
+            pedestal::Remark::Network(event) => Self::Network(event),
+            own => Self::Pedestal(own),
+        }
+    }
+}
+
+impl From<vision::Remark> for Event {
+    fn from(remark: vision::Remark) -> Self {
+        match remark {
+            vision::Remark::Network(event) => Self::Network(event),
+            own => Self::Vision(own),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use neighbours::network::Role;
+
+    #[test]
+    fn an_event_has_a_code_a_weight_and_a_source_beside_its_sentence() {
+        let fell = Event::Cell(CellEvent::Fell { part: "SHAFT".to_owned() });
+        assert_eq!((fell.code(), fell.level(), fell.source()), ("cell.fell", Level::Error, "cell"));
+        assert_eq!(fell.to_string(), "SHAFT lies on the floor");
+        let planned = Event::Cell(CellEvent::FaultBegins { number: 1, text: "the air is lost".to_owned() });
+        assert_eq!(
+            (planned.code(), planned.level(), planned.source()),
+            ("fault.begins", Level::Warning, "fault")
+        );
+        let come = Event::from(pedestal::Remark::Network(NetEvent::Connected(Role::Pedestal)));
+        assert_eq!((come.code(), come.level(), come.source()), ("network.connected", Level::Info, "network"));
+        let silent = Event::from(pedestal::Remark::Silent(3));
+        assert_eq!((silent.code(), silent.level()), ("pedestal.silent", Level::Warning));
+        assert_eq!(silent.source(), "Active Pedestal");
+        assert_eq!(Event::Stops.level(), Level::Error);
+    }
+}

@@ -1,0 +1,137 @@
+//! What the result says of the robot and the line to it.
+
+use std::{collections::BTreeMap, fmt};
+
+use ::egm::host::Counters;
+use depc::fault::{Counts, FaultKind};
+use executive::serial::SerialCounts;
+use interfaces::t3i::LinkCounters;
+use serde::Serialize;
+
+use super::timing::TickTimes;
+use crate::{egm::EgmPort, robot::Port};
+
+/// What happened on the DEPC link.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LinkResult {
+    /// Data frames sent, repetitions included.
+    pub frames: u32,
+    /// NAKs received.
+    pub naks: u32,
+    /// Frames sent again.
+    pub retries: u32,
+    /// Reports with a wrong checksum.
+    pub checksum_errors: u32,
+    /// Points that were scaled back to the velocity limits.
+    pub limited: u32,
+}
+
+impl From<&LinkCounters> for LinkResult {
+    fn from(counters: &LinkCounters) -> Self {
+        Self {
+            frames: counters.frames,
+            naks: counters.naks,
+            retries: counters.retries,
+            checksum_errors: counters.checksum_errors,
+            limited: counters.limited,
+        }
+    }
+}
+
+/// Faults that were injected into the line, both directions together.
+#[derive(Clone, Debug, Serialize)]
+pub struct FaultsResult {
+    /// Faults of all kinds.
+    pub total: u64,
+    /// Of each kind that happened.
+    pub kinds: BTreeMap<&'static str, u64>,
+}
+
+impl From<Counts> for FaultsResult {
+    fn from(counts: Counts) -> Self {
+        let kinds = FaultKind::ALL.iter().map(|kind| (kind.text(), counts.of(*kind)));
+        Self { total: counts.faults(), kinds: kinds.filter(|(_, count)| *count > 0).collect() }
+    }
+}
+
+impl fmt::Display for FaultsResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} injected", self.total)?;
+        let mut separator = ": ";
+        for (kind, count) in &self.kinds {
+            write!(f, "{separator}{kind} {count}")?;
+            separator = ", ";
+        }
+        Ok(())
+    }
+}
+
+/// What went over a serial port.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct PortResult {
+    /// Bytes received.
+    pub received: u64,
+    /// Bytes sent.
+    pub sent: u64,
+    /// Bytes that the port did not take.
+    pub unsent: u64,
+    /// How often the port disappeared.
+    pub losses: u32,
+    /// By how much the time between two data commands differed from 40 ms.
+    pub deviation_us: TickTimes,
+}
+
+impl From<&Port> for PortResult {
+    fn from(port: &Port) -> Self {
+        let SerialCounts { received, sent, unsent, losses, .. } = port.counts();
+        Self { received, sent, unsent, losses, deviation_us: port.deviations().into() }
+    }
+}
+
+/// What went over the line to a robot with EGM.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct EgmResult {
+    /// Messages received that were new.
+    pub received: u64,
+    /// Messages that were old when they came.
+    pub old: u64,
+    /// Datagrams that were no message of a robot.
+    pub refused: u64,
+    /// Targets sent.
+    pub sent: u64,
+    /// Points that became a path.
+    pub points: u64,
+    /// Motions that were ended because no point, or no message, came in time.
+    pub interrupted: u64,
+    /// Targets that were held back at the limits.
+    pub beyond: u64,
+    /// Root mean square of the distance from the robot to its target, mm.
+    pub error_rms_mm: f64,
+    /// The greatest.
+    pub error_max_mm: f64,
+    /// Times between two messages of the robot.
+    pub cycle_us: TickTimes,
+    /// Times from a message to its answer.
+    pub answer_us: TickTimes,
+}
+
+impl From<&EgmPort> for EgmResult {
+    fn from(port: &EgmPort) -> Self {
+        let Counters { received, old, refused, sent, points, interrupted, beyond } = port.counters();
+        let [error_rms_mm, error_max_mm] = port.errors();
+        let (cycle_us, answer_us) = (port.cycles().into(), port.answers().into());
+        Self {
+            received,
+            old,
+            refused,
+            sent,
+            points,
+            interrupted,
+            beyond,
+            error_rms_mm,
+            error_max_mm,
+            cycle_us,
+            answer_us,
+        }
+    }
+}

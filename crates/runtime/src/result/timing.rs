@@ -1,0 +1,48 @@
+//! What the result says of times: those of ticks, and of boards.
+
+use executive::{boards::coordinator::BoardFigures, histogram};
+use serde::Serialize;
+
+/// Times of the controller, without the cell, in microseconds.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TickTimes {
+    /// Median.
+    pub p50: f64,
+    /// 99 of 100 ticks took at most this.
+    pub p99: f64,
+    /// The longest.
+    pub max: f64,
+}
+
+impl From<histogram::Summary> for TickTimes {
+    fn from(summary: histogram::Summary) -> Self {
+        Self { p50: summary.p50, p99: summary.p99, max: summary.max }
+    }
+}
+
+/// What a board with control processes did.
+#[derive(Clone, Debug, Serialize)]
+pub struct BoardResult {
+    /// Its number.
+    pub board: u8,
+    /// What runs on it.
+    pub processes: String,
+    /// Its process in the operating system.
+    pub pid: u32,
+    /// From its wake-up to its stamp.
+    pub tick_us: TickTimes,
+    /// Heap allocations in its ticks.
+    pub allocations: u64,
+}
+
+impl From<BoardFigures<'_>> for BoardResult {
+    fn from(figures: BoardFigures<'_>) -> Self {
+        Self {
+            board: figures.board.number(),
+            processes: figures.board.process_names(),
+            pid: figures.pid,
+            tick_us: figures.times.summary().into(),
+            allocations: figures.allocations,
+        }
+    }
+}
