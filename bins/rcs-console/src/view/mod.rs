@@ -21,7 +21,8 @@ use record::Level;
 use crate::{
     model::{
         Model, Operating, Place, Prompt, Screen, Tone, cell, ladder as lines, link, panels, procedures,
-        take_over_sections, terminal,
+        take_over_sections,
+        terminal::{self, editor::Editor},
     },
     source::{About, Source, State},
 };
@@ -310,6 +311,9 @@ fn keys(model: &Model, state: State) -> &'static str {
         (true, ..) => " any key goes back",
         _ if model.taking_over().is_some() => {
             " Enter=wait  P=PAUSE now  Esc=no  Space=stop, go  h=hold Prim  F1=E-stop"
+        }
+        (_, Screen::Terminal, _) if model.terminal.editor.as_ref().is_some_and(Editor::shows_change) => {
+            " Enter=write it and load it  Esc=back to the text"
         }
         (_, Screen::Terminal, _) if model.terminal.editor.is_some() => {
             " arrows, letters=edit  F2=check, show the change  Esc=leave it as it was"

@@ -167,6 +167,12 @@ impl Editor {
         self.number
     }
 
+    /// The change is shown, and not the text.
+    #[must_use]
+    pub fn shows_change(&self) -> bool {
+        self.stage == Stage::Diff
+    }
+
     /// A key.
     pub fn key(&mut self, key: Key) -> Wish {
         match (self.stage, key) {
