@@ -68,24 +68,25 @@ fn what_is_near_enough_is_said_in_the_cell_description() {
 }
 
 #[test]
-fn a_part_that_lies_on_the_floor_is_named_with_the_tick_and_line_in_which_it_fell() {
-    // The jaws push it out of fingers that close with little force.
-    let outcome = run("lost.job", 1, "finished-floor", |scratch| {
-        let weak = "-obj-  LINKBAR1_BH      2     0300   0060   2 ";
-        scratch.data_with("objects/linkbar.blk", "-obj-  LINKBAR1_BH      2     0300   0060   30", weak);
-        let job = "** tray UNIT_1 4 LINKBAR1_BH\n\
-                   ** vise partial PFIXTURE\n\
-                   == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n\
-                   ** vise close PFIXTURE\n\
-                   == POSITION H-LINKBAR1_BH +1 PFIXTURE 0 +0 -- 0 -- 0\n";
-        fs::write(scratch.file("lost.job"), job).expect("the job can be written");
-    });
-    let line = "in `** vise close PFIXTURE`: LINKBAR1_BH at floor";
-    assert_fails(
-        &outcome,
-        &[line, "MOVE LINKBAR1_BH from UNIT_1:4 to PFIXTURE was to leave it in the gripper"],
-    );
-    assert!(outcome.last_words.contains("later, the robot ran into LINKBAR1_BH"), "{}", outcome.last_words);
+fn a_part_that_was_pushed_out_of_the_fingers_is_named_with_where_it_lies() {
+    // The jaws push it out of fingers that close with little force. Where it comes to lie depends on the seed.
+    let job = "** tray UNIT_1 4 LINKBAR1_BH\n\
+               ** vise partial PFIXTURE\n\
+               == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n\
+               ** vise close PFIXTURE\n\
+               == POSITION H-LINKBAR1_BH +1 PFIXTURE 0 +0 -- 0 -- 0\n";
+    for seed in 1..=3 {
+        let outcome = run("lost.job", seed, &format!("finished-pushed-{seed}"), |scratch: &Scratch| {
+            let weak = "-obj-  LINKBAR1_BH      2     0300   0060   2 ";
+            scratch.data_with("objects/linkbar.blk", "-obj-  LINKBAR1_BH      2     0300   0060   30", weak);
+            fs::write(scratch.file("lost.job"), job).expect("the job can be written");
+        });
+        assert_fails(
+            &outcome,
+            &["LINKBAR1_BH at ", " from PFIXTURE was to leave it at PFIXTURE, within 0.25 in"],
+        );
+        assert!(!outcome.last_words.contains("LINKBAR1_BH at PFIXTURE"), "{}", outcome.last_words);
+    }
 }
 
 #[test]

@@ -237,9 +237,10 @@ mod tests {
             let plan = new.unwrap_or(Profile { start: first.start, ..first });
             let whole = plan.remaining();
             let last = at(&plan, whole);
-            prop_assert!(last.position <= goal + 1e-9, "{last:?} after {goal}");
+            // What seven phases leave of 200 in by rounding; a word of the link is 0.01 in.
+            prop_assert!(last.position <= goal + 1e-8, "{last:?} after {goal}");
             if plan.to_goal {
-                prop_assert!((last.position - goal).abs() < 1e-9, "{last:?} for {goal}");
+                prop_assert!((last.position - goal).abs() < 1e-8, "{last:?} for {goal}");
             }
             prop_assert!(last.velocity.abs() < 1e-6, "{last:?}");
             let (mut before, ceiling) = (plan.start, state.velocity.max(second.max(cap) * up.velocity));
