@@ -21,7 +21,8 @@ pub trait Levels<Data: ?Sized> {
     /// Why a tick could not be finished.
     type Error;
 
-    /// One tick of all processes: read `before` and `external`, write `after`, all of it.
+    /// One tick of all processes: read `before` and `external`, write `after`, all of it; calls `observe` after
+    /// each stage, as [`Ladder::step_observed`] does. What is not told of counts as the executive's.
     ///
     /// # Errors
     /// If processes that run elsewhere did not take part. There must be no further tick then.
@@ -32,24 +33,8 @@ pub trait Levels<Data: ?Sized> {
         external: &ExternalInputs,
         data: &Data,
         after: &mut CommonMemory,
+        observe: &mut dyn FnMut(Option<ProcessId>),
     ) -> Result<(), Self::Error>;
-
-    /// The same; calls `observe` after each stage, as by
-    /// [`Ladder::step_observed`]. What is not told of counts as the executive's.
-    ///
-    /// # Errors
-    /// Those of [`step`](Self::step).
-    fn step_observed(
-        &mut self,
-        tick: Tick,
-        before: &CommonMemory,
-        external: &ExternalInputs,
-        data: &Data,
-        after: &mut CommonMemory,
-        _observe: &mut dyn FnMut(Option<ProcessId>),
-    ) -> Result<(), Self::Error> {
-        self.step(tick, before, external, data, after)
-    }
 
     /// A copy that can warm up a tick; `None` if there is nothing here that a warm-up would make faster.
     fn shadow(&self) -> Option<Box<Self>>
@@ -82,21 +67,9 @@ impl Levels<TaskData<'_>> for Ladder {
         external: &ExternalInputs,
         data: &TaskData<'_>,
         after: &mut CommonMemory,
-    ) -> Result<(), Infallible> {
-        Self::step(self, tick, before, external, data, after);
-        Ok(())
-    }
-
-    fn step_observed(
-        &mut self,
-        tick: Tick,
-        before: &CommonMemory,
-        external: &ExternalInputs,
-        data: &TaskData<'_>,
-        after: &mut CommonMemory,
         observe: &mut dyn FnMut(Option<ProcessId>),
     ) -> Result<(), Infallible> {
-        Self::step_observed(self, ProcessId::ALL, tick, before, external, data, after, observe);
+        self.step_observed(ProcessId::ALL, tick, before, external, data, after, observe);
         Ok(())
     }
 
@@ -150,7 +123,7 @@ impl<L> Course<L> {
     {
         let tick = self.tick.next();
         let (before, after) = of_tick(&mut self.halves, tick);
-        self.levels.step_observed(tick, before, external, data, after, observe)?;
+        self.levels.step(tick, before, external, data, after, observe)?;
         self.tick = tick;
         Ok(())
     }
@@ -172,7 +145,7 @@ impl<L> Course<L> {
         // The half that the tick will write anew, all of it.
         let (before, after) = of_tick(&mut self.halves, tick);
         // Whether it succeeds does not matter: the tick itself follows.
-        let _ = shadow.step_observed(tick, before, external, data, after, &mut |_| {});
+        let _ = shadow.step(tick, before, external, data, after, &mut |_| {});
     }
 
     /// The ladder.

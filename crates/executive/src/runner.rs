@@ -194,6 +194,7 @@ impl<L> Runner<L> {
 mod tests {
     use std::convert::Infallible;
 
+    use levels::ladder::ProcessId;
     use rcs_core::Plain as _;
 
     use super::*;
@@ -214,6 +215,7 @@ mod tests {
             _: &ExternalInputs,
             data: &u32,
             after: &mut CommonMemory,
+            _: &mut dyn FnMut(Option<ProcessId>),
         ) -> Result<(), Infallible> {
             self.steps += 1;
             *after = *before;

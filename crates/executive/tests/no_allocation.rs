@@ -16,6 +16,7 @@ use executive::{
     runner::Runner,
 };
 use interfaces::{CommonMemory, ExternalInputs, Reason};
+use levels::ladder::ProcessId;
 use rcs_core::tick::Tick;
 
 use crate::common::headers;
@@ -37,6 +38,7 @@ impl Levels<()> for Failing {
         _: &ExternalInputs,
         _: &(),
         after: &mut CommonMemory,
+        _: &mut dyn FnMut(Option<ProcessId>),
     ) -> Result<(), Infallible> {
         *after = *before;
         for header in headers(after) {
@@ -69,6 +71,7 @@ impl Levels<()> for Careless {
         _: &ExternalInputs,
         _: &(),
         after: &mut CommonMemory,
+        _: &mut dyn FnMut(Option<ProcessId>),
     ) -> Result<(), Infallible> {
         *after = *before;
         after.task.header.stamp = tick;

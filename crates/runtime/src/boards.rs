@@ -47,32 +47,14 @@ impl Levels<TaskData<'_>> for Controller {
         external: &ExternalInputs,
         data: &TaskData<'_>,
         after: &mut CommonMemory,
-    ) -> Result<(), Lost> {
-        match self {
-            Self::One(ladder) => {
-                ladder.step(tick, before, external, data, after);
-                Ok(())
-            }
-            Self::Split(coordinator) => coordinator.step(tick, before, external, data, after),
-        }
-    }
-
-    fn step_observed(
-        &mut self,
-        tick: Tick,
-        before: &CommonMemory,
-        external: &ExternalInputs,
-        data: &TaskData<'_>,
-        after: &mut CommonMemory,
         observe: &mut dyn FnMut(Option<ProcessId>),
     ) -> Result<(), Lost> {
         match self {
             Self::One(ladder) => {
-                let all = ProcessId::ALL;
-                ladder.step_observed(all, tick, before, external, data, after, observe);
+                ladder.step_observed(ProcessId::ALL, tick, before, external, data, after, observe);
                 Ok(())
             }
-            Self::Split(coordinator) => coordinator.step(tick, before, external, data, after),
+            Self::Split(coordinator) => coordinator.step(tick, before, external, data, after, observe),
         }
     }
 

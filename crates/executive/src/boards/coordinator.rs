@@ -12,7 +12,7 @@ use std::{
 };
 
 use interfaces::{CommonMemory, ExternalInputs};
-use levels::ladder::LadderState;
+use levels::ladder::{LadderState, ProcessId};
 use rcs_core::{Plain, tick::Tick};
 use taskdata::files::TaskData;
 
@@ -430,6 +430,7 @@ impl Levels<TaskData<'_>> for Coordinator {
         external: &ExternalInputs,
         _: &TaskData<'_>,
         after: &mut CommonMemory,
+        _: &mut dyn FnMut(Option<ProcessId>),
     ) -> Result<(), Lost> {
         *after = *before;
         self.pulse = SystemPulse { tick, external: *external, ..self.pulse };

@@ -23,7 +23,8 @@ pub struct Names {
 }
 
 impl Names {
-    /// The names in these texts and in the directory that they come from. Of data with errors only the blocks are known.
+    /// The names in these texts and in the directory that they come from. Of data with errors only the blocks
+    /// are known.
     #[must_use]
     pub fn of(sources: &[Source], directory: &Path) -> Self {
         let numbers = sources.iter().flat_map(|source| blocks(0, source).0).map(|block| block.number);
@@ -183,8 +184,8 @@ fn candidates(words: &[&str], names: &Names, terminal: &[&str]) -> Vec<String> {
     }
 }
 
-/// What can stand in the next field of a command: object, then grip, location and sector of source and destination, then
-/// location and sector of the end (V.4.1).
+/// What can stand in the next field of a command: object, then grip, location and sector of source and
+/// destination, then location and sector of the end (V.4.1).
 fn field(fields: &[&str], names: &Names) -> Vec<String> {
     let null = || "--".to_owned();
     match fields.len() {

@@ -1,7 +1,7 @@
 //! The block editor (IV.2.3): 16 lines of 64 columns, with the checker's messages at their lines.
 //!
 //! ```text
-//!   n EDIT ──► text ──F2: all data are checked with it──► diff ──Enter──► file of the run's data directory, `load`
+//!   n EDIT ──► text ──F2: all data are checked with it──► diff ──Enter──► file, `load`
 //!               ▲  errors: their lines are shown           │
 //!               └──────────────Esc─────────────────────────┘
 //! ```

@@ -1,5 +1,5 @@
-//! A recorded pose becomes a form in a block (III.3.3, VII.1, VII.2): the editor opens with it, and with what the arm makes
-//! of the pose.
+//! A recorded pose becomes a form in a block (III.3.3, VII.1, VII.2): the editor opens with it, and with what
+//! the arm makes of the pose.
 
 use std::path::Path;
 
