@@ -203,3 +203,22 @@ fn no_source_is_long() {
     assert!(count > 300, "{count} sources were found");
     assert!(long.is_empty(), "split these by meaning, {LONGEST} lines at most:\n{}", long.join("\n"));
 }
+
+#[test]
+fn every_crate_has_an_example_that_its_page_names() {
+    let crates = fs::read_dir(root().join("crates")).expect("the directory is there");
+    let mut count = 0;
+    for path in crates.map(|entry| entry.expect("it can be listed").path()) {
+        let page = fs::read_to_string(path.join("README.md")).expect("a crate has a page");
+        count += 1;
+        // Its macros are shown by the crate that passes them on.
+        if path.ends_with("rcs-macros") {
+            continue;
+        }
+        let examples = fs::read_dir(path.join("examples")).expect("a crate has examples");
+        let names = examples.map(|entry| entry.expect("it can be listed").path());
+        let mut names = names.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()));
+        assert!(names.any(|name| page.contains(&name)), "{}: no example is named", path.display());
+    }
+    assert!(count > 20, "{count} crates were found");
+}

@@ -1,0 +1,17 @@
+//! A program that greets; `greet --generate DIR` writes its manual page, completions and reference page.
+//! `cargo run --release -p cli-pages --example greet -- --help`.
+
+use clap::Parser;
+
+/// Greet somebody.
+#[derive(Parser)]
+#[command(name = "greet")]
+struct Cli {
+    /// Whom
+    name: String,
+}
+
+fn main() {
+    let Cli { name } = cli_pages::parse();
+    os_io::stdout_line!("good morning, {name}");
+}

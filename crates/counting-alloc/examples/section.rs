@@ -1,0 +1,31 @@
+//! Two loops of a tick: one keeps its buffer, the other makes a new one each time, and is found out.
+//! `cargo run --release -p counting-alloc --example section`.
+
+#![expect(clippy::print_stdout, reason = "an example prints what it does")]
+
+use counting_alloc::{Counting, Section, allocations};
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations of 100 calls.
+fn count(mut tick: impl FnMut()) -> u64 {
+    let before = allocations();
+    let section = Section::enter();
+    for _ in 0..100 {
+        tick();
+    }
+    drop(section);
+    allocations() - before
+}
+
+fn main() {
+    let mut kept = Vec::with_capacity(16);
+    let keeps = count(|| {
+        kept.clear();
+        kept.extend(0..16_u8);
+    });
+    let makes = count(|| drop(std::hint::black_box((0..16_u8).collect::<Vec<_>>())));
+    println!("buffer kept: {keeps} allocations; made anew: {makes}");
+    assert_eq!((keeps, makes), (0, 100));
+}

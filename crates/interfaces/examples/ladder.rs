@@ -1,0 +1,18 @@
+//! The control processes from below with the board on which each runs, the size of its buffers, and what it reads from
+//! outside: `cargo run --release -p interfaces --example ladder`.
+
+#![expect(clippy::print_stdout, reason = "an example prints what it does")]
+
+use interfaces::{CommonMemory, ExternalInputs, ProcessId};
+use rcs_core::Plain;
+
+fn main() {
+    for process in ProcessId::upward() {
+        let indent = 2 * process.depth();
+        println!("{:indent$}{process} (board {}, common memory: {})", "", process.board(), process.field());
+        for input in process.reads() {
+            println!("{:indent$}    reads {input}", "");
+        }
+    }
+    println!("common memory {} bytes, inputs from outside {}", CommonMemory::SIZE, ExternalInputs::SIZE);
+}
