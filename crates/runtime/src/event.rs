@@ -14,7 +14,7 @@ use neighbours::{
     pedestal, vision,
     workstation::{
         self,
-        player::{JobFailure, Retry},
+        player::{JobFailure, Retry, WaitReason},
     },
 };
 use plant::CellEvent;
@@ -38,7 +38,7 @@ pub enum Event {
     Link(&'static str),
     /// A neighbour has connected, disconnected or was refused.
     Network(NetEvent),
-    /// The Data System refuses a command, and why.
+    /// The Data System refuses a command, with the reason that it gives.
     DataBaseRefuses(String),
     /// What there is to say of a Data System in another process.
     DataSystem(data_system::Remark),
@@ -60,8 +60,8 @@ pub enum Event {
     HandedOver,
     /// The workstation controller has gone, and the job goes on.
     TakenBack,
-    /// The job has begun to wait for an operator, and why.
-    Waits(String),
+    /// The job has begun to wait for an operator.
+    Waits(WaitReason),
     /// Task data have been loaded while the run went on.
     Loaded {
         /// Number of the generation.
@@ -201,7 +201,8 @@ impl fmt::Display for Event {
             Self::Loaded { generation, name } => {
                 write!(f, "task data, generation {generation}: {name} is loaded")
             }
-            Self::Waits(what) | Self::Changed(what) => f.write_str(what),
+            Self::Waits(reason) => reason.fmt(f),
+            Self::Changed(what) => f.write_str(what),
             Self::RealTime { verdict, .. } => write!(f, "real time: {verdict}"),
             Self::BoardNotPunctual(board) => {
                 write!(f, "{board}: not everything that real time needs was granted")

@@ -19,7 +19,7 @@ use neighbours::{
     vision::{self, picture::Part},
     workstation::{
         Gate, TaskState,
-        player::{BegunStep, Hwsc, JobFailure, Outcome, Progress, Retry},
+        player::{BegunStep, Hwsc, JobFailure, Outcome, Progress, Retry, WaitReason},
         status,
     },
 };
@@ -189,7 +189,7 @@ impl Neighbours {
     }
 
     /// Why the job has begun to wait for an operator; each reason is given once.
-    pub fn operator_news(&mut self) -> Option<String> {
+    pub fn operator_news(&mut self) -> Option<WaitReason> {
         match &mut self.workstation {
             WorkstationSource::Emulator(emulator) => emulator.hwsc.operator_news(),
             WorkstationSource::Switched(switched) => switched.job_under_way()?.operator_news(),

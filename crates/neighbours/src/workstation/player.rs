@@ -48,7 +48,7 @@ use taskdata::load::job::{JobLine, Panel, Step, Workstation as Action};
 
 use self::{operator::Intervention, step::Later};
 pub use self::{
-    operator::OperatorError,
+    operator::{OperatorError, WaitReason},
     outcome::{BegunStep, JobFailure, Outcome, Progress, Retry},
 };
 use super::status::{Status, TaskState};

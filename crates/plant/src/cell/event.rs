@@ -9,7 +9,7 @@ use super::Droop;
 use crate::{
     clearance::Contact,
     description::DescriptionError,
-    t3::{DriveError, explained},
+    t3::{DriveError, Lamps, RobotEvent, explained},
 };
 
 /// Why a cell cannot be built.
@@ -75,8 +75,10 @@ pub enum CellEvent {
     Warning(#[serde(with = "crate::image::record")] Warning),
     /// An arm without pressure has come to rest.
     Sagged(Droop),
-    /// Something that a person would see of the robot and its controller: pressure, lamps, jumps.
-    T3(String),
+    /// The lamps of the T3 controller have changed.
+    Lamps(Lamps),
+    /// What a person would see of the robot.
+    Robot(RobotEvent),
     /// The simulated arm cannot take a position that the robot it follows has taken, and stays behind.
     CannotFollow(JointProblem),
     /// A body has left the realm of numbers and was taken out of the simulation.
@@ -127,7 +129,7 @@ impl CellEvent {
             Self::Fell { .. } => "cell.fell",
             Self::Warning(_) => "cell.warning",
             Self::Sagged(_) => "cell.sagged",
-            Self::T3(_) => "cell.t3",
+            Self::Lamps(_) | Self::Robot(_) => "cell.t3",
             Self::CannotFollow(_) => "cell.cannot-follow",
             Self::Quarantined => "cell.quarantined",
             Self::ViseStuck => "cell.vise-stuck",
@@ -154,7 +156,8 @@ impl fmt::Display for CellEvent {
             }
             Self::Fell { part } => write!(f, "{part} lies on the floor"),
             Self::Sagged(droop) => write!(f, "the arm {}", droop.end()),
-            Self::T3(text) => write!(f, "T3: {text}"),
+            Self::Lamps(change) => write!(f, "T3: {change}"),
+            Self::Robot(event) => write!(f, "T3: {event}"),
             Self::Warning(warning) => write!(f, "the T3 controller shows {}", explained(*warning)),
             Self::CannotFollow(problem) => {
                 write!(f, "the simulated arm cannot follow the robot: {problem:?}")

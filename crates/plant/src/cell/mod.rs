@@ -404,7 +404,8 @@ impl Cell {
         for message in self.t3.messages() {
             match message {
                 Message::Warning(warning) => self.events.push(CellEvent::Warning(warning)),
-                Message::Lamp(text) | Message::Robot(text) => self.events.push(CellEvent::T3(text)),
+                Message::Lamps(change) => self.events.push(CellEvent::Lamps(change)),
+                Message::Robot(event) => self.events.push(CellEvent::Robot(event)),
                 _ => {}
             }
         }

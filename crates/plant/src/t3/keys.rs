@@ -3,7 +3,7 @@
 use depc::controller::ControllerState;
 use geometry::kinematics::T3;
 
-use super::{BY_EYE, Cut, EStop, Key, Refusal, Stage, T3Controller, off_home};
+use super::{BY_EYE, Cut, EStop, Key, Lamps, Refusal, RobotEvent, Stage, T3Controller, off_home};
 
 impl T3Controller {
     /// A key is pressed.
@@ -77,14 +77,14 @@ impl T3Controller {
     pub(super) fn fault(&mut self, cause: Cut) {
         if self.stage != Stage::Dark {
             self.shut_off(Stage::Faulted, cause);
-            self.lamp("FAULT RESET on, HYD ENABLED off");
+            self.lamps(Lamps::Fault);
         }
     }
 
     /// Pressure goes, and with it whatever runs and what is known of the axes.
     fn shut_off(&mut self, stage: Stage, cause: Cut) {
         if self.stage.is_live() {
-            self.robot(format!("{cause}: hydraulics off, the arm sinks"));
+            self.robot(RobotEvent::Sinks(cause));
             self.cut = Some(cause);
         }
         self.before_jump = None;
@@ -98,13 +98,13 @@ impl T3Controller {
         match (on, self.stage) {
             (true, Stage::Dark) => {
                 self.enter(Stage::Faulted);
-                self.lamp("control power on, FAULT RESET on");
+                self.lamps(Lamps::PowerOn);
                 Ok(())
             }
             (true, _) => Err(Refusal::PowerIsOn),
             (false, _) => {
                 self.shut_off(Stage::Dark, Cut::ControlPower);
-                self.lamp("control power off");
+                self.lamps(Lamps::PowerOff);
                 Ok(())
             }
         }
@@ -121,7 +121,7 @@ impl T3Controller {
             return Err(Refusal::PrimBoxOff);
         }
         self.enter(Stage::Ready);
-        self.lamp("FAULT RESET off");
+        self.lamps(Lamps::FaultReset);
         Ok(())
     }
 
@@ -137,13 +137,13 @@ impl T3Controller {
             (true, Stage::Faulted) => Err(Refusal::Fault),
             (true, Stage::Ready) => {
                 self.enter(Stage::Enabled);
-                self.lamp("HYD ENABLED on, red warning lights on the robot on");
+                self.lamps(Lamps::HydraulicsEnabled);
                 Ok(())
             }
             (true, _) | (false, Stage::Ready | Stage::Faulted) => Err(Refusal::KeyIsThere),
             (false, _) => {
                 self.shut_off(Stage::Ready, Cut::KeySwitch);
-                self.lamp("HYD ENABLED off, red warning lights on the robot off");
+                self.lamps(Lamps::HydraulicsDisabled);
                 Ok(())
             }
         }
@@ -155,7 +155,7 @@ impl T3Controller {
             (true, Stage::Ready) => Err(Refusal::NotEnabled),
             (true, Stage::Enabled) => {
                 self.enter(Stage::Rising);
-                self.robot("hydraulics on: the arm will jump");
+                self.robot(RobotEvent::WillJump);
                 Ok(())
             }
             (true, _) => Err(Refusal::PressureIsOn),
@@ -244,7 +244,7 @@ impl T3Controller {
             Stage::Auto => {
                 self.enter(Stage::Rehearsing);
                 self.motions = 0;
-                self.robot("two short vertical motions");
+                self.robot(RobotEvent::VerticalMotions);
                 Ok(())
             }
             Stage::Homing => Err(Refusal::Moving),
@@ -264,7 +264,7 @@ impl T3Controller {
             Stage::Homing | Stage::Rehearsing => {
                 self.arm.stop();
                 self.enter(Stage::PreManual);
-                self.robot("interrupted");
+                self.robot(RobotEvent::Interrupted);
                 Ok(())
             }
             _ => Err(Refusal::NotRunning),

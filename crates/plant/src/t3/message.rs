@@ -9,6 +9,8 @@ use depc::{Plate, controller::Warning};
 use geometry::pose::WireFrame;
 use serde::{Deserialize, Serialize};
 
+use super::Cut;
+
 /// HOME as the manual prints it (IV.3.3 step 11).
 pub const HOME: WireFrame =
     WireFrame { tool: [0, -7145, -1483], wrist_to_tool: [0, -2123, -2119], tool_to_finger: [3000, 0, 0] };
@@ -22,10 +24,10 @@ pub enum Message {
     Aligned([bool; 6]),
     /// Screen: a warning or an error.
     Warning(#[serde(with = "crate::image::record")] Warning),
-    /// A lamp on the console or on the robot.
-    Lamp(String),
+    /// The lamps on the console or on the robot.
+    Lamps(Lamps),
     /// What the robot does.
-    Robot(String),
+    Robot(RobotEvent),
     /// The position, and how far it may be off HOME.
     Position(#[serde(with = "crate::image::record")] WireFrame),
     /// The DEPC function has begun and reported the position.
@@ -34,6 +36,72 @@ pub enum Message {
     Ended,
     /// The controller runs a function on arrival (A 2.3).
     Function([u8; 2]),
+}
+
+/// A change of the lamps (III.6, IV.3.3).
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
+pub enum Lamps {
+    /// Control power was turned on.
+    PowerOn,
+    /// Control power was turned off.
+    PowerOff,
+    /// A fault has taken the hydraulics.
+    Fault,
+    /// The fault was reset.
+    FaultReset,
+    /// The hydraulics were enabled.
+    HydraulicsEnabled,
+    /// The hydraulics were disabled.
+    HydraulicsDisabled,
+}
+
+/// What a person sees of the robot.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub enum RobotEvent {
+    /// The actuators have lost their pressure.
+    Sinks(Cut),
+    /// They get it.
+    WillJump,
+    /// The arm has come to where the servos had their command.
+    Jumped {
+        /// How far the hand has moved, in.
+        inches: f64,
+    },
+    /// It rehearses its program (IV.3.3 step 12).
+    VerticalMotions,
+    /// The program was interrupted.
+    Interrupted,
+    /// It moves to HOME on its own.
+    GoesHome,
+    /// The controller waits for a motion by hand.
+    PreManual,
+}
+
+impl fmt::Display for Lamps {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::PowerOn => "control power on, FAULT RESET on",
+            Self::PowerOff => "control power off",
+            Self::Fault => "FAULT RESET on, HYD ENABLED off",
+            Self::FaultReset => "FAULT RESET off",
+            Self::HydraulicsEnabled => "HYD ENABLED on, red warning lights on the robot on",
+            Self::HydraulicsDisabled => "HYD ENABLED off, red warning lights on the robot off",
+        })
+    }
+}
+
+impl fmt::Display for RobotEvent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sinks(cause) => write!(f, "{cause}: hydraulics off, the arm sinks"),
+            Self::WillJump => f.write_str("hydraulics on: the arm will jump"),
+            Self::Jumped { inches } => write!(f, "the hand has jumped by {inches:.1} in and stands"),
+            Self::VerticalMotions => f.write_str("two short vertical motions"),
+            Self::Interrupted => f.write_str("interrupted"),
+            Self::GoesHome => f.write_str("moves directly to HOME"),
+            Self::PreManual => f.write_str("pre-manual mode"),
+        }
+    }
 }
 
 impl fmt::Display for Message {
@@ -50,8 +118,8 @@ impl fmt::Display for Message {
                 let (code, problem) = screen(*warning);
                 write!(f, "{code}  {problem}")
             }
-            Self::Lamp(text) => write!(f, "[lamp] {text}"),
-            Self::Robot(text) => write!(f, "[robot] {text}"),
+            Self::Lamps(lamps) => write!(f, "[lamp] {lamps}"),
+            Self::Robot(event) => write!(f, "[robot] {event}"),
             Self::Position(frame) => {
                 for (row, [x, y, z]) in
                     [frame.tool, frame.wrist_to_tool, frame.tool_to_finger].iter().enumerate()

@@ -39,7 +39,7 @@ use serde::{Deserialize, Serialize};
 
 pub use self::{
     key::{Cut, EStop, Key},
-    message::{HOME, HOME_TOLERANCE, Message, explained, off_home as off_printed_home},
+    message::{HOME, HOME_TOLERANCE, Lamps, Message, RobotEvent, explained, off_home as off_printed_home},
     refusal::Refusal,
     stage::Stage,
 };
@@ -383,12 +383,12 @@ impl T3Controller {
         self.since = 0.0;
     }
 
-    fn lamp(&mut self, text: impl Into<String>) {
-        self.messages.push(Message::Lamp(text.into()));
+    fn lamps(&mut self, change: Lamps) {
+        self.messages.push(Message::Lamps(change));
     }
 
-    fn robot(&mut self, text: impl Into<String>) {
-        self.messages.push(Message::Robot(text.into()));
+    fn robot(&mut self, event: RobotEvent) {
+        self.messages.push(Message::Robot(event));
     }
 }
 

@@ -9,7 +9,7 @@ use geometry::{
     kinematics::{HOME_JOINTS, Joints, T3},
 };
 
-use super::{Cut, Message, SetPoint, Stage, StepInputs, StepOutputs, T3Controller};
+use super::{Cut, Message, RobotEvent, SetPoint, Stage, StepInputs, StepOutputs, T3Controller};
 
 /// Speed of motions that the controller makes by itself, degrees/s of the fastest joint (ASSUMED).
 const OWN_SPEED: f64 = 10.0;
@@ -27,7 +27,7 @@ impl T3Controller {
 
     pub(super) fn go_home(&mut self) {
         self.end_program(Stage::Homing);
-        self.robot("moves directly to HOME");
+        self.robot(RobotEvent::GoesHome);
         self.travel(HOME_JOINTS);
     }
 
@@ -49,10 +49,10 @@ impl T3Controller {
                 self.cut = None;
             }
             Some(before) if self.arm.settled() => {
-                let jump = (self.arm.tool().position - Vector::from(before)).norm();
+                let inches = (self.arm.tool().position - Vector::from(before)).norm();
                 self.before_jump = None;
                 self.enter(Stage::Manual);
-                self.robot(format!("the hand has jumped by {jump:.1} in and stands"));
+                self.robot(RobotEvent::Jumped { inches });
                 self.messages.push(Message::Aligned(self.aligned));
             }
             Some(_) => {}
@@ -132,7 +132,7 @@ impl T3Controller {
         match (state, self.depc.state()) {
             (ControllerState::PreManual, ControllerState::Off) => {
                 self.end_program(Stage::PreManual);
-                self.robot("pre-manual mode");
+                self.robot(RobotEvent::PreManual);
             }
             (_, ControllerState::Ended) => {
                 self.messages.push(Message::Ended);

@@ -13,6 +13,8 @@
 //! [`Commander`](rcs_core::handshake::Commander). While an operator is there, a command that fails, a joystick box
 //! that is on, an emergency, and a refused action do not end the job: it waits.
 
+use std::fmt;
+
 use interfaces::HwsCommand;
 use rcs_core::{handshake::Lower, tick::Tick};
 use taskdata::load::job::{JobLine, Step};
@@ -27,7 +29,28 @@ pub(super) struct Intervention {
     attended: bool,
     state: State,
     /// What the job waits for has not been said yet.
-    news: Option<String>,
+    news: Option<WaitReason>,
+}
+
+/// Why a job waits for an operator.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WaitReason {
+    /// The operator commands the robot.
+    Commanded,
+    /// The operator has asked it to.
+    Asked,
+    /// A line has failed.
+    Failed(JobFailure),
+}
+
+impl fmt::Display for WaitReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Commanded => f.write_str("an operator commands: the job waits for `job go`"),
+            Self::Asked => f.write_str("the job waits for `job go`, as it was asked to"),
+            Self::Failed(failure) => write!(f, "{failure}: the job waits for `job go`"),
+        }
+    }
 }
 
 /// Whether the job plays.
@@ -94,7 +117,7 @@ impl Hwsc {
     }
 
     /// Why the job has begun to wait; each reason is given once.
-    pub fn operator_news(&mut self) -> Option<String> {
+    pub fn operator_news(&mut self) -> Option<WaitReason> {
         self.intervention.news.take()
     }
 
@@ -204,7 +227,7 @@ impl Hwsc {
                     self.finish(Outcome::Interrupted);
                 }
                 self.intervention.state = State::Waits { failure: None, before_line, command: Some(entry) };
-                self.intervention.news = Some("an operator commands: the job waits for `job go`".to_owned());
+                self.intervention.news = Some(WaitReason::Commanded);
             }
         }
         self.begun_steps.push(BegunStep {
@@ -239,7 +262,7 @@ impl Hwsc {
             return false;
         }
         self.intervention.state = State::Waits { failure: None, before_line: true, command: None };
-        self.intervention.news = Some("the job waits for `job go`, as it was asked to".to_owned());
+        self.intervention.news = Some(WaitReason::Asked);
         true
     }
 
@@ -260,7 +283,7 @@ impl Hwsc {
         let waits = can_be_mended && self.intervention.attended;
         if waits {
             let failure = failure.clone();
-            self.intervention.news = Some(format!("{failure}: the job waits for `job go`"));
+            self.intervention.news = Some(WaitReason::Failed(failure.clone()));
             self.intervention.state =
                 State::Waits { failure: Some(failure), before_line: false, command: None };
         }

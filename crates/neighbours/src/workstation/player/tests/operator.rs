@@ -100,7 +100,8 @@ fn a_job_waits_between_two_lines_and_a_line_is_skipped() {
     stage.hwsc.wait_for_operator().unwrap();
     stage.until(|stage| stage.hwsc.is_waiting());
     assert_eq!((stage.received().as_str(), stage.outcomes().len()), ("PAUSE MOVE", 2), "MOVE has ended");
-    assert!(stage.hwsc.operator_news().is_some_and(|news| news.contains("job go")));
+    let news = stage.hwsc.operator_news();
+    assert!(news.as_ref().is_some_and(|news| news.to_string().contains("job go")), "{news:?}");
     assert_eq!(stage.hwsc.operator_news(), None);
     stage.hwsc.skip(Tick(stage.tick)).unwrap();
     stage.until(is_over);
