@@ -310,7 +310,7 @@ fn a_viewer_with_the_token_operates_the_run() {
     let directory = tempdir().unwrap();
     let said = Said::default();
     let config = RunConfig {
-        operator: OperatorAccess::Owner,
+        operator: OperatorAccess::Network,
         shared_memory: true,
         speed: 5,
         ..config(&directory, 2000)

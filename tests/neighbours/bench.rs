@@ -48,11 +48,12 @@ impl Controller {
         Self::start_at(Scratch::new(name), None, outside, more)
     }
 
-    /// One at an address.
+    /// One at an address; without a name of a neighbour all of them are its own.
     pub fn start_at(scratch: Scratch, address: Option<&str>, outside: &str, more: &[&str]) -> Self {
         let socket = format!("unix:{}", scratch.file("rcs.sock").display());
         let mut child = Command::new(rcs_run())
-            .args(["--network", address.unwrap_or(&socket), "--outside", outside])
+            .args(["--network", address.unwrap_or(&socket)])
+            .args((!outside.is_empty()).then(|| format!("--outside={outside}")))
             // A run with a name is one that an operator reaches.
             .args(if more.contains(&"--run") { &[][..] } else { &["--shared-memory", "off"] })
             .args(if more.contains(&"--log") { &[][..] } else { &["--log", "none"] })

@@ -146,9 +146,9 @@ pub struct RunArguments {
     /// Keep the items of the Data System in this SQLite file, which is made if it is not there [default: forget them]
     #[arg(long, value_name = "FILE")]
     pub data_base: Option<PathBuf>,
-    /// Let neighbours in other processes connect here: unix:PATH, or with --keys tcp:IP:PORT,
-    /// zenoh:NAME or zenoh:NAME@ENDPOINT (docs/neighbours.md)
-    #[arg(long, value_name = "ADDRESS", requires = "outside")]
+    /// Let neighbours in other processes, and operators of --operator network, connect here: unix:PATH, or with --keys
+    /// tcp:IP:PORT, zenoh:NAME or zenoh:NAME@ENDPOINT (docs/neighbours.md)
+    #[arg(long, value_name = "ADDRESS")]
     pub network: Option<Address>,
     /// Neighbours that are other processes, with commas between them: workstation, data-system, pedestal, vision
     #[arg(long, value_name = "NEIGHBOURS", value_delimiter = ',', requires = "network")]
@@ -174,7 +174,8 @@ pub struct RunArguments {
     /// Errors that need a person are not retried (docs/reasons.md). Actions `** after` of the line are not begun again.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub retry: u32,
-    /// Who may operate the run while it goes on, by rcs-console --operate or rcs-run send; needs --clock real
+    /// Who may operate the run while it goes on, by rcs-console --operate, rcs-run send or a viewer of --live; needs
+    /// --clock real
     #[arg(long, value_enum, default_value_t = OperatorAccess::Owner)]
     pub operator: OperatorAccess,
     /// Show the operator's console on this terminal; with the real clock unless --clock says otherwise
@@ -278,6 +279,7 @@ impl CheckArguments {
             urdf: None,
             explain: None,
             explain_job: None,
+            place: None,
             from: "HOME".to_owned(),
             robot: None,
         }
@@ -347,6 +349,15 @@ pub struct SendArguments {
     /// Name of the run; may be left out if there is only one
     #[arg(long, value_name = "NAME")]
     pub run: Option<RunName>,
+    /// Ask a run with --operator network, here or on another machine: the address of its --network
+    #[arg(long, value_name = "ADDRESS", conflicts_with = "run")]
+    pub connect: Option<Address>,
+    /// Directory with ca.pem, operator.pem and operator.key for tcp: and zenoh:, as `rcs-neighbour keys` makes them
+    #[arg(long, value_name = "DIR", requires = "connect")]
+    pub keys: Option<PathBuf>,
+    /// File with Zenoh's own configuration (JSON5): TLS, access control, routers
+    #[arg(long, value_name = "FILE", requires = "connect")]
+    pub zenoh_config: Option<PathBuf>,
     /// Stay connected for so many seconds after the last line: what is held at the joystick box is let go at the end
     #[arg(long, value_name = "SECONDS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=86_400))]
     pub stay: u32,
@@ -429,12 +440,16 @@ pub struct CheckArguments {
     /// Print the ways of all lines of a job: times, joints, closest clearances
     #[arg(long, value_name = "JOB", conflicts_with = "explain")]
     pub explain_job: Option<String>,
+    /// Print the joints of a pose, the joint nearest to a limit, and what is nearest to the robot there: the same as
+    /// `rcs-run pose --of NAME`
+    #[arg(long = "where", value_name = "NAME", conflicts_with_all = ["explain", "explain_job", "urdf"])]
+    pub place: Option<String>,
     /// Location at which the robot is taken to stand before the command
     #[arg(long, value_name = "NAME", default_value = "HOME", requires = "explain")]
     pub from: String,
     /// Tell also whether the arm of this robot reaches every taught pose and follows every way of every job: a name in
     /// data/robots, or a file, with a table `arm` (docs/egm.md)
-    #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["explain", "explain_job"])]
+    #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["explain", "explain_job", "place"])]
     pub robot: Option<String>,
 }
 

@@ -7,6 +7,7 @@ use executive::{
     boards::MemberError,
     memory::{ReadError, SharedMemoryError},
 };
+use neighbours::network::{KeysError, PeerError, address::AddressError};
 use runtime::StartError;
 
 /// Exit status of a job that failed.
@@ -66,6 +67,15 @@ pub enum Error {
     /// A run cannot be operated.
     #[error(transparent)]
     Operator(#[from] operator::ClientError),
+    /// A run elsewhere cannot be reached, or does not admit the operator.
+    #[error(transparent)]
+    Network(#[from] PeerError),
+    /// Keys or certificates cannot be used.
+    #[error(transparent)]
+    Keys(#[from] KeysError),
+    /// Options of the network do not fit together.
+    #[error(transparent)]
+    Address(#[from] AddressError),
     /// A board cannot take part in a run.
     #[error(transparent)]
     Board(#[from] MemberError),

@@ -7,6 +7,7 @@ use std::{
 };
 
 use executive::memory::operator_socket;
+use neighbours::network::{NeighbourKeys, Peer, Role};
 use operator::Client;
 use os_io::{console, stderr_line};
 
@@ -19,14 +20,25 @@ use crate::{
 /// Time between two signs of life: well within what a held stick needs.
 const ALIVE: Duration = Duration::from_millis(100);
 
+/// Begin a session with a run of this user, or with one elsewhere.
+fn connect(arguments: &SendArguments) -> Result<Client, Error> {
+    let Some(address) = &arguments.connect else {
+        let run = arguments.run.clone().map_or_else(only_run, Ok)?;
+        return Ok(Client::connect(&operator_socket(&run), &arguments.name)?);
+    };
+    let keys = arguments.keys.as_deref().map(|keys| NeighbourKeys::load(keys, Role::Operator)).transpose()?;
+    let address = address.clone().configured(arguments.zenoh_config.clone())?;
+    let (stream, carrier) = Peer::connect(&address, Role::Operator, keys.as_ref())?.into_stream()?;
+    Ok(Client::over(stream, carrier, &arguments.name)?)
+}
+
 /// Ask for one line after the other, and print the answers. A refusal ends it with exit status 1.
 ///
 /// # Errors
-/// [`Error::Operator`] if the run takes no operator, [`Error::SharedMemory`] and [`Error::WhichRun`] if it is not
+/// [`Error::Operator`] if the run takes no operator, [`Error::Network`] if it cannot be reached at its address, [`Error::SharedMemory`] and [`Error::WhichRun`] if it is not
 /// clear which run is meant.
 pub fn send(arguments: &SendArguments) -> Result<ExitCode, Error> {
-    let run = arguments.run.clone().map_or_else(only_run, Ok)?;
-    let mut client = Client::connect(&operator_socket(&run), &arguments.name)?;
+    let mut client = connect(arguments)?;
     for line in &arguments.lines {
         match client.ask(line)? {
             Ok(answer) => console::answer(&format!("{line}: {answer}\n"))?,

@@ -1,6 +1,7 @@
 //! The side of a console or a script.
 
 use std::{
+    any::Any,
     io::{self, Read as _, Write as _},
     os::unix::net::UnixStream,
     path::Path,
@@ -50,6 +51,8 @@ pub struct Client {
     lines: Lines,
     number: u32,
     run: String,
+    /// What carries the stream to another machine: it ends after it.
+    _carrier: Option<Box<dyn Any + Send>>,
 }
 
 impl Client {
@@ -58,11 +61,29 @@ impl Client {
     /// # Errors
     /// [`ClientError`].
     pub fn connect(path: &Path, name: &Name) -> Result<Self, ClientError> {
-        let stream = UnixStream::connect(path).map_err(ClientError::Unreachable)?;
+        Self::begin(UnixStream::connect(path).map_err(ClientError::Unreachable)?, None, name)
+    }
+
+    /// Begin a session over a stream to a run elsewhere, and keep what carries it until the session is over.
+    ///
+    /// # Errors
+    /// [`ClientError`].
+    pub fn over(stream: UnixStream, carrier: impl Any + Send, name: &Name) -> Result<Self, ClientError> {
+        Self::begin(stream, Some(Box::new(carrier)), name)
+    }
+
+    fn begin(
+        stream: UnixStream,
+        carrier: Option<Box<dyn Any + Send>>,
+        name: &Name,
+    ) -> Result<Self, ClientError> {
         stream.set_write_timeout(Some(PATIENCE))?;
-        let mut client = Self { stream, lines: Lines::default(), number: 0, run: String::new() };
-        client.write(&format!("hello {name}\n"))?;
-        let greeting = client.wait_for_line(Instant::now() + PATIENCE)?;
+        let mut client =
+            Self { stream, lines: Lines::default(), number: 0, run: String::new(), _carrier: carrier };
+        // A run that refuses at once may have closed the connection by now; what it has said can still be read.
+        let sent = client.write(&format!("hello {name}\n"));
+        let said = client.wait_for_line(Instant::now() + PATIENCE);
+        let greeting = said.map_err(|error| sent.err().unwrap_or(error))?;
         match greeting.strip_prefix(GREETING) {
             Some(run) => client.run = run.trim().to_owned(),
             None => {

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! * [`protocol`]: the lines of a session, without I/O;
-//! * [`Listener`]: the side of the run, one thread a session;
+//! * [`Listener`]: the side of the run, one thread a session; its [`Entrance`] is for a network;
 //! * [`Client`]: the side of a console or a script.
 //!
 //! What the lines mean is the run's to say.
@@ -19,5 +19,5 @@ mod listener;
 pub mod protocol;
 
 pub use client::{Client, ClientError};
-pub use listener::{Given, Listener};
+pub use listener::{Entrance, Given, Listener};
 pub use protocol::{Answer, Event, Name};

@@ -10,7 +10,7 @@ use std::{
     path::{Path, PathBuf},
     sync::{
         Arc, Mutex, PoisonError,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
+        atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering},
         mpsc::{Receiver, SyncSender, sync_channel},
     },
     thread,
@@ -57,12 +57,11 @@ impl Given {
 pub struct Listener {
     path: PathBuf,
     events: Receiver<Given>,
-    stop: Arc<AtomicBool>,
-    streams: Streams,
+    sessions: Arc<Sessions>,
 }
 
 /// The sessions that are open.
-type Streams = Arc<Mutex<Vec<Arc<UnixStream>>>>;
+type Streams = Mutex<Vec<Arc<UnixStream>>>;
 
 impl Listener {
     /// Listen at a path, which only this user may use. Its directory must be this user's alone.
@@ -73,11 +72,23 @@ impl Listener {
         let socket = UnixListener::bind(path)?;
         fs::set_permissions(path, fs::Permissions::from_mode(0o600))?;
         let (sender, events) = sync_channel(QUEUE);
-        let (stop, streams) = (Arc::new(AtomicBool::new(false)), Streams::default());
-        let accept =
-            Accept { socket, run: run.to_owned(), sender, stop: stop.clone(), streams: streams.clone() };
-        thread::Builder::new().name("operators".into()).spawn(move || accept.run())?;
-        Ok(Self { path: path.to_owned(), events, stop, streams })
+        let sessions = Arc::new(Sessions {
+            run: run.to_owned(),
+            sender,
+            stop: AtomicBool::new(false),
+            streams: Streams::default(),
+            open: AtomicUsize::new(0),
+            entered: AtomicU32::new(0),
+        });
+        let admitting = Arc::clone(&sessions);
+        thread::Builder::new().name("operators".into()).spawn(move || admitting.accept(&socket))?;
+        Ok(Self { path: path.to_owned(), events, sessions })
+    }
+
+    /// Where operators of a network come in.
+    #[must_use]
+    pub fn entrance(&self) -> Entrance {
+        Entrance { sessions: Arc::clone(&self.sessions) }
     }
 
     /// The next event, if one has come.
@@ -95,8 +106,8 @@ impl Listener {
 
 impl Drop for Listener {
     fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
-        lock(&self.streams).iter().for_each(|stream| end(stream));
+        self.sessions.stop.store(true, Ordering::Relaxed);
+        lock(&self.sessions.streams).iter().for_each(|stream| end(stream));
         // The thread sees `stop` with the next connection.
         let _ = UnixStream::connect(&self.path);
         let _ = fs::remove_file(&self.path);
@@ -118,19 +129,45 @@ fn end(stream: &UnixStream) {
     let _ = stream.shutdown(std::net::Shutdown::Both);
 }
 
-/// The thread that lets sessions in.
-struct Accept {
-    socket: UnixListener,
-    run: String,
-    sender: SyncSender<Given>,
-    stop: Arc<AtomicBool>,
-    streams: Streams,
+/// Where operators come in who have proved who they are in another way than by their user.
+#[derive(Clone)]
+pub struct Entrance {
+    sessions: Arc<Sessions>,
 }
 
-impl Accept {
-    fn run(self) {
-        let open = Arc::new(AtomicUsize::new(0));
-        for stream in self.socket.incoming() {
+impl Entrance {
+    /// Begin a session; the other end of it. In the log its name has `netN.` in front, N counted from 1, so that it is no
+    /// other session's.
+    ///
+    /// # Errors
+    /// What the system says, or that the run is over.
+    pub fn enter(&self) -> io::Result<UnixStream> {
+        if self.sessions.stop.load(Ordering::Relaxed) {
+            return Err(io::Error::other("the run is over"));
+        }
+        let (ours, theirs) = UnixStream::pair()?;
+        let number = self.sessions.entered.fetch_add(1, Ordering::Relaxed).wrapping_add(1);
+        self.sessions.admit(Arc::new(ours), format!("net{number}."))?;
+        Ok(theirs)
+    }
+}
+
+/// The sessions of a run.
+struct Sessions {
+    run: String,
+    sender: SyncSender<Given>,
+    stop: AtomicBool,
+    streams: Streams,
+    /// How many are open.
+    open: AtomicUsize,
+    /// How many have come by an entrance.
+    entered: AtomicU32,
+}
+
+impl Sessions {
+    /// The thread that lets sessions in.
+    fn accept(self: Arc<Self>, socket: &UnixListener) {
+        for stream in socket.incoming() {
             if self.stop.load(Ordering::Relaxed) {
                 return;
             }
@@ -140,16 +177,16 @@ impl Accept {
                 continue;
             };
             // If the thread cannot be had, the client sees the end of its session.
-            let _ = self.admit(stream, &open);
+            let stream = Arc::new(stream);
+            let _ = match check_user(&stream) {
+                Ok(()) => self.admit(stream, String::new()),
+                Err(why) => say(&stream, &refusal(&why.to_string())),
+            };
         }
     }
 
-    fn admit(&self, stream: UnixStream, open: &Arc<AtomicUsize>) -> io::Result<()> {
-        let stream = Arc::new(stream);
-        if let Err(why) = check_user(&stream) {
-            return say(&stream, &refusal(&why.to_string()));
-        }
-        if open.load(Ordering::Relaxed) >= SESSIONS {
+    fn admit(self: &Arc<Self>, stream: Arc<UnixStream>, origin: String) -> io::Result<()> {
+        if self.open.load(Ordering::Relaxed) >= SESSIONS {
             let why = format!("{SESSIONS} operators are connected: end another session first");
             return say(&stream, &refusal(&why));
         }
@@ -158,17 +195,18 @@ impl Accept {
             lines: Lines::default(),
             sender: self.sender.clone(),
             greeting: format!("{GREETING} {}\n", self.run),
+            origin,
         };
-        open.fetch_add(1, Ordering::Relaxed);
+        self.open.fetch_add(1, Ordering::Relaxed);
         lock(&self.streams).push(stream.clone());
-        let (count, streams) = (open.clone(), self.streams.clone());
+        let sessions = Arc::clone(self);
         let thread = thread::Builder::new().name("operator".into()).spawn(move || {
             session.run();
-            lock(&streams).retain(|open| !Arc::ptr_eq(open, &stream));
-            count.fetch_sub(1, Ordering::Relaxed);
+            lock(&sessions.streams).retain(|open| !Arc::ptr_eq(open, &stream));
+            sessions.open.fetch_sub(1, Ordering::Relaxed);
         });
         thread.map(|_| ()).inspect_err(|_| {
-            open.fetch_sub(1, Ordering::Relaxed);
+            self.open.fetch_sub(1, Ordering::Relaxed);
         })
     }
 }
@@ -194,6 +232,8 @@ struct Session {
     lines: Lines,
     sender: SyncSender<Given>,
     greeting: String,
+    /// What stands in front of its name.
+    origin: String,
 }
 
 /// Why a session ends.
@@ -229,7 +269,7 @@ impl Session {
         let limit = self.stream.set_read_timeout(Some(HELLO));
         limit.map_err(|_| End::Closed)?;
         let line = self.line(|| Err(End::Wrong(ProtocolError::NoHello(String::new()))))?;
-        let name = protocol::hello(&line)?;
+        let name = protocol::hello(&line)?.from(&self.origin);
         say(&self.stream, &self.greeting).map_err(|_| End::Closed)?;
         Ok(name)
     }

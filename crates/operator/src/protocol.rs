@@ -33,6 +33,13 @@ impl Name {
     pub fn as_str(&self) -> &str {
         &self.0
     }
+
+    /// The name with where it comes from in front, legal characters of one byte, cut to its length.
+    pub(crate) fn from(self, origin: &str) -> Self {
+        let mut whole = format!("{origin}{self}");
+        whole.truncate(NAME);
+        Self(whole)
+    }
 }
 
 impl fmt::Display for Name {

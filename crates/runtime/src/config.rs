@@ -163,6 +163,8 @@ pub enum OperatorAccess {
     None,
     /// Programs of the user who runs it, on this machine
     Owner,
+    /// These, and over the network who has the role: a certificate at --network, the token at --live
+    Network,
 }
 
 /// When ticks are run.

@@ -80,6 +80,19 @@ pub enum StartError {
     /// Updates for the Data System cannot be kept.
     #[error("{0}; --outbox names another file")]
     Outbox(#[from] OutboxError),
+    /// An operator is no neighbour.
+    #[error("an operator is no neighbour: --operator network lets operators connect, not --outside operator")]
+    OperatorOutside,
+    /// An address without anybody who may connect there.
+    #[error(
+        "nobody may connect at the address of --network: add --outside for neighbours, or --operator network"
+    )]
+    NobodyConnects,
+    /// Operators of a network need a run that they can operate, and a way to it.
+    #[error(
+        "--operator network needs --clock real or a speed such as 5x, --shared-memory on, and --network or --live"
+    )]
+    OperatorNetwork,
     /// Neighbours cannot connect.
     #[error("neighbours cannot connect: {0}")]
     Network(#[from] ListenError),

@@ -10,7 +10,7 @@ use executive::{
 use neighbours::{
     data_system,
     mailbox::MailboxError,
-    network::NetEvent,
+    network::{Disconnect, NetEvent, Role},
     pedestal, vision,
     workstation::{
         self,
@@ -132,8 +132,10 @@ impl Event {
             Self::Cell(event) if event.is_harm() => Level::Error,
             Self::Collides(_) | Self::CameFree(_) | Self::CellStatusUnsent(_) | Self::Stops => Level::Error,
             Self::RealTime { complete: true, .. } => Level::Info,
-            // That a neighbour connects is no warning.
-            Self::Network(NetEvent::Connected(_)) => Level::Info,
+            // That a neighbour connects is no warning, nor that an operator leaves.
+            Self::Network(
+                NetEvent::Connected(_) | NetEvent::Disconnected(Role::Operator, Disconnect::Closed),
+            ) => Level::Info,
             Self::HandedOver | Self::TakenBack | Self::Loaded { .. } | Self::Changed(_) | Self::Punctual => {
                 Level::Info
             }

@@ -33,6 +33,7 @@ mod load;
 pub mod loads;
 mod log;
 pub mod neighbours;
+mod network;
 pub mod observer;
 mod operator;
 mod outside;

@@ -14,7 +14,7 @@ use interfaces::{CommonMemory, DataBaseStatus, DeviceInputs, Header, HwsCommand,
 use neighbours::{
     data_system::{DataSystem, Item},
     mailbox::{HWSC_COMMAND, Mailbox},
-    network::{Endpoint, EndpointHandle, Listener, Role},
+    network::{Endpoint, EndpointHandle, Role},
     pedestal,
     vision::{self, picture::Part},
     workstation::{
@@ -36,6 +36,7 @@ use crate::{
     config::{ClockKind, RunConfig},
     error::StartError,
     event::Event,
+    network::Network,
     observer::Observer,
 };
 
@@ -62,14 +63,6 @@ impl WorkstationSource {
     pub fn outside(endpoint: Endpoint) -> Self {
         Self::Outside(Box::new(Commanded::new(endpoint)))
     }
-}
-
-/// Where neighbours of other processes connect.
-pub struct Network {
-    /// Who may come.
-    pub handles: Vec<EndpointHandle>,
-    /// Lets them in.
-    pub _listener: Listener,
 }
 
 /// The neighbours of a run.
@@ -126,6 +119,7 @@ impl Neighbours {
             Role::Workstation if fast => !handle.was_connected(),
             Role::Workstation => !handle.is_connected(),
             Role::DataSystem | Role::Pedestal | Role::Vision => fast && !handle.is_connected(),
+            Role::Operator => false,
         };
         loop {
             let missing: Vec<_> = network.handles.iter().filter(is_missing).collect();
@@ -298,6 +292,7 @@ impl Neighbours {
         self.data_system.step(tick, &memory.task.data_base);
         self.events.extend(self.data_system.refusals().into_iter().map(Event::DataBaseRefuses));
         self.events.extend(self.data_system.remarks().into_iter().map(Event::from));
+        self.events.extend(self.network.iter().flat_map(Network::events).map(Event::Network));
         self.step_vision(tick, memory, workstation);
         self.gate.write(memory, task_state(&memory.task.header, tick));
         let progress = match &mut self.workstation {

@@ -10,7 +10,7 @@ use depc::fault::Injector;
 use executive::serial::SerialLine;
 use neighbours::{
     data_system::{self, ANSWER_TICKS, Agent, DataSystem, Outbox, Pace},
-    network::{self, ControllerKeys, Endpoint, Listener, Role},
+    network::{self, Endpoint, Role},
     pedestal, vision,
     workstation::player::{Hwsc, TIME_LIMIT},
 };
@@ -30,7 +30,8 @@ use crate::{
     egm::EgmPort,
     error::StartError,
     live::Live,
-    neighbours::{Emulator, Neighbours, Network, WorkstationSource},
+    neighbours::{Emulator, Neighbours, WorkstationSource},
+    network::Network,
     observer::Observer,
     own::{OwnPort, OwnRobot},
     robot::{Port, Robot},
@@ -217,17 +218,8 @@ fn neighbours(
     };
     let (commands, items) = (endpoint(Role::Workstation)?, endpoint(Role::DataSystem)?);
     let (regrips, sees) = (endpoint(Role::Pedestal)?, endpoint(Role::Vision)?);
-    let keys = config.keys.as_deref().map(ControllerKeys::load).transpose()?;
-    let network = match &config.network {
-        Some(address) => {
-            let endpoints = || commands.iter().chain(&items).chain(&regrips).chain(&sees);
-            let address = address.clone().configured(config.zenoh_config.clone())?;
-            let listener = Listener::start(&address, keys, endpoints())?;
-            observer.message(&format!("neighbours can connect at {}", listener.address()));
-            Some(Network { handles: endpoints().map(Endpoint::handle).collect(), _listener: listener })
-        }
-        None => None,
-    };
+    let endpoints: Vec<_> = commands.iter().chain(&items).chain(&regrips).chain(&sees).collect();
+    let network = Network::start(config, &endpoints, observer)?;
     let data_system = match items {
         Some(endpoint) => DataSystem::elsewhere(Agent::new(endpoint, outbox(config)?), pace),
         None => {

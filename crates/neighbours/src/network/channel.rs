@@ -50,7 +50,11 @@ impl Channel {
     /// Send what a session wants to be sent, as far as the system takes it; what it does not take waits for
     /// the next call.
     pub fn send(&mut self, session: &mut Session) -> io::Result<()> {
-        let plain = session.output();
+        self.send_bytes(session.output())
+    }
+
+    /// The same with bytes, which are taken out.
+    pub fn send_bytes(&mut self, plain: &mut Vec<u8>) -> io::Result<()> {
         match &mut self.tls {
             None => self.pending.append(plain),
             Some(tls) => {
@@ -83,11 +87,19 @@ impl Channel {
     /// What the system says; [`io::ErrorKind::InvalidData`] for TLS, after the other side was sent the alert;
     /// [`io::ErrorKind::UnexpectedEof`] if TLS was cut off.
     pub fn receive(&mut self, session: &mut Session, now: Instant) -> io::Result<bool> {
+        self.receive_bytes(|bytes| session.receive(bytes, now))
+    }
+
+    /// The same for bytes.
+    ///
+    /// # Errors
+    /// As [`Channel::receive`].
+    pub fn receive_bytes(&mut self, mut take: impl FnMut(&[u8])) -> io::Result<bool> {
         let mut buffer = [0; CHUNK];
         let Some(tls) = &mut self.tls else {
             let read = (&self.socket).read(&mut buffer);
             return or_later(read.map(|count| {
-                session.receive(&buffer[..count], now);
+                take(&buffer[..count]);
                 count > 0
             }));
         };
@@ -101,7 +113,7 @@ impl Channel {
         loop {
             match tls.reader().read(&mut buffer) {
                 Ok(0) => return Ok(false),
-                Ok(count) => session.receive(&buffer[..count], now),
+                Ok(count) => take(&buffer[..count]),
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => break,
                 Err(_) => return Err(cut()),
             }

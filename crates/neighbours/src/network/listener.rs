@@ -23,7 +23,9 @@ use rustix::net::{Shutdown, shutdown};
 
 #[cfg(feature = "zenoh")]
 use super::over_zenoh;
-use super::{Address, Endpoint, KeysError, keys::ControllerKeys, server::Server, socket::Socket};
+use super::{
+    Address, ClockKind, Endpoint, KeysError, Operators, keys::ControllerKeys, server::Server, socket::Socket,
+};
 
 /// Why no neighbour can connect.
 #[derive(Debug, thiserror::Error)]
@@ -111,18 +113,29 @@ impl Listener {
     ///
     /// # Errors
     /// [`ListenError`].
-    ///
-    /// # Panics
-    /// If there are no endpoints.
     pub fn start<'a>(
         address: &Address,
         keys: Option<ControllerKeys>,
         endpoints: impl IntoIterator<Item = &'a Endpoint>,
     ) -> Result<Self, ListenError> {
+        Self::with_operators(address, keys, endpoints, None)
+    }
+
+    /// The same, for operators as well.
+    ///
+    /// # Errors
+    /// [`ListenError`].
+    pub fn with_operators<'a>(
+        address: &Address,
+        keys: Option<ControllerKeys>,
+        endpoints: impl IntoIterator<Item = &'a Endpoint>,
+        operators: Option<Operators>,
+    ) -> Result<Self, ListenError> {
         KeysError::check(address, keys.is_some())?;
         let handles: Vec<_> = endpoints.into_iter().map(Endpoint::handle).collect();
-        let clock = handles.first().expect("a network has neighbours").clock();
-        let server = Arc::new(Server::new(handles, keys, clock));
+        // Operators alone: they need the real clock.
+        let clock = handles.first().map_or(ClockKind::Real, |handle| handle.clock());
+        let server = Arc::new(Server::new(handles, operators, keys, clock));
         let failed = |source| ListenError::Address { address: address.clone(), source };
         let (socket, bound) = match address {
             Address::Unix(path) => (Accepting::Unix(unix(path, address)?), address.clone()),

@@ -17,6 +17,7 @@
 //! * [`keys`]: TLS between machines, and which certificate is which neighbour;
 //! * `socket`, `channel`: bytes of a session over a socket, with TLS or without;
 //! * [`listener`], `accept_queue`, `server`: the controller's end of connections, [`peer`]: the neighbour's;
+//! * [`operators`]: operators, whose connections carry lines in the place of mailboxes;
 //! * [`zenoh_address`], `over_zenoh`: connections through a Zenoh network (with the feature `zenoh`).
 //!
 //! In fast clock the tick waits for the pulse of every neighbour that is connected, so that runs with
@@ -31,6 +32,7 @@ pub mod event;
 pub mod frame;
 pub mod keys;
 pub mod listener;
+pub mod operators;
 #[cfg(feature = "zenoh")]
 mod over_zenoh;
 pub mod peer;
@@ -47,6 +49,7 @@ pub use endpoint::{Endpoint, Presence, StopHandle};
 pub use event::{Disconnect, NetEvent};
 pub use keys::{ControllerKeys, KeysError, NeighbourKeys};
 pub use listener::Listener;
+pub use operators::Operators;
 pub use peer::{Peer, PeerError, Received};
 pub use role::Role;
 pub use shared::{AttachError, EndpointHandle};

@@ -15,6 +15,7 @@ use super::over_zenoh;
 use super::{
     Address, ClockKind, KeysError, NeighbourKeys, Role,
     channel::Channel,
+    operators::{Carrier, carry},
     session::{Event, NEIGHBOUR_LIMIT, Session, SessionError},
     shared::OVER,
     socket::Socket,
@@ -213,6 +214,21 @@ impl Peer {
     pub fn mailbox(&self, place: Place) -> &Mailbox {
         let mailbox = self.incoming.iter().find(|mailbox| mailbox.place() == place);
         mailbox.unwrap_or_else(|| panic!("{place} does not go to {}", self.role))
+    }
+
+    /// The two ends of an operator's session, admitted as [`Role::Operator`]: a stream on which to talk to the run, and
+    /// what carries it, which is to be dropped after the stream.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn into_stream(mut self) -> io::Result<(UnixStream, Carrier)> {
+        let (ours, theirs) = UnixStream::pair()?;
+        let thread = thread::Builder::new().name("operator".into()).spawn(move || {
+            let unread = self.session.take_unread();
+            // Why it ends is nothing to the client, which sees the end of its stream.
+            let _ = carry(&mut self.channel, &theirs, unread, None);
+        })?;
+        Ok((ours, Carrier::of(thread)))
     }
 
     /// What comes next.

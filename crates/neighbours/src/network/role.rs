@@ -1,4 +1,4 @@
-//! Which neighbours there are, and which mailboxes each has.
+//! Who may connect, and which mailboxes each has.
 
 use std::{fmt, str::FromStr};
 
@@ -8,7 +8,7 @@ use crate::mailbox::{
     PEDESTAL_TABLE_STATUS, Place, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE,
 };
 
-/// A neighbour of the controller. The number stands in the hello.
+/// Who connects: a neighbour of the controller, or an operator. The number stands in the hello.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u16)]
 pub enum Role {
@@ -20,11 +20,14 @@ pub enum Role {
     Pedestal = 3,
     /// The vision system.
     Vision = 4,
+    /// An operator: no neighbour, without mailboxes. Its connection carries the lines of a session (crate `operator`).
+    Operator = 5,
 }
 
 impl Role {
-    /// All neighbours.
-    pub const ALL: [Self; 4] = [Self::Workstation, Self::DataSystem, Self::Pedestal, Self::Vision];
+    /// All who may connect.
+    pub const ALL: [Self; 5] =
+        [Self::Workstation, Self::DataSystem, Self::Pedestal, Self::Vision, Self::Operator];
 
     /// The word on the command line.
     #[must_use]
@@ -34,10 +37,11 @@ impl Role {
             Self::DataSystem => "data-system",
             Self::Pedestal => "pedestal",
             Self::Vision => "vision",
+            Self::Operator => "operator",
         }
     }
 
-    /// Mailboxes that the neighbour writes.
+    /// Mailboxes that it writes.
     #[must_use]
     pub const fn to_controller(self) -> &'static [Place] {
         match self {
@@ -47,10 +51,11 @@ impl Role {
                 &[PEDESTAL_STATUS, PEDESTAL_GRIPPER_STATUS, PEDESTAL_TABLE_STATUS, PEDESTAL_ORDERS]
             }
             Self::Vision => &[VISION_RESPONSE],
+            Self::Operator => &[],
         }
     }
 
-    /// Mailboxes that the neighbour reads.
+    /// Mailboxes that it reads.
     #[must_use]
     pub const fn from_controller(self) -> &'static [Place] {
         match self {
@@ -59,10 +64,11 @@ impl Role {
             Self::Pedestal => &[PEDESTAL_COMMAND, PEDESTAL_SENSORS],
             // The picture first: a neighbour that reads the request has it.
             Self::Vision => &[VISION_PICTURE, VISION_REQUEST],
+            Self::Operator => &[],
         }
     }
 
-    /// The neighbour of a number.
+    /// The role of a number.
     #[must_use]
     pub fn from_number(number: u16) -> Option<Self> {
         Self::ALL.into_iter().find(|&role| role as u16 == number)
@@ -75,7 +81,7 @@ impl fmt::Display for Role {
     }
 }
 
-/// A word that is no neighbour.
+/// A word that is no role.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{} was expected, found {found}", Role::ALL.map(Role::text).join(" or "))]
 pub struct UnknownRole {
@@ -106,7 +112,7 @@ mod tests {
         assert_eq!(Role::from_number(0), None);
         assert_eq!(
             "foreman".parse::<Role>().unwrap_err().to_string(),
-            "workstation or data-system or pedestal or vision was expected, found foreman"
+            "workstation or data-system or pedestal or vision or operator was expected, found foreman"
         );
     }
 

@@ -2,15 +2,17 @@
 
 use std::{
     fmt, io,
+    os::unix::net::UnixStream,
     sync::{Arc, Mutex},
     thread,
     time::Instant,
 };
 
 use super::{
-    ClockKind, ControllerKeys, Disconnect, NetEvent, Role,
+    ClockKind, ControllerKeys, Disconnect, NetEvent, Operators, Role,
     accept_queue::{AcceptQueue, SAFE},
     channel::Channel,
+    operators::{SILENCE, carry},
     session::{Event, Session, SessionError},
     shared::{EndpointHandle, Link, OVER, Outgoing, locked},
     socket::Socket,
@@ -22,6 +24,7 @@ const CROWDED: &str = "too many connect at once";
 /// What the threads work with.
 pub(super) struct Server {
     handles: Vec<EndpointHandle>,
+    operators: Option<Operators>,
     keys: Option<ControllerKeys>,
     clock: ClockKind,
     queue: AcceptQueue,
@@ -36,8 +39,13 @@ struct Connection {
 }
 
 impl Server {
-    pub fn new(handles: Vec<EndpointHandle>, keys: Option<ControllerKeys>, clock: ClockKind) -> Self {
-        Self { handles, keys, clock, queue: AcceptQueue::default(), crowded: Mutex::default() }
+    pub fn new(
+        handles: Vec<EndpointHandle>,
+        operators: Option<Operators>,
+        keys: Option<ControllerKeys>,
+        clock: ClockKind,
+    ) -> Self {
+        Self { handles, operators, keys, clock, queue: AcceptQueue::default(), crowded: Mutex::default() }
     }
 
     /// Serve a connection, if there is a slot for it in the accept queue; else it is closed.
@@ -55,8 +63,10 @@ impl Server {
     }
 
     fn refused(&self, why: String) {
-        if let Some(handle) = self.handles.first() {
-            handle.tell(NetEvent::Refused(why));
+        match (self.handles.first(), &self.operators) {
+            (Some(handle), _) => handle.tell(NetEvent::Refused(why)),
+            (None, Some(operators)) => operators.tell(NetEvent::Refused(why)),
+            (None, None) => {}
         }
     }
 
@@ -68,11 +78,21 @@ impl Server {
             Err(why) => return self.refused(why),
         };
         match connection.greet(self) {
-            Ok(mut link) => {
+            Ok(Admitted::Neighbour(mut link)) => {
                 drop(slot);
                 let why = connection.run(&mut link);
                 connection.finish();
                 link.handle.detach(why);
+                connection.channel.drain(Instant::now() + SAFE);
+            }
+            Ok(Admitted::Operator(operators, run)) => {
+                drop(slot);
+                operators.tell(NetEvent::Connected(Role::Operator));
+                let why = connection.carry(&run);
+                // The run sees the end of the session at once, whatever the network does.
+                drop(run);
+                connection.finish();
+                operators.tell(NetEvent::Disconnected(Role::Operator, why));
                 connection.channel.drain(Instant::now() + SAFE);
             }
             Err(why) => {
@@ -93,21 +113,34 @@ impl Server {
         Ok(Connection { channel, session: Session::controller(self.clock, Instant::now()) })
     }
 
-    /// A session for the neighbour that asks for admission, if it may have one.
-    fn admit(&self, role: Role, channel: &Channel) -> Result<Link, String> {
+    /// A session for who asks for admission, if it may have one.
+    fn admit(&self, role: Role, channel: &Channel) -> Result<Admitted<'_>, String> {
         if let Some(keys) = &self.keys {
             let certificate = channel.certificate().ok_or("the neighbour has no certificate")?;
             keys.check(certificate, role)?;
         }
+        if role == Role::Operator {
+            let operators = self.operators.as_ref();
+            let operators = operators
+                .ok_or("the run takes no operator over the network; one with --operator network does")?;
+            return Ok(Admitted::Operator(operators, operators.enter().map_err(said)?));
+        }
         let handle = self.handles.iter().find(|handle| handle.role() == role);
         let handle = handle.ok_or_else(|| format!("no {role} was expected in another process"))?;
-        handle.attach().map_err(said)
+        handle.attach().map(Admitted::Neighbour).map_err(said)
     }
 }
 
+/// Who was admitted.
+enum Admitted<'a> {
+    Neighbour(Link),
+    /// With the stream on which the run listens to the operator.
+    Operator(&'a Operators, UnixStream),
+}
+
 impl Connection {
-    /// Until the neighbour is admitted; else why it is not.
-    fn greet(&mut self, server: &Server) -> Result<Link, String> {
+    /// Until the other side is admitted; else why it is not.
+    fn greet<'a>(&mut self, server: &'a Server) -> Result<Admitted<'a>, String> {
         self.channel.check_user().map_err(said)?;
         loop {
             self.channel.send(&mut self.session).map_err(said)?;
@@ -115,14 +148,22 @@ impl Connection {
             let ready = self.channel.wait(None, self.session.deadline()).map_err(said)?;
             let open = !ready || self.channel.receive(&mut self.session, Instant::now()).map_err(refusal)?;
             if let Some(Event::Hello(role)) = self.session.event(Instant::now()).map_err(said)? {
-                let link = server.admit(role, &self.channel)?;
+                let admitted = server.admit(role, &self.channel)?;
                 self.session.admit();
-                return Ok(link);
+                return Ok(admitted);
             }
             if !open {
                 return Err("no hello: the connection was closed".to_owned());
             }
         }
+    }
+
+    /// Carry an operator's lines between its connection and the run, until one of them ends; why it did.
+    fn carry(&mut self, run: &UnixStream) -> Disconnect {
+        let unread = self.session.take_unread();
+        let sent = self.channel.send(&mut self.session);
+        let lost = |error: io::Error| Disconnect::Lost(error.to_string());
+        sent.map_err(lost).map_or_else(|why| why, |()| carry(&mut self.channel, run, unread, Some(SILENCE)))
     }
 
     /// Until the session ends; why it did.

@@ -389,6 +389,14 @@ impl Session {
         }
     }
 
+    /// What has come and was not read: what follows an admission that this protocol does not rule.
+    pub fn take_unread(&mut self) -> Vec<u8> {
+        let unread = self.input.split_off(self.read);
+        self.input.clear();
+        self.read = 0;
+        unread
+    }
+
     /// What is to be sent; the caller takes it out.
     pub const fn output(&mut self) -> &mut Vec<u8> {
         &mut self.output

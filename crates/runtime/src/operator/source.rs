@@ -2,7 +2,7 @@
 
 use std::{collections::VecDeque, fs, path::Path};
 
-use ::operator::{Event, Given, Listener};
+use ::operator::{Entrance, Event, Given, Listener};
 use executive::memory::{RunName, operator_socket};
 use rcs_core::tick::Tick;
 use record::{Attachment, Log, OperatorLine};
@@ -145,6 +145,15 @@ impl Inputs {
     pub fn socket(&self) -> Option<&Path> {
         match self {
             Self::Sessions(listener) => Some(listener.path()),
+            Self::None | Self::Recorded(..) => None,
+        }
+    }
+
+    /// Where operators of a network come in, if any can connect.
+    #[must_use]
+    pub fn entrance(&self) -> Option<Entrance> {
+        match self {
+            Self::Sessions(listener) => Some(listener.entrance()),
             Self::None | Self::Recorded(..) => None,
         }
     }

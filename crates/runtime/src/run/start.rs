@@ -12,7 +12,7 @@ use interfaces::ExternalInputs;
 use super::Run;
 use crate::{
     boards::Controller,
-    config::{RobotKind, RunConfig},
+    config::{OperatorAccess, RobotKind, RunConfig},
     contacts::ContactCheck,
     error::StartError,
     load::Loads,
@@ -99,8 +99,13 @@ impl Run {
         let operator = Operator::new(robot.is_elsewhere());
         let runner = Runner::new(controller, publisher);
         let asked = Inputs::of(&config, &name, &mut *observer)?;
+        let network = neighbours.network.as_ref();
+        if let Some((network, entrance)) = network.zip(asked.entrance()) {
+            network.let_operators_in(move || entrance.enter());
+        }
         if let Some(live) = &mut live {
-            live.start(&config, &job.name, asked.socket(), &mut *observer)?;
+            let operators = asked.socket().filter(|_| config.operator == OperatorAccess::Network);
+            live.start(&config, &job.name, operators, &mut *observer)?;
         }
         // It begins before this process asks for real time.
         let loader = asked.socket().map(|_| Loader::start()).transpose().map_err(StartError::Thread)?;

@@ -1,0 +1,85 @@
+//! Where neighbours and operators of other processes, or on other machines, connect.
+
+use std::{
+    io,
+    os::unix::net::UnixStream,
+    sync::mpsc::{Receiver, channel},
+};
+
+use ::neighbours::network::{ControllerKeys, Endpoint, EndpointHandle, Listener, NetEvent, Operators, Role};
+
+use crate::{
+    config::{ClockKind, OperatorAccess, RunConfig},
+    error::StartError,
+    observer::Observer,
+};
+
+/// The network of a run, as long as it lasts.
+pub struct Network {
+    /// Which neighbours may come.
+    pub handles: Vec<EndpointHandle>,
+    /// Operators, if they may come, and what happens with them.
+    operators: Option<(Operators, Receiver<NetEvent>)>,
+    /// Lets them in.
+    _listener: Listener,
+}
+
+impl Network {
+    /// Listen where a configuration says, if it names an address.
+    ///
+    /// # Errors
+    /// [`StartError`] if its options do not fit together, or the address cannot be had.
+    pub fn start(
+        config: &RunConfig,
+        endpoints: &[&Endpoint],
+        observer: &mut dyn Observer,
+    ) -> Result<Option<Self>, StartError> {
+        check(config)?;
+        let keys = config.keys.as_deref().map(ControllerKeys::load).transpose()?;
+        let Some(address) = &config.network else { return Ok(None) };
+        let operators = (config.operator == OperatorAccess::Network).then(|| {
+            let (sender, events) = channel();
+            (Operators::new(sender), events)
+        });
+        let who = match (endpoints, &operators) {
+            ([], _) => "operators",
+            (_, None) => "neighbours",
+            (_, Some(_)) => "neighbours and operators",
+        };
+        let address = address.clone().configured(config.zenoh_config.clone())?;
+        let entering = operators.as_ref().map(|(operators, _)| operators.clone());
+        let listener = Listener::with_operators(&address, keys, endpoints.iter().copied(), entering)?;
+        observer.message(&format!("{who} can connect at {}", listener.address()));
+        let handles = endpoints.iter().map(|endpoint| endpoint.handle()).collect();
+        Ok(Some(Self { handles, operators, _listener: listener }))
+    }
+
+    /// The run has begun: operators are let in.
+    pub fn let_operators_in(&self, enter: impl Fn() -> io::Result<UnixStream> + Send + Sync + 'static) {
+        if let Some((operators, _)) = &self.operators {
+            operators.open(enter);
+        }
+    }
+
+    /// What has happened with operators since the last call.
+    pub fn events(&self) -> impl Iterator<Item = NetEvent> {
+        self.operators.iter().flat_map(|(_, events)| events.try_iter())
+    }
+}
+
+/// Whether the options of the network fit together.
+fn check(config: &RunConfig) -> Result<(), StartError> {
+    let for_operators = config.operator == OperatorAccess::Network;
+    if config.outside.contains(&Role::Operator) {
+        return Err(StartError::OperatorOutside);
+    }
+    if config.network.is_some() && config.outside.is_empty() && !for_operators {
+        return Err(StartError::NobodyConnects);
+    }
+    let is_reached = config.network.is_some() || config.live.is_some();
+    let can_be_operated = config.clock == ClockKind::Real && config.shared_memory;
+    if for_operators && !(is_reached && can_be_operated) {
+        return Err(StartError::OperatorNetwork);
+    }
+    Ok(())
+}
