@@ -35,7 +35,7 @@ use runtime::{
 use crate::{
     cli::CheckArguments,
     error::{Error, UNUSABLE},
-    explain, long_json,
+    explain, long_json, pose,
     reach::Reach,
     ways,
 };
@@ -65,6 +65,9 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     }
     if let Some(command) = &arguments.explain {
         return explain::explain(arguments, command);
+    }
+    if let Some(name) = &arguments.place {
+        return pose::place(&arguments.data, name, arguments.json);
     }
     if let Some(job) = &arguments.explain_job {
         return ways::explain(arguments, job);

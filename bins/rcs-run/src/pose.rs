@@ -2,7 +2,10 @@
 
 mod form;
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use executive::memory::{Attached, OnStuck, SET_UP_LIMIT, within_limit};
 use geometry::{
@@ -33,25 +36,44 @@ const FARTHEST: f64 = 1000.0;
 /// # Errors
 /// [`Error`] if the data or the run cannot be read, or the file cannot be written.
 pub fn pose(arguments: &PoseArguments) -> Result<ExitCode, Error> {
-    let data = &arguments.data;
-    let (store, _) = Store::load(data).map_err(|report| StartError::Data {
-        what: format!("the task data under {}", data.display()),
-        report,
-    })?;
-    let path = data.join(CELL);
-    let cell =
-        CellDescription::load(&path).map_err(|error| Error::Pose(format!("{}: {error}", path.display())))?;
+    let store = store(&arguments.data)?;
     let pose = asked(arguments, &store)?;
-    let answered = Standing::of(&pose, &store.view(), &Room::new(&cell)).map_err(Error::Pose)?;
-    answer(&answered, arguments.json)?;
-    if !answered.is_usable() {
-        os_io::stderr_line!("rcs-run: the robot cannot stand there");
+    if !show(&pose, &store, &arguments.data, arguments.json)? {
         return Ok(ExitCode::from(UNUSABLE));
     }
     if let (Some(file), Some(name)) = (&arguments.write, arguments.name) {
         write(arguments, file, name, &pose, &store)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// `check --where NAME`: the same as `pose --of NAME`.
+///
+/// # Errors
+/// [`Error`] if the data cannot be read, or no pose has the name.
+pub fn place(data: &Path, name: &str, json: bool) -> Result<ExitCode, Error> {
+    let store = store(data)?;
+    let is_usable = show(&named(name, &store)?.pose, &store, data, json)?;
+    Ok(ExitCode::from(if is_usable { 0 } else { UNUSABLE }))
+}
+
+fn store(data: &Path) -> Result<Store, Error> {
+    let what = || format!("the task data under {}", data.display());
+    let loaded = Store::load(data).map_err(|report| StartError::Data { what: what(), report });
+    Ok(loaded?.0)
+}
+
+/// Print what the arm makes of a pose; whether the robot can stand there.
+fn show(pose: &Pose, store: &Store, data: &Path, json: bool) -> Result<bool, Error> {
+    let path = data.join(CELL);
+    let cell =
+        CellDescription::load(&path).map_err(|error| Error::Pose(format!("{}: {error}", path.display())))?;
+    let answered = Standing::of(pose, &store.view(), &Room::new(&cell)).map_err(Error::Pose)?;
+    answer(&answered, json)?;
+    if !answered.is_usable() {
+        os_io::stderr_line!("rcs-run: the robot cannot stand there");
+    }
+    Ok(answered.is_usable())
 }
 
 /// The pose that is asked about.

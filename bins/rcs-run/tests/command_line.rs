@@ -321,6 +321,19 @@ fn a_command_is_explained_without_running() {
     assert_eq!(rcs_run(&["check", "--from", "SAFE"]).status.code(), Some(2), "--from needs --explain");
 }
 
+/// `check --where` is `pose --of`: the same words, and the same refusals.
+#[test]
+fn a_pose_of_the_task_data_is_looked_at_by_its_name() {
+    let (checked, posed) = (rcs_run(&["check", "--where", "PFIX-P"]), rcs_run(&["pose", "--of", "PFIX-P"]));
+    assert_eq!((checked.status.code(), stdout(&checked)), (Some(0), stdout(&posed)));
+    for word in ["joints  base", "nearest to its limit", "in from", "near    PFIX-P"] {
+        assert!(stdout(&checked).contains(word), "{word}: {}", stdout(&checked));
+    }
+    let unknown = rcs_run(&["check", "--where", "PFIX-Q"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(last_line(&unknown).contains("no pose is named PFIX-Q; there are"), "{}", last_line(&unknown));
+}
+
 #[test]
 fn all_tables_are_printed_as_markdown() {
     let output = rcs_run(&["tables"]);
