@@ -1,6 +1,8 @@
 //! The program with a robot at a serial port: over a pseudo-terminal, with the controller of [`depc`] behind it.
 
 mod common;
+#[path = "common/data.rs"]
+mod data;
 
 use std::{
     fs::{self, File},
@@ -346,6 +348,66 @@ fn the_linkbar_begins_over_a_port_in_real_time() {
         assert_eq!(result["commands"][0]["status"], "finished", "{result}");
         assert!(result["port"]["sent"].as_u64().unwrap() > 200 * 16, "{result}");
         assert_eq!(peer.pull(), ControllerState::Running, "no velocity or joint limit was touched");
+    });
+}
+
+/// LOAD (IV.2.4) beside the ticks of a robot at a port: the block is read and checked while frames go on, and the next
+/// command uses it.
+#[test]
+fn a_block_is_loaded_while_the_link_to_a_robot_runs() {
+    on_the_grid(|| {
+        let place = Place::new();
+        let own = place.0.path().join("data");
+        data::copy(&common::root().join("data"), &own);
+        let peer = Peer::plug(&place.port(), PROMPT);
+        let (robot, data_text) = (place.robot(), own.display().to_string());
+        let name = format!("port-load-{}", std::process::id());
+        let run = [
+            ["linkbar", "--stand-by", "--json"].as_slice(),
+            &["--robot", &robot, "--clock", "real", "--data", &data_text, "--run", &name, "--log", "none"],
+        ];
+        let child = command(&run.concat()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let ask = |line: &str, expected: &str| {
+            let begun = Instant::now();
+            loop {
+                let output = rcs_run(&["send", "--run", &name, line]);
+                let said = [output.stdout, output.stderr].concat();
+                let said = String::from_utf8_lossy(&said).into_owned();
+                if said.contains(expected) {
+                    return;
+                }
+                assert!(
+                    begun.elapsed() < Duration::from_secs(20),
+                    "{line}: {expected:?} was expected: {said}"
+                );
+                thread::sleep(Duration::from_millis(100));
+            }
+        };
+        ask("status", "the job waits");
+        ask("line-load 863 5 5", "refused");
+        // Line 5 is new: PAUSE.
+        let commands = own.join("commands.blk");
+        let text = fs::read_to_string(&commands).unwrap();
+        let safe = "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n";
+        let longer = format!("{safe}== PAUSE -- +0 -- 0 +0 -- 0 -- 0");
+        fs::write(&commands, text.replace(safe, &longer)).unwrap();
+        ask("load 16000 863", "generation 1");
+        ask("line-load 863 5 5", "command ");
+        // A block with an error is told, and changes nothing.
+        fs::write(&commands, text.replace(safe, "== NONSENSE\n")).unwrap();
+        ask("load 16000 863", "the task data have errors with it");
+        ask("line-load 863 5 5", "command ");
+        send(&child, Signal::TERM);
+        let output = child.wait_with_output().unwrap();
+        let result = json(&output);
+        let link = &result["link"];
+        assert_eq!(
+            (&link["naks"], &link["checksum_errors"], &link["retries"]),
+            (&0.into(), &0.into(), &0.into()),
+            "{link}"
+        );
+        assert_eq!(result["allocations_after_start"], 0, "{result}");
+        assert_eq!(peer.pull(), ControllerState::Running, "the link has not stopped meanwhile");
     });
 }
 
