@@ -16,7 +16,7 @@ use std::{
 };
 
 use executive::{
-    boards::lost::LOST_AFTER,
+    boards::{coming_up, lost::LOST_AFTER},
     memory::{self, Attached, RunName},
 };
 use interfaces::{
@@ -454,8 +454,22 @@ fn boards_are_started_by_hand_and_strangers_are_refused() {
     first.kill().expect("it has not been waited for");
     first.wait().expect("it can be waited for");
     running.hear("board 2 is gone");
-    let boards: Vec<Child> =
-        ["2", "4", "6", "8"].iter().map(|number| seated(&bench, number, &data)).collect();
+    // What a console shows meanwhile.
+    let there = || {
+        let boards = coming_up(&bench.name)?;
+        Some(
+            boards
+                .iter()
+                .filter(|(_, is_there)| *is_there)
+                .map(|(board, _)| board.number())
+                .collect::<Vec<_>>(),
+        )
+    };
+    assert_eq!(there(), Some(Vec::new()));
+    let mut boards = vec![seated(&bench, "6", &data)];
+    running.hear("board 6 is there");
+    assert_eq!(there(), Some(vec![6]));
+    boards.extend(["2", "4", "8"].iter().map(|number| seated(&bench, number, &data)));
     running.hear("all are there");
     for child in boards {
         let output = child.wait_with_output().expect("it can be waited for");
@@ -465,6 +479,7 @@ fn boards_are_started_by_hand_and_strangers_are_refused() {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
     let one = Bench::new("hand-one").run("linkbar", "one", &["--ticks", "500"]);
     assert_eq!(ended.result["digest"], one.result["digest"]);
+    assert_eq!(there(), None);
     assert_eq!(memory::traces(&bench.name), Vec::<PathBuf>::new());
 }
 

@@ -26,6 +26,8 @@ mod hand;
 pub mod model;
 pub mod once;
 pub mod picture;
+mod redraw;
+mod search;
 pub mod source;
 pub mod story;
 pub mod terminal;

@@ -15,7 +15,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use executive::memory::{self, RunName};
+use executive::{boards, memory::RunName};
 use ratatui::{
     DefaultTerminal,
     crossterm::{
@@ -33,6 +33,8 @@ use crate::{
     error::ConsoleError,
     hand::Hand,
     model::{Effect, Key, Model, Operating, Place, Screen, terminal::library::Library},
+    redraw::{cleared, suspended, with_control},
+    search::Search,
     source::{Live, Recorded, Source, State},
     view::{Look, Scene, Waiting, draw},
     watch,
@@ -44,8 +46,6 @@ const LOOK_AT: Duration = Duration::from_millis(40);
 const DRAW: Duration = Duration::from_millis(80);
 /// Time that a console has to end in order after a signal.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Runs are looked for this often.
-const SEARCH: Duration = Duration::from_secs(1);
 
 /// Show what the command line names until it is quit.
 ///
@@ -79,7 +79,7 @@ enum Console {
     /// A run or a log, and the session with the run of an operator.
     Source(Box<Model>, Box<dyn Source>, Option<Hand>),
     /// The choice of a run.
-    Waiting(Waiting, Instant),
+    Waiting(Waiting, Search),
 }
 
 impl Console {
@@ -87,6 +87,8 @@ impl Console {
         let mut model = Model::new(Screen::Ladder);
         let mut hand = None;
         let source: Box<dyn Source> = match (&cli.run, &cli.log) {
+            // Its boards come up: it can be looked at from its first tick on.
+            (Some(run), _) if boards::coming_up(run).is_some() => return Ok(Self::search(Some(run.clone()))),
             (Some(run), _) => {
                 hand = cli.operate.then(|| Hand::reach(run)).transpose()?;
                 Box::new(Live::open(run, Some(stuck))?)
@@ -97,16 +99,15 @@ impl Console {
                 model.place = cli.tick.map_or(Place::Last, Place::At);
                 Box::new(log)
             }
-            (None, None) => return Ok(Self::search()),
+            (None, None) => return Ok(Self::search(None)),
         };
         model.operating = hand.as_ref().map(|_| Operating::default());
         Ok(Self::Source(Box::new(model), source, hand))
     }
 
-    fn search() -> Self {
-        let mut waiting = Waiting::default();
-        look_for_runs(&mut waiting);
-        Self::Waiting(waiting, Instant::now())
+    fn search(wanted: Option<RunName>) -> Self {
+        let (waiting, search) = Search::begin(wanted);
+        Self::Waiting(waiting, search)
     }
 }
 
@@ -134,13 +135,6 @@ fn stuck(limit: Duration) {
         limit.as_secs()
     );
     process::exit(2);
-}
-
-fn look_for_runs(waiting: &mut Waiting) {
-    match memory::list() {
-        Ok(runs) => waiting.take(runs.into_iter().filter(|run| run.alive).map(|run| run.name).collect()),
-        Err(error) => waiting.refused = Some(error.to_string()),
-    }
 }
 
 /// The console at work.
@@ -203,6 +197,11 @@ impl Session {
                 Ok(false) => {}
                 Ok(true) => {
                     let event = event::read().map_err(ConsoleError::Terminal)?;
+                    match with_control(&event) {
+                        Some('l') => terminal = cleared().map_err(ConsoleError::Terminal)?,
+                        Some('z') => terminal = suspended(terminal)?,
+                        _ => {}
+                    }
                     if self.take(&event) == Effect::Quit {
                         return Ok(());
                     }
@@ -229,15 +228,8 @@ impl Session {
                     }
                 }
             }
-            Console::Waiting(waiting, looked) => {
-                if looked.elapsed() >= SEARCH {
-                    look_for_runs(waiting);
-                    *looked = Instant::now();
-                }
-                if let [only] = &waiting.runs[..]
-                    && waiting.refused.is_none()
-                {
-                    let only = only.clone();
+            Console::Waiting(waiting, search) => {
+                if let Some(only) = search.go_on(waiting) {
                     self.attach(&only);
                 }
             }

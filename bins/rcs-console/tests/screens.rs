@@ -5,6 +5,7 @@ use std::{
     sync::LazyLock,
 };
 
+use executive::boards::Board;
 use executive::memory::{
     Text,
     cell::{CellView, ControllerView, Lamps},
@@ -494,6 +495,9 @@ fn waiting() {
     insta::assert_snapshot!("waiting", drawn(&Scene::Waiting(&waiting), PLAIN, 80, 24));
     waiting.take(vec!["clevis-12".parse().expect("a name"), "linkbar-11".parse().expect("a name")]);
     waiting.cursor = 1;
+    let boards: Vec<_> = Board::ALL.iter().map(|board| (*board, *board != Board::Four)).collect();
+    let coming_up = Waiting { runs: waiting.runs[1..].to_vec(), boards, ..Waiting::default() };
+    insta::assert_snapshot!("boards", drawn(&Scene::Waiting(&coming_up), PLAIN, 80, 24));
     insta::assert_snapshot!("choice", drawn(&Scene::Waiting(&waiting), PLAIN, 80, 24));
 }
 

@@ -1,6 +1,6 @@
 //! The screen without a run: what runs there are, or how one begins.
 
-use executive::memory::RunName;
+use executive::{boards::Board, memory::RunName};
 use ratatui::{style::Modifier, text::Line};
 
 use super::{
@@ -16,6 +16,8 @@ pub struct Waiting {
     pub runs: Vec<RunName>,
     /// The one under the cursor.
     pub cursor: usize,
+    /// The boards of that one, each with whether it is there, if it waits for them (IV.2.1, IV.2.8).
+    pub boards: Vec<(Board, bool)>,
     /// Why the last one could not be looked at.
     pub refused: Option<String>,
 }
@@ -41,7 +43,25 @@ impl Waiting {
             Line::default(),
         ];
         let mut say = |text: &str| lines.push(look.line(Tone::Plain, format!("   {text}")));
-        if self.runs.is_empty() {
+        if let (Some(run), false) = (self.chosen(), self.boards.is_empty()) {
+            say(&format!("The boards of {run} come up:"));
+            say("");
+            say("    board 0   is there   the pulse, the log, the cell or the robot's port");
+            for (board, is_there) in &self.boards {
+                let state = if *is_there { "is there" } else { "MISSING " };
+                let processes: Vec<_> = board.processes().map(|process| process.text()).collect();
+                let processes = fit(&processes.join(", "), width.saturating_sub(28));
+                say(&format!("    board {}   {state}   {}", board.number(), processes.trim_end()));
+            }
+            say("");
+            if let Some((missing, _)) = self.boards.iter().find(|(_, is_there)| !is_there) {
+                say("With --boards manual each is started with the data and the job of the run:");
+                say("");
+                say(&format!("    rcs-run board {} --run {run} JOB", missing.number()));
+            } else {
+                say("All are there: the first tick comes.");
+            }
+        } else if self.runs.is_empty() {
             say("Nothing runs on this machine.");
             say("");
             say("Start a run in another terminal, and it appears here by itself:");

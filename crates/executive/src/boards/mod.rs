@@ -42,6 +42,8 @@ use std::{fmt, str::FromStr};
 
 use levels::ladder::ProcessId;
 
+use crate::memory::{self, RunName};
+
 pub use coordinator::Coordinator;
 pub use lost::{Lost, SplitError};
 pub use member::{BoardData, Member, MemberError};
@@ -58,6 +60,15 @@ pub enum Board {
     Six,
     /// Quick Change, grippers, pedestal.
     Eight,
+}
+
+/// The boards of a run that has not begun because it waits for them, each with whether its program is there; none of any
+/// other run.
+#[must_use]
+pub fn coming_up(name: &RunName) -> Option<Vec<(Board, bool)>> {
+    let is_there = |role| memory::is_there(name, role);
+    let waits = is_there(coordinator::BOARD_0) && !is_there(memory::PUBLISHER);
+    waits.then(|| Board::ALL.iter().map(|board| (*board, is_there(board.name()))).collect())
 }
 
 /// How many boards there are, without board 0.

@@ -42,6 +42,8 @@ pub use mirror::Mirror;
 pub use name::{NameError, RunName};
 pub(crate) use place::{have_room, reserve};
 pub use place::{layout, load_file, operator_socket, prefix, root};
+pub(crate) use publish::PUBLISHER;
 pub use publish::Publisher;
+pub(crate) use runs::is_there;
 pub use runs::{clean, clean_objects, list, traces};
 pub use text::Text;

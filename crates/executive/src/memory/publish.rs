@@ -14,6 +14,9 @@ use super::{
     place, runs,
 };
 
+/// The role of the program that shows a run.
+pub(crate) const PUBLISHER: &str = "rcs-run";
+
 /// Epoch of a run whose writers were never restarted.
 pub const FIRST_EPOCH: Epoch = 1;
 
@@ -75,7 +78,7 @@ impl Publisher {
     fn set_up(name: &RunName) -> Result<Self, SharedMemoryError> {
         runs::clean()?;
         place::have_room()?;
-        let member = runs::enter(name, "rcs-run")?;
+        let member = runs::enter(name, PUBLISHER)?;
         let ports = Ports { writers: Writers::create(&member, FIRST_EPOCH)?, _member: member };
         place::reserve(name)?;
         Ok(Self { name: name.clone(), ports: Some(ports), pulse: Pulse::default(), window: Arc::default() })

@@ -110,6 +110,11 @@ pub(crate) fn enter(name: &RunName, role: &str) -> Result<RunNode, SharedMemoryE
     Ok(RunNode { node, _presence: presence })
 }
 
+/// Whether a living program has a role in a run of this layout.
+pub(crate) fn is_there(name: &RunName, role: &str) -> bool {
+    presence::is_held(&prefix(name, &layout()), role)
+}
+
 pub(crate) fn service_name(service: &'static str, epoch: Epoch) -> Result<ServiceName, SharedMemoryError> {
     ServiceName::new(&format!("rcs-ii/{service}/{epoch}"))
         .map_err(|error| SharedMemoryError::service(service, &error))

@@ -1,0 +1,43 @@
+//! Control-L and Control-Z: the terminal is drawn anew, now or when the shell continues this program.
+
+use std::io;
+
+use ratatui::{
+    DefaultTerminal,
+    backend::CrosstermBackend,
+    crossterm::{
+        event::{Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers},
+        execute,
+        terminal::{Clear, ClearType},
+    },
+};
+use signal_hook::{consts::SIGTSTP, low_level::emulate_default_handler};
+
+use crate::error::ConsoleError;
+
+/// The letter that was pressed together with Control.
+pub fn with_control(event: &Event) -> Option<char> {
+    match event {
+        Event::Key(KeyEvent { code: KeyCode::Char(letter), modifiers, kind, .. })
+            if *modifiers == KeyModifiers::CONTROL && *kind != KeyEventKind::Release =>
+        {
+            Some(*letter)
+        }
+        _ => None,
+    }
+}
+
+/// The terminal, empty: the next picture is drawn as a whole. (`Terminal::clear` asks the terminal where its cursor is.)
+pub fn cleared() -> io::Result<DefaultTerminal> {
+    execute!(io::stdout(), Clear(ClearType::All))?;
+    DefaultTerminal::new(CrosstermBackend::new(io::stdout()))
+}
+
+/// Give the terminal back to the shell until it continues this program. The run hears nothing meanwhile, so that it lets
+/// go of stick and buttons.
+pub fn suspended(terminal: DefaultTerminal) -> Result<DefaultTerminal, ConsoleError> {
+    drop(terminal);
+    ratatui::try_restore().map_err(ConsoleError::Terminal)?;
+    emulate_default_handler(SIGTSTP).map_err(ConsoleError::Signals)?;
+    ratatui::try_init().map_err(ConsoleError::Terminal)
+}
