@@ -7,7 +7,9 @@ use executive::memory::{
     cell::{CellView, ControllerView, Lamps},
 };
 use geometry::pose::WireFrame;
-use interfaces::{CommonMemory, ExternalInputs, ProcessId, prim::PrimVerb, subtask::SubtaskVerb};
+use interfaces::{
+    CommonMemory, ExternalInputs, ProcessId, prim::PrimVerb, subtask::SubtaskVerb, t3i::T3iReport,
+};
 use rcs_console::{
     model::{Key, Model, Operating, Screen, procedures::ALL},
     once,
@@ -208,11 +210,19 @@ fn after_step_14_what_was_stopped_for_it_need_not_be_stopped() {
     stage.hold(&[ProcessId::Emove, ProcessId::Prim], true);
     stage.picture.memory.prim.t3i.frame = HOME;
     stage.picture.memory.t3i.status.frame_feedback = HOME;
+    stage.picture.memory.t3i.status.report = T3iReport::Error;
     let mut model = open("IV.3.3", "initialize", true);
     look(&mut model, &mut stage);
     model.key(Key::Char('y'), &stage);
-    assert_eq!(cursor(&model), "13");
+    assert_eq!(cursor(&model), "12b");
     asked(&mut model);
+    model.key(Key::Enter, &stage);
+    assert_eq!(asked(&mut model), "PAUSE; execute EMOVE 8; execute PRIM 2");
+    look(&mut model, &mut stage);
+    assert_eq!(word(&model, "12b"), "", "T3 Interface has not answered");
+    stage.picture.memory.t3i.status.report = T3iReport::Finished;
+    look(&mut model, &mut stage);
+    assert_eq!([word(&model, "12b"), cursor(&model)], ["done", "13"]);
     model.key(Key::Enter, &stage);
     assert_eq!(asked(&mut model), "execute PRIM 2");
     look(&mut model, &mut stage);

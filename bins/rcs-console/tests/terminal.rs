@@ -15,7 +15,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use runtime::{ClockKind, LogTarget, Observer, Run, RunConfig};
+#[path = "terminal/recording.rs"]
+mod recording;
+
+use runtime::{Boards, ClockKind, LogTarget, Observer, Run, RunConfig};
 use rustix::{
     fs::{Mode, OFlags, open},
     process::{Pid, Signal, kill_process},
@@ -26,6 +29,8 @@ use rustix::{
 /// The least terminal.
 const LINES: NonZero<u16> = NonZero::new(24).unwrap();
 const COLUMNS: NonZero<u16> = NonZero::new(80).unwrap();
+/// A job of one command.
+const TO_SAFE: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
 /// Longest time for anything to appear, on a machine that has much else to do.
 const PATIENCE: Duration = Duration::from_secs(30);
 
@@ -35,12 +40,17 @@ impl Observer for Silent {
     fn message(&mut self, _: &str) {}
 }
 
+/// What a program has written, and when.
+type Written = Vec<(Duration, Vec<u8>)>;
+
 /// A program in a terminal.
 struct Terminal {
     child: Child,
     keys: File,
     slave: OwnedFd,
     parser: Arc<Mutex<vt100::Parser>>,
+    /// All that was written to the terminal, and when.
+    written: Arc<Mutex<Written>>,
     before: Termios,
 }
 
@@ -69,14 +79,21 @@ impl Terminal {
             .unwrap();
         let parser = Arc::new(Mutex::new(vt100::Parser::new(LINES, COLUMNS, 0)));
         let mut screen = File::from(master.try_clone().unwrap());
-        let shown = Arc::clone(&parser);
+        let written = Arc::<Mutex<Written>>::default();
+        let (shown, kept, begun) = (Arc::clone(&parser), Arc::clone(&written), Instant::now());
         thread::spawn(move || {
             let mut bytes = [0; 4096];
             while let Ok(count @ 1..) = screen.read(&mut bytes) {
                 locked(&shown).process(&bytes[..count]);
+                locked(&kept).push((begun.elapsed(), bytes[..count].to_vec()));
             }
         });
-        Self { child, keys: File::from(master), slave, parser, before }
+        Self { child, keys: File::from(master), slave, parser, written, before }
+    }
+
+    /// All that was written to the terminal up to now.
+    fn written(&self) -> Written {
+        locked(&self.written).clone()
     }
 
     fn screen(&self) -> String {
@@ -230,7 +247,7 @@ fn a_run_is_looked_at_on_all_screens_until_its_end_and_then_its_log() {
 fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_finishes_the_job() {
     let directory = tempfile::tempdir().unwrap();
     let job = directory.path().join("home.job");
-    std::fs::write(&job, "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n").unwrap();
+    std::fs::write(&job, TO_SAFE).unwrap();
     let name = format!("operated-{}", std::process::id());
     let (run, _) = run(&name, &directory.path().join("home.mcap"), job.to_str().unwrap(), 10);
     let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);
@@ -259,6 +276,13 @@ fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_fi
     console.wait_for("refused: job wait, job go or job skip was expected");
     console.press("6");
     console.wait_for("no frame is on");
+    // Prim is held, stepped once, and goes on.
+    console.press("h");
+    console.wait_while(|screen| screen.contains("holds   no process"), "Prim is not held");
+    console.press("z");
+    console.wait_for("joystick step PRIM: tick");
+    console.press("h");
+    console.wait_for("holds   no process");
     console.press("\x1b[A");
     console.wait_for("w t o r switch one on");
     console.press("w");
@@ -300,11 +324,9 @@ fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_fi
     assert_eq!(outcomes.last(), Some(&"finished"), "{outcomes:?}");
 }
 
-/// III.3.3: a via point is taught with the joystick box, a route is changed to lead through it, and the job goes that way.
-#[test]
-fn a_via_point_is_taught_and_the_job_goes_through_it() {
-    let directory = tempfile::tempdir().unwrap();
-    let data = directory.path().join("data");
+/// The data of the repository, to be changed.
+fn own_data(directory: &Path) -> PathBuf {
+    let data = directory.join("data");
     for from in [shipped(), shipped().join("objects")] {
         let to = data.join(from.strip_prefix(shipped()).unwrap());
         std::fs::create_dir_all(&to).unwrap();
@@ -314,8 +336,63 @@ fn a_via_point_is_taught_and_the_job_goes_through_it() {
             }
         }
     }
+    data
+}
+
+/// Lead the robot up with the joystick box, record the pose there as VIA-1 of block 610, and lead the robot down again; with a
+/// pause between the keys.
+fn teach(console: &mut Terminal, pause: Duration) {
+    thread::sleep(pause);
+    console.press("6ssw");
+    console.wait_for("a key moves 2.00 in");
+    console.wait_for("frame   WORLD");
+    // Up, record, down again.
+    thread::sleep(pause);
+    console.press("\x1b[5~");
+    console.wait_for("joystick up");
+    thread::sleep(Duration::from_secs(1));
+    thread::sleep(pause);
+    console.press("m");
+    console.wait_for("joystick record: tick");
+    thread::sleep(Duration::from_secs(1));
+    thread::sleep(pause);
+    console.press("M");
+    console.wait_for("joystick resume: tick");
+    thread::sleep(Duration::from_secs(1));
+    thread::sleep(pause);
+    console.press("\x1b[6~");
+    console.wait_for("joystick down");
+    thread::sleep(Duration::from_secs(1));
+    thread::sleep(pause);
+    console.press("x");
+    console.wait_for("no frame is on");
+    // On screen 6 a digit turns the knob.
+    console.escape("joystick box");
+    thread::sleep(pause);
+    console.press("5:^C\r");
+    console.wait_for("6 STOPPED");
+    thread::sleep(pause);
+    console.press(":21000 OFFSET !\r");
+    console.wait_for("offset 21000");
+    thread::sleep(pause);
+    console.press(":610 TEACH VIA-1\r");
+    console.wait_for("nearest to its limit");
+    console.wait_for("-pose-   ...         VIA-1");
+    thread::sleep(pause);
+    console.press("\x1bOQ");
+    console.wait_for("asks for: load 21000 610");
+    thread::sleep(pause);
+    console.press("\r");
+    console.wait_for("generation 1");
+}
+
+/// III.3.3: a via point is taught with the joystick box, a route is changed to lead through it, and the job goes that way.
+#[test]
+fn a_via_point_is_taught_and_the_job_goes_through_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let data = own_data(directory.path());
     let job = directory.path().join("safe.job");
-    std::fs::write(&job, "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n").unwrap();
+    std::fs::write(&job, TO_SAFE).unwrap();
     let name = format!("taught-{}", std::process::id());
     let (run, _) = begin(RunConfig {
         clock: ClockKind::Real,
@@ -327,37 +404,7 @@ fn a_via_point_is_taught_and_the_job_goes_through_it() {
     });
     let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);
     console.wait_for("JOB WAITS");
-    console.press("6ssw");
-    console.wait_for("a key moves 2.00 in");
-    console.wait_for("frame   WORLD");
-    // Up, record, down again.
-    console.press("\x1b[5~");
-    console.wait_for("joystick up");
-    thread::sleep(Duration::from_secs(1));
-    console.press("m");
-    console.wait_for("joystick record: tick");
-    thread::sleep(Duration::from_secs(1));
-    console.press("M");
-    console.wait_for("joystick resume: tick");
-    thread::sleep(Duration::from_secs(1));
-    console.press("\x1b[6~");
-    console.wait_for("joystick down");
-    thread::sleep(Duration::from_secs(1));
-    console.press("x");
-    console.wait_for("no frame is on");
-    // On screen 6 a digit turns the knob.
-    console.escape("joystick box");
-    console.press("5:^C\r");
-    console.wait_for("6 STOPPED");
-    console.press(":21000 OFFSET !\r");
-    console.wait_for("offset 21000");
-    console.press(":610 TEACH VIA-1\r");
-    console.wait_for("nearest to its limit");
-    console.wait_for("-pose-   ...         VIA-1");
-    console.press("\x1bOQ");
-    console.wait_for("asks for: load 21000 610");
-    console.press("\r");
-    console.wait_for("generation 1");
+    teach(&mut console, Duration::ZERO);
     console.press(":852 EDIT\r");
     console.wait_for("HOME-SAFE");
     console.press("\x1b[B\x1b[B\x1b[B\x1b[B\x1b[B\x1b[B\x1b[F");
@@ -379,6 +426,34 @@ fn a_via_point_is_taught_and_the_job_goes_through_it() {
     assert!(text("trajectories.blk").contains("pos    VIA-1"));
 }
 
+/// IV.2.1, IV.2.8: a run that waits for its boards is named, with those that are missing.
+#[test]
+fn a_run_whose_boards_come_up_is_waited_for() {
+    let directory = tempfile::tempdir().unwrap();
+    let name = format!("boards-{}", std::process::id());
+    let config = RunConfig {
+        boards: Boards::Manual,
+        name: Some(name.parse().unwrap()),
+        log: LogTarget::None,
+        ..RunConfig::new(shipped(), "linkbar")
+    };
+    let stop = Arc::clone(&config.stop);
+    let run = thread::spawn(move || Run::new(config, Box::new(Silent)).is_err());
+    let begun = Instant::now();
+    while executive::boards::coming_up(&name.parse().unwrap()).is_none() {
+        assert!(begun.elapsed() < PATIENCE, "the run does not wait for its boards");
+        thread::sleep(Duration::from_millis(20));
+    }
+    let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);
+    console.wait_for(&format!("The boards of {name} come up"));
+    console.wait_for("board 4   MISSING    T3 Interface");
+    stop.store(true, Ordering::Relaxed);
+    assert!(run.join().unwrap(), "it was interrupted");
+    console.wait_for("Nothing runs on this machine");
+    console.press("q");
+    assert_eq!(console.end(), Some(0));
+}
+
 #[test]
 fn what_cannot_be_operated_is_said() {
     let directory = tempfile::tempdir().unwrap();
@@ -397,6 +472,31 @@ fn a_signal_leaves_the_terminal_as_it_was() {
         kill_process(Pid::from_child(&console.child), signal).unwrap();
         assert_eq!(console.end(), Some(0), "{signal:?}");
     }
+}
+
+/// ^Z gives the terminal back, and the console draws everything again when it goes on.
+#[test]
+fn a_console_is_suspended_and_goes_on() {
+    let directory = tempfile::tempdir().unwrap();
+    let state = directory.path();
+    let mut console = Terminal::start(&[], state, &[("TMPDIR", state)]);
+    console.wait_for("Looking for runs");
+    let pid = console.child.id();
+    let is_stopped = || {
+        let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).unwrap();
+        stat.rsplit(')').next().is_some_and(|rest| rest.trim_start().starts_with('T'))
+    };
+    console.press("\x1a");
+    let begun = Instant::now();
+    while !is_stopped() {
+        assert!(begun.elapsed() < PATIENCE, "it goes on:\n{}", console.screen());
+        thread::sleep(Duration::from_millis(20));
+    }
+    console.wait_while(|screen| screen.contains("Looking for runs"), "the screen is not what it was");
+    kill_process(Pid::from_child(&console.child), Signal::CONT).unwrap();
+    console.wait_for("Looking for runs");
+    console.press("\x0cq");
+    assert_eq!(console.end(), Some(0));
 }
 
 #[test]

@@ -190,10 +190,14 @@ impl Sight<'_> {
         status.resolver_frame.unwrap_or(status.frame_feedback)
     }
 
-    /// What Prim gets as the present frame, and what it gives (IV.3.3 step 13).
+    /// What Prim gets as the present frame, and what it gives (IV.3.3 step 13). A Prim that has taken its position over,
+    /// and has sent no point yet, gives it as its present pose.
     pub(super) fn prim_frames(&self) -> (WireFrame, WireFrame) {
         let memory = &self.picture.memory;
-        (memory.t3i.status.frame_feedback, memory.prim.t3i.frame)
+        let present = memory.prim.status.present_pose.and_then(|number| memory.changing_pose(number));
+        let present =
+            present.and_then(|pose| pose.to_frame().ok()).map(|frame| WireFrame::from_frame(&frame));
+        (memory.t3i.status.frame_feedback, present.unwrap_or(memory.prim.t3i.frame))
     }
 
     fn frames_agree(&self) -> bool {

@@ -6,6 +6,8 @@ use super::{Ask::Line, Condition, Procedure, Show, Step, Watch, controller, even
 
 /// The levels that take commands from each other.
 const LEVELS: &[ProcessId] = &[ProcessId::Task, ProcessId::Subtask, ProcessId::Emove, ProcessId::Prim];
+/// Those of them that have PAUSE whether the link to the robot runs or not.
+const PAUSING: &[ProcessId] = &[ProcessId::Task, ProcessId::Subtask, ProcessId::Emove];
 /// The processes of board 2.
 const BOARD_2: &[ProcessId] = &[ProcessId::Emove, ProcessId::Prim];
 /// The processes of board 6.
@@ -99,8 +101,9 @@ pub const START_UP: Procedure = Procedure {
     steps: &[
         Step {
             ask: &[Line("PAUSE")],
+            how: "Prim has it, too; while the link is off, E-move gives it ROBOT-INIT instead.",
             until: "14",
-            ..state("1a", "Task, Subtask, E-move and Prim have PAUSE", &[Condition::Have(LEVELS, "PAUSE")])
+            ..state("1a", "Task, Subtask and E-move have PAUSE", &[Condition::Have(PAUSING, "PAUSE")])
         },
         Step {
             ask: &[Line("board 2 stop")],
@@ -155,6 +158,15 @@ pub const START_UP: Procedure = Procedure {
             ..state("11", "frame-feedback is that of HOME", &[Condition::AtHome])
         },
         Step { id: "12", ..controller::CYCLE_START },
+        Step {
+            ask: &[Line("PAUSE"), Line("execute EMOVE 8"), Line("execute PRIM 2")],
+            how: "The one of step 2 has found no robot controller. E-move gives it again with a new PAUSE.",
+            ..event(
+                "12b",
+                "Prim has started the link anew, and T3 Interface says finished",
+                &[Condition::Taken, Condition::Says(ProcessId::T3i, "finished")],
+            )
+        },
         Step {
             ask: &[Line("execute PRIM 2")],
             how: "PRIM-LEVEL PRIM-LEVEL II: Prim runs twice, and what it gives is what it gets.",
