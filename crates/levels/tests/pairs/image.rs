@@ -1,0 +1,98 @@
+//! The bytes by which states are told apart.
+//!
+//! Of a time counts whether it is over the limit, and of the time of a command its age while an echo may be due. Which row has decided counts for nobody but people. A counter counts up to where it matters.
+
+use rcs_core::{
+    Plain,
+    handshake::Commander,
+    plain::{Schema, Writer},
+    tick::Tick,
+};
+
+/// Ages that count exactly: one more than [`rcs_core::handshake::ECHO_LIMIT`].
+const EXACT: u64 = 4;
+
+/// A state as bytes.
+pub struct Image {
+    pub bytes: Vec<u8>,
+    now: Tick,
+    /// Ticks after which a time is over its limit.
+    limit: u64,
+    /// Fields of one byte, by name, that count up to a greatest value.
+    counters: &'static [(&'static str, u8)],
+}
+
+impl Image {
+    pub fn new(now: Tick, limit: u64, counters: &'static [(&'static str, u8)]) -> Self {
+        Self { bytes: Vec::with_capacity(256), now, limit, counters }
+    }
+
+    /// Add a value without what does not count.
+    pub fn add<T: Plain>(&mut self, value: &T) {
+        let mut bytes = vec![0; T::SIZE];
+        value.encode(&mut Writer::new(&mut bytes));
+        let used = self.walk(&T::SCHEMA, "", &bytes);
+        assert_eq!(used, bytes.len(), "the schema is that of the bytes");
+    }
+
+    /// Add what counts of a field; its size.
+    fn walk(&mut self, schema: &Schema, name: &str, bytes: &[u8]) -> usize {
+        let size = schema.size();
+        match schema {
+            Schema::Struct(record) if matches!(record.name, "Rows" | "Header") => {}
+            Schema::Struct(record) => {
+                let mut at = 0;
+                for field in record.fields {
+                    at += self.walk(&field.schema, field.name, &bytes[at..]);
+                }
+            }
+            Schema::Option(of) => {
+                self.bytes.push(bytes[0]);
+                if bytes[0] != 0 {
+                    self.walk(of, name, &bytes[1..]);
+                }
+            }
+            Schema::Array(of, count) => {
+                (0..*count).for_each(|nth| {
+                    self.walk(of, name, &bytes[nth * of.size()..]);
+                });
+            }
+            Schema::U64 if name.starts_with("cycle") => {}
+            Schema::U64 if name != "variables" => {
+                let mut word = [0; 8];
+                word.copy_from_slice(&bytes[..8]);
+                let age = self.now.0.saturating_sub(u64::from_le_bytes(word));
+                let rank = match name {
+                    _ if age > self.limit => EXACT + 2,
+                    "sent" => age.min(EXACT + 1),
+                    _ => 0,
+                };
+                self.bytes.push(u8::try_from(rank).unwrap_or(u8::MAX));
+            }
+            Schema::U8 => {
+                let greatest = self.counters.iter().find(|(counter, _)| *counter == name);
+                self.bytes.push(greatest.map_or(bytes[0], |(_, greatest)| bytes[0].min(*greatest)));
+            }
+            _ => self.bytes.extend_from_slice(&bytes[..size]),
+        }
+        size
+    }
+}
+
+/// Numbers of an interface begin again at 1: only their differences count, and they would never come again. When
+/// a command was sent counts until it is echoed.
+pub fn rebase(commander: &mut Commander, numbers: &mut [&mut u32]) {
+    let mut all = vec![&mut commander.number];
+    all.extend(numbers.iter_mut().map(|number| &mut **number));
+    if rebase_echoes(&mut all) {
+        commander.sent = Tick::BEFORE_START;
+    }
+}
+
+/// The same of an interface to a commander that is not one of the pair. Are they all the same?
+pub fn rebase_echoes(numbers: &mut [&mut u32]) -> bool {
+    let least = numbers.iter().map(|number| **number).filter(|number| *number != 0).min();
+    let Some(before) = least.map(|least| least - 1) else { return false };
+    numbers.iter_mut().for_each(|number| **number = number.saturating_sub(before));
+    numbers.iter().all(|number| **number == 1)
+}

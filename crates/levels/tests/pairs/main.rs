@@ -1,0 +1,57 @@
+//! Neighbouring processes in pairs, searched through: the real tables and the real handshake of both, breadth
+//! first over all states that they can reach while what is around them does whatever it may do.
+//!
+//! ```text
+//!   commander ── any command, in any tick ──► upper ──► lower ──► orders: any answer, any delay
+//! ```
+//!
+//! In every state what is reported done is done, by the orders of this command. From every state, as soon as
+//! nothing is commanded any more and whatever was ordered ends, well or ill, or goes over its time limit, the
+//! pair comes to rest within a bound: no cycle of tables goes round for ever. After PAUSE the bound is smaller.
+//!
+//! `RCS_PAIRS=full` searches with mishaps in every state: processes that restart, neighbours that are silent.
+
+#![expect(clippy::print_stdout, reason = "the figures of a search are printed")]
+
+mod image;
+mod pedestal;
+mod search;
+
+use interfaces::pedestal::PedestalVerb;
+use search::{Found, World, search};
+
+/// Everything, or what an ordinary run has time for.
+fn is_full() -> bool {
+    std::env::var("RCS_PAIRS").is_ok_and(|value| value == "full")
+}
+
+fn is_sound<W: World>(name: &str, first: W, most: usize) -> Found<W::Event> {
+    let found = search(first, most);
+    println!(
+        "{name}: {} states, {} ticks; at rest {} ticks after PAUSE at most, {} after any command",
+        found.states, found.ticks, found.pause, found.any
+    );
+    assert!(found.wrong.is_none(), "{name}: {:#?}", found.wrong);
+    found
+}
+
+const SOME: &[PedestalVerb] = &[PedestalVerb::PreGrip, PedestalVerb::Flip, PedestalVerb::Pause];
+
+/// The commands that are sent.
+fn commands() -> &'static [PedestalVerb] {
+    if is_full() { PedestalVerb::ALL } else { SOME }
+}
+
+#[test]
+fn pedestal_and_table() {
+    let found = is_sound("pedestal and table", pedestal::Pair::first(0, commands()), 1_000_000);
+    assert!(found.states > 1000, "{} states", found.states);
+    assert!(found.pause <= 22 && found.any <= 44, "{} and {}", found.pause, found.any);
+}
+
+#[test]
+fn pedestal_and_table_with_a_mishap() {
+    let commands = if is_full() { SOME } else { &[PedestalVerb::Flip, PedestalVerb::Pause] };
+    let found = is_sound("pedestal and table, a mishap", pedestal::Pair::first(1, commands), 8_000_000);
+    assert!(found.states > 1000, "{} states", found.states);
+}
