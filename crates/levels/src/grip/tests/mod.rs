@@ -20,7 +20,7 @@ use self::{
 use super::{
     Grip, calibration,
     state::State,
-    tables::{Phase, TABLES},
+    tables::{Phase, Step, TABLES},
 };
 
 /// A bench with a calibrated gripper.
@@ -61,6 +61,24 @@ fn positions_are_reached_without_hunting() {
         let before = bench.gripper.opening;
         assert_eq!(bench.wait(500).valves.bits, 0);
         assert_eq!(bench.gripper.opening, before);
+    }
+}
+
+/// By a little, more and much, so that each alternative of POSITION row 9 fires.
+#[test]
+fn fingers_that_are_moved_while_they_settle_are_moved_back() {
+    for by in [-1.0, -0.2, -0.05, 0.05, 0.2, 1.0] {
+        let mut bench = calibrated(3);
+        bench.command(GripVerb::Position, 2.5, 0);
+        let settles = (0..100).any(|_| {
+            bench.step();
+            bench.process.state.step == Step::Settle
+        });
+        assert!(settles);
+        bench.gripper.opening += by;
+        let (_, outputs) = bench.finish();
+        assert_eq!(outputs.status.report, GripReport::Done);
+        assert!((bench.gripper.opening - 2.5).abs() <= 0.02, "{by}: {}", bench.gripper.opening);
     }
 }
 

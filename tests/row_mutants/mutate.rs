@@ -1,0 +1,353 @@
+//! The text of a decision table, and what can be changed in a row of it.
+
+use std::{
+    fmt, fs, io,
+    path::{Path, PathBuf},
+};
+
+/// A row that is changed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mutant {
+    /// The file, from the root of the repository.
+    pub file: PathBuf,
+    /// Name of the table.
+    table: String,
+    /// Number of the row.
+    row: String,
+    what: What,
+    /// Line of the file, from 0, and its text before and after.
+    line: usize,
+    pub before: String,
+    pub after: String,
+    /// Another line that changes with it: an alternative that goes from one row to another.
+    other: Option<(usize, String)>,
+}
+
+/// What is changed in a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum What {
+    Action,
+    NextStep,
+    Condition,
+}
+
+impl fmt::Display for Mutant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = match self.what {
+            What::Action => "action",
+            What::NextStep => "next step",
+            What::Condition => "condition",
+        };
+        write!(f, "{} {} row {}: {what}", self.file.display(), self.table, self.row)
+    }
+}
+
+impl Mutant {
+    /// The module of the process whose table it is, as names of tests begin.
+    pub fn process(&self) -> String {
+        let module =
+            self.file.components().nth(3).map(|part| part.as_os_str().to_string_lossy().into_owned());
+        format!("{}::", module.unwrap_or_default().trim_end_matches(".rs"))
+    }
+
+    /// The text of the file with the change.
+    pub fn apply(&self, text: &str) -> String {
+        let mut lines: Vec<&str> = text.lines().collect();
+        lines[self.line] = &self.after;
+        if let Some((line, after)) = &self.other {
+            lines[*line] = after;
+        }
+        lines.join("\n") + "\n"
+    }
+}
+
+/// A row that stands in one line: `4: held: Right | Wrong, work: Over => Release -> Releasing;`.
+#[derive(Clone, Debug)]
+struct Row {
+    line: usize,
+    text: String,
+    /// Rows between the same braces.
+    group: usize,
+    number: String,
+    /// Of each state variable the alternatives.
+    conditions: Vec<(String, Vec<String>)>,
+    action: String,
+    next: Option<String>,
+}
+
+impl Row {
+    fn read(line: usize, text: &str, group: usize) -> Option<Self> {
+        let (number, rest) = text.trim().split_once(':')?;
+        if number.is_empty() || !number.bytes().all(|byte| byte.is_ascii_digit()) {
+            return None;
+        }
+        let (conditions, result) = rest.strip_suffix(';')?.split_once("=>")?;
+        let (action, next) = match result.split_once("->") {
+            Some((action, next)) => (action, Some(next.trim().to_owned())),
+            None => (result, None),
+        };
+        let read = |condition: &str| {
+            let (name, values) = condition.split_once(':')?;
+            let values = values.split('|').map(|value| value.trim().to_owned()).collect();
+            Some((name.trim().to_owned(), values))
+        };
+        let named = conditions.split(',').map(str::trim).filter(|condition| !condition.is_empty());
+        Some(Self {
+            line,
+            text: text.to_owned(),
+            group,
+            number: number.to_owned(),
+            conditions: named.map(read).collect::<Option<_>>()?,
+            action: action.trim().to_owned(),
+            next,
+        })
+    }
+
+    /// The line that says it.
+    fn write(&self) -> String {
+        let indent = &self.text[..self.text.len() - self.text.trim_start().len()];
+        let conditions: Vec<String> =
+            self.conditions.iter().map(|(name, values)| format!("{name}: {}", values.join(" | "))).collect();
+        let next = self.next.as_ref().map_or_else(String::new, |next| format!(" -> {next}"));
+        format!("{indent}{}: {} => {}{next};", self.number, conditions.join(", "), self.action)
+    }
+}
+
+/// A table in a file.
+#[derive(Debug)]
+struct Table {
+    file: PathBuf,
+    name: String,
+    rows: Vec<Row>,
+    /// Its steps, as groups of rows name them.
+    steps: Vec<String>,
+}
+
+impl Table {
+    /// All tables of a file.
+    fn read(file: &Path, text: &str) -> Vec<Self> {
+        let (mut tables, mut inside, mut group) = (Vec::<Self>::new(), false, 0);
+        for (line, text) in text.lines().enumerate() {
+            let trimmed = text.trim();
+            if trimmed == "decision_table! {" {
+                inside = true;
+            } else if text == "}" {
+                inside = false;
+            } else if let (true, Some(head)) = (inside, trimmed.strip_prefix("pub ")) {
+                let name = head.split(':').next().unwrap_or_default().to_owned();
+                tables.push(Self { file: file.to_owned(), name, rows: Vec::new(), steps: Vec::new() });
+            } else if let (true, Some(table)) = (inside, tables.last_mut()) {
+                if let Some(steps) = trimmed.strip_suffix(" {").filter(|_| !trimmed.starts_with("//")) {
+                    group += 1;
+                    for step in steps.split('|').map(str::trim).filter(|step| *step != "any") {
+                        if !table.steps.iter().any(|known| known == step) {
+                            table.steps.push(step.to_owned());
+                        }
+                    }
+                } else if let Some(row) = Row::read(line, text, group) {
+                    table.rows.push(row);
+                }
+            }
+        }
+        tables
+    }
+
+    fn mutant(&self, row: &Row, what: What, changed: &Row, other: Option<&Row>) -> Mutant {
+        Mutant {
+            file: self.file.clone(),
+            table: self.name.clone(),
+            row: row.number.clone(),
+            what,
+            line: row.line,
+            before: row.text.clone(),
+            after: changed.write(),
+            other: other.map(|other| (other.line, other.write())),
+        }
+    }
+
+    /// Every change of one row: its action becomes one of the table's others, its next step another one or
+    /// none, an alternative of a condition goes to another row of the same group or is exchanged with one of it.
+    fn mutants(&self) -> Vec<Mutant> {
+        let mut mutants = Vec::new();
+        for row in &self.rows {
+            let mut actions: Vec<&String> =
+                self.rows.iter().map(|other| &other.action).filter(|action| **action != row.action).collect();
+            actions.sort_unstable();
+            actions.dedup();
+            for action in actions {
+                let changed = Row { action: action.clone(), ..row.clone() };
+                mutants.push(self.mutant(row, What::Action, &changed, None));
+            }
+            let steps = self.steps.iter().cloned().map(Some).chain([None]).filter(|next| *next != row.next);
+            for next in steps {
+                mutants.push(self.mutant(row, What::NextStep, &Row { next, ..row.clone() }, None));
+            }
+            let others = self.rows.iter().filter(|other| other.group == row.group && other.line != row.line);
+            for other in others {
+                self.conditions(row, other, &mut mutants);
+            }
+        }
+        mutants
+    }
+
+    /// What can be exchanged between the conditions of two rows.
+    fn conditions(&self, row: &Row, other: &Row, mutants: &mut Vec<Mutant>) {
+        for (at, (name, values)) in row.conditions.iter().enumerate() {
+            let Some(there) = other.conditions.iter().position(|(known, _)| known == name) else { continue };
+            for (which, value) in values.iter().enumerate() {
+                if other.conditions[there].1.contains(value) {
+                    continue;
+                }
+                let (mut mine, mut theirs) = (row.clone(), other.clone());
+                if values.len() > 1 {
+                    mine.conditions[at].1.remove(which);
+                } else {
+                    mine.conditions[at].1 = vec![theirs.conditions[there].1.remove(0)];
+                }
+                theirs.conditions[there].1.push(value.clone());
+                mutants.push(self.mutant(row, What::Condition, &mine, Some(&theirs)));
+            }
+        }
+    }
+}
+
+fn files(directory: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in fs::read_dir(directory)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            files(&path, found)?;
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// SplitMix64: a random number, and the next state.
+fn random(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let mut mixed = *state;
+    mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    mixed ^ (mixed >> 31)
+}
+
+/// All changes of rows of the tables of `levels`, in an order that the seed gives: first a row, each as likely
+/// as any other, then what is changed in it, then how; a row comes again after all others have come.
+pub fn drawn(root: &Path, seed: u64, only: &str) -> io::Result<Vec<Mutant>> {
+    let mut paths = Vec::new();
+    files(&root.join("crates/levels/src"), &mut paths)?;
+    paths.sort_unstable();
+    let mut state = seed;
+    let mut drawn = Vec::new();
+    for path in paths {
+        let name = path.strip_prefix(root).unwrap_or(&path).to_owned();
+        if !name.to_string_lossy().contains(only) {
+            continue;
+        }
+        for table in Table::read(&name, &fs::read_to_string(&path)?) {
+            let mutants = table.mutants();
+            for row in &table.rows {
+                let mut kinds: Vec<Vec<&Mutant>> = [What::Action, What::NextStep, What::Condition]
+                    .map(|what| mutants.iter().filter(|it| it.line == row.line && it.what == what).collect())
+                    .into();
+                let mut turn = 0_u64;
+                loop {
+                    kinds.retain(|kind| !kind.is_empty());
+                    if kinds.is_empty() {
+                        break;
+                    }
+                    let kind = pick(&mut state, kinds.len());
+                    let which = pick(&mut state, kinds[kind].len());
+                    drawn.push((turn, random(&mut state), kinds[kind].swap_remove(which).clone()));
+                    turn += 1;
+                }
+            }
+        }
+    }
+    drawn.sort_by_key(|(turn, order, _)| (*turn, *order));
+    Ok(drawn.into_iter().map(|(_, _, mutant)| mutant).collect())
+}
+
+/// A number below another one.
+fn pick(state: &mut u64, below: usize) -> usize {
+    usize::try_from(random(state) % u64::try_from(below).unwrap_or(1)).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "\
+decision_table! {
+    /// RELEASE: open the gripper.
+    pub RELEASE: fn release(enum ReleaseStep, super::Situation) -> super::Action {
+        any {
+            1: work: Busy               => Wait;
+        }
+        /// Nothing done yet.
+        Start {
+            2: work: Over, held: Left | Right => Release -> Releasing;
+            3: work: Over, held: None   => Finish;
+        }
+        /// The gripper opens.
+        Releasing {
+            4:                          => Finish;
+        }
+    }
+}
+";
+
+    #[test]
+    fn a_row_is_changed_in_its_action_its_next_step_and_its_conditions() {
+        let tables = Table::read(Path::new("release.rs"), TEXT);
+        let [table] = &tables[..] else { panic!("{tables:?}") };
+        assert_eq!(
+            (table.name.as_str(), &table.steps[..]),
+            ("RELEASE", &["Start".into(), "Releasing".into()][..])
+        );
+        let lines = |number: &str, what| {
+            let mutants =
+                table.mutants().into_iter().filter(|mutant| mutant.row == number && mutant.what == what);
+            mutants.map(|mutant| mutant.apply(TEXT)).collect::<Vec<_>>()
+        };
+        let changed = |texts: &[String]| {
+            let differ = |text: &String| {
+                let pairs = TEXT.lines().zip(text.lines()).filter(|(before, after)| before != after);
+                pairs.map(|(_, after)| after.trim().to_owned()).collect::<Vec<_>>().join(" ")
+            };
+            texts.iter().map(differ).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            changed(&lines("1", What::Action)),
+            ["1: work: Busy => Finish;", "1: work: Busy => Release;"]
+        );
+        assert_eq!(
+            changed(&lines("4", What::NextStep)),
+            ["4:  => Finish -> Start;", "4:  => Finish -> Releasing;"]
+        );
+        assert_eq!(
+            changed(&lines("2", What::Condition)),
+            [
+                "2: work: Over, held: Right => Release -> Releasing; 3: work: Over, held: None | Left => Finish;",
+                "2: work: Over, held: Left => Release -> Releasing; 3: work: Over, held: None | Right => Finish;",
+            ]
+        );
+        assert_eq!(
+            changed(&lines("3", What::Condition)),
+            [
+                "2: work: Over, held: Right | None => Release -> Releasing; 3: work: Over, held: Left => Finish;"
+            ]
+        );
+    }
+
+    #[test]
+    fn the_seed_gives_the_order() {
+        let root = whole_system_tests::root();
+        let [first, again, other] =
+            [1, 1, 2].map(|seed| drawn(root, seed, "").expect("the tables can be read"));
+        assert_eq!(first, again);
+        assert_ne!(first, other);
+        assert!(first.len() > 3000, "{} changes", first.len());
+    }
+}
