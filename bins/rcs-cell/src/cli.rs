@@ -17,12 +17,13 @@ use egm_robot::EgmOptions;
     after_help = "\
 Commands are read from standard input, one a line; help lists them. The start-up is that of the manual \
 (NBSIR 88-3692, IV.3.3): control power on, fault reset, hydraulics enable, manual on, align, auto, \
-cycle start. A host that has the link open stands for its DTR; when it hangs up, the controller shows \
-WD1. The end of standard input ends the program if that is a terminal; otherwise it runs on.
+cycle start. While a host has the link open, its DTR counts as on; when it closes the link, the \
+controller shows WD1. The end of standard input ends the program if standard input is a terminal; \
+otherwise it runs on.
 
 Examples:
   rcs-cell --link /tmp/t3              the console: start the robot step by step
-  rcs-cell --link /tmp/t3 --auto       the start-up by itself, ready for a host
+  rcs-cell --link /tmp/t3 --auto       with the start-up done, ready for a host
   rcs-run --robot serial:/tmp/t3 --clock real    a host (in another terminal)
   rcs-cell --link /tmp/t3 --auto --faults data/faults/noisy-line.toml    the same over a bad line
   rcs-cell --link /tmp/t3 --egm 6510   a gateway: the robot with EGM that sends to UDP port 6510, as a T3
@@ -34,16 +35,16 @@ Exit status: 0 ended by quit, the end of input or a signal; 1 the pseudo-termina
 the path cannot be used. The reason is the last line on standard error."
 )]
 pub struct Cli {
-    /// Where to link the pseudo-terminal; nothing else may be there
+    /// Path of the symbolic link to the pseudo-terminal; no other file may be there
     #[arg(long, value_name = "PATH", required_unless_present = "emulate")]
     pub link: Option<PathBuf>,
-    /// PORT or ADDRESS:PORT, options behind commas: give the host the robot with EGM that sends to this UDP port
+    /// Connect the host to the EGM robot that sends to this UDP port: PORT or ADDRESS:PORT, then options after commas
     ///
-    /// Options: robot=NAME|FILE, its frames; from=ADDRESS, only datagrams from there count;
-    /// speed-ref=on|off (on); slack=MS (10), by how much a command may be late.
+    /// Options: robot=NAME|FILE, the robot's frames; from=ADDRESS, ignore datagrams from other addresses;
+    /// speed-ref=on|off (on); slack=MS (10), how late a command may be.
     #[arg(long, value_name = "PORT", requires = "link", conflicts_with_all = ["auto", "faults", "emulate"])]
     pub egm: Option<EgmOptions>,
-    /// egm:PORT or egm:ADDRESS:PORT, options behind commas: be an EGM robot that sends to this UDP port
+    /// Emulate an EGM robot that sends to this UDP port: egm:PORT or egm:ADDRESS:PORT, then options after commas
     ///
     /// Options of the robot: robot=NAME|FILE, gain=K (5), filter=HZ (20), ramp=S (0.5), deviation=DEG/S (90),
     /// timeout=S (1), do-not-restart=on|off (on). Of the network: loss, double, reorder=PERCENT, delay, jitter=MS,
@@ -53,17 +54,17 @@ pub struct Cli {
     /// Directory with robots/NAME.toml
     #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
-    /// Go through the start-up without a person, and answer ENTER when a host comes
+    /// Do the start-up without a person, and press ENTER when a host connects
     #[arg(long)]
     pub auto: bool,
     /// Period of the controller in milliseconds, a multiple of 10 up to 1000, or 19.76 as in appendix A; the velocity
-    /// limits are per period
+    /// limits apply per period
     #[arg(long, value_name = "MS", default_value = "40", value_parser = period)]
     pub period: Limits,
-    /// Seed: how far the joints are from HOME in the morning, and how well they are aligned
+    /// Seed of the joints' distances from HOME at start-up and of their alignment errors
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Fault plan (TOML): what happens to bytes on the line; its ticks are the controller's steps, one a period or so
+    /// Fault plan (TOML) for the bytes on the line; its ticks are steps of the controller, about one per period
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
 }

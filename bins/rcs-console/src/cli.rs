@@ -7,7 +7,7 @@ use executive::memory::RunName;
 
 use crate::{model::Screen, view::Look};
 
-/// Shows what every control process of a run does and why, or of a log, back and forth in time. With --operate it works on the run
+/// Shows what every control process does and why: in a run, or at any tick of a log. With --operate it operates the run
 #[derive(Debug, Parser)]
 #[command(
     name = "rcs-console",
@@ -15,34 +15,34 @@ use crate::{model::Screen, view::Look};
     about,
     after_help = "\
 Examples:
-  rcs-console                                  the run that goes on; waits for one if there is none
+  rcs-console                                  the run in progress; waits for one if there is none
   rcs-console --run linkbar-4711               one of several runs
-  rcs-console --operate                        stop, command and recover the run, too (docs/operator.md)
+  rcs-console --operate                        also stop, command and recover the run (docs/operator.md)
   rcs-console --log runs/linkbar.mcap          a log
   rcs-console --log runs/linkbar.mcap --once ladder --tick 623   one screen as text
 
 Exit status: 0 quit; 2 usage, or what is to be shown cannot be read."
 )]
 pub struct Cli {
-    /// The run to look at [default: the only one that goes on]
+    /// The run to look at [default: the only one in progress]
     #[arg(long, value_name = "NAME")]
     pub run: Option<RunName>,
-    /// The log to look at; with --run the log of that run, for the key that opens it
+    /// The log to look at; with --run the log of that run, which a key opens
     #[arg(long, value_name = "FILE")]
     pub log: Option<PathBuf>,
-    /// Work on the run, not only look at it; it needs --clock real
+    /// Operate the run, instead of only looking at it; the run needs --clock real
     #[arg(long, conflicts_with_all = ["once", "tick"])]
     pub operate: bool,
-    /// The task data whose blocks screen 5 lists; with --operate those of the run, of a log its own
+    /// Task data whose blocks screen 5 lists [with --operate those of the run, with a log those in the log]
     #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
-    /// Colours repeat what marks say; auto heeds NO_COLOR and TERM=dumb
+    /// Whether to use colours, which only repeat what the text says; auto follows NO_COLOR and TERM=dumb
     #[arg(long, value_enum, default_value_t = Colour::Auto)]
     pub colour: Colour,
     /// Draw with ASCII only [default: if the locale is not UTF-8]
     #[arg(long)]
     pub ascii: bool,
-    /// Print one screen as text and end
+    /// Print one screen as text and exit
     #[arg(long, value_enum, value_name = "SCREEN")]
     pub once: Option<Screen>,
     /// Begin at this tick of a log
@@ -53,9 +53,9 @@ pub struct Cli {
 /// When colours are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Colour {
-    /// If the terminal has them and nothing forbids them
+    /// If the terminal has colours and NO_COLOR is not set
     Auto,
-    /// Not at all
+    /// No colours
     Never,
 }
 

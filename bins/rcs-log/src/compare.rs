@@ -22,7 +22,7 @@ use crate::{
 /// Arguments of `compare`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
-    /// The one data directory
+    /// The old data directory
     #[arg(value_name = "DATA-OLD")]
     pub old: PathBuf,
     /// The other
@@ -31,7 +31,7 @@ pub struct Arguments {
     /// The jobs [default: all of both directories]
     #[arg(value_name = "JOB")]
     pub jobs: Vec<String>,
-    /// Seed of the cell's noise, and of where parts are delivered
+    /// Seed of the cell's sensor noise and of the positions of delivered parts
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// What is compared with what

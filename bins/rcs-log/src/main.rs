@@ -1,12 +1,12 @@
-//! `rcs-log`: looks into the logs of runs.
+//! `rcs-log`: examines the logs of runs.
 //!
 //! | subcommand | question |
 //! |---|---|
 //! | [`info`] | what ran, how long did it take, how did it end? |
 //! | [`why`] | what did each level do in a tick, by which row, and what failed first? |
-//! | [`replay`] | would the program of today do the same on the same inputs? |
+//! | [`replay`] | would the present program do the same on the same inputs? |
 //! | [`diff`] | where do two runs differ? |
-//! | [`fork`] | what would have happened if? |
+//! | [`fork`] | what would have happened with another command, datum, seed or fault? |
 //! | [`compare`] | what do other data change in the jobs? |
 //! | [`report`] | the run on one page |
 //! | [`serve`] | the run as a viewer shows it |
@@ -34,7 +34,7 @@ const DIFFERENT: u8 = 1;
 /// Exit status of a usage or file error.
 const UNUSABLE: u8 = 2;
 
-/// Looks into the logs of runs: what happened, why, and whether today's program would do the same.
+/// Examines the logs of runs: what happened, why, and whether the present program would do the same.
 #[derive(Debug, Parser)]
 #[command(
     name = "rcs-log",
@@ -51,10 +51,10 @@ Examples:
   rcs-log fork runs/linkbar.mcap --tick 4600 --set 'line=** wait 50'   what if the next line came 2 s later?
   rcs-log compare data ../new/data          what do other data change in the jobs?
   rcs-log report runs/linkbar.mcap          the run as a page, runs/linkbar.html
-  rcs-log serve runs/linkbar.mcap --rate 5  play the run to Foxglove or Lichtblick, five times as fast
+  rcs-log serve runs/linkbar.mcap --rate 5  play the run in Foxglove or Lichtblick, five times as fast
   rcs-log golden runs/*.mcap -o tests/goldens   small files for tests, with their texts
 
-Exit status: 0 done, and the same where something is compared; 1 different; 2 usage, or a file that cannot be used.
+Exit status: 0 done, and no difference was found; 1 a difference was found; 2 usage, or a file cannot be used.
 The reason is the last line on standard error."
 )]
 struct Cli {
@@ -71,36 +71,36 @@ enum Command {
     Why(why::Arguments),
     /// Compute the control processes again on the recorded inputs, and compare every output buffer of every tick
     Replay(replay::Arguments),
-    /// Where two runs differ: first, and then by buffer and field
+    /// Where two runs differ: the first difference, then all by buffer and field
     Diff(diff::Arguments),
-    /// Run a log again up to a tick, change something, go on to the end, and say what is different
+    /// Run a log again up to a tick, make changes, run on to the end, and print the differences
     ///
-    /// The run begins at tick 0 with what stands in the log. Each tick up to the change is compared with the log: if
-    /// one differs, nothing is changed. Changes:
+    /// The run begins at tick 0 with the job, data and seed of the log. Each tick up to the change is compared with the
+    /// log: if one differs, the fork ends with an error. Changes:
     ///
     ///   datum FILE:BLOCK:LINE[-LINE]:WORD=VALUE   a word of the task data; += and -= add to a number
     ///   line=LINE             a line of the job, before its next one: line='** wait 50'
-    ///   command=COMMAND       another command in the place of the next one
-    ///   seed=N                other noise of the sensors, other places of parts
-    ///   fault=FILE.toml       the faults of a file can begin
-    ///   cell KEY=VALUE        another value in cell.toml, with --tick 0
+    ///   command=COMMAND       another command instead of the next one
+    ///   seed=N                other sensor noise, other positions of delivered parts
+    ///   fault=FILE.toml       the faults of this fault plan can begin
+    ///   cell KEY=VALUE        another value in cell.toml; needs --tick 0
     ///
-    /// FILE, BLOCK and LINE are those that `rcs-log why` prints; words count from 1. Exit status 0 if the fork was run.
+    /// `rcs-log why` prints FILE, BLOCK and LINE; words count from 1. Exit status 0 if the fork was run.
     #[command(verbatim_doc_comment)]
     Fork(fork::Arguments),
-    /// Run jobs with two data directories, and say what is different
+    /// Run jobs with two data directories, and print the differences
     Compare(compare::Arguments),
-    /// Write the run as one page of HTML that needs nothing else
+    /// Write the run as one HTML page that needs no other file
     Report(report::Arguments),
-    /// Play a log to Foxglove or Lichtblick on this machine, as rcs-run --live shows a run
+    /// Play a log in Foxglove or Lichtblick on this machine, as rcs-run --live shows a run
     ///
-    /// It plays once, from its start, when a viewer has subscribed to something, and the program ends when the log has
-    /// ended and the last viewer is closed.
+    /// The log plays once, from its start. It starts when a viewer has subscribed to a channel. The program ends when
+    /// the log has ended and the last viewer has disconnected.
     Serve(serve::Arguments),
     /// Make the small files that tests replay, and their texts for review
     ///
-    /// A log is refused unless it is complete, nothing in it is damaged, and this program computes every tick of it
-    /// again: a golden is the reference of a test, and one with a gap would not be the run.
+    /// A log is refused unless it is complete and undamaged, and this program computes every tick of it with the same
+    /// result: a golden is the reference of a test.
     Golden(golden::Arguments),
 }
 

@@ -16,13 +16,13 @@ pub struct Arguments {
     /// The logs
     #[arg(required = true)]
     pub files: Vec<PathBuf>,
-    /// Task data to replay with, instead of those in the log: what would they have changed?
+    /// Task data to replay with, instead of those in the log
     #[arg(long, value_name = "DIR")]
     pub data: Option<PathBuf>,
-    /// Begin at the last recorded states before this tick
+    /// Begin at the last recorded snapshot of the states before this tick
     #[arg(long, value_name = "TICK")]
     pub from: Option<u64>,
-    /// Last tick that is computed
+    /// Last tick to compute
     #[arg(long, value_name = "TICK")]
     pub until: Option<u64>,
     #[command(flatten)]

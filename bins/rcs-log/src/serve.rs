@@ -24,10 +24,10 @@ pub struct Arguments {
     /// The port on 127.0.0.1; 0 for any that is free
     #[arg(long, value_name = "PORT", default_value_t = 8765)]
     port: u16,
-    /// How many times as fast as the robot
+    /// Speed of playing; 1 is the speed of the run with --clock real
     #[arg(long, value_name = "N", default_value = "1", value_parser = rate)]
     rate: f64,
-    /// Let pages of this site connect, such as http://localhost:8080; may be given again
+    /// Let web pages of this origin connect, such as http://localhost:8080; may be given several times
     #[arg(long, value_name = "ORIGIN")]
     live_origin: Vec<Origin>,
 }

@@ -8,7 +8,7 @@ use neighbours::network::Address;
 
 use crate::vision::Fault;
 
-/// Neighbours of the RCS-II/T3 controller as processes of their own.
+/// Neighbour systems of the RCS-II/T3 controller, as separate processes.
 #[derive(Debug, Parser)]
 #[command(
     name = "rcs-neighbour",
@@ -21,17 +21,17 @@ Examples:
   rcs-neighbour workstation --network unix:/tmp/rcs.sock linkbar
                                        and one that plays the linkbar
   rcs-run shift --network unix:/tmp/rcs.sock --outside data-system
-                                       a run that keeps no items itself
+                                       a run that does not keep the items itself
   rcs-neighbour data-system --network unix:/tmp/rcs.sock items.db
                                        and the process that keeps them: sqlite3 items.db 'SELECT * FROM whereabouts'
   rcs-run clevis --network unix:/tmp/rcs.sock --outside pedestal
-                                       a run whose pedestal is a system of its own
+                                       a run whose pedestal is another process
   rcs-neighbour pedestal --network unix:/tmp/rcs.sock
                                        and the pedestal
   rcs-run clevis --network unix:/tmp/rcs.sock --outside vision
                                        a run whose pictures are analysed elsewhere
   rcs-neighbour vision --network unix:/tmp/rcs.sock --fault 2:not-recognised
-                                       and the vision system, which fails at the second one
+                                       and the vision system, which fails at the second picture
   rcs-neighbour keys cell-keys         keys for neighbours on other machines:
   rcs-run --clock real --network tcp:10.0.0.1:7400 --keys cell-keys --outside workstation
   rcs-neighbour workstation --network tcp:10.0.0.1:7400 --keys cell-keys linkbar
@@ -49,31 +49,33 @@ pub struct Cli {
 pub enum Command {
     /// The workstation controller (HWSC): plays a job
     Workstation(WorkstationArguments),
-    /// The Data System: keeps items in an SQLite file, for one run after the other, until none has come for a while
+    /// The Data System: keeps items in an SQLite file. Serves one run after the other; exits when no run comes within
+    /// --wait
     DataSystem(DataSystemArguments),
-    /// The Active Pedestal, with its devices in the simulated cell: for one run after the other, until none
-    /// has come for a while
+    /// The Active Pedestal, with its devices in the simulated cell. Serves one run after the other; exits when no run
+    /// comes within --wait
     Pedestal(PedestalArguments),
-    /// The vision system: analyses what the camera of the cell sees, for one run after the other, until none
-    /// has come for a while
+    /// The vision system: analyses the pictures of the cell's camera. Serves one run after the other; exits when no run
+    /// comes within --wait
     Vision(VisionArguments),
-    /// Make an authority, and keys and certificates for the controller and all neighbours; what is there stays
+    /// Make a certificate authority, and keys and certificates for the controller and all neighbours; existing files
+    /// stay
     Keys(KeysArguments),
 }
 
 /// Where the controller is.
 #[derive(Clone, Debug, Args)]
 pub struct ControllerArguments {
-    /// Where the run waits for its neighbours: unix:PATH, tcp:IP:PORT or zenoh:NAME or zenoh:NAME@ENDPOINT
+    /// Address at which the run waits for its neighbours: unix:PATH, tcp:IP:PORT, zenoh:NAME or zenoh:NAME@ENDPOINT
     #[arg(long, value_name = "ADDRESS")]
     pub network: Address,
-    /// Directory with keys and certificates for tcp: and zenoh:, as `rcs-neighbour keys` makes it
+    /// Directory with keys and certificates for tcp: and zenoh:; `rcs-neighbour keys` makes it
     #[arg(long, value_name = "DIR")]
     pub keys: Option<PathBuf>,
     /// File with Zenoh's own configuration (JSON5): TLS, access control, routers
     #[arg(long, value_name = "FILE")]
     pub zenoh_config: Option<PathBuf>,
-    /// How long to wait for the run
+    /// Seconds to wait for a run
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
     pub wait: u64,
 }
@@ -81,10 +83,10 @@ pub struct ControllerArguments {
 /// Arguments of `keys`.
 #[derive(Clone, Debug, Args)]
 pub struct KeysArguments {
-    /// Directory for the files, which is made if it is not there. To renew a certificate, delete its two files first
+    /// Directory for the files, created if missing. To renew a certificate, delete its two files first
     #[arg(value_name = "DIR")]
     pub directory: PathBuf,
-    /// How long the certificates are valid; the authority is valid for 3650 days
+    /// Days for which the certificates are valid; the authority is valid for 3650 days
     #[arg(long, value_name = "N", default_value_t = 825, value_parser = clap::value_parser!(u16).range(..=3650))]
     pub days: u16,
 }
@@ -98,10 +100,11 @@ pub struct WorkstationArguments {
     /// Name of a job in the data directory, or a path
     #[arg(default_value = "linkbar")]
     pub job: String,
-    /// Task data, against which the job is checked, and jobs
+    /// Jobs, and the task data with which the job is checked
     #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
-    /// After a command that ends with an error send PAUSE and the same command again, at most so many times a line
+    /// After a command that ends with an error, send PAUSE and the same command again, at most N times for a line of
+    /// the job
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub retry: u32,
 }
@@ -112,7 +115,7 @@ pub struct DataSystemArguments {
     /// Where the controller is.
     #[command(flatten)]
     pub controller: ControllerArguments,
-    /// The SQLite file, which is made if it is not there
+    /// The SQLite file, created if missing
     #[arg(value_name = "FILE")]
     pub data_base: PathBuf,
 }
@@ -131,16 +134,16 @@ pub struct VisionArguments {
     /// Where the controller is.
     #[command(flatten)]
     pub controller: ControllerArguments,
-    /// Where the cell description of the run is: cell.toml
+    /// Directory with the cell description of the run, cell.toml
     #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
-    /// Let pictures go wrong, counted from 1 over all runs: N:KIND or N-M:KIND, with commas between them
+    /// Faults of pictures, separated by commas: N:KIND or N-M:KIND; pictures count from 1 over all runs
     ///
-    /// off: no answer; camera-blind: nothing is seen; not-recognised; another-object: that is recognised;
-    /// another-echo: the answer is to another request; input-not-ready: it stands where vision-ready-input is
-    /// 1; output-not-ready: vision-ready-output is 1 from then on; garbled: a status that there is not;
-    /// truncated; outside: the centroid is 300 in away; turned: by 270 degrees; gone: the line is cut in the
-    /// middle, and made again.
+    /// off: no answer; camera-blind: the camera sees nothing; not-recognised: the object is not recognised;
+    /// another-object: another object is recognised; another-echo: the answer echoes another request; input-not-ready:
+    /// vision-ready-input is 1 with the answer; output-not-ready: vision-ready-output is 1 from this picture on;
+    /// garbled: a status value that does not exist; truncated: the answer is too short; outside: the centroid is 300 in
+    /// away; turned: the angle is 270 degrees; gone: the connection is closed before the answer, and opened again.
     #[arg(long, value_name = "FAULTS", value_delimiter = ',')]
     pub fault: Vec<Fault>,
 }

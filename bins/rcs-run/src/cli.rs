@@ -28,18 +28,18 @@ Examples:
   rcs-run my.job --seed 7 --json       a job file, other noise, the result as JSON
   rcs-run --faults data/faults/air-lost.toml
                                        the air fails in the middle of the job
-  rcs-run --boards split               one operating system process a board; the same result, to the bit
+  rcs-run --boards split               one operating system process a board; the same result, bit for bit
   rcs-run link-test --robot serial:/dev/ttyUSB0
-                                       try the line to a robot; nothing moves
+                                       test the serial line to a robot; nothing moves
   rcs-run --robot serial:/dev/ttyUSB0 --clock real
                                        command the robot there; gripper, tray, vise and camera are simulated
-  rcs-run check                        look at the task data without running anything
+  rcs-run check                        check the task data without running anything
   rcs-run check --explain 'MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0'
-                                       the whole way of a command, and how long it takes
+                                       the whole path of a command, and how long it takes
   rcs-run --network unix:/tmp/rcs.sock --outside workstation --clock real
                                        take commands from a workstation controller in another process
   rcs-run new part HINGE --size 3x1.5x1 --like LCLEVIS
-                                       data for a part of another size, tried before they are shown
+                                       data for a part of another size, tested before they are shown
   rcs-run status                       what the run in the other terminal is doing
   rcs-run tables > tables.md           all decision tables
 
@@ -60,29 +60,30 @@ pub struct Cli {
 pub enum Command {
     /// Run a job (the same as without a subcommand)
     Run(Box<RunArguments>),
-    /// Exchange frames with a robot at a serial port, holding the position that it reports, and judge the link
+    /// Exchange frames with a robot at a serial port and judge the link; the robot is commanded to the position it
+    /// reports
     LinkTest(LinkTestArguments),
     /// Run one board of a run that was started with --boards manual
     Board(BoardArguments),
-    /// Load task data, jobs and the cell description, and print all errors and warnings, and what was loaded
+    /// Load task data, jobs and the cell description; print what was loaded, and all errors and warnings
     Check(CheckArguments),
     /// Print every decision table as Markdown
     Tables,
-    /// Measure how late this machine wakes a thread that sleeps on the 40 ms grid, with a verdict
+    /// Measure how late this machine wakes a thread on the 40 ms grid, and say whether that is good enough for a robot
     Latency(LatencyArguments),
-    /// Print what a run that goes on is doing: each process with its command, its status, and the row that fired
+    /// Print what a run is doing now: each process with its command, its status, and the row that fired
     Status(StatusArguments),
-    /// Ask something of a run that goes on, as an operator: a stop, a command, a line for the cell
+    /// Send an operator's requests to a run: a stop, a command, a line for the cell
     Send(SendArguments),
-    /// Interrupt a job at many ticks, let an operator recover it, and judge what became of each branch
+    /// Interrupt a job at many ticks, recover it as an operator would, and judge how each branch ends
     Campaign(CampaignArguments),
-    /// Print the nine numbers of a pose, whether the arm can take it, and write its form
+    /// Print the nine numbers of a pose and whether the arm can reach it; write its form
     Pose(PoseArguments),
-    /// Write the data that comes with the program into DIR/data, to be changed
+    /// Write the data that comes with the program into DIR/data, for you to change
     Init(InitArguments),
-    /// Make task data and cell entries for a new part, tool, place or tray, try them, and show or write what changes
+    /// Make task data and cell entries for a new part, tool, place or tray, test them, and show or write the changes
     New(NewArguments),
-    /// Remove what killed runs left in shared memory
+    /// Remove the shared memory that killed runs left behind
     Clean,
 }
 
@@ -95,7 +96,8 @@ pub struct RunArguments {
     /// Task data, jobs and cell description
     #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
-    /// Run ticks at once: fast; one every 40 ms: real; or N in that time, with the simulated robot: Nx, such as 5x
+    /// When ticks run. fast: one after the other, without waiting; real: one every 40 ms; Nx, such as 5x: N every 40
+    /// ms, with the simulated robot
     #[arg(
         long,
         value_name = "CLOCK",
@@ -103,101 +105,104 @@ pub struct RunArguments {
         default_value_if("console", ArgPredicate::IsPresent, "real")
     )]
     pub clock: Clock,
-    /// What to do about slots of the 40 ms grid that are skipped: count, hold, hold:SLOTS, stop or
-    /// stop:SLOTS
+    /// What to do when the host misses slots of the 40 ms grid: count, hold, hold:SLOTS, stop or stop:SLOTS
     ///
-    /// hold: if SLOTS (1) are skipped in a row, the robot ramps down and holds until 25 ticks were punctual;
-    /// stop: it ramps down, and the run ends with exit status 3.
+    /// count: only count them. hold: after SLOTS (1) missed in a row the robot ramps down, and holds until 25 ticks in
+    /// a row were on time. stop: the robot ramps down, and the run ends with exit status 3.
     #[arg(long, value_name = "POLICY", default_value_t = Policy::Count)]
     pub overrun: Policy,
-    /// The core to run on with --clock real [default: the highest that is allowed]
+    /// CPU core to run on with --clock real [default: the highest number that this process may use]
     #[arg(long, value_name = "N")]
     pub cpu: Option<usize>,
-    /// The robot to command: sim, the simulated one, serial:PATH[,OPTION...], one at a serial port, or
-    /// egm:PORT or egm:ADDRESS:PORT, one of ABB that sends EGM to this UDP port
+    /// The robot to command. sim: the simulated T3; serial:PATH[,OPTION...]: a T3 controller at a serial port;
+    /// egm:PORT[,OPTION...] or egm:ADDRESS:PORT[,OPTION...]: an ABB robot that sends EGM to this UDP port
     ///
-    /// Options: silence=SECONDS (60), how long to wait for a robot controller that does not answer although
-    /// its DTR is on; for a port also baud=N (9600), parity=none|even|odd (none), stop=1|2 (1),
+    /// Options, with defaults in brackets: silence=SECONDS (60), how long to wait for a robot controller that does not
+    /// answer although its DTR is on. For a serial port also baud=N (9600), parity=none|even|odd (none), stop=1|2 (1),
     /// cts=watch|ignore (watch; ignore is for cables of three wires). A robot at a port needs --clock real.
     ///
-    /// Options of EGM: robot=NAME|FILE, its frames (data/robots/NAME.toml); from=ADDRESS, only datagrams from
-    /// there count; speed-ref=on|off (on); slack=MS (10), by how much a tick may be late. egm:sim[,OPTION...] is an
+    /// Options of EGM: robot=NAME|FILE, the robot's frames (data/robots/NAME.toml); from=ADDRESS, ignore datagrams from
+    /// other addresses; speed-ref=on|off (on); slack=MS (10), how late a tick may be. egm:sim[,OPTION...] is an
     /// emulated robot in simulated time; docs/egm.md has its options.
     #[arg(long, value_name = "ROBOT", default_value = "sim")]
     pub robot: RobotConfig,
-    /// Faults of the cell and of the line to the simulated robot, on schedule or by chance (TOML; data/README.md)
+    /// Fault plan: faults of the cell and of the line to the simulated robot, at set ticks or at random (TOML;
+    /// data/README.md)
     #[arg(long, value_name = "FILE", value_parser = shipped_path())]
     pub faults: Option<PathBuf>,
-    /// How the control processes are spread over boards
+    /// How the control processes are distributed over boards
     #[arg(long, value_enum, default_value_t = Boards::One)]
     pub boards: Boards,
-    /// Name of the run in shared memory [default: JOB-PID, PID the number of this process]
+    /// Name of the run in shared memory [default: JOB-PID, with the process identifier of this process]
     #[arg(long, value_name = "NAME")]
     pub run: Option<RunName>,
-    /// How many seconds to wait for boards that are started by hand, and for neighbours in other processes
+    /// Seconds to wait for boards that are started by hand, and for neighbours in other processes
     #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..=86_400))]
     pub wait: u32,
-    /// Seed of the cell's noise and of where parts are delivered
+    /// Seed of the cell's sensor noise and of the positions of delivered parts
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Where to write the log; none for no log [default: runs/JOB.mcap]
+    /// File to write the log into; none for no log [default: runs/JOB.mcap]
     #[arg(long, value_name = "FILE")]
     pub log: Option<LogTarget>,
-    /// Keep the items of the Data System in this SQLite file, which is made if it is not there [default: forget them]
+    /// Keep the items of the Data System in this SQLite file, created if missing [default: keep them during the run
+    /// only]
     #[arg(long, value_name = "FILE")]
     pub data_base: Option<PathBuf>,
-    /// Let neighbours in other processes, and operators of --operator network, connect here: unix:PATH, or with --keys
-    /// tcp:IP:PORT, zenoh:NAME or zenoh:NAME@ENDPOINT (docs/neighbours.md)
+    /// Address at which neighbours in other processes, and operators of --operator network, connect: unix:PATH, or with
+    /// --keys tcp:IP:PORT, zenoh:NAME or zenoh:NAME@ENDPOINT (docs/neighbours.md)
     #[arg(long, value_name = "ADDRESS")]
     pub network: Option<Address>,
-    /// Neighbours that are other processes, with commas between them: workstation, data-system, pedestal, vision
+    /// Neighbours that run as other processes, separated by commas: workstation, data-system, pedestal, vision
     #[arg(long, value_name = "NEIGHBOURS", value_delimiter = ',', requires = "network")]
     pub outside: Vec<Role>,
-    /// Begin under stand-alone command: play the job; its lines `** workstation` hand over to the workstation
-    /// controller until it disconnects (IV.4.1)
+    /// Begin under stand-alone command (IV.4.1): play the job; at each line `** workstation` the workstation controller
+    /// commands until it disconnects
     #[arg(long, requires = "outside")]
     pub stand_alone: bool,
-    /// File in which updates wait for a Data System in another process
+    /// File that keeps updates for a Data System in another process until it has answered them
     #[arg(long, value_name = "FILE", default_value = "runs/data-system.outbox")]
     pub outbox: PathBuf,
-    /// Directory with keys and certificates for neighbours on other machines, as `rcs-neighbour keys` makes it
+    /// Directory with keys and certificates for neighbours on other machines; `rcs-neighbour keys` makes it
     #[arg(long, value_name = "DIR", requires = "network")]
     pub keys: Option<PathBuf>,
     /// File with Zenoh's own configuration (JSON5): TLS, access control, routers
     #[arg(long, value_name = "FILE", requires = "network")]
     pub zenoh_config: Option<PathBuf>,
-    /// Stop after so many ticks if the job is not over before
+    /// Stop after N ticks, unless the job ends before
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub ticks: Option<u64>,
-    /// After a command that ends with an error send PAUSE and the same command again, at most so many times a line
+    /// After a command that ends with an error, send PAUSE and the same command again, at most N times for a line of
+    /// the job
     ///
-    /// Errors that need a person are not retried (docs/reasons.md). Actions `** after` of the line are not begun again.
+    /// Errors that need a person are not retried (docs/reasons.md). Actions `** after` of the line are not started
+    /// again.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub retry: u32,
-    /// Who may operate the run while it goes on, by rcs-console --operate, rcs-run send or a viewer of --live; needs
-    /// --clock real
+    /// Who may operate the run, with rcs-console --operate, rcs-run send or a viewer of --live; needs --clock real
     #[arg(long, value_enum, default_value_t = OperatorAccess::Owner)]
     pub operator: OperatorAccess,
-    /// Show the operator's console on this terminal; with the real clock unless --clock says otherwise
+    /// Show the operator's console on this terminal; the default of --clock is then real
     ///
-    /// When you leave it the robot ramps to rest and the run ends.
+    /// When you quit the console, the robot ramps to rest and the run ends.
     #[arg(long, conflicts_with_all = ["json", "inputs"])]
     pub console: bool,
     /// Wait for an operator before the first line of the job
     #[arg(long)]
     pub stand_by: bool,
-    /// Give the operator's inputs of this log again, each in its tick
+    /// Replay the operator's inputs of this log, each in its tick
     #[arg(long, value_name = "LOG")]
     pub inputs: Option<PathBuf>,
-    /// Show the run to Foxglove or Lichtblick on this machine, at ws://127.0.0.1:PORT [default port: 8765]
+    /// Show the run in Foxglove or Lichtblick on this machine: connect to ws://127.0.0.1:PORT [default port: 8765]
     ///
-    /// The view gets what the log gets, so that it needs one (docs/live.md). People need --clock real, or 5x.
+    /// The view shows what is written to the log, so it needs a log (docs/live.md). To watch the run, use --clock real
+    /// or 5x.
     #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8765", value_parser = port)]
     pub live: Option<u16>,
-    /// Let pages of this site connect to the live view, such as http://localhost:8080; may be given again
+    /// Let web pages of this origin connect to the live view, such as http://localhost:8080; may be given several times
     #[arg(long, value_name = "ORIGIN", requires = "live")]
     pub live_origin: Vec<Origin>,
-    /// Show the buffers to other programs
+    /// Let other programs read the buffers in shared memory
     #[arg(long, value_enum, default_value_t = Switch::On)]
     pub shared_memory: Switch,
     /// Print one JSON object on standard output at the end, and nothing else there
@@ -214,16 +219,16 @@ pub struct BoardArguments {
     /// The job of the run: name in the data directory, or a path
     #[arg(default_value = "linkbar")]
     pub job: String,
-    /// The run has no job: a workstation controller in another process commands
+    /// The run has no job: a workstation controller in another process commands it
     #[arg(long, conflicts_with = "job")]
     pub commanded: bool,
-    /// Name of the run, as rcs-run says it
+    /// Name of the run, as rcs-run prints it
     #[arg(long, value_name = "NAME")]
     pub run: RunName,
     /// Task data and jobs; they must be those of the run
     #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
-    /// The core to run on if ticks come every 40 ms [default: the highest that is allowed]
+    /// CPU core to run on if ticks come every 40 ms [default: the highest number that this process may use]
     #[arg(long, value_name = "N")]
     pub cpu: Option<usize>,
     /// End with this process, which has started the board
@@ -300,7 +305,7 @@ pub struct LinkTestArguments {
     /// The robot: serial:PATH[,OPTION...], with the options of a run
     #[arg(long, value_name = "ROBOT")]
     pub robot: RobotConfig,
-    /// How long to try
+    /// Seconds to test
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=86_400))]
     pub seconds: u32,
     /// Print every frame in hexadecimal with direction and time (with --json on standard error)
@@ -314,10 +319,10 @@ pub struct LinkTestArguments {
 /// Arguments of `latency`.
 #[derive(Clone, Debug, Args)]
 pub struct LatencyArguments {
-    /// How long to measure
+    /// Seconds to measure
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=86_400))]
     pub seconds: u32,
-    /// The core to measure [default: the highest that is allowed]
+    /// CPU core to measure [default: the highest number that this process may use]
     #[arg(long, value_name = "N")]
     pub cpu: Option<usize>,
     /// Print one JSON object on standard output, and nothing else there
@@ -342,14 +347,14 @@ pub struct StatusArguments {
 /// Arguments of `send`.
 #[derive(Clone, Debug, Args)]
 pub struct SendArguments {
-    /// What to ask for, such as `stop`, `PAUSE`, `job go`, `vise open PFIXTURE` (docs/operator.md); several lines are
-    /// asked for one after the other, up to the first that is refused
+    /// Requests, such as `stop`, `PAUSE`, `job go`, `vise open PFIXTURE` (docs/operator.md); they are sent one after
+    /// the other, up to the first that is refused
     #[arg(value_name = "LINE", required = true)]
     pub lines: Vec<String>,
     /// Name of the run; may be left out if there is only one
     #[arg(long, value_name = "NAME")]
     pub run: Option<RunName>,
-    /// Ask a run with --operator network, here or on another machine: the address of its --network
+    /// Address of the --network of a run with --operator network, on this machine or another one
     #[arg(long, value_name = "ADDRESS", conflicts_with = "run")]
     pub connect: Option<Address>,
     /// Directory with ca.pem, operator.pem and operator.key for tcp: and zenoh:, as `rcs-neighbour keys` makes them
@@ -358,10 +363,11 @@ pub struct SendArguments {
     /// File with Zenoh's own configuration (JSON5): TLS, access control, routers
     #[arg(long, value_name = "FILE", requires = "connect")]
     pub zenoh_config: Option<PathBuf>,
-    /// Stay connected for so many seconds after the last line: what is held at the joystick box is let go at the end
+    /// Seconds to stay connected after the last line; at the end, switches that are held at the joystick box are
+    /// released
     #[arg(long, value_name = "SECONDS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=86_400))]
     pub stay: u32,
-    /// Who asks, for the log
+    /// Name of the operator in the log
     #[arg(long, value_name = "NAME", default_value = "send")]
     pub name: operator::Name,
 }
@@ -370,16 +376,17 @@ pub struct SendArguments {
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct PoseArguments {
-    /// The tool point, inches; without it and without --of the pose that was recorded in a run
+    /// The tool point, inches [default: the pose of --of, or the pose that was recorded in a run]
     #[arg(value_names = ["X", "Y", "Z"], num_args = 3)]
     pub point: Vec<f64>,
-    /// Where the tool leans, degrees from the X axis of the world; the finger point lies level, 90 degrees further
+    /// Direction in which the tool leans, degrees from the X axis of the world; the finger point is horizontal, 90
+    /// degrees further
     #[arg(long, value_name = "DEGREES", default_value_t = -90.0, requires = "point")]
     pub azimuth: f64,
     /// How far the tool leans from straight down, degrees
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "point")]
     pub tilt: f64,
-    /// Turn of the finger point about the axis of the tool, degrees
+    /// Rotation of the finger point about the axis of the tool, degrees
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "point")]
     pub roll: f64,
     /// A pose of the task data
@@ -388,7 +395,7 @@ pub struct PoseArguments {
     /// The run in which the pose was recorded; may be left out if there is only one
     #[arg(long, value_name = "NAME", conflicts_with_all = ["point", "of"])]
     pub run: Option<RunName>,
-    /// Write the form into this file: in the place of the form of that name, or at the end of --block
+    /// Write the form into this file: it replaces the form of that name, or is added at the end of --block
     #[arg(long, value_name = "FILE", requires = "name")]
     pub write: Option<PathBuf>,
     /// The block of a new form
@@ -400,7 +407,7 @@ pub struct PoseArguments {
     /// Movetable of the form
     #[arg(long, value_name = "NAME", default_value = "...", requires = "write")]
     pub movetable: String,
-    /// Write a movetable that leads from this pose of the task data to the one that is shown, and no pose
+    /// Write no pose, but a movetable that leads from this pose of the task data to the one that is shown
     #[arg(long, value_name = "POSE", requires = "write", conflicts_with = "movetable")]
     pub relative: Option<String>,
     /// Task data and cell description
@@ -414,7 +421,7 @@ pub struct PoseArguments {
 /// Arguments of `init`.
 #[derive(Clone, Debug, Args)]
 pub struct InitArguments {
-    /// Directory that gets data/, such as the present one, `.`; it is made if it is not there
+    /// Directory in which data/ is made, such as the present one, `.`; created if missing
     #[arg(value_name = "DIR")]
     pub directory: PathBuf,
 }
@@ -434,21 +441,21 @@ pub struct CheckArguments {
     /// Write the cell as a URDF, for viewers and other simulators
     #[arg(long, value_name = "FILE")]
     pub urdf: Option<PathBuf>,
-    /// Print the whole way of a command: the fields after == in a job
+    /// Print the whole path of a command; COMMAND is the fields after == in a job
     #[arg(long, value_name = "COMMAND")]
     pub explain: Option<String>,
-    /// Print the ways of all lines of a job: times, joints, closest clearances
+    /// Print the paths of all lines of a job: times, joints, smallest clearances
     #[arg(long, value_name = "JOB", conflicts_with = "explain")]
     pub explain_job: Option<String>,
-    /// Print the joints of a pose, the joint nearest to a limit, and what is nearest to the robot there: the same as
-    /// `rcs-run pose --of NAME`
+    /// Print the joints of a pose, the joint nearest to a limit, and what is nearest to the robot there, as
+    /// `rcs-run pose --of NAME` does
     #[arg(long = "where", value_name = "NAME", conflicts_with_all = ["explain", "explain_job", "urdf"])]
     pub place: Option<String>,
-    /// Location at which the robot is taken to stand before the command
+    /// Location at which the robot is assumed to stand before the command
     #[arg(long, value_name = "NAME", default_value = "HOME", requires = "explain")]
     pub from: String,
-    /// Tell also whether the arm of this robot reaches every taught pose and follows every way of every job: a name in
-    /// data/robots, or a file, with a table `arm` (docs/egm.md)
+    /// Check also whether the arm of this robot reaches every taught pose and can follow every path of every job: a
+    /// name in data/robots, or a file, with a table `arm` (docs/egm.md)
     #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["explain", "explain_job", "place"])]
     pub robot: Option<String>,
 }

@@ -61,7 +61,7 @@ pub fn command<P: Parser>() -> Command {
         .long(GENERATE)
         .value_name("DIR")
         .exclusive(true)
-        .help("Write manual pages, shell completions and the reference page into a directory, and end");
+        .help("Write manual pages, shell completions and the reference page into a directory, and exit");
     P::command().version(VERSION).arg(generate)
 }
 

@@ -283,9 +283,9 @@ fn silence(part: &str) -> Result<u16, String> {
 pub enum Boards {
     /// All in one thread
     One,
-    /// One operating system process a board: 0 (this one), 2, 4, 6, 8
+    /// One operating system process per board: 0 (this one), 2, 4, 6, 8
     Split,
-    /// The same, but the boards are started by hand, with rcs-run board
+    /// As split, but you start the boards, with rcs-run board
     Manual,
 }
 

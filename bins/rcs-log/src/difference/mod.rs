@@ -20,9 +20,9 @@ pub use self::{
 /// Which ticks belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Align {
-    /// Those of the same number
+    /// Ticks of the same number
     Tick,
-    /// Those as far from the beginning of the same command
+    /// Ticks at the same distance from the beginning of the same command
     Command,
 }
 

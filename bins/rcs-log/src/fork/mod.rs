@@ -41,16 +41,16 @@ use crate::{
 pub struct Arguments {
     /// The log
     pub file: PathBuf,
-    /// The last tick that is as in the log; 0 changes something before the first
+    /// The last tick that is as in the log; 0 makes the changes before the first tick
     #[arg(long, value_name = "N")]
     pub tick: Option<u64>,
-    /// The tick before the last command that led to what went wrong first
+    /// Fork at the tick before the last command that led to the first failure
     #[arg(long)]
     pub at_failure: bool,
     /// What to change; may be given several times
     #[arg(long = "set", value_name = "CHANGE")]
     pub changes: Vec<Change>,
-    /// Write the fork as a log
+    /// Write the log of the fork into this file
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// What is compared with what

@@ -16,13 +16,12 @@ pub struct CampaignArguments {
     /// Task data, jobs and cell description
     #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
     pub data: PathBuf,
-    /// Seed of the cell's noise and of where parts are delivered
+    /// Seed of the cell's sensor noise and of the positions of delivered parts
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// What interrupts, with commas between them: pause, pause-twice, refused, replaced, answer-lost,
-    /// answer-late, answer-damaged, hold, nudge, away, estop, held or held:PROCESS, restart or
-    /// restart:PROCESS, fault or fault:FILE, none or all; hold+35:pause is hold, and pause 35 ticks after it
-    /// [with --random: all]
+    /// Interruptions, separated by commas: pause, pause-twice, refused, replaced, answer-lost, answer-late,
+    /// answer-damaged, hold, nudge, away, estop, held or held:PROCESS, restart or restart:PROCESS, fault or fault:FILE,
+    /// none or all; hold+35:pause is hold, and pause 35 ticks after it [with --random: all]
     #[arg(
         long,
         value_name = "KIND",
@@ -31,22 +30,22 @@ pub struct CampaignArguments {
         default_value_if("random", ArgPredicate::IsPresent, "all")
     )]
     pub interrupt: Vec<String>,
-    /// Draw so many branches: the tick, and one or several interruptions of those that --interrupt names
+    /// Draw N branches at random: the tick, and one or several of the interruptions that --interrupt names
     #[arg(long, value_name = "N", conflicts_with_all = ["ticks", "changes", "at", "markdown"])]
     pub random: Option<usize>,
-    /// The most interruptions of a branch that is drawn
+    /// Largest number of interruptions of a branch that is drawn
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(1..=9))]
     pub longest: u8,
-    /// Seed of the draw: another one draws other branches
+    /// Seed of the draw: another seed draws other branches
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub draw: u64,
-    /// Fork at every so many ticks [default: 23 without --changes and --at]
+    /// Fork once every so many ticks [default: 23 without --changes and --at]
     #[arg(long, value_name = "EVERY", value_parser = clap::value_parser!(u64).range(1..))]
     pub ticks: Option<u64>,
     /// Fork at each tick in which a step or a command number changes, and at the two after it
     #[arg(long)]
     pub changes: bool,
-    /// Fork at these ticks; one tick with one interruption prints all of the branch
+    /// Fork at these ticks; one tick with one interruption prints the whole branch
     #[arg(long, value_name = "N", value_delimiter = ',', conflicts_with_all = ["ticks", "changes"])]
     pub at: Vec<u64>,
     /// What the operator does first when a command was interrupted or has failed
@@ -61,19 +60,19 @@ pub struct CampaignArguments {
     /// Branches that are run at the same time
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=64))]
     pub threads: u8,
-    /// Write each branch into this file as soon as it is judged, and do not run those again that it holds: a
-    /// campaign that was stopped goes on where it was. What other data, seeds, programs or procedures have
-    /// written stays there and does not count
+    /// Write each branch into this file as soon as it is judged, and skip the branches that the file has already: a
+    /// campaign that was stopped continues. Branches of other data, seeds, programs or procedures stay in the file and
+    /// are not used
     #[arg(long, value_name = "FILE")]
     pub journal: Option<PathBuf>,
     /// Print one JSON object a job on standard output, a line each, and nothing else there
     #[arg(long)]
     pub json: bool,
-    /// Write the table as Markdown: between the two marks of a page that has them (docs/campaign.md), whose
-    /// rows of other jobs stay
+    /// Write the table as Markdown, between the two marks of a page that has them (docs/campaign.md); its rows of other
+    /// jobs stay
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
-    /// Ticks before the interruption and after it of which a single branch prints every row that fires
+    /// Ticks before and after the interruption for which a single branch prints every row that fires
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub around: u64,
 }

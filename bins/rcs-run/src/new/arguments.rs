@@ -18,25 +18,25 @@ pub struct NewArguments {
 /// What is new.
 #[derive(Clone, Debug, Subcommand)]
 pub enum What {
-    /// A part of another size than one that is there: forms, movetables, entries of the cell and a job
+    /// A part like an existing one, of another size: forms, movetables, entries of the cell and a job
     ///
-    /// A box gets a program of the vise, a cylinder its places in the nests of the like part. The data are tried in
-    /// a copy: check, three runs of the job, and if the jaws of the vise get a new step one run of each other job.
-    /// What fails is not written.
+    /// A box gets a program of the vise; a cylinder gets places in the nests of the part of --like. The data are tested
+    /// in a copy: check, three runs of the job, and one run of each other job if the jaws of the vise get a new step.
+    /// Data that fail are not written.
     Part(PartArguments),
     /// A tool in a holder for the tool gripper: forms, entries of the cell and a job
     ///
-    /// The data are tried in a copy: check, and three runs each of the job of the like tool with the new one in its
-    /// place, and in the place of each other tool. What fails is not written.
+    /// The data are tested in a copy: check, then the job of the tool of --like, three runs with the new tool instead
+    /// of that tool and three instead of each other tool. Data that fail are not written.
     Tool(ToolArguments),
-    /// A place for the robot to stand: a pose, a location point, and the trajectories and approaches of another place
+    /// A location for the robot: a pose, a location point, and the trajectories and approaches of another place
     ///
-    /// The data are tried in a copy by check. What fails is not written.
+    /// The data are tested in a copy by check. Data that fail are not written.
     Place(PlaceArguments),
-    /// A tray that is divided, seen and reached like another one
+    /// A tray with the sections, camera views and trajectories of another one
     ///
-    /// The data are tried in a copy: check, and three runs of a job of the other tray that takes its part from the
-    /// new one. What fails is not written.
+    /// The data are tested in a copy: check, and three runs of a job of the other tray, changed to take its part from
+    /// the new one. Data that fail are not written.
     Tray(TrayArguments),
 }
 
@@ -46,17 +46,17 @@ pub struct PartArguments {
     /// Name of the part: capital letters and digits, 11 at most
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// Length x width x height of the blank as it lies in its tray, inches, the fingers close on the width; of a
-    /// cylinder length x diameter
+    /// Size of the blank as it lies in its tray, inches: length x width x height, where the fingers close on the width;
+    /// for a cylinder length x diameter
     #[arg(long, value_name = "LxWxH|LxD")]
     pub size: Size,
-    /// A part of the cell that is handled as the new one is to be
+    /// A part of the cell; the new part is handled as this one
     #[arg(long, value_name = "PART")]
     pub like: String,
-    /// Write the files; without it they are only shown
+    /// Write the files; without this option they are only shown
     #[arg(long)]
     pub write: bool,
-    /// Print the ways of all lines of the job, as `check --explain-job` does
+    /// Print the paths of all lines of the job, as `check --explain-job` does
     #[arg(long)]
     pub explain_job: bool,
     /// Task data, jobs and cell description
@@ -70,19 +70,19 @@ pub struct ToolArguments {
     /// Name of the tool: capital letters, digits and -, 11 at most
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// Length x diameter of the holder, inches [default: those of the like tool]
+    /// Length x diameter of the holder, inches [default: those of the tool of --like]
     #[arg(long, value_name = "LxD")]
     pub size: Option<Size>,
-    /// Weight, pounds [default: by the volume and the weight of the like tool]
+    /// Weight, pounds [default: scaled by volume from the tool of --like]
     #[arg(long, value_name = "LB")]
     pub weight: Option<f64>,
-    /// A tool of the cell that is handled as the new one is to be
+    /// A tool of the cell; the new tool is handled as this one
     #[arg(long, value_name = "TOOL")]
     pub like: String,
-    /// Write the files; without it they are only shown
+    /// Write the files; without this option they are only shown
     #[arg(long)]
     pub write: bool,
-    /// Print the ways of all lines of the job, as `check --explain-job` does
+    /// Print the paths of all lines of the job, as `check --explain-job` does
     #[arg(long)]
     pub explain_job: bool,
     /// Task data, jobs and cell description
@@ -100,19 +100,20 @@ pub struct PlaceArguments {
     /// The tool point, inches
     #[arg(value_names = ["X", "Y", "Z"], num_args = 3, required = true)]
     pub point: Vec<f64>,
-    /// Where the tool leans, degrees from the X axis of the world; the finger point lies level, 90 degrees further
+    /// Direction in which the tool leans, degrees from the X axis of the world; the finger point is horizontal, 90
+    /// degrees further
     #[arg(long, value_name = "DEGREES", default_value_t = -90.0)]
     pub azimuth: f64,
     /// How far the tool leans from straight down, degrees
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0)]
     pub tilt: f64,
-    /// Turn of the finger point about the axis of the tool, degrees
+    /// Rotation of the finger point about the axis of the tool, degrees
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0)]
     pub roll: f64,
-    /// A location point that is reached as the new one is to be
+    /// A location point; the new place is reached as this one
     #[arg(long, value_name = "PLACE")]
     pub like: String,
-    /// Write the files; without it they are only shown
+    /// Write the files; without this option they are only shown
     #[arg(long)]
     pub write: bool,
     /// Task data, jobs and cell description
@@ -130,10 +131,10 @@ pub struct TrayArguments {
     /// The centre of the tray, inches
     #[arg(value_names = ["X", "Y"], num_args = 2, required = true)]
     pub centre: Vec<f64>,
-    /// A tray of the cell that is used as the new one is to be
+    /// A tray of the cell; the new tray is used as this one
     #[arg(long, value_name = "UNIT")]
     pub like: String,
-    /// Write the files; without it they are only shown
+    /// Write the files; without this option they are only shown
     #[arg(long)]
     pub write: bool,
     /// Task data, jobs and cell description
