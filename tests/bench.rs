@@ -174,7 +174,7 @@ impl Ended {
     /// If not.
     pub fn assert_shared(&self) {
         assert_eq!(self.status, Some(0), "{}", self.said);
-        for complaint in ["cannot be had", "not mirrored"] {
+        for complaint in ["shared memory is not available", "not mirrored"] {
             assert!(!self.said.contains(complaint), "{}", self.said);
         }
     }

@@ -350,7 +350,7 @@ fn a_run_without_operators_prints_no_token_and_offers_no_service() {
     let mut viewer = Viewer::connect(&said.address(), "foxglove.sdk.v1");
     assert!(!viewer.info["capabilities"].as_array().unwrap().contains(&json!("services")));
     let refused = thread::spawn(move || call(&mut viewer, 4, &json!({ "token": "" })).unwrap_err());
-    assert!(refused.join().unwrap().contains("takes no requests of viewers"));
+    assert!(refused.join().unwrap().contains("accepts no requests of viewers"));
     let _ = run.complete();
 }
 

@@ -284,7 +284,7 @@ fn load_while_the_run_goes_on(boards: Boards) {
     ask_until(&mut client, "load 16000 863", "a command is executed");
     ask(&mut client, &["line-load 863 5 5"]);
     std::fs::write(data.join("commands.blk"), text.replace(safe, "== NONSENSE\n")).unwrap();
-    ask_until_refused(&mut client, "load 16000 863", "the task data have errors with it");
+    ask_until_refused(&mut client, "load 16000 863", "with this change the task data have errors");
     go_on(&mut client);
     drop(client);
     let (outcome, log, directory) = cell.end();

@@ -30,7 +30,7 @@ fn without_shared_memory_nobody_looks_on_and_the_run_goes_on() {
     };
     assert_goes_on(
         &ended,
-        "the run cannot be watched, shared memory cannot be had: /dev/shm has 65536 bytes left",
+        "other programs cannot watch the run, shared memory is not available: /dev/shm has 65536 bytes left",
     );
     // Enough to begin with, and then taken by another process while the run goes on.
     let fills = "mount -t tmpfs -o size=8m tmpfs /dev/shm && \
@@ -74,7 +74,7 @@ fn a_directory_that_is_not_ours_is_not_used() {
     let all: Vec<&str> = arguments.iter().map(String::as_str).chain(more).collect();
     let mut command = rcs(&scratch.file(""), &all);
     let ended = Ended::of(&command.env("TMPDIR", scratch.file("")).output().expect("it starts"));
-    assert_goes_on(&ended, "is not this user's alone (it is no directory)");
+    assert_goes_on(&ended, "must belong to this user only (it is no directory)");
 }
 
 #[test]

@@ -98,7 +98,7 @@ impl HostLine {
         if self.pty.renew()? {
             stdout_line!("[link] the host has left it locked, now at {}", self.pty.slave().display());
         } else {
-            stdout_line!("[link] the host has hung up");
+            stdout_line!("[link] the host has closed the link");
         }
         Ok(())
     }

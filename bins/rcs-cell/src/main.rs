@@ -46,7 +46,7 @@ fn main() -> ExitCode {
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGHUP] {
         if let Err(error) = signal_hook::flag::register(signal, Arc::clone(&stop)) {
-            return fail(UNUSABLE, &format!("signals cannot be caught: {error}"));
+            return fail(UNUSABLE, &format!("the signal handler cannot be installed: {error}"));
         }
     }
     let Some(link) = &cli.link else { return emulate(&cli, &stop) };

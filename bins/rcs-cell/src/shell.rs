@@ -152,7 +152,7 @@ impl Shell {
                 }
                 Ok(console::ConsoleCommand::Key(key)) => {
                     if self.operator.step_back() {
-                        stdout_line!("[auto] steps back: the console is yours");
+                        stdout_line!("[auto] steps back: continue by hand");
                     }
                     self.press(key);
                     self.pressed = true;

@@ -49,7 +49,7 @@ pub enum ConsoleError {
     )]
     Terminal(#[source] io::Error),
     /// Signals cannot be caught.
-    #[error("the system takes no handler for signals: {0}")]
+    #[error("the signal handler cannot be installed: {0}")]
     Signals(#[source] io::Error),
     /// The answer cannot be written.
     #[error("the answer cannot be written: {0}")]

@@ -183,7 +183,7 @@ impl Session {
             && let Some(path) = &self.watch
             && let Err(error) = watch::save(path, &self.watched)
         {
-            model.answer = Some(format!("the list is not kept: {}: {error}", path.display()));
+            model.answer = Some(format!("the list cannot be saved: {}: {error}", path.display()));
         }
     }
 

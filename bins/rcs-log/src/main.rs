@@ -156,7 +156,7 @@ enum Error {
     },
     /// This program does not do what the log says.
     #[error(
-        "{}: this program does something else than the log from tick {first} to {last}: a golden is made of a run of the program \
+        "{}: this program differs from the log from tick {first} to {last}: make a golden from a run of the program \
          that is to be tested (rcs-log replay names the field)",
         path.display()
     )]

@@ -60,7 +60,7 @@ pub fn serve(arguments: &Arguments) -> Result<ExitCode, Error> {
     log.tell_channels(&mut *tap);
     let server = Server::start(port, options, feed.clone()).map_err(unreachable)?;
     stderr_line!(
-        "rcs-log: viewers can connect at ws://{}; the log plays when one has subscribed",
+        "rcs-log: viewers can connect at ws://{}; the log plays when a viewer has subscribed",
         server.address()
     );
     while !feed.is_watched() {
@@ -68,7 +68,7 @@ pub fn serve(arguments: &Arguments) -> Result<ExitCode, Error> {
     }
     let mut pace = Pace { rate: arguments.rate, start: None };
     log.play(&mut *tap, |time| pace.wait(time));
-    stderr_line!("rcs-log: the log has ended; this ends when the last viewer is closed");
+    stderr_line!("rcs-log: the log has ended; rcs-log ends when the last viewer disconnects");
     while feed.viewers() > 0 {
         thread::sleep(LOOK);
     }

@@ -54,7 +54,7 @@ pub enum KeysFailure {
         source: io::Error,
     },
     /// The authority was made by another program.
-    #[error("{} is no authority of this program: sign with what has made it, or name another directory", .0.display())]
+    #[error("{} is not a certificate authority of this program: sign with the program that made it, or name another directory", .0.display())]
     Foreign(PathBuf),
     /// A certificate cannot be made.
     #[error("a certificate cannot be made: {0}")]

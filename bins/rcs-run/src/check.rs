@@ -84,7 +84,9 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     console::answer(&if arguments.json { long_json(&outcome)? } else { in_words() })?;
     let is_reached = outcome.reach.as_ref().is_none_or(Reach::is_complete);
     if let Some(robot) = arguments.robot.as_ref().filter(|_| !is_reached) {
-        os_io::stderr_line!("rcs-run: robot {robot} does not reach everything");
+        os_io::stderr_line!(
+            "rcs-run: robot {robot} does not reach all poses and paths: see the lines with ERROR"
+        );
     }
     if !outcome.ok {
         os_io::stderr_line!(

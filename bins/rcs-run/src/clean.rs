@@ -11,13 +11,13 @@ pub fn clean() -> Result<ExitCode, Error> {
     let cleaned = executive::memory::clean()?;
     let objects = executive::memory::clean_objects()?;
     let removed = cleaned.removed.iter().map(|run| format!("removed {run}\n"));
-    let alive = cleaned.alive.iter().map(|run| format!("{run} is alive and was left alone\n"));
+    let alive = cleaned.alive.iter().map(|run| format!("{run} is running and was not touched\n"));
     let mut text: String = removed.chain(alive).collect();
     if objects > 0 {
         text.push_str(&format!("removed the shared memory of {objects} killed runs without a directory\n"));
     }
     if text.is_empty() && cleaned.failed.is_empty() {
-        text.push_str("nothing was left behind\n");
+        text.push_str("no shared memory was left behind\n");
     }
     console::answer(&text)?;
     for failure in &cleaned.failed {

@@ -56,7 +56,7 @@ pub enum Error {
     #[error("the simulated robot has no line to test: name a port with --robot serial:PATH")]
     NoLinkToTest,
     /// Signals cannot be caught.
-    #[error("interrupts cannot be caught: {0}")]
+    #[error("the signal handler cannot be installed: {0}")]
     Signals(io::Error),
     /// The buffers of a run cannot be read.
     #[error("the run cannot be read: {0}")]

@@ -57,7 +57,7 @@ impl Fitness {
 
     const fn text(self) -> &'static str {
         match self {
-            Self::Good => "good: wake-ups are punctual, 99 of 100 within 0.2 ms",
+            Self::Good => "good: 99 of 100 wake-ups are within 0.2 ms",
             Self::Usable => {
                 "usable: every frame is on the line within its tick, but not always at the same time in it"
             }

@@ -538,7 +538,7 @@ fn what_does_not_go_together_is_refused_at_once() {
         (&["--robot", "serial:/dev/none", "--clock", "real"][..], "no serial port /dev/none"),
         (
             &["--robot", "serial:/dev/none", "--clock", "real", "--faults", "data/faults/noisy-line.toml"],
-            "a robot elsewhere has faults of its own",
+            "leave them out for any other robot",
         ),
         (&["--faults", "/none.toml"], "/none.toml"),
         (&["link-test", "--robot", "sim"], "serial:PATH"),

@@ -171,7 +171,7 @@ impl Client {
             let is_busy = self.flush()? && (self.listen()? | self.speak()?);
             self.look_after()?;
             if self.queue.is_over() && self.flush()? {
-                return Err(End::Told(CloseCode::Away, "there is nothing more to come".to_owned()));
+                return Err(End::Told(CloseCode::Away, "there are no more messages".to_owned()));
             }
             if !is_busy {
                 thread::sleep(IDLE);
@@ -226,7 +226,7 @@ impl Client {
 
     /// Ask the run as an operator. It answers between two ticks.
     fn ask(&mut self, line: &str) -> Result<String, String> {
-        let access = self.access.as_ref().ok_or("this run takes no requests")?;
+        let access = self.access.as_ref().ok_or("this run accepts no requests")?;
         let mut operator = match self.operator.take() {
             Some(operator) => operator,
             None => Operator::connect(&access.socket, &self.name).map_err(|error| error.to_string())?,
@@ -274,8 +274,7 @@ impl Client {
         }
         let dropped = self.queue.dropped();
         if dropped > self.dropped.0 && self.dropped.1.elapsed() > COUNT && self.flush()? {
-            let text =
-                format!("{dropped} messages are left out so far: they come faster than they are taken");
+            let text = format!("{dropped} messages are left out so far: the viewer reads them too slowly");
             self.dropped = (dropped, Instant::now());
             self.write(Message::text(protocol::status(StatusLevel::Warning, &text, Some("left-out"))))?;
         }

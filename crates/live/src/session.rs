@@ -27,7 +27,7 @@ const FULL: u16 = 1000;
 const QUOTED: usize = 60;
 /// Why nothing can be asked for.
 const NO_REQUESTS: &str =
-    "this run takes no requests of viewers: it needs --clock real and an operator (docs/operator.md)";
+    "this run accepts no requests of viewers: it needs --clock real and an operator (docs/operator.md)";
 /// Why something was not asked for.
 const NO_TOKEN: &str = "the token that the run has printed was expected";
 
@@ -274,7 +274,9 @@ impl Session {
                 .wrong(&format!("subscription {id} is in use: unsubscribe first, or take another id"));
         }
         if self.subscriptions.values().any(|subscribed| *subscribed == channel) {
-            return self.wrong(&format!("channel {channel} is subscribed already: once a channel is enough"));
+            return self.wrong(&format!(
+                "channel {channel} is subscribed already: a client subscribes to a channel once"
+            ));
         }
         if self.subscriptions.len() >= SUBSCRIPTIONS {
             return self.wrong(&format!("a client has {SUBSCRIPTIONS} subscriptions at most"));
@@ -434,8 +436,8 @@ mod tests {
     fn a_run_without_operators_takes_no_calls() {
         let mut session = Session::new(Rights { knob: Some(Knob::default()), token: None });
         assert_eq!(session.services(), None);
-        assert!(failure_of(&call(&mut session, 4, &json!({ "token": "" }))).contains("takes no requests"));
-        assert!(status_of(&set(&mut session, VELOCITY, json!(5))).contains("takes no requests"));
+        assert!(failure_of(&call(&mut session, 4, &json!({ "token": "" }))).contains("accepts no requests"));
+        assert!(status_of(&set(&mut session, VELOCITY, json!(5))).contains("accepts no requests"));
     }
 
     fn set(session: &mut Session, name: &str, value: Value) -> Vec<Action> {

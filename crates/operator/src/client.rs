@@ -18,7 +18,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 pub enum ClientError {
     /// The run does not let operators connect.
     #[error(
-        "the run takes no operator: {0}; a run on the 40 ms grid with --operator owner does, of the same user"
+        "no operator can connect to the run: {0}; it must run on the 40 ms grid, with --operator owner, as the same user"
     )]
     Unreachable(#[source] io::Error),
     /// The connection is lost.

@@ -38,7 +38,7 @@ pub(crate) fn inside(path: &Path) -> Option<&str> {
 pub(crate) fn read(path: &str) -> io::Result<&'static [u8]> {
     let found = all().iter().find(|file| file.path == path).map(|file| file.bytes);
     found.ok_or_else(|| {
-        let why = format!("this program carries no file {path}");
+        let why = format!("no such file is built into this program: {path}");
         io::Error::new(ErrorKind::NotFound, why)
     })
 }

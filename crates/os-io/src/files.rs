@@ -71,7 +71,7 @@ pub fn list(directory: &Path) -> io::Result<Vec<PathBuf>> {
         None => fs::read_dir(directory)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?,
     };
     if paths.is_empty() && carried::inside(directory).is_some() {
-        return Err(io::Error::new(ErrorKind::NotFound, "this program carries no such directory"));
+        return Err(io::Error::new(ErrorKind::NotFound, "no such directory is built into this program"));
     }
     paths.sort();
     Ok(paths)

@@ -125,13 +125,13 @@ pub fn walk_job(job: &Job, store: &Store, room: &Room, known: &Known) -> WalkedJ
                 if let Some(store) = loaded.take() {
                     state.walk.load(store);
                 }
-                unknown = state.stranded.then_some("the robot does not get so far");
+                unknown = state.stranded.then_some("the robot does not reach this line");
             }
             Line::Workstation(Workstation::Load { .. })
             | Line::After { action: Workstation::Load { .. }, .. }
                 if line.expects_error =>
             {
-                unknown = Some("what it loads does not fit the cell");
+                unknown = Some("the loaded blocks do not fit the cell");
             }
             Line::Workstation(Workstation::Load { number }) => {
                 if let Some(reload) = job.reload(*number) {
@@ -145,7 +145,7 @@ pub fn walk_job(job: &Job, store: &Store, room: &Room, known: &Known) -> WalkedJ
             Line::After { action, .. } => interrupted |= !matches!(action, Workstation::Wait { .. }),
         }
         if interrupted && !matches!(line.step, Line::After { .. }) {
-            unknown = unknown.or(Some("where the robot is then depends on what happens there"));
+            unknown = unknown.or(Some("the position of the robot is not known after this line"));
         }
         if let Some(why) = unknown {
             walked.not_checked.push(format!("what comes after line {}: {why}", line.line));

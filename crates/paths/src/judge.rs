@@ -186,7 +186,7 @@ impl State<'_> {
         nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
         match nearest.into_iter().find(|(_, _, via)| helps(*via)) {
             Some((_, name, _)) => format!("a via point at {name} between the two would help"),
-            None => "no via point of the stored trajectories helps alone: give this way its own, or change its ends"
+            None => "no via point of the stored trajectories is enough: give this path its own via points, or change its ends"
                 .to_owned(),
         }
     }

@@ -129,6 +129,6 @@ fn after_load_the_new_data_count() {
     assert_eq!(failing("** load low.blk", true), (BTreeSet::from([2, 4]), vec![]));
     assert_eq!(failing("** after 50 load low.blk", true), (BTreeSet::from([4]), vec![]));
     assert_eq!(failing("** load low.blk", false), (BTreeSet::from([4]), vec![]));
-    let not_checked = "what comes after line 1: what it loads does not fit the cell".to_owned();
+    let not_checked = "what comes after line 1: the loaded blocks do not fit the cell".to_owned();
     assert_eq!(failing("** load low.blk expect error", true), (BTreeSet::new(), vec![not_checked]));
 }

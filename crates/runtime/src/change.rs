@@ -16,7 +16,7 @@ use crate::{Run, event::Event, loads::insert};
 #[non_exhaustive]
 pub enum ChangeError {
     /// The blocks have errors.
-    #[error("the task data have errors with it:\n{0}")]
+    #[error("with this change the task data have errors:\n{0}")]
     Data(String),
     /// A line `** load` waits for the end of a command.
     #[error("a reload of the job waits for the end of a command: change the task data in another tick")]

@@ -46,7 +46,7 @@ pub enum StartError {
     #[error("the cell cannot be built: {0}")]
     Cell(#[from] CellError),
     /// A robot at a port with a clock that does not wait for it.
-    #[error("a robot at a port lives in real time: add --clock real")]
+    #[error("a robot at a port needs real time: add --clock real")]
     NotInRealTime,
     /// A clock that cannot be kept.
     #[error("a speed from 1 to {most} times real time was expected, found {0}", most = crate::setup::MOST_SPEED)]
@@ -55,9 +55,7 @@ pub enum StartError {
     #[error("the configuration names a robot of the caller's own: start the run by Run::with_robot")]
     NoOwnRobot,
     /// Faults for a line that has its own.
-    #[error(
-        "the file has faults of the line to the simulated robot; a robot elsewhere has faults of its own"
-    )]
+    #[error("the file has faults of the line to the simulated robot; leave them out for any other robot")]
     FaultsAtPort,
     /// The port cannot be opened.
     #[error("the robot cannot be reached: {0}")]
@@ -69,7 +67,7 @@ pub enum StartError {
     #[error(transparent)]
     Placement(#[from] egm_robot::placement::PlacementError),
     /// The log whose inputs are to be given again cannot be read.
-    #[error("the inputs cannot be given again: {0}")]
+    #[error("the operator's inputs cannot be replayed: {0}")]
     Inputs(#[source] Box<record::ReadError>),
     /// The data base of the Data System cannot be had.
     #[error("the Data System cannot keep its items: {0}")]
@@ -106,13 +104,13 @@ pub enum StartError {
     #[error(transparent)]
     Keys(#[from] KeysError),
     /// The workstation controller has not connected.
-    #[error("the workstation controller has not connected within {0} s; --wait gives it more")]
+    #[error("the workstation controller has not connected within {0} s; --wait N sets a longer time")]
     NoWorkstation(u32),
     /// The log cannot be written.
     #[error("the log cannot be written: {0}; --log names another file, --log none runs without")]
     Log(#[from] RecordError),
     /// The live view shows what a log gets.
-    #[error("the live view shows what the log gets: leave --log none out, or name a file")]
+    #[error("the live view shows what is written to the log: leave --log none out, or name a log file")]
     LiveWithoutLog,
     /// Viewers cannot connect.
     #[error("viewers cannot connect at 127.0.0.1:{port}: {source}; --live PORT names another port")]
@@ -132,7 +130,7 @@ pub enum StartError {
     #[error("{0} failed at tick 0: interrupted")]
     Interrupted(String),
     /// The boards of a run did not come together.
-    #[error("the boards did not come together: {0}")]
+    #[error("not all boards have started: {0}")]
     Boards(#[from] SplitError),
 }
 

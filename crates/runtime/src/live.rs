@@ -66,7 +66,7 @@ impl Live {
         let server =
             server.map_err(|source| StartError::Live { port: config.live.unwrap_or_default(), source })?;
         let hint = match config.clock {
-            ClockKind::Fast => "; the run does not wait for viewers, --clock real is for people",
+            ClockKind::Fast => "; the run does not wait for viewers; use --clock real to watch it",
             ClockKind::Real => "",
         };
         observer.message(&format!("viewers can connect at ws://{}{hint}", server.address()));

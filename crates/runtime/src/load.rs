@@ -64,7 +64,7 @@ impl fmt::Display for LoadError {
             Self::Loading => f.write_str("another block is being checked: ask again when that is answered"),
             Self::NoBlock(block) => write!(f, "the run's data directory has no {block}"),
             Self::NotRecorded => f.write_str("the log has no text of the block"),
-            Self::Data(report) => write!(f, "the task data have errors with it:\n{report}"),
+            Self::Data(report) => write!(f, "with this change the task data have errors:\n{report}"),
             Self::Reload => f.write_str("the job loads blocks at this moment: ask again"),
             Self::Write(error) => write!(f, "the blocks for the boards cannot be written: {error}"),
             Self::Late => write!(
@@ -75,7 +75,7 @@ impl fmt::Display for LoadError {
             Self::Differs(board) => {
                 write!(
                     f,
-                    "{board} has come to other task data: it was started with others; nothing has changed"
+                    "{board} has other task data after this: it was started with other data; nothing has changed"
                 )
             }
             Self::NoThread => f.write_str("the thread that checks blocks has ended; nothing has changed"),

@@ -34,7 +34,7 @@ pub enum RepeatError {
     Missing(&'static str),
     /// Something took part that no log holds.
     #[error(
-        "{0} took part in the run, and what it does stands in no log: a run with the simulated robot and without other processes can be repeated"
+        "{0} took part in the run, and its actions are not in the log: a run with the simulated robot and without other processes can be repeated"
     )]
     Elsewhere(String),
     /// The log of a fork.

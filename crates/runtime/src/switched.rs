@@ -161,8 +161,9 @@ impl Switched {
                 Progress::Running
             } else {
                 let wait = self.wait;
-                let why =
-                    format!("no workstation controller has connected within {wait} s; --wait gives it more");
+                let why = format!(
+                    "no workstation controller has connected within {wait} s; --wait N sets a longer time"
+                );
                 self.refuse(around.tick, why)
             };
         }

@@ -24,7 +24,7 @@ impl Ending {
     pub fn text(&self) -> &str {
         match self {
             Self::Finished => "finished",
-            Self::Stopped => "stopped as asked for",
+            Self::Stopped => "stopped as requested",
             Self::Failed(failure) => &failure.text,
         }
     }

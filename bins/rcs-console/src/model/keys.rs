@@ -210,7 +210,7 @@ impl Model {
     /// Freeze the picture, or let it go on. The run goes on in either case.
     fn freeze(&mut self, source: &dyn Source) {
         if source.about().state == State::Log {
-            self.answer = Some("a log stands still: [ ] goes a tick, { } a second".to_owned());
+            self.answer = Some("a log does not run: [ ] moves a tick, { } a second".to_owned());
         } else {
             self.place = match self.place {
                 Place::Last => Place::At(self.tick()),

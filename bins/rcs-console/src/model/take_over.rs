@@ -68,7 +68,7 @@ pub fn sections(state: TakeOver, picture: &Picture) -> Vec<Section> {
         plain("is executed. `:workstation` gives the command back, with the robot at HOME"),
         plain("and PAUSE as the last command (IV.4.1); numbers go on from the last one."),
         Text::default(),
-        plain("Whoever commands: Space sets the knob to 0, h holds Prim, F1 is the E-stop."),
+        plain("At any time: Space sets the knob to 0, h holds Prim, F1 is the E-stop."),
     ]);
     vec![Section::new("who commands", lines)]
 }

@@ -62,7 +62,7 @@ impl Waiting {
                 say("All are there: the first tick comes.");
             }
         } else if self.runs.is_empty() {
-            say("Nothing runs on this machine.");
+            say("There is no run on this machine.");
             say("");
             say("Start a run in another terminal, and it appears here by itself:");
             say("");
@@ -72,7 +72,7 @@ impl Waiting {
             say("");
             say("    rcs-console --log runs/linkbar.mcap");
         } else {
-            say("Several runs go on. Choose one:");
+            say("There are several runs. Choose one:");
             say("");
             for (at, run) in self.runs.iter().enumerate() {
                 let mark = if at == self.cursor { '>' } else { ' ' };

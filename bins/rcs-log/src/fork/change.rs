@@ -89,10 +89,10 @@ pub enum RefusedChange {
     #[error(transparent)]
     Datum(#[from] DatumError),
     /// The task data have errors with it.
-    #[error("the task data have errors with it:\n{0}")]
+    #[error("with this change the task data have errors:\n{0}")]
     Data(String),
     /// The line of the job cannot be read.
-    #[error("it is no line of a job:\n{0}")]
+    #[error("this is not a line of a job:\n{0}")]
     Line(String),
     /// It is not one line of the kind.
     #[error("one {0} was expected, which is no `** load`: `datum` changes task data")]
@@ -117,7 +117,7 @@ pub enum RefusedChange {
         known: String,
     },
     /// The value is no TOML.
-    #[error("{0} is no value of TOML")]
+    #[error("{0} is not a TOML value")]
     Value(String),
     /// The description cannot be used with it.
     #[error("{0}")]
@@ -342,7 +342,7 @@ mod tests {
                 && error.contains("friction"),
             "{error}"
         );
-        assert_eq!(text("vise.friction", "a b"), "a b is no value of TOML");
+        assert_eq!(text("vise.friction", "a b"), "a b is not a TOML value");
         assert!(text("vise.friction", "-3.0").contains("friction"));
     }
 }

@@ -74,7 +74,7 @@ pub enum DatumError {
         text: String,
     },
     /// The word is no number.
-    #[error("word {word} of line {line} is {found}: only a whole number can be added to")]
+    #[error("word {word} of line {line} is {found}: += and -= need a whole number")]
     NoNumber {
         /// The line.
         line: usize,
@@ -257,7 +257,7 @@ mod tests {
         let line = "-obj-  X  2";
         let text = |change| edited(change, line).unwrap_err().to_string();
         assert_eq!(text("o.blk:253:4:4=1"), "line 4 has no word 4: it is `-obj-  X  2`");
-        assert_eq!(text("o.blk:253:4:2+=1"), "word 2 of line 4 is X: only a whole number can be added to");
+        assert_eq!(text("o.blk:253:4:2+=1"), "word 2 of line 4 is X: += and -= need a whole number");
     }
 
     #[test]

@@ -48,11 +48,11 @@ pub enum ForkError {
     #[error("nothing went wrong in this run: name a tick with --tick")]
     NoFailure,
     /// The log is to be written over.
-    #[error("the fork would be written over the log that it comes from: name another file")]
+    #[error("the fork would overwrite the log that it comes from: name another file")]
     SameFile,
     /// The program has changed, or the log does not have all that the run depended on.
     #[error(
-        "this program does something else than the log from tick {tick} on: {field} was {was} and is {is}; \
+        "this program differs from the log from tick {tick} on: {field} was {was} and is {is}; \
          run the job again with this program, and fork that log"
     )]
     Differs {

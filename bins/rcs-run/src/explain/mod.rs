@@ -49,7 +49,7 @@ pub fn explain(arguments: &CheckArguments, text: &str) -> Result<ExitCode, Error
     let complete = explanation.phases.iter().all(|phase| phase.missing.is_none());
     console::answer(&if arguments.json { long_json(&explanation)? } else { explanation.to_string() })?;
     if !complete {
-        os_io::stderr_line!("rcs-run: a way is missing: see the lines with MISSING");
+        os_io::stderr_line!("rcs-run: a path is missing: see the lines with MISSING");
     }
     Ok(ExitCode::from(if complete { 0 } else { UNUSABLE }))
 }

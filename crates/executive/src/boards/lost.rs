@@ -19,7 +19,7 @@ pub const LOST_AFTER: Duration = Duration::from_millis(25 * TICK_MS);
 #[derive(Debug, thiserror::Error)]
 pub enum SplitError {
     /// Boards need shared memory.
-    #[error("boards exchange their data in shared memory, and it cannot be had: {0}")]
+    #[error("boards exchange their data in shared memory, which is not available: {0}")]
     SharedMemory(#[from] SharedMemoryError),
     /// A board's process could not be started.
     #[error("{board} cannot be started: {source}")]
@@ -101,8 +101,8 @@ impl fmt::Display for Lost {
             How::Ended(status) => write!(f, "ended ({status})")?,
             How::Left => f.write_str("left the run")?,
             How::Silent => write!(f, "has not answered for {:.1} s", LOST_AFTER.as_secs_f64())?,
-            How::Garbled(error) => write!(f, "wrote what no process writes ({error})")?,
-            How::Unwritten => f.write_str("stamped what it had not written")?,
+            How::Garbled(error) => write!(f, "wrote an invalid record ({error})")?,
+            How::Unwritten => f.write_str("marked its outputs as written without writing them")?,
         }
         write!(f, " in tick {tick}")
     }

@@ -85,7 +85,7 @@ pub enum MemberError {
     #[error("{0} is over")]
     RunIsOver(RunName),
     /// Shared memory holds something that no process writes.
-    #[error("shared memory holds something that no process writes: {0}")]
+    #[error("shared memory holds an invalid record: {0}")]
     Decode(#[from] DecodeError),
     /// A generation of the task data that was never loaded.
     #[error("the pulse asks for generation {0} of the task data, which the job does not have")]

@@ -15,7 +15,7 @@ const ATTEMPTS: usize = 1000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReadError {
     /// The bytes are not legal records.
-    #[error("shared memory holds something that no process writes: {0}")]
+    #[error("shared memory holds an invalid record: {0}")]
     Decode(#[from] DecodeError),
     /// The writer was in the middle of a tick at every attempt; the next call may succeed.
     #[error("the buffers were being written at every attempt")]

@@ -47,7 +47,7 @@ pub enum SharedMemoryError {
         what: String,
     },
     /// A directory, file or object of runs belongs to another user, or other users may write to it.
-    #[error("{path:?} is not this user's alone ({what}): remove it, or set TMPDIR to another directory")]
+    #[error("{path:?} must belong to this user only ({what}): remove it, or set TMPDIR to another directory")]
     NotOurs {
         /// Which.
         path: PathBuf,

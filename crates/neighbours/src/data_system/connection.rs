@@ -455,7 +455,10 @@ mod tests {
         assert_eq!(client.ask(DataBaseVerb::None), DataBaseReport::Refused);
         assert_eq!(
             client.system.refusals(),
-            ["the connection is in another state: Startup from a client that is Closed", "no command"]
+            [
+                "the connection is not in the state for this command: Startup from a client that is Closed",
+                "no command"
+            ]
         );
     }
 

@@ -74,7 +74,7 @@ impl std::fmt::Display for Remark {
             Self::Silent(number) => {
                 write!(f, "the Active Pedestal has not echoed command {number} for {ECHO_TICKS} ticks")
             }
-            Self::Unsent(why) => write!(f, "the Active Pedestal cannot be told: {why}"),
+            Self::Unsent(why) => write!(f, "the Active Pedestal cannot be sent its command: {why}"),
         }
     }
 }

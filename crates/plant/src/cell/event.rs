@@ -162,7 +162,7 @@ impl fmt::Display for CellEvent {
             Self::CannotFollow(problem) => {
                 write!(f, "the simulated arm cannot follow the robot: {problem:?}")
             }
-            Self::Quarantined => f.write_str("a body is no longer anywhere: the simulation has failed"),
+            Self::Quarantined => f.write_str("a body has no finite position: the simulation has failed"),
             Self::ViseStuck => f.write_str("the jaw of the vise does not move"),
             Self::FaultBegins { number, text } => write!(f, "fault {number} begins: {text}"),
             Self::FaultEnds { number, text } => write!(f, "fault {number} is over: {text}"),

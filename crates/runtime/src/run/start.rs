@@ -45,7 +45,9 @@ fn publisher(config: &RunConfig, name: &RunName, observer: &mut dyn Observer) ->
     }
     let publisher = within_limit(SET_UP_LIMIT, config.on_stuck, || Publisher::create(name));
     let publisher = publisher.inspect_err(|error| {
-        observer.message(&format!("the run cannot be watched, shared memory cannot be had: {error}"));
+        observer.message(&format!(
+            "other programs cannot watch the run, shared memory is not available: {error}"
+        ));
     });
     publisher.ok()
 }

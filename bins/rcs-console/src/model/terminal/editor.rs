@@ -94,7 +94,7 @@ impl Editor {
         let path = directory.join(&source.name);
         if !path.is_file() {
             return Err(format!(
-                "{} is no file: the run's data are those that the program carries; rcs-run init DIR writes them into a \
+                "{} is not a file: the run uses the data built into the program; rcs-run init DIR writes them into a \
                  directory, and --data DIR uses it",
                 path.display()
             ));
@@ -245,7 +245,7 @@ impl Editor {
             })
             .collect();
         if self.messages.iter().any(|message| message.is_error) {
-            return Wish::Say("the data have errors with it: nothing is written");
+            return Wish::Say("with this change the data have errors: nothing is written");
         }
         self.stage = Stage::Diff;
         Wish::None

@@ -28,7 +28,7 @@ static OLD: [(&[&str], &str); 12] = [
     ),
     (
         &["lld", "DIAGNOSTIC"],
-        "a level believes what sensors say: a lower level that is left out would change nothing (IV.3.2)",
+        "each level relies on sensors: to leave out a lower level would change nothing (IV.3.2)",
     ),
     (
         &["READ-AP-STATUS", "WRITE-AP-COMMAND"],

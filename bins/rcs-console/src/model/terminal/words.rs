@@ -206,7 +206,7 @@ impl<'a> Interpreter<'a> {
         if self.board.mode == Mode::Show {
             return self.show(word);
         }
-        Err("this is no word of a terminal; :S shows variables, ? lists the words".to_owned())
+        Err("this is not a word of the terminal; :S shows variables, ? lists the words".to_owned())
     }
 
     /// Show mode: type and value of a variable (IV.2.6).
@@ -360,7 +360,7 @@ mod tests {
             (6, "12 LINE-LOAD", "a number is missing"),
             (6, "21000 OFFSET ! 863 12 12 LINE-LOAD", "offset 16000"),
             (4, "TDEF", "word of board 6"),
-            (6, "NONSENSE", "no word of a terminal"),
+            (6, "NONSENSE", "not a word of the terminal"),
             (6, "BOARD 3", "BOARD 0, 2, 4, 6, 8 or 12"),
             (6, ":S command-in <= MOVE", "one writer"),
         ] {

@@ -47,7 +47,7 @@ impl fmt::Display for WaitReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Commanded => f.write_str("an operator commands: the job waits for `job go`"),
-            Self::Asked => f.write_str("the job waits for `job go`, as it was asked to"),
+            Self::Asked => f.write_str("the job waits for `job go`, as requested"),
             Self::Failed(failure) => write!(f, "{failure}: the job waits for `job go`"),
         }
     }
