@@ -26,7 +26,7 @@ use crate::{
     observer::Observer,
 };
 
-/// How long boards that are started from here may take: they load the task data first.
+/// How long boards that this process starts may take until they are ready: they load the task data first.
 const STARTING: Duration = Duration::from_secs(60);
 
 /// Who steps the control processes.
@@ -81,11 +81,11 @@ impl Levels<TaskData<'_>> for Controller {
 }
 
 impl Controller {
-    /// As the configuration has it; boards are there when this returns.
+    /// Start what the configuration asks for; all boards are ready when this returns.
     ///
     /// # Errors
-    /// [`StartError::Interrupted`] if the run is interrupted before the boards are there, [`StartError::Boards`] if they do not
-    /// come together.
+    /// [`StartError::Interrupted`] if the run is interrupted before the boards are there, [`StartError::Boards`] if a
+    /// board does not become ready.
     pub fn start(
         config: &RunConfig,
         name: &RunName,
@@ -144,7 +144,7 @@ impl Controller {
         came.is_ok()
     }
 
-    /// What all processes remember.
+    /// The states of all processes.
     #[must_use]
     pub fn state(&self) -> LadderState {
         match self {
@@ -153,7 +153,7 @@ impl Controller {
         }
     }
 
-    /// What each board did; `None` on one board.
+    /// Results of each board; `None` on one board.
     #[must_use]
     pub fn results(&self) -> Option<Vec<BoardResult>> {
         match self {
@@ -187,7 +187,7 @@ fn patience(config: &RunConfig) -> Duration {
     Duration::from_secs(config.wait.into())
 }
 
-/// Say who has come, who has left, and who is missing.
+/// Print which boards have joined, have left, and are missing.
 fn announce(event: BoardEvent, missing: &[Board], observer: &mut dyn Observer) {
     let missing: Vec<String> = missing.iter().map(|board| board.number().to_string()).collect();
     let rest = match missing.as_slice() {
@@ -211,7 +211,8 @@ pub fn fingerprint(store: &Store, job: &Job) -> Fingerprint {
     Fingerprint::of(crate::COMMIT, store.sources(), std::iter::once(job.source()).chain(reloads))
 }
 
-/// A board's process. Its words go to standard error like those of this one; standard output belongs to the result.
+/// Start the process of a board. Its messages go to standard error, as those of this process do; standard output is for
+/// the result.
 fn spawn(config: &RunConfig, name: &RunName, board: Board) -> std::io::Result<Child> {
     let mut command = Command::new(&config.program);
     command.args(["board", &board.number().to_string(), "--run", name.as_str()]);
@@ -228,7 +229,7 @@ fn spawn(config: &RunConfig, name: &RunName, board: Board) -> std::io::Result<Ch
         .spawn()
 }
 
-/// The same for a person to type.
+/// The same as a command line for a person to type.
 fn command_line(config: &RunConfig, name: &RunName, board: Board) -> String {
     let data = config.data.display();
     format!(

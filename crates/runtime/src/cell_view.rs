@@ -13,7 +13,7 @@ use rcs_core::{name::Name16, tick::Tick};
 
 use crate::pace::Pace;
 
-/// Ticks between two looks at the figures of all ticks so far: a second.
+/// Ticks between two updates of the figures of all ticks so far: a second.
 const SECOND: u64 = 25;
 
 /// The last picture of the cell.
@@ -23,8 +23,8 @@ pub struct View {
 }
 
 impl View {
-    /// Look at the cell as `tick` has left it. `warning` is what the screen of the robot controller has shown
-    /// last; the job has so many lines, and those that were begun are its steps.
+    /// Fill the view with the cell after `tick`. `warning` is the last warning on the screen of the robot controller;
+    /// `lines` is the number of lines of the job, `steps` are those that have begun.
     pub fn look(
         &mut self,
         tick: Tick,
@@ -122,7 +122,7 @@ fn job(lines: usize, steps: &[BegunStep]) -> JobView {
     }
 }
 
-/// The figures of all ticks take longer than a tick is to be delayed by: once a second they are taken anew.
+/// To compute the figures of all ticks would delay a tick too much: they are updated once a second.
 fn lateness(before: LatenessView, tick: Tick, pace: &Pace) -> LatenessView {
     let last = pace.last_late().as_secs_f64() * 1e6;
     match pace.late() {

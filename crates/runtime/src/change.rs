@@ -1,7 +1,7 @@
-//! Changes of a run between two ticks: experiments with what was recorded ([`crate::repeat`]).
+//! Changes of a run between two ticks: experiments with a recorded run ([`crate::repeat`]).
 //!
-//! A change takes effect in the next tick, and stands in the log. Changed task data are a new generation, so that a replay
-//! of the log finds them; unlike those of a line `** load` they do not wait for the end of a command.
+//! A change takes effect in the next tick, and is written to the log. Changed task data are a new generation, so that a
+//! replay of the log finds them; unlike those of a line `** load` they do not wait for the end of a command.
 
 use plant::fault::{What, text::FaultFile};
 use taskdata::load::{
@@ -44,8 +44,8 @@ impl From<Box<Diagnostics>> for ChangeError {
 }
 
 impl Run {
-    /// From the next tick on the task data have these blocks too. An entry that says again what another says takes its
-    /// place, in the middle of a command also.
+    /// From the next tick on the task data have these blocks too. An entry replaces an existing one of the same name,
+    /// also in the middle of a command.
     ///
     /// # Errors
     /// [`ChangeError::Data`], [`ChangeError::Reload`]; then nothing has changed.
@@ -55,13 +55,13 @@ impl Run {
         if self.use_reloads(reloads) { Ok(()) } else { Err(ChangeError::Reload) }
     }
 
-    /// How many reloads count: those of lines of the job, of changes and of operators.
+    /// Number of reloads in effect: those of lines of the job, of changes and of operators.
     pub(crate) fn generations_done(&self) -> usize {
         usize::try_from(self.generations.number()).unwrap_or(usize::MAX)
     }
 
-    /// From the next tick on one more of these reloads counts. False, and nothing has changed, if one of the job waits for
-    /// the end of a command.
+    /// From the next tick on one more of these reloads is in effect. False, and nothing has changed, if a reload of the
+    /// job waits for the end of a command.
     pub(crate) fn use_reloads(&mut self, reloads: Vec<Reload>) -> bool {
         let Some(next) = reloads.get(self.generations_done()) else { return false };
         if !self.generations.supersede(next.store.clone()) {
@@ -95,7 +95,7 @@ impl Run {
         Ok(())
     }
 
-    /// From the next tick on the sensors have the noise of another seed, and parts lie where it says.
+    /// From the next tick on sensor noise and positions of delivered parts come from another seed.
     pub fn change_seed(&mut self, seed: u64) {
         self.workstation.cell.reseed(seed);
         self.note_change(&format!("the seed is {seed}"));
@@ -112,7 +112,7 @@ impl Run {
         Ok(())
     }
 
-    /// Put a line in the place of the next command of the job.
+    /// Replace the next command of the job by a line.
     ///
     /// # Errors
     /// [`ChangeError::NoJob`], [`ChangeError::NoCommand`].

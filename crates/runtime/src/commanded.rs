@@ -8,8 +8,8 @@
 //!            └──── `workstation`: robot at HOME, PAUSE last, Data System connected ◄──────────┘
 //! ```
 //!
-//! The numbers of the commands are one sequence. Meanwhile the workstation controller reads a status mailbox that is
-//! initialized, as one that has connected before its time, and what it sends is never executed.
+//! The numbers of the commands are one sequence. While an operator commands, the workstation controller reads an
+//! initialized status mailbox, as one that has connected too early does, and what it sends is never executed.
 
 use interfaces::{CommonMemory, TaskOutputs, hws::HwsReport};
 use neighbours::{
@@ -30,12 +30,12 @@ use crate::{
     workstation::SimulatedWorkstation,
 };
 
-/// A workstation controller in another process, and in its place an operator for a time.
+/// A workstation controller in another process, which an operator can replace for a time.
 pub struct Commanded {
     outside: OutsideWorkstation,
     /// Sends what the operator commands; none while the workstation controller commands.
     alone: Option<Emulator>,
-    /// Commands of the times before.
+    /// Commands of earlier commanders.
     before: Vec<BegunStep>,
 }
 
@@ -52,12 +52,12 @@ impl Commanded {
         self.alone.is_some()
     }
 
-    /// What sends the commands of an operator, if it commands.
+    /// The emulator that sends the commands of an operator, if an operator commands.
     pub fn job_under_way(&mut self) -> Option<&mut Hwsc> {
         self.alone.as_mut().map(|emulator| &mut emulator.hwsc)
     }
 
-    /// Commands of who commands now.
+    /// Commands of the present commander.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {
         match &self.alone {
@@ -168,8 +168,7 @@ impl Neighbours {
         matches!(&self.workstation, WorkstationSource::Outside(commanded) if commanded.is_stand_alone())
     }
 
-    /// Take the command from the workstation controller that commands since the run began; `now`: in the middle of a
-    /// command, too.
+    /// Take over from the workstation controller; `now`: also in the middle of a command.
     ///
     /// # Errors
     /// Why not, in a sentence.

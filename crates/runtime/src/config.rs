@@ -33,14 +33,14 @@ pub struct RunConfig {
     /// What to do about slots of the 40 ms grid that are skipped.
     #[serde(with = "as_text")]
     pub overrun: Policy,
-    /// The core to run on with the real clock; the highest that is allowed without it.
+    /// CPU core to run on with the real clock; without it the highest number that the process may use.
     pub cpu: Option<usize>,
     /// The robot to command.
     #[serde(with = "as_text")]
     pub robot: RobotConfig,
     /// File of faults of the cell and of the line to the simulated robot.
     pub faults: Option<PathBuf>,
-    /// How the control processes are spread over boards.
+    /// How the control processes are distributed over boards.
     pub boards: Boards,
     /// The program that runs a board: it takes the arguments of `rcs-run board`.
     pub program: PathBuf,
@@ -50,12 +50,12 @@ pub struct RunConfig {
     /// How many seconds to wait for boards that are started by hand, for neighbours in other processes, and for
     /// a robot controller at a port.
     pub wait: u32,
-    /// Seed of the cell's noise and of where parts are delivered.
+    /// Seed of the cell's sensor noise and of the positions of delivered parts.
     pub seed: u64,
     /// Where to write the log.
     #[serde(with = "as_text")]
     pub log: LogTarget,
-    /// SQLite file of the Data System's items; they are forgotten without it.
+    /// SQLite file of the Data System's items; without it they are kept in memory and lost at the end.
     pub data_base: Option<PathBuf>,
     /// Where neighbours in other processes connect.
     #[serde(with = "as_text::option")]
@@ -72,23 +72,23 @@ pub struct RunConfig {
     pub keys: Option<PathBuf>,
     /// File with Zenoh's own configuration.
     pub zenoh_config: Option<PathBuf>,
-    /// Stop after so many ticks if the job is not over before.
+    /// Stop after so many ticks, unless the job ends before.
     pub ticks: Option<u64>,
-    /// After a command that ends with an error send PAUSE and the same command again, at most so many times a
-    /// line of the job.
+    /// After a command that ends with an error, send PAUSE and the same command again, at most so many times for a line
+    /// of the job.
     pub retry: u32,
     /// Who may operate the run while it goes on.
     pub operator: OperatorAccess,
-    /// A log whose operator's inputs are given again, each in its tick; then nobody can connect.
+    /// A log whose operator's inputs are replayed, each in its tick; then no operator can connect.
     pub inputs: Option<PathBuf>,
     /// The job waits for an operator before its first line.
     pub stand_by: bool,
     /// Show the run to viewers that connect to this port of 127.0.0.1, 0 for any that is free; it needs a log.
     pub live: Option<u16>,
-    /// Pages that may connect as viewers, besides Foxglove's.
+    /// Origins of web pages that may connect as viewers, besides Foxglove's.
     #[serde(with = "as_text::list")]
     pub live_origins: Vec<Origin>,
-    /// What the log is to say of the run beside what this configuration says.
+    /// Further metadata of the run for the log.
     pub remarks: BTreeMap<String, String>,
     /// Show the buffers to other programs.
     pub shared_memory: bool,
@@ -198,12 +198,12 @@ pub enum RobotKind {
     Serial(SerialSettings),
     /// One with EGM.
     Egm(Box<EgmOptions>),
-    /// One that the caller of the library brings ([`Run::with_robot`](crate::Run::with_robot)).
+    /// One that the caller of the library provides ([`Run::with_robot`](crate::Run::with_robot)).
     Own,
 }
 
 impl RobotKind {
-    /// The robot does not wait for simulated time.
+    /// The robot needs real time: it does not wait for simulated time.
     #[must_use]
     pub fn lives_in_real_time(&self) -> bool {
         match self {
@@ -276,7 +276,7 @@ fn silence(part: &str) -> Result<u16, String> {
     })
 }
 
-/// How processes are spread.
+/// How processes are distributed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]

@@ -1,13 +1,12 @@
-//! Checks what the robot touches: the cell says what touches, common memory which command is executed, and
-//! the list of the cell description what may touch then.
+//! Checks the contacts of the robot. The cell reports contacts, common memory the command that is executed, and a list
+//! in the cell description says which contacts are permitted during which command.
 //!
-//! A contact that is not permitted does not end the run at once: no sensor of the cell would notice it, and
-//! what the controller does next belongs into the log. But a job that has had one is not finished. Only when
-//! the arm has been led deeper than [`DEEPEST`] into something is the run over: a real arm would have stalled
-//! long before, so that nothing which the simulation does from there on means anything.
+//! A contact that is not permitted does not end the run at once: no sensor of the cell detects it, and the log must
+//! show what the controller does next. But the job has then failed. The run ends only when the arm is deeper than
+//! [`DEEPEST`] in something: a real arm would have stalled before, so the simulation has no meaning from there on.
 //!
-//! What has been permitted goes on being permitted as long as it gets no deeper: the next command begins
-//! where the last one has ended, and has to lead away from it.
+//! A permitted contact stays permitted as long as it gets no deeper: the next command begins where the last one has
+//! ended, and moves away from there.
 
 use std::{collections::BTreeMap, fmt};
 
@@ -19,13 +18,13 @@ use serde::Serialize;
 
 use crate::event::Event;
 
-/// Arm, gripper or fingers that are this deep in something, in, end the run.
+/// Depth of arm, gripper or fingers in something that ends the run, in.
 pub const DEEPEST: f64 = 1.0;
 /// Distances greater than this are no near miss, in.
 const MARGIN: f64 = 2.0;
-/// What was permitted to touch and is this far apart has come free, in.
+/// A permitted contact has ended at this distance, in.
 const FREE: f64 = 0.05;
-/// By so much deeper than before is deeper, in.
+/// Least increase of depth that counts as deeper, in.
 const DEEPER: f64 = 0.001;
 
 /// The commands that E-move and Subtask execute.
@@ -46,8 +45,8 @@ impl From<&CommonMemory> for Commands {
 }
 
 impl Commands {
-    /// After another tick. What E-move has not taken yet, or has failed at, moves nothing: what it did before
-    /// counts.
+    /// The commands after another tick. A command that E-move has not accepted yet, or that has failed, moves nothing:
+    /// the one before counts.
     fn after(self, memory: &CommonMemory) -> Self {
         let (told, status) = (&memory.subtask.emove, &memory.emove.status);
         let taken = status.echo == told.number && status.report != StatusReport::Error;
@@ -68,7 +67,7 @@ impl fmt::Display for Commands {
 /// A contact that was not permitted. The names of the fields are those of the JSON object.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Collision {
-    /// What of the robot, or the part that it carried.
+    /// Link of the robot, or the part that it carried.
     pub mover: String,
     /// What it ran into.
     pub obstacle: String,
@@ -83,13 +82,13 @@ pub struct Collision {
     /// What was executed when it began.
     #[serde(rename = "command")]
     pub commands: Commands,
-    /// It is the robot itself, not a part.
+    /// The robot itself is in contact, not a part that it carries.
     #[serde(skip)]
     is_robot: bool,
 }
 
 impl Collision {
-    /// It is the robot itself that has run into something, not a part that it carries.
+    /// The robot itself has collided, not a part that it carries.
     #[must_use]
     pub const fn is_of_robot(&self) -> bool {
         self.is_robot
@@ -106,10 +105,10 @@ impl fmt::Display for Collision {
     }
 }
 
-/// The least distance to what may not be touched.
+/// The least distance to something that must not be touched.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NearMiss {
-    /// What of the robot, or the part that it carried.
+    /// Link of the robot, or the part that it carried.
     pub mover: String,
     /// What it came near to.
     pub obstacle: String,
@@ -131,7 +130,7 @@ impl fmt::Display for NearMiss {
     }
 }
 
-/// What is known of two things that were permitted to touch.
+/// State of a permitted contact of two things.
 #[derive(Clone, Copy, Debug)]
 struct Allowance {
     /// How deep they have been while it was permitted, in.
@@ -173,8 +172,8 @@ impl ContactCheck {
         self.commands
     }
 
-    /// How near something must be to be of interest, in. What is nearer than the nearest miss so far is cheap
-    /// to look for; that something has come free must be seen too.
+    /// Distance within which pairs are looked for, in: that of the nearest miss so far, and enough to see that a
+    /// contact has ended.
     #[must_use]
     pub fn margin(&self) -> f64 {
         self.least().max(FREE)
@@ -228,7 +227,7 @@ impl ContactCheck {
         self.nearest.as_ref()
     }
 
-    /// A collision that is so deep that nothing which follows means anything.
+    /// A collision is so deep that the simulation has no meaning any more.
     #[must_use]
     pub fn is_stuck(&self) -> bool {
         self.open
@@ -236,8 +235,8 @@ impl ContactCheck {
             .any(|at| self.collisions.get(*at).is_some_and(|one| one.is_robot && one.depth_in > DEEPEST))
     }
 
-    /// Why a job that has come to its end has not finished: the first collision, since what follows may be
-    /// its consequence; `None` if nothing was run into.
+    /// Why a job at its end counts as failed: the first collision, since later ones may follow from it; `None` without
+    /// a collision.
     #[must_use]
     pub fn verdict(&self) -> Option<Failure> {
         let (first, rest) = self.collisions.split_first()?;

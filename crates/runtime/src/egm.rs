@@ -1,4 +1,4 @@
-//! A robot with EGM, as the run sees it: the line to it, the DEPC function in front of it, and what is measured.
+//! A robot with EGM in a run: the line to it, the DEPC function in front of it, and measurements.
 
 use std::{
     sync::atomic::Ordering,
@@ -91,8 +91,8 @@ impl EgmPort {
         })
     }
 
-    /// Wait until the robot follows: for so many seconds at most, and not beyond an interruption. Without it
-    /// the run begins all the same, and fails by name.
+    /// Wait until the robot follows, at most so many seconds, or until an interruption. If it does not follow, the run
+    /// begins and fails with a reason that names it.
     pub fn gather(&mut self, config: &RunConfig, observer: &mut dyn Observer) {
         let started = Instant::now();
         let limit = Duration::from_secs(config.wait.into());
@@ -117,7 +117,7 @@ impl EgmPort {
         }
     }
 
-    /// Before the controller's tick: what the function has answered, and where the robot is.
+    /// Before the controller's tick: the answers of the DEPC function, and the position of the robot.
     pub fn receive(&mut self, inputs: &mut DeviceInputs) {
         self.read();
         inputs.link_rx = self.outputs.tx;
@@ -145,13 +145,13 @@ impl EgmPort {
         self.line.advance(u64::try_from(by.as_nanos()).unwrap_or(u64::MAX));
     }
 
-    /// Where the robot is, in words of the line, if it is where the line has words.
+    /// Position of the robot in DEPC words; `None` outside of the range of the words.
     #[must_use]
     pub fn feedback(&self) -> Option<Plate> {
         self.bridge.feedback()
     }
 
-    /// What keeps the robot from following, in words.
+    /// What keeps the robot from following, as text.
     #[must_use]
     pub fn trouble(&self) -> Option<&'static str> {
         self.bridge.trouble()
@@ -206,7 +206,7 @@ impl EgmPort {
         });
     }
 
-    /// What the resolvers of a T3 would read at the robot's place; none that are valid where it has no joints.
+    /// What the resolvers of a T3 would read at the robot's position; not valid where a T3 has no joint angles for it.
     fn resolvers_at(&mut self, sample: &Sample) -> Resolvers {
         let tool = self.bridge.placement().tool_frame(&sample.feedback);
         let Ok(joints) = T3.inverse(&tool, &self.joints) else {

@@ -66,10 +66,10 @@ pub enum StartError {
     /// The robot's frames cannot be used.
     #[error(transparent)]
     Placement(#[from] egm_robot::placement::PlacementError),
-    /// The log whose inputs are to be given again cannot be read.
+    /// The log whose inputs are to be replayed cannot be read.
     #[error("the operator's inputs cannot be replayed: {0}")]
     Inputs(#[source] Box<record::ReadError>),
-    /// The data base of the Data System cannot be had.
+    /// The data base of the Data System cannot be opened.
     #[error("the Data System cannot keep its items: {0}")]
     DataBase(#[from] StoreError),
     /// Another process keeps the items.
@@ -129,13 +129,13 @@ pub enum StartError {
     /// A signal, before the first tick.
     #[error("{0} failed at tick 0: interrupted")]
     Interrupted(String),
-    /// The boards of a run did not come together.
+    /// Not all boards of a run have started.
     #[error("not all boards have started: {0}")]
     Boards(#[from] SplitError),
 }
 
 impl StartError {
-    /// All that was found in the data: what is to be said before the error; empty, or lines that end.
+    /// All findings in the data, to print before the error; empty, or whole lines.
     #[must_use]
     pub fn details(&self) -> String {
         match self {

@@ -1,5 +1,4 @@
-//! What happens in a run beside what was commanded, as values with a code. Log, result and programs make sentences of
-//! them; nothing inside a run does.
+//! Events of a run, as values with a code. Only log, result and programs turn them into sentences.
 
 use std::fmt;
 
@@ -26,7 +25,7 @@ use crate::contacts::Collision;
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Event {
-    /// In the cell. Of contacts the run tells only those that were not permitted: [`Event::Collides`].
+    /// In the cell. Of contacts only those that are not permitted are events: [`Event::Collides`].
     Cell(CellEvent),
     /// Two things touch that may not.
     Collides(Collision),
@@ -34,17 +33,17 @@ pub enum Event {
     CameFree(Collision),
     /// Faults of these kinds have come up on the line to the robot.
     LineFaults(Vec<&'static str>),
-    /// What the line to the robot suffers.
+    /// State of the line to the robot.
     Link(&'static str),
     /// A neighbour has connected, disconnected or was refused.
     Network(NetEvent),
     /// The Data System refuses a command, with the reason that it gives.
     DataBaseRefuses(String),
-    /// What there is to say of a Data System in another process.
+    /// From the connection to a Data System in another process.
     DataSystem(data_system::Remark),
-    /// Of a pedestal that is a system of its own.
+    /// From the connection to a pedestal in another process.
     Pedestal(pedestal::Remark),
-    /// Of vision in another process.
+    /// From the connection to a vision system in another process.
     Vision(vision::Remark),
     /// A command that has failed is sent again.
     Retries(Retry),
@@ -58,7 +57,7 @@ pub enum Event {
     CellStatusUnsent(MailboxError),
     /// The job has handed over to the workstation controller.
     HandedOver,
-    /// The workstation controller has gone, and the job goes on.
+    /// The workstation controller has disconnected, and the job goes on.
     TakenBack,
     /// The job has begun to wait for an operator.
     Waits(WaitReason),
@@ -143,7 +142,7 @@ impl Event {
         }
     }
 
-    /// Who a line of the log about it comes from: what was planned is told apart from what came of it.
+    /// Source of its line in the log: injected faults have another source than their effects.
     #[must_use]
     pub fn source(&self) -> &'static str {
         match self {

@@ -1,4 +1,4 @@
-//! Objects that only the camera can tell apart (VII.7): the forms say the same of both, and so does the cell.
+//! Objects that only the camera can tell apart (VII.7): forms and cell description are the same for both.
 
 use taskdata::load::alike::alike;
 

@@ -1,4 +1,4 @@
-//! Task data and cell description side by side: what stands in both, with the places of both.
+//! Task data and cell description together: entries of both, with their places in the files.
 
 use diagnostics::{At, Diagnostics, Problems, Source};
 use plant::CellDescription;
@@ -30,7 +30,7 @@ impl<'a> Both<'a> {
         in_data.with(Diagnostics::of_file(self.in_cell, self.source))
     }
 
-    /// True if no body stands beside its place.
+    /// True if every body of the cell is at its place in the task data.
     pub fn places_agree(&self) -> bool {
         !self.in_cell.has_errors()
     }

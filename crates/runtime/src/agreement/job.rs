@@ -11,11 +11,11 @@ use taskdata::{
     load::{ViseOpening, Workstation},
 };
 
-/// What the last digits of the description may do, in.
+/// Tolerance for rounding in the description, in.
 const ROUNDING: f64 = 1e-6;
 
-/// Why a part cannot be put into a sector: a fixture that stands where the part, put down `off` from the
-/// middle, can come to lie.
+/// Why a part cannot be put into a sector: a fixture is in the way of the part, which lies at most `off` from the
+/// middle.
 pub fn occupied(action: &WorkstationAction, cell: &CellDescription) -> Option<String> {
     let WorkstationAction::Place { part, unit, sector, placement } = action else { return None };
     let part = cell.part(part).filter(|part| !cell.nest.iter().any(|nest| nest.takes(part)))?;
@@ -31,7 +31,7 @@ pub fn occupied(action: &WorkstationAction, cell: &CellDescription) -> Option<St
     ))
 }
 
-/// The nearest fixture on a tray that is nearer than half the diagonal of a part that lies, and what it may be off.
+/// The nearest fixture on a tray within half the diagonal of a lying part plus its greatest offset.
 fn in_the_way<'c>(
     cell: &'c CellDescription,
     part: &PartType,
@@ -61,7 +61,7 @@ fn in_the_way<'c>(
     near.filter(|(_, distance, room)| distance < room).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Why a command cannot do what it is to do, the word of its line that is to blame, and what to do.
+/// Why a command cannot work, the word of its line that causes it, and what to do.
 pub struct Refused {
     pub word: String,
     pub message: String,
@@ -96,7 +96,8 @@ impl<'c> State<'c> {
         Self { cell, data, jaws, in_vise: None, random: Vec::new() }
     }
 
-    /// A `**` line; `lost` if it takes effect at another time, or was refused. Why it cannot be, if it cannot.
+    /// A `**` line; `lost` if it takes effect at another time, or was refused. Returns why it cannot be carried out, if
+    /// so.
     pub fn action(&mut self, action: &Workstation, lost: bool) -> Option<String> {
         let vise = self.cell.vise.location.as_str();
         match action {

@@ -1,8 +1,8 @@
-//! Whether task data, job and cell description mean the same cell.
+//! Checks that task data, job and cell description describe the same cell.
 //!
-//! Each of the three is sound by itself when this is asked. What is looked for are names that only one side
-//! has: a run would come upon them late, or the robot would go where nothing stands. And numbers of which
-//! both sides have their own: `sizes`, `places`, `job`.
+//! Each of the three has been checked by itself before. This module finds names that only one of them has: otherwise a
+//! run fails late, or the robot goes where nothing stands. It also compares numbers that several of them give: `sizes`,
+//! `places`, `job`.
 
 mod alike;
 mod both;
@@ -25,8 +25,8 @@ use taskdata::{
 
 use crate::workstation::orders;
 
-/// What the lines `**` of a job ask of a cell that does not have it. `source` is the text of the description,
-/// `path` its file.
+/// Names in the lines `**` of a job that the cell does not have. `source` is the text of the description, `path` its
+/// file.
 pub fn of_job(job: &Job, source: &Source, cell: &CellDescription, store: &Store, path: &Path) -> Diagnostics {
     let mut problems = Problems::default();
     let mut state = job::State::new(cell, store.view());
@@ -115,8 +115,8 @@ fn place(source: &Source, line: &JobLine, word: Option<&str>) -> At {
     At { source: 0, start: short(begin + start), length: short(length) }
 }
 
-/// What of the names in a cell description the task data do not have: errors for locations, warnings for what
-/// no job need use.
+/// Names in a cell description that the task data do not have: errors for locations, warnings for names that no job
+/// needs.
 pub fn of_cell(source: Source, cell: &CellDescription, store: &Store) -> Diagnostics {
     let mut names = Names { source: &source, data: store.view(), problems: Problems::default() };
     names.locations(cell);

@@ -10,8 +10,8 @@ use taskdata::files::Location;
 
 use super::both::Both;
 
-/// A body stands so near to where the task data have its place, inches and degrees: less than the plays of
-/// the nests that a part is led into (SPECNOTES).
+/// Greatest distance of a body from its place in the task data, inches and degrees: less than the plays of the nests
+/// that a part is moved into (SPECNOTES).
 const INCHES: f64 = 0.25;
 const DEGREES: f64 = 2.0;
 
@@ -82,8 +82,9 @@ fn nests(both: &mut Both<'_>) {
     }
 }
 
-/// A grip of a part in a nest has its tool point in the part, and at the same place of it in all nests; of a
-/// cylinder, which may lie turned about its axis, along the axis. What is wrong with the first that has not.
+/// The tool point of a grip of a part in a nest must be inside the part, and at the same point of the part in all
+/// nests. For a cylinder, which may be turned about its axis, the position along the axis counts. Returns the first
+/// grip that is wrong, and why.
 fn beside(both: &Both<'_>, number: usize, part: &PartType) -> Option<(Location, String)> {
     let (name, data) = (Name16::clipped(&part.name), both.data);
     let nest = both.cell.nest.get(number)?;
@@ -122,7 +123,7 @@ fn grip_in(both: &Both<'_>, nest: &Nest, part: &Name16, grip: i32) -> Option<(Lo
     Some((location, nest.frame().inverse().compose(&frame).position))
 }
 
-/// How far a frame is from another, in words, if it is farther than a body may stand from its place.
+/// The distance of a frame from another as text, if it is more than a body may be from its place.
 fn apart(one: &Frame, other: &Frame) -> Option<String> {
     let distance = (one.position - other.position).norm();
     let degrees = one.rotation.angle_to(&other.rotation).to_degrees();

@@ -11,7 +11,7 @@ use taskdata::files::{EndEffPara, RefType, VisionPara};
 
 use super::both::Both;
 
-/// A part is taken for touched by fingers that are so much wider or narrower, in: rounding of the forms.
+/// Fingers within this distance of the width of a part count as touching it, in: rounding of the forms.
 const ROUNDING: f64 = 0.005;
 /// `endeff-id#` of the tool gripper (VII.7.2).
 const TOOL_GRIPPER: i32 = 3;
@@ -73,7 +73,7 @@ fn beyond(what: &str, size: i32, [low, high]: [f64; 2], gripper: &str) -> Option
     outside.then(|| format!("{what} {size:.2} in, {gripper} opens from {low:.2} to {high:.2}"))
 }
 
-/// A force that fingers do not have, or with which they hold nothing.
+/// A force above the greatest of the fingers, or too small to hold anything.
 fn unfit_force(what: &str, force: i32, gripper: &Gripper) -> Option<String> {
     let greatest = gripper.greatest_force;
     if force <= 0 {
@@ -168,8 +168,8 @@ fn grip(both: &mut Both<'_>, index: usize, record: &EndEffPara) {
     }
 }
 
-/// What of a part can lie between the fingers: on a tray its X points down and its Z along the sector's, so
-/// the movetable of the grip there tells which side; elsewhere any side may.
+/// Widths of a part that can be between the fingers, in. On a tray its X points down and its Z along that of the
+/// sector, so the movetable of the grip there gives the side; elsewhere any side is possible.
 fn widths(both: &Both<'_>, record: &EndEffPara, part: &PartType) -> Vec<f64> {
     let on_tray = |kind| matches!(kind, RefType::Any | RefType::Array);
     let grips = both.data.grip_locs.iter().filter(|g| g.object == record.object && g.grip == record.grip);
@@ -190,8 +190,8 @@ fn widths(both: &Both<'_>, record: &EndEffPara, part: &PartType) -> Vec<f64> {
     known
 }
 
-/// The range of a view: from the image plane along the optical axis to the top of the part on the tray. An
-/// error of the range makes all lengths in the picture wrong by as much, and the part is not recognised.
+/// The range of a view: from the image plane along the optical axis to the top of the part on the tray. An error of the
+/// range changes all lengths in the picture in proportion, and the part is not recognised.
 fn view(both: &mut Both<'_>, index: usize, record: &VisionPara) {
     let object = both.data.object_name(record.object);
     let cell = both.cell;
