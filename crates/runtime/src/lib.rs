@@ -1,8 +1,8 @@
 //! A run of the controller as a library.
 //!
-//! A [`RunConfig`] says what to run: task data, job, clock, robot, faults, boards, neighbours, log. [`Run::new`]
-//! reads and checks all of it and starts what the run needs; [`Run::step`] runs one tick; [`Run::finish`] ends
-//! the log and gives the [`RunOutcome`]. An [`Observer`] hears messages and each [`Event`] and sees each tick.
+//! A [`RunConfig`] says what to run: task data, job, clock, robot, faults, boards, neighbours, log. [`Run::new`] reads
+//! and checks all of it and starts what the run needs; [`Run::step`] runs one tick; [`Run::finish`] ends the log and
+//! gives the [`RunOutcome`]. An [`Observer`] gets messages, each [`Event`] and each tick.
 //!
 //! ```no_run
 //! use runtime::{LogTarget, Run, RunConfig};
@@ -13,9 +13,9 @@
 //! # Ok::<(), runtime::StartError>(())
 //! ```
 //!
-//! One tick is, in this order: what has come over a serial line, the controller (timed, and its allocations
-//! counted), what goes over the line, the hand-off to the log, the cell, the workstation controller. Physics
-//! allocates and takes its time; it is outside of what is counted as the controller's.
+//! One tick is, in this order: the bytes received over a serial line, the controller (timed, and its allocations
+//! counted), the bytes to send over the line, the hand-off to the log, the cell, the workstation controller. The
+//! physics of the cell allocates and takes most of the time; it does not count as the controller's.
 
 pub mod agreement;
 mod as_text;

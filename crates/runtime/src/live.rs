@@ -1,4 +1,4 @@
-//! The live view of a run: what its log gets, for viewers on this machine (`docs/live.md`).
+//! The live view of a run: the messages of its log, sent to viewers on this machine (`docs/live.md`).
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -15,7 +15,7 @@ use crate::{
     observer::Observer,
 };
 
-/// A live view, as long as it lives.
+/// A live view; dropping it ends it.
 pub struct Live {
     feed: Feed,
     knob: Knob,
@@ -28,7 +28,7 @@ impl Live {
     /// Take the port, if a configuration asks for a live view.
     ///
     /// # Errors
-    /// [`StartError`] if there is no log to show, or the port cannot be had.
+    /// [`StartError`] if there is no log to show, or the port is not available.
     pub fn prepare(config: &RunConfig) -> Result<Option<Self>, StartError> {
         let Some(port) = config.live else { return Ok(None) };
         if config.log == LogTarget::None {
@@ -38,13 +38,13 @@ impl Live {
         Ok(Some(Self { feed: Feed::default(), knob: Knob::default(), port: Some(taken), server: None }))
     }
 
-    /// What the log is to be given.
+    /// The tap through which the log passes its messages to the view.
     #[must_use]
     pub fn tap(&self) -> Box<dyn Tap> {
         self.feed.tap()
     }
 
-    /// Serve viewers. They can ask the run for something if there is a socket for operators.
+    /// Serve viewers. They can send requests if the run has a socket for operators.
     ///
     /// # Errors
     /// [`StartError`] if the system has no random numbers, or no thread.
@@ -77,7 +77,7 @@ impl Live {
         Ok(())
     }
 
-    /// Where the velocity knob is. This does not wait.
+    /// Show the position of the velocity knob, per thousand. This does not wait.
     pub fn knob(&self, velocity: u16) {
         self.knob.set(velocity);
     }
@@ -87,7 +87,7 @@ fn access(socket: &Path) -> Result<Access, NoRandom> {
     Ok(Access { socket: socket.to_owned(), token: Token::random()? })
 }
 
-/// What viewers are told of the run.
+/// Facts about the run for viewers.
 fn facts(config: &RunConfig, job: &str) -> BTreeMap<String, String> {
     let facts = [
         ("job", job.to_owned()),

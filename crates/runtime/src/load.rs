@@ -1,7 +1,7 @@
-//! LOAD while the run goes on (IV.2.4): a block of the run's own data directory, as it stands there now, becomes part of
-//! the task data before the next command. The whole of the data is checked with it first, by all boards.
+//! LOAD during a run (IV.2.4): a block of the run's data directory, as the file is now, becomes part of the task data
+//! before the next command. First all boards check the whole data with the block.
 //!
-//! The log keeps the text, so that a replay, and the same inputs given again, load what was loaded then.
+//! The log keeps the text, so that a replay, and a repetition with the same inputs, load the same block.
 
 use std::{
     fmt, fs, io, thread,
@@ -23,11 +23,11 @@ use crate::{
     operator::Input,
 };
 
-/// How long boards have to check what is loaded.
+/// Time limit for boards to check a load.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// The same in ticks.
 const BOARDS_LIMIT: u64 = PATIENCE.as_secs() * 1000 / TICK_MS;
-/// Time between two looks at the boards, where nothing else goes on meanwhile.
+/// Time between two checks of the boards, when the run waits for them.
 const LOOK: Duration = Duration::from_millis(5);
 
 /// Why a block is not loaded.
@@ -39,19 +39,19 @@ pub enum LoadError {
     Loading,
     /// The data directory has no such block.
     NoBlock(BlockNumber),
-    /// The log whose inputs are given again has not the text.
+    /// The log whose inputs are replayed does not have the text.
     NotRecorded,
-    /// The data have errors with it.
+    /// With the block the data have errors.
     Data(String),
     /// The job has loaded blocks meanwhile, or waits for the end of a command with some.
     Reload,
-    /// What the boards read cannot be written.
+    /// The file for the boards cannot be written.
     Write(io::Error),
     /// A board has not checked it in time.
     Late,
-    /// A board has come to other data.
+    /// A board has other data after the load.
     Differs(Board),
-    /// The thread that checks is gone.
+    /// The thread that checks has ended.
     NoThread,
 }
 
@@ -83,15 +83,15 @@ impl fmt::Display for LoadError {
     }
 }
 
-/// What operators let a run read while it goes on.
+/// Loads and jobs that operators have asked for during a run.
 #[derive(Default)]
 pub struct Loads {
-    /// Reads and checks; none where no operator can connect.
+    /// Thread that reads and checks; none where no operator can connect.
     loader: Option<Loader>,
     loading: Option<Loading>,
-    /// Number of the last load that boards of other processes were told of.
+    /// Number of the last load that was announced to boards in other processes.
     last: u32,
-    /// Jobs that were put in the place of the rest.
+    /// Number of jobs that have replaced the rest of the job before.
     pub played: u32,
 }
 
@@ -150,7 +150,7 @@ impl Run {
         self.loads.loading = Some(Loading { input, number, stage: Stage::Checking });
     }
 
-    /// Once a tick, between two of them: what has become of the block that is being loaded, with the input that it answers.
+    /// Once between two ticks: the result of the load in progress, with the input that asked for it.
     pub(crate) fn follow_load(&mut self, tick: Tick) -> Option<(Input, Result<String, LoadError>)> {
         let Loading { input, number, stage } = self.loads.loading.take()?;
         let stage = match stage {
@@ -176,7 +176,7 @@ impl Run {
         None
     }
 
-    /// Load a block before the next tick, as a log says that it was.
+    /// Load a block before the next tick, as a log has it.
     ///
     /// # Errors
     /// [`LoadError`]; then nothing has changed.
@@ -219,7 +219,8 @@ impl Run {
         }
     }
 
-    /// Let the boards of other processes check what was written for them; the number of the load. None on one board.
+    /// Announce the file to the boards in other processes, which check it; returns the number of the load, `None` on
+    /// one board.
     fn announce(&mut self) -> Option<u32> {
         let load = self.loads.last.saturating_add(1);
         self.coordinator()?.announce(load);
@@ -231,7 +232,7 @@ impl Run {
         self.coordinator().map_or(Ok(true), |coordinator| coordinator.have_checked(load, loaded.data))
     }
 
-    /// A load that boards were told of does not count: a board that joins later is not to read it.
+    /// Withdraw a load that was announced: a board that joins later must not read it.
     fn take_back(&self, why: LoadError) -> LoadError {
         // It goes with the run otherwise.
         let _ = fs::remove_file(load_file(&self.name, self.loads.last));

@@ -1,4 +1,4 @@
-//! What is loaded while a run goes on: read, checked and told to the boards beside the ticks.
+//! Loads during a run: read, checked and announced to the boards beside the ticks.
 //!
 //! ```text
 //!   operator: load ──► thread of the run: reads the block, checks all data with it, writes the file
@@ -10,8 +10,8 @@
 //!                      all boards have the same: the generation counts from the next tick on
 //! ```
 //!
-//! On one board the middle is left out. The threads begin before the process asks for real time, and keep their
-//! ordinary priority.
+//! On one board the middle is left out. The threads start before the process asks for real-time priority, and keep
+//! their ordinary priority.
 
 use std::{
     fs, io,
@@ -39,8 +39,8 @@ use taskdata::{
 
 use crate::load::LoadError;
 
-/// The reloads of a run with one more behind the first `done`, which have led to `base`. Those that are to come later are
-/// loaded upon it.
+/// The reloads of a run with one more inserted after the first `done`, which have led to `base`. The later ones are
+/// loaded on top of it.
 ///
 /// # Errors
 /// The report of the first that has errors now.
@@ -89,7 +89,7 @@ pub struct Order {
 }
 
 impl Order {
-    /// Read the block, check all data with it, and write what the boards read.
+    /// Read the block, check all data with it, and write the file for the boards.
     ///
     /// # Errors
     /// [`LoadError`].
@@ -128,7 +128,7 @@ fn write(path: &Path, done: usize, source: &Source) -> io::Result<()> {
     fs::rename(new, path)
 }
 
-/// What boards are to load, and how many reloads come before it.
+/// Read the block for the boards, and how many reloads come before it.
 fn read(path: &Path) -> Option<(usize, Source)> {
     let text = fs::read_to_string(path).ok()?;
     let (head, text) = text.split_once('\n')?;
@@ -167,7 +167,7 @@ impl Loader {
         let _ = self.orders.send(order);
     }
 
-    /// What has come of it; `None` while it goes on.
+    /// The result; `None` while the thread works.
     pub fn look(&self) -> Option<Result<Loaded, LoadError>> {
         match self.done.try_recv() {
             Ok(done) => Some(done),
@@ -177,7 +177,7 @@ impl Loader {
     }
 }
 
-/// The reloads of a board, from the first on.
+/// All reloads of a board.
 type Reloads = Arc<Vec<Reload>>;
 /// A load as a board has checked it: its number, and the reloads with it unless there are errors.
 type Candidate = (u32, Option<(Reloads, u64)>);
@@ -196,7 +196,7 @@ pub struct BoardFiles {
 }
 
 impl BoardFiles {
-    /// With what the job loads on the way. Starts the thread that checks.
+    /// With the reloads of the job. Starts the thread that checks.
     ///
     /// # Errors
     /// What the system says.
@@ -225,7 +225,7 @@ impl BoardFiles {
         })
     }
 
-    /// Load what was loaded before this board joined. The file of a load that was refused is gone.
+    /// Load what was loaded before this board joined. The file of a refused load has been removed.
     pub fn catch_up(&mut self, loaded: u32) {
         for load in self.loaded.saturating_add(1)..=loaded {
             if let Some((reloads, _)) = with_load(&self.run, &self.store, &self.reloads, load) {

@@ -1,4 +1,4 @@
-//! What the run tells its log: set-up, one frame of the cell a tick, events, and the tick itself.
+//! What the run writes to its log: set-up, one frame of the cell a tick, events, and the tick itself.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -40,7 +40,7 @@ pub const RETRY: &str = "retry";
 pub const OUTSIDE: &str = "outside";
 /// Key: where the Data System keeps its items.
 pub const DATA_BASE: &str = "data_base_in";
-/// What stands there if they are forgotten at the end.
+/// Its value if the items are kept in memory only.
 pub const IN_MEMORY: &str = "memory";
 /// Key: the job waited for an operator before its first line.
 pub const STAND_BY: &str = "stand_by";
@@ -50,7 +50,7 @@ pub const TICKS: &str = "ticks";
 /// A log that is being written, with what is needed to draw the cell.
 pub struct Log {
     recorder: Recorder,
-    /// Names of the links that move, in the order in which the log knows them.
+    /// Names of the links that move, in the order of the log.
     links: Vec<String>,
     /// Faults on the line so far, and their kinds in the last tick.
     faults: Counts,
@@ -60,7 +60,7 @@ pub struct Log {
     touches: Vec<Touch>,
 }
 
-/// What vision was asked last and what it answered, and what the camera saw then.
+/// The last request to vision, its answer, and the picture of the camera.
 struct Vision {
     camera: Camera,
     request: VisionRequest,
@@ -177,8 +177,8 @@ impl Log {
         self.recorder.operator(line);
     }
 
-    /// Faults that the plan has put on the line so far: told when others than in the tick before come up;
-    /// before [`Log::tick`] of the same tick.
+    /// Faults of the plan on the line so far: logged when their kinds differ from those of the tick before; before
+    /// [`Log::tick`] of the same tick.
     pub fn faults(&mut self, tick: Tick, counts: Counts) {
         let fresh = FaultKind::ALL.iter().filter(|kind| counts.of(**kind) > self.faults.of(**kind));
         let kinds: Vec<&'static str> = fresh.map(|kind| kind.text()).collect();
@@ -203,8 +203,8 @@ impl Log {
         self.recorder.attach(tick, Attachment::played(number, &source));
     }
 
-    /// How punctual the tick is; before [`Log::tick`] of the same tick. Not for runs in fast clock: their
-    /// logs are the same bytes whenever they are written.
+    /// Times of the tick; before [`Log::tick`] of the same tick. Not for runs in fast clock: their logs are the same
+    /// bytes whenever they are written.
     pub const fn timing(&mut self, controller_ns: u64, skipped: u64) {
         self.recorder.timing(Timing { controller_ns, skipped });
     }
@@ -240,8 +240,7 @@ fn transform(link: &plant::Link) -> Transform {
     Transform { position: link.position, rotation: link.rotation }
 }
 
-/// A contact as a viewer is to see it, rounded, so that what only trembles is not new: to hundredths of an inch where it
-/// is, to thousandths how deep.
+/// A contact for viewers, rounded so that small vibrations make no new message: position to 0.01 in, depth to 0.001 in.
 fn touch(contact: &Contact, collides: bool) -> Touch {
     let Contact { mover, obstacle, depth, at, .. } = contact;
     let rounded = |inches: f64, steps: f64| (inches * steps).round() / steps;
@@ -255,7 +254,7 @@ fn touch(contact: &Contact, collides: bool) -> Touch {
     }
 }
 
-/// What everything looks like, with the parts that will come.
+/// The shapes of all bodies, with the parts that will be delivered.
 fn models(setup: &Setup, coming: &[&str]) -> Vec<Model> {
     let models = look::models(&setup.description, &setup.cell.part_kinds(coming));
     let file = |model: look::Model| Model { glb: model.glb(), name: model.name, frame: model.frame };
@@ -276,8 +275,7 @@ fn delivered(step: &Step) -> Option<&str> {
     }
 }
 
-/// Everything that a replay needs, and everything that makes the run what it was: task data, job, cell
-/// description, fault plan.
+/// All files that a replay and a repetition of the run need: task data, job, cell description, fault plan.
 fn attachments(setup: &Setup) -> Vec<Attachment> {
     let sources = setup.store.sources().iter();
     let data = sources
@@ -293,7 +291,7 @@ fn attachments(setup: &Setup) -> Vec<Attachment> {
     all
 }
 
-/// What the log says of the run. Nothing here differs between two equal runs.
+/// Metadata of the run. They are the same for two equal runs.
 fn metadata(config: &RunConfig, job: &Job, attachments: &[Attachment]) -> BTreeMap<String, String> {
     let mut configuration = Digest::new();
     for attachment in attachments {

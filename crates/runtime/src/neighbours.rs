@@ -1,8 +1,8 @@
-//! The neighbours of a run: who commands Task, the Data System, an Active Pedestal that is a system of its
-//! own, and vision if it is another process.
+//! The neighbours of a run: the source of Task's commands, the Data System, and, if they are other processes, Active
+//! Pedestal and vision.
 //!
-//! A neighbour lives in this process, or in another one behind the network. Either way it is reached through
-//! its mailboxes, and a run cannot tell the difference: with the clock in lock step not a bit of it changes.
+//! A neighbour is in this process, or in another one behind the network. Both are reached through mailboxes. In fast
+//! clock, which steps both in lock step, a run gives the same bits with either.
 
 use std::{
     sync::atomic::Ordering,
@@ -74,10 +74,10 @@ pub struct Neighbours {
     pedestal: Option<Box<pedestal::Agent>>,
     /// Vision; without it the cell analyses its pictures itself.
     vision: Option<vision::Port>,
-    /// Accepts neighbours as long as the run lasts; none without it.
+    /// Accepts neighbours during the run; `None` if no neighbour is another process.
     pub(crate) network: Option<Network>,
     events: Vec<Event>,
-    /// No command is given any more.
+    /// No more commands are given.
     is_ending: bool,
 }
 
@@ -103,10 +103,9 @@ impl Neighbours {
         }
     }
 
-    /// Wait for those who are other processes: for so many seconds at most, and not beyond an interruption,
-    /// of which the run will see to it. On the 40 ms grid the workstation controller is waited for alone: the
-    /// others may come later. In fast clock a run is over when it has gone, also if that was before the first
-    /// tick.
+    /// Wait for neighbours in other processes, at most so many seconds, or until an interruption, which the run then
+    /// handles. On the 40 ms grid only the workstation controller is waited for: the others may connect later. In fast
+    /// clock a run ends when it disconnects, also before the first tick.
     ///
     /// # Errors
     /// [`StartError::NoWorkstation`].
@@ -140,7 +139,7 @@ impl Neighbours {
         }
     }
 
-    /// The run is about to end: the commands of job or workstation controller are read no longer.
+    /// The run is about to end: commands of job and workstation controller are no longer read.
     pub const fn stop_commanding(&mut self) {
         self.is_ending = true;
     }
@@ -163,10 +162,10 @@ impl Neighbours {
         }
     }
 
-    /// The job, if it commands now.
+    /// The job, if it commands at present.
     ///
     /// # Errors
-    /// Who commands instead, in a sentence.
+    /// Which source commands instead, as a sentence.
     pub fn job_under_way(&mut self) -> Result<&mut Hwsc, String> {
         if self.is_ending {
             return Err("the run is about to end".to_owned());
@@ -197,7 +196,7 @@ impl Neighbours {
         matches!(self.workstation, WorkstationSource::Switched(_))
     }
 
-    /// What stands in Task's command buffer.
+    /// Task's command buffer.
     #[must_use]
     pub const fn hws(&self) -> &HwsCommand {
         self.gate.command()
@@ -209,26 +208,25 @@ impl Neighbours {
         self.data_system.status()
     }
 
-    /// What has come from a pedestal that is a system of its own.
+    /// What a pedestal in another process has sent.
     #[must_use]
     pub fn pedestal(&self) -> &OutsidePedestal {
         self.pedestal.as_deref().map_or(&OutsidePedestal::ZERO, pedestal::Agent::sent)
     }
 
-    /// Before the first tick: the pedestal steps with the controller from its first tick on.
+    /// Before the first tick: the pedestal is stepped from the controller's first tick on.
     pub fn begin(&mut self, memory: &CommonMemory, inputs: &DeviceInputs) {
         self.step_pedestal(Tick::BEFORE_START, memory, inputs);
     }
 
-    /// The pedestal reads what a tick has written, and what its devices read in the next one.
+    /// The pedestal reads what a tick has written, and the device words of the next tick.
     fn step_pedestal(&mut self, tick: Tick, memory: &CommonMemory, inputs: &DeviceInputs) {
         let Some(agent) = &mut self.pedestal else { return };
         agent.exchange(tick.next(), &memory.subtask.pedestal, &inputs.pedestal);
         self.events.extend(agent.remarks().into_iter().map(Event::from));
     }
 
-    /// Vision reads what E-move asks for, with what the camera sees, and what it answers is among the devices
-    /// of the next tick.
+    /// Vision reads E-move's request and the camera picture; its answer is among the device words of the next tick.
     fn step_vision(&mut self, tick: Tick, memory: &CommonMemory, workstation: &mut SimulatedWorkstation) {
         let Some(port) = &mut self.vision else { return };
         let cell = &mut workstation.cell;
@@ -267,7 +265,7 @@ impl Neighbours {
         }
     }
 
-    /// The line that was under way in a tick; for what has failed at its start, the tick in which it was begun.
+    /// The line of the job in progress in a tick; a failure at the start of a line belongs to that line.
     #[must_use]
     pub fn line_at(&self, tick: Tick) -> Option<&str> {
         let is_refused = |step: &BegunStep| step.outcome == Outcome::Failed && step.ticks == 0;
@@ -328,7 +326,7 @@ impl Neighbours {
     /// The items that the Data System keeps.
     ///
     /// # Errors
-    /// Why it does not give them.
+    /// Why it cannot list them.
     pub fn items(&mut self) -> Result<Vec<Item>, String> {
         self.data_system.items()
     }
@@ -359,7 +357,7 @@ impl Emulator {
         self.post(gate).unwrap_or(progress)
     }
 
-    /// The command that is to be sent goes through the mailbox. Returns the failure if it does not fit.
+    /// Send the command through the mailbox. Returns the failure if it does not fit.
     fn post(&mut self, gate: &mut Gate) -> Option<Progress> {
         let mut failure = None;
         if let Some(command) = self.hwsc.mailgram() {

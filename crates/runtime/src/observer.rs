@@ -1,4 +1,4 @@
-//! What a run tells the program that it is a part of.
+//! Reports of a run to the program that contains it.
 
 use interfaces::{CommonMemory, HwsCommand};
 use neighbours::workstation::player::BegunStep;
@@ -6,7 +6,7 @@ use rcs_core::tick::Tick;
 
 use crate::event::Event;
 
-/// A tick that is over.
+/// A finished tick.
 #[non_exhaustive]
 pub struct TickReport<'a> {
     /// The tick.
@@ -21,15 +21,15 @@ pub struct TickReport<'a> {
     pub memory: &'a CommonMemory,
 }
 
-/// Hears messages and events and sees each tick. It is called between the ticks, and delays the next one for as long as it
-/// takes. `()` ignores everything.
+/// Receives messages, events and each tick. Calls are made between ticks and delay the next one. `()` ignores
+/// everything.
 pub trait Observer {
     /// A message for the person at the run: one line, without its end.
     fn message(&mut self, text: &str) {
         let _ = text;
     }
 
-    /// Something has happened in a tick; what a person at the run is to read of it comes as a message, too.
+    /// An event of a tick; if a person at the run should read it, it also comes as a message.
     fn event(&mut self, tick: Tick, event: &Event) {
         let _ = (tick, event);
     }

@@ -1,8 +1,8 @@
-//! A workstation controller in another process: its mailboxes, and what of its commands a run remembers.
+//! A workstation controller in another process: its mailboxes, and the commands that a run remembers.
 //!
-//! Besides Task it commands the simulated cell: what a workstation does itself are lines of a job, in a
-//! mailbox of their own. A run in fast clock is over when its workstation controller has gone, and has failed
-//! if that was in the middle of a command; on the 40 ms grid the robot waits for it to come back.
+//! Besides Task it commands the simulated cell: actions of the workstation are lines of a job, in a separate mailbox. A
+//! run in fast clock ends when its workstation controller disconnects, and has failed if that was in the middle of a
+//! command; on the 40 ms grid the robot waits until it connects again.
 
 use interfaces::{HwsCommand, TaskOutputs, hws::HwsReport};
 use neighbours::{
@@ -33,11 +33,11 @@ pub struct OutsideWorkstation {
     refused: Option<String>,
     begun_steps: Vec<BegunStep>,
     began: Tick,
-    /// It has been there in a tick.
+    /// It has been connected in a tick.
     came: bool,
-    /// It is there.
+    /// It is connected.
     here: bool,
-    /// Why the last one that was there is there no longer.
+    /// Why the last connection ended.
     disconnect: Option<Disconnect>,
 }
 
@@ -64,7 +64,7 @@ impl OutsideWorkstation {
         &self.begun_steps
     }
 
-    /// It is there.
+    /// It is connected.
     #[must_use]
     pub const fn is_here(&self) -> bool {
         self.here
@@ -83,7 +83,7 @@ impl OutsideWorkstation {
         }
     }
 
-    /// It commands again: what has come meanwhile is not read.
+    /// It commands again: commands that came meanwhile are not read.
     pub fn pass_over(&mut self, gate: &mut Gate) {
         gate.pass_over(self.endpoint.incoming(HWSC_COMMAND));
         self.line_read = self.endpoint.incoming(CELL_COMMAND).mailgram();
@@ -95,7 +95,8 @@ impl OutsideWorkstation {
         std::mem::take(&mut self.begun_steps)
     }
 
-    /// Once a tick while another one commands: it may come and go, reads no status, and what it writes is not read.
+    /// Once a tick while an operator or the job commands: it may connect and disconnect, reads no status, and its
+    /// commands are not read.
     pub fn attend(&mut self, tick: Tick, events: &mut Vec<Event>) {
         for place in [HWSC_STATUS, CELL_STATUS] {
             self.endpoint.outgoing(place).initialize();
@@ -148,14 +149,14 @@ impl OutsideWorkstation {
         if gone { self.end(gate.command(), task, workstation) } else { Progress::Running }
     }
 
-    /// The workstation controller has disconnected, and the run is over. Another one in its place is too late.
+    /// The workstation controller has disconnected, and the run ends. A new connection is too late.
     fn has_gone(&mut self, presence: Presence) -> bool {
         let gone = presence.was_connected && (!presence.connected || presence.new && self.came);
         self.came |= presence.connected;
         gone && self.endpoint.clock() == ClockKind::Fast
     }
 
-    /// How a run ends whose workstation controller has gone.
+    /// The end of a run whose workstation controller has disconnected.
     fn end(&self, command: &HwsCommand, task: &TaskOutputs, workstation: &SimulatedWorkstation) -> Progress {
         if let Some(emergency) = workstation.emergency() {
             return Progress::Failed(JobFailure::Emergency(emergency));
@@ -190,7 +191,7 @@ impl OutsideWorkstation {
         }
     }
 
-    /// What has become of the last command.
+    /// Follow the last command to its end.
     fn follow(&mut self, tick: Tick, command: &HwsCommand, task: &TaskOutputs) {
         let Some(step) = self.begun_steps.last_mut() else { return };
         if step.outcome != Outcome::Executing || task.status.echo != command.number {
@@ -221,7 +222,7 @@ impl OutsideWorkstation {
         }
     }
 
-    /// Begin what the workstation controller wants of the cell.
+    /// Begin the line for the cell that the workstation controller has sent.
     fn read_cell(&mut self, workstation: &mut SimulatedWorkstation, store: &Store, events: &mut Vec<Event>) {
         let mailbox = self.endpoint.incoming(CELL_COMMAND);
         if mailbox.mailgram() == self.line_read {

@@ -1,4 +1,4 @@
-//! A robot that the caller of the library brings, behind a DEPC function in this process.
+//! A robot that the caller of the library provides, behind a DEPC function in this process.
 
 use depc::{
     Limits, Plate,
@@ -11,9 +11,8 @@ use plant::t3::explained;
 
 /// A robot in the place of the T3, for [`Run::with_robot`](crate::Run::with_robot).
 ///
-/// In a tick comes first [`advance`](Self::advance), then at most one point
-/// ([`Robot::accept`]) or request for the present position ([`Robot::present`]), then
-/// [`position`](Self::position).
+/// The calls of a tick are first [`advance`](Self::advance), then at most one point ([`Robot::accept`]) or request for
+/// the present position ([`Robot::present`]), then [`position`](Self::position).
 pub trait OwnRobot: Robot {
     /// A tick of 40 ms begins: go towards the last point that was accepted.
     fn advance(&mut self);
@@ -36,15 +35,15 @@ impl OwnPort {
         Self { robot, function: Controller::new(Limits::NBS), outputs: ControllerOutputs::default() }
     }
 
-    /// Before the controller's tick: what the function has answered.
+    /// Before the controller's tick: the answers of the function.
     pub const fn receive(&self, inputs: &mut DeviceInputs) {
         inputs.link_rx = self.outputs.tx;
         inputs.link_ready = self.outputs.dtr;
         inputs.link_unsent = false;
     }
 
-    /// After the controller's tick: the function takes the host's bytes. It begins whenever the robot has
-    /// nothing to complain of.
+    /// After the controller's tick: the function takes the host's bytes. It starts again whenever the robot reports no
+    /// trouble.
     pub fn send(&mut self, tx: &LinkBytes) {
         self.robot.advance();
         let running = matches!(self.function.state(), ControllerState::Running | ControllerState::Warning);
@@ -59,7 +58,7 @@ impl OwnPort {
         self.robot.position()
     }
 
-    /// The warning that keeps the robot from being commanded, in words.
+    /// The warning that prevents commands to the robot, as text.
     pub fn trouble(&self) -> Option<String> {
         let shown = Some(self.function.warning()).filter(|shown| *shown != Warning::None);
         shown.or_else(|| self.robot.warning()).map(explained)

@@ -1,4 +1,4 @@
-//! Keeps the ticks of a run on their grid, and says how well that went.
+//! Keeps the ticks of a run on their grid, and measures how late they are.
 
 use std::{collections::BTreeMap, fmt::Write as _, time::Duration};
 
@@ -14,7 +14,7 @@ use interfaces::{CommonMemory, DeviceInputs};
 
 use crate::{event::Event, result::TickTimes};
 
-/// Processes on the page of text: those with the longest times.
+/// Processes listed in the result: those with the longest times.
 const PROCESSES_SHOWN: usize = 3;
 
 /// The clock of a run, with what it measured.
@@ -60,7 +60,7 @@ impl Pace {
         self.clock.wake_early()
     }
 
-    /// Wait until the tick is due. Returns what was skipped on the way, and what is done about it.
+    /// Wait until the tick is due. Returns the skipped slots, and the reaction to them.
     pub fn wait(&mut self, stage_times: &StageTimes) -> Vec<Event> {
         let slots = self.clock.wait();
         let late = self.clock.late();
@@ -79,7 +79,7 @@ impl Pace {
         events
     }
 
-    /// The inputs as the controller is to see them: a robot that holds has its velocity knob at zero.
+    /// The inputs for the controller: while the robot holds, its velocity knob is at zero.
     #[must_use]
     pub const fn inputs(&self, mut inputs: DeviceInputs) -> DeviceInputs {
         inputs.joystick.velocity = self.overruns.knob(inputs.joystick.velocity);
@@ -91,7 +91,7 @@ impl Pace {
         self.overruns.ends(memory)
     }
 
-    /// What is done about skipped slots.
+    /// The policy for skipped slots.
     #[must_use]
     pub const fn policy(&self) -> Policy {
         self.policy
@@ -127,7 +127,7 @@ impl Pace {
         self.verdict.is_some().then(|| self.late.summary().into())
     }
 
-    /// Skipped slots by what is to blame: a part of a tick, or `waking`.
+    /// Skipped slots by cause: a part of a tick, or `waking`.
     #[must_use]
     pub fn overruns(&self) -> BTreeMap<String, u64> {
         let name = |part: Option<Stage>| part.map_or_else(|| "waking".to_owned(), |part| part.to_string());

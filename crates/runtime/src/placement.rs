@@ -1,14 +1,13 @@
-//! Checks where the parts are: each must be where the last command that moved it was to leave it.
+//! Checks where the parts are: each must be where the last command that moved it had to leave it.
 //!
 //! A part is moved by a command if the gripper has had it while the command was executed. When the command
 //! finishes, its verb says where the part has to be (V.4.1): TRANSFER puts it down at the destination,
 //! RELEASE-TOOL leaves it in the drum, POSITION lets it go where the robot stands or keeps it, all others
 //! keep it. A command that fails says nothing; sent again, it goes on.
 //!
-//! From then on the part is looked at each tick until another command moves it, so that the tick is known in
-//! which it went astray: the one in which the hand let go of it, or the one in which it left its place. What
-//! counts is where it is at the end of the run, since a part that lies askew for a while may be pushed to its
-//! place.
+//! From then on the part is checked in each tick until another command moves it. So the tick of an error is known: the
+//! one in which the hand released the part, or the one in which the part left its place. The position at the end of the
+//! run decides, because a part that lies askew for a while may be pushed to its place.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -31,7 +30,7 @@ type Place = (String, u16);
 enum Goal {
     /// In the robot's gripper.
     Gripper,
-    /// At a place; `None` if it is not known where the robot stood when it let go.
+    /// At a place; `None` if the place of the robot at the release is not known.
     At(Option<Place>),
 }
 
@@ -41,9 +40,9 @@ struct Moved {
     goal: Goal,
     /// The command, in words.
     command: String,
-    /// Where the hand had it last, world, in.
+    /// Last position in the hand, world, in.
     let_go: [f64; 3],
-    /// The tick in which it went astray, as long as it is.
+    /// The tick since which it is not at its place; `None` if it is there.
     astray: Option<Tick>,
 }
 
@@ -68,7 +67,7 @@ struct Attempt {
 /// The check of a run.
 #[derive(Clone, Debug)]
 pub struct PlacementCheck {
-    /// A part that is so near to its place is there, in.
+    /// Greatest distance of a part that counts as at its place, in.
     tolerance: f64,
     number: u32,
     attempt: Attempt,
@@ -95,7 +94,7 @@ impl PlacementCheck {
         }
     }
 
-    /// Look at a tick that is over: the command that Task had, what it made of it, and where the parts are now.
+    /// Check a finished tick: the command that Task had, its status, and the positions of the parts.
     pub fn look(
         &mut self,
         tick: Tick,
@@ -187,8 +186,7 @@ impl PlacementCheck {
         self.attempt.is_over = true;
     }
 
-    /// Why a job that has come to its end has not finished: the part that went astray first; `None` if all
-    /// are where they should be.
+    /// Why a job at its end counts as failed: the first part that is not at its place; `None` if all are.
     #[must_use]
     pub fn verdict(&self, parts: &[PartState]) -> Option<Failure> {
         let astray = parts.iter().filter_map(|part| {
@@ -241,9 +239,9 @@ fn place(location: Option<Name16>, sector: Option<i32>) -> Option<Place> {
     Some((location?.to_string(), sector))
 }
 
-/// A part is where it has to be. At a place that the cell description has it must be there, and near the
-/// middle of it; elsewhere, and in trays, it must not have moved since the hand let it go. How it sits in the
-/// vise is a matter of the vise and of machining.
+/// Whether a part is where it has to be. At a place of the cell description it must be near the middle of the place;
+/// elsewhere, and in trays, it must not have moved since the hand released it. How it sits in the vise is checked by
+/// vise and machining.
 fn is_there(goal: &Goal, let_go: [f64; 3], tolerance: f64, cell: &CellDescription, part: &PartState) -> bool {
     let place = match goal {
         Goal::Gripper => return part.held,

@@ -1,8 +1,9 @@
-//! A recorded run again: what its log says of how to run it.
+//! Repeats a recorded run: reads from its log how to run it.
 //!
-//! A log has all that a run with the simulated robot depends on: task data, job and what the job loads, cell description,
-//! faults, and in its metadata seed, retries and limits. [`unpack`] writes the files into a directory and gives the
-//! configuration. The clock is the fast one, whatever it was: where the run was punctual, it comes to the same bits.
+//! A log has all that a run with the simulated robot depends on: task data, job and what the job loads, cell
+//! description, faults, and in its metadata seed, retries and limits. [`unpack`] writes the files into a directory and
+//! gives the configuration. The clock is always the fast one: if the run missed no slots, the repetition gives the same
+//! bits.
 
 use std::{
     collections::BTreeMap,
@@ -18,7 +19,7 @@ use crate::{
     setup::{CELL, EXTENSION},
 };
 
-/// Key of the metadata: the tick up to which a fork is what its log was.
+/// Key of the metadata: the tick up to which a fork is the same as its log.
 pub const FORKED_AFTER: &str = "forked_after";
 /// Key: what was changed in a fork.
 pub const CHANGES: &str = "changes";
@@ -32,7 +33,7 @@ pub enum RepeatError {
         "the log has no {0}, which a run needs: rcs-run of this version writes it; run the job again to get such a log"
     )]
     Missing(&'static str),
-    /// Something took part that no log holds.
+    /// Something took part in the run that is not in the log.
     #[error(
         "{0} took part in the run, and its actions are not in the log: a run with the simulated robot and without other processes can be repeated"
     )]
@@ -47,7 +48,7 @@ pub enum RepeatError {
         /// What was changed.
         changes: String,
     },
-    /// A file of the log that would not stay in its directory.
+    /// A file name of the log that leads out of the directory.
     #[error(
         "the log holds a file named {0}, which leads out of its directory: a name without .. and / was expected"
     )]
@@ -115,14 +116,14 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
     })
 }
 
-/// What the log of a fork says of itself.
+/// Metadata of the log of a fork.
 #[must_use]
 pub fn fork_remarks(tick: u64, changes: &[String]) -> BTreeMap<String, String> {
     let entries = [(FORKED_AFTER, tick.to_string()), (CHANGES, changes.join("; "))];
     entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }
 
-/// Write a file of a log under a directory. Its name must lead nowhere else: a log may come from anywhere.
+/// Write a file of a log under a directory. Its name must not lead out of the directory: a log is not trusted.
 fn write(under: &Path, name: &str, file: &Attachment) -> Result<PathBuf, RepeatError> {
     let inside = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
     if !inside || name.is_empty() {

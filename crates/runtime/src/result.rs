@@ -1,4 +1,4 @@
-//! The result of a run: the JSON object for scripts, and what the page for people is made of.
+//! The result of a run: the JSON object for scripts, from which the text for people is made.
 
 mod cell;
 mod robot;
@@ -60,15 +60,15 @@ pub fn bare(line: &str) -> String {
 pub struct FailureResult {
     /// Tick in which it began.
     pub tick: u64,
-    /// The line of the job, or the command, that was under way then.
+    /// The line of the job, or the command, in progress then.
     pub line: Option<String>,
-    /// The process that knows why.
+    /// The process that reports the reason.
     pub process: String,
     /// Its decision table, if one was used.
     pub table: Option<String>,
     /// The row that fired.
     pub row: Option<u8>,
-    /// The whole in one sentence.
+    /// The failure in one sentence.
     pub text: String,
     /// What a person has to do before the job can go on; none if PAUSE and the same command may be enough.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -91,7 +91,7 @@ impl FailureResult {
     }
 }
 
-/// What a run with a robot at a port says of a cell that only follows the robot.
+/// Note in the result of a run with a robot at a port, whose cell only follows the robot.
 pub const SIMULATED: &str =
     "parts, contacts, clearance and events are those of the simulated cell, which follows the robot";
 
@@ -112,15 +112,15 @@ pub struct RunResult {
     pub ticks: u64,
     /// Ticks in which the robot was brought to rest at the end.
     pub ramp_ticks: u32,
-    /// The time that the cell went through.
+    /// Simulated time, s.
     pub simulated_s: f64,
-    /// The time that it took.
+    /// Wall-clock time, s.
     pub wall_s: f64,
-    /// How often the first is the second.
+    /// Ratio of the two.
     pub realtime_factor: f64,
     /// Slots of the 40 ms grid that were skipped.
     pub overruns: u64,
-    /// The same by what is to blame: a part of the tick before, or `waking` if the system woke the thread late.
+    /// The same by cause: a part of the tick before, or `waking` if the system woke the thread late.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub overruns_by: BTreeMap<String, u64>,
     /// Heap allocations of the controller after the start.
@@ -132,10 +132,10 @@ pub struct RunResult {
     /// How late ticks began.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub late_us: Option<TickTimes>,
-    /// What the system granted for real time, and what it is.
+    /// What the system granted for real time, and which system it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub realtime: Option<String>,
-    /// The boards, if there is more than one; `tick_us` above is from the pulse to the last stamp then.
+    /// The boards, if there is more than one; `tick_us` is then the time from the pulse to the last stamp.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boards: Option<Vec<BoardResult>>,
     /// The link.
@@ -164,14 +164,14 @@ pub struct RunResult {
     pub simulated: Option<&'static str>,
     /// Where the parts are.
     pub parts: Vec<PartResult>,
-    /// What the Data System was told of items of the MBD.
+    /// Items of the MBD in the Data System.
     pub data_base: Vec<ItemResult>,
-    /// What was touched that may not be touched.
+    /// Contacts that are not permitted.
     pub contacts: Vec<Collision>,
     /// The nearest miss, if something was passed nearer than 2 in.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clearance: Option<NearMiss>,
-    /// What has happened beside.
+    /// Other events.
     pub events: Events,
     /// The log that was written.
     pub log: Option<PathBuf>,
@@ -181,7 +181,7 @@ pub struct RunResult {
 }
 
 impl RunResult {
-    /// What the log says of the end of the run. Nothing here differs between two equal runs in fast clock.
+    /// Metadata of the end of the run. They are the same for two equal runs in fast clock.
     #[must_use]
     pub fn facts(&self) -> BTreeMap<String, String> {
         let list = |items: Vec<String>| items.join("; ");

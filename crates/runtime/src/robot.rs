@@ -1,5 +1,5 @@
-//! The other end of the DEPC line: the T3 controller of the simulated cell, a robot at a serial port, or a
-//! robot with EGM, or of the caller's own, behind a DEPC function in this process.
+//! The other end of the DEPC line: the T3 controller of the simulated cell, a robot at a serial port, or a robot with
+//! EGM or one of the caller, behind a DEPC function in this process.
 //!
 //! With the simulated one the bytes of a tick go through the fault injector, if there is a fault plan, and
 //! then through the cell. With a serial port they go to the port; the rest of the cell (gripper, camera,
@@ -32,7 +32,7 @@ use crate::{config::RunConfig, egm::EgmPort, observer::Observer, own::OwnPort};
 /// Length of a tick.
 const PERIOD: Duration = Duration::from_millis(TICK_MS);
 
-/// Who is at the other end of the line.
+/// The other end of the line.
 pub enum Robot {
     /// The simulated T3 controller, behind a line that may have faults.
     Simulated(Option<Box<Injector>>),
@@ -40,11 +40,11 @@ pub enum Robot {
     Serial(Port),
     /// A robot with EGM.
     Egm(Box<EgmPort>),
-    /// A robot that the caller of the library brings.
+    /// A robot that the caller of the library provides.
     Own(OwnPort),
 }
 
-/// A serial line, with what is measured on it.
+/// A serial line, with its measurements.
 pub struct Port {
     line: SerialLine,
     /// When the last data command was handed to the port.
@@ -73,13 +73,13 @@ impl Port {
         }
     }
 
-    /// What is wrong with the port, in words; `None` while it is there.
+    /// What is wrong with the port, as text; `None` while it is usable.
     #[must_use]
     pub fn trouble(&self) -> Option<String> {
         (!self.line.is_there()).then(|| format!("the port {} has disappeared", self.line.path().display()))
     }
 
-    /// What went over the port.
+    /// Counts of bytes of the port.
     #[must_use]
     pub const fn counts(&self) -> SerialCounts {
         self.line.counts()
@@ -93,8 +93,8 @@ impl Port {
 }
 
 impl Robot {
-    /// Wait until the robot controller at a port has switched DTR on: for so many seconds at most, and not
-    /// beyond an interruption. Without it the run begins all the same, and fails by name.
+    /// Wait until the robot controller at a port has switched DTR on, at most so many seconds, or until an
+    /// interruption. Without DTR the run begins and fails with a reason that names it.
     pub fn gather(&mut self, config: &RunConfig, observer: &mut dyn Observer) {
         let port = match self {
             Self::Simulated(_) | Self::Own(_) => return,
@@ -122,7 +122,7 @@ impl Robot {
         }
     }
 
-    /// Before the controller's tick: what has come over the line. Counted as a part of the tick.
+    /// Before the controller's tick: receive from the line. Its time counts as part of the tick.
     pub fn receive(&mut self, inputs: &mut DeviceInputs) {
         let _section = Section::enter();
         match self {
@@ -137,8 +137,8 @@ impl Robot {
         }
     }
 
-    /// After the controller's tick: what goes over the line. `exact` gives the tool frame that Prim has
-    /// commanded, and T3I got as the other; it is asked for a robot with EGM only. Counted as a part of the tick.
+    /// After the controller's tick: send over the line. `exact` gives the tool frame that Prim has commanded, and that
+    /// T3I got; it is called for a robot with EGM only. Its time counts as part of the tick.
     pub fn send(&mut self, outputs: &DeviceOutputs, exact: impl FnOnce() -> Option<(WireFrame, Frame)>) {
         let _section = Section::enter();
         match self {
@@ -149,8 +149,8 @@ impl Robot {
         }
     }
 
-    /// The rest of the tick: the cell moves. `acknowledged` gives the position that the robot has
-    /// last acknowledged or reported, if any is known; it is asked for a robot at a port only.
+    /// The rest of the tick: the cell moves. `acknowledged` gives the position that the robot has last acknowledged or
+    /// reported, if any is known; it is called for a robot at a port only.
     pub fn advance(
         &mut self,
         tick: Tick,
@@ -179,13 +179,13 @@ impl Robot {
         }
     }
 
-    /// The robot is none of the simulated cell.
+    /// The robot is not that of the simulated cell.
     #[must_use]
     pub const fn is_elsewhere(&self) -> bool {
         !matches!(self, Self::Simulated(_))
     }
 
-    /// What is wrong with the way to a robot elsewhere, in words; `None` while all is well.
+    /// What is wrong with the connection to a robot outside of the cell, as text; `None` if nothing is.
     #[must_use]
     pub fn trouble(&self) -> Option<String> {
         match self {
@@ -196,8 +196,8 @@ impl Robot {
         }
     }
 
-    /// The line to the simulated robot suffers the faults of a plan from now on. False, and nothing has changed, if it has
-    /// a plan already, or the robot is elsewhere.
+    /// From now on the line to the simulated robot has the faults of a plan. False, and nothing has changed, if it has
+    /// a plan already, or the robot is not the simulated one.
     pub fn suffer(&mut self, plan: &Plan) -> bool {
         let Self::Simulated(injector @ None) = self else { return false };
         *injector = Some(Box::new(Injector::new(plan)));

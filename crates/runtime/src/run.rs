@@ -1,6 +1,6 @@
 //! A run, from the first tick to the result.
 //!
-//! What the log is told of the next tick, and its warm-up, come before that tick begins.
+//! The log gets the cell of the next tick, and the tick is warmed up, before that tick begins.
 
 mod operate;
 mod outcome;
@@ -47,8 +47,8 @@ use crate::{
     workstation::SimulatedWorkstation,
 };
 
-/// Ticks that the cell goes on after the controller has stopped: two seconds, in which the arm comes to rest
-/// and whatever is held badly falls.
+/// Ticks for which the cell is simulated after the controller has stopped: two seconds, in which the arm comes to rest
+/// and badly held parts fall.
 const SETTLING: usize = 50;
 
 /// A run that has been set up.
@@ -67,10 +67,10 @@ pub struct Run {
     pub(crate) runner: Runner<Controller>,
     pub(crate) neighbours: Neighbours,
     pub(crate) workstation: SimulatedWorkstation,
-    /// Where operators' requests come from, and what becomes of them.
+    /// Source of operators' requests.
     pub(crate) asked: Inputs,
     operator: Operator,
-    /// What operators let the run read while it goes on.
+    /// Loads that operators have asked for.
     pub(crate) loads: Loads,
     /// Name of the run.
     pub(crate) name: RunName,
@@ -78,33 +78,33 @@ pub struct Run {
     pub(crate) robot: Robot,
     pub(crate) log: Option<Log>,
     log_path: Option<PathBuf>,
-    /// Lets viewers see what the log gets.
+    /// The live view.
     live: Option<Live>,
     pace: Pace,
     /// When the first tick was due.
     started: Option<Instant>,
     /// How the run has ended.
     ending: Option<Ending>,
-    /// What the robot touches.
+    /// Check of the robot's contacts.
     pub(crate) check: ContactCheck,
-    /// Where the parts are to be.
+    /// Check of the parts' places.
     pub(crate) placement: PlacementCheck,
     /// The warning that the T3 controller showed last, and when.
     pub(crate) warning: Option<(Tick, String)>,
-    /// What the cell shows to programs outside.
+    /// The cell for other programs.
     view: Box<View>,
     /// Events of the cell since the last tick, for the log of the next one.
     fresh: Vec<Event>,
-    /// What has happened, for the result.
+    /// All events, for the result.
     events: Events,
-    /// Does the robot rest?
+    /// Detects that the robot rests.
     rest: RestWatch,
     /// The end of the run, for which the robot is brought to rest.
     ramp: Option<Ramp>,
-    /// Ticks that the host is to wait for an answer; at a port the first answer may take as long as `--wait` says.
+    /// Ticks for which the host waits for an answer; at a port the first answer may take as long as `--wait`.
     patience: Option<u16>,
     first_patience: Option<u16>,
-    /// What the line was said to suffer last.
+    /// The state of the line that was reported last.
     trouble: Option<&'static str>,
     /// What a person has to do before the job that has failed can go on.
     remedy: Option<&'static str>,
@@ -143,25 +143,25 @@ impl Run {
         self.runner.tick()
     }
 
-    /// All buffers as that tick has left them.
+    /// All buffers after that tick.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
         self.runner.memory()
     }
 
-    /// What came from outside for that tick.
+    /// The external inputs of that tick.
     #[must_use]
     pub const fn external_inputs(&self) -> &ExternalInputs {
         &self.external
     }
 
-    /// Fingerprint of the simulated cell as it is now, as the log has it of every tick.
+    /// Fingerprint of the simulated cell now; the log has it for every tick.
     #[must_use]
     pub fn cell_digest(&self) -> u64 {
         self.workstation.cell.digest()
     }
 
-    /// Before the first tick. The 40 ms grid begins with the clock: what comes before the first tick counts.
+    /// Before the first tick. The 40 ms grid begins with the clock: time spent before the first tick counts.
     fn begin(&mut self) {
         self.started = Some(Instant::now());
         if self.config.clock == ClockKind::Real {
@@ -172,7 +172,7 @@ impl Run {
         self.note_neighbours(self.runner.tick().next());
     }
 
-    /// The log's thread runs already: it keeps its ordinary priority.
+    /// The log's thread runs already, so it keeps its ordinary priority.
     fn ask_for_real_time(&mut self, core: Option<usize>) {
         let granted = self.pace.ask_for_real_time(core, self.config.speed);
         self.observer.message(&granted.to_string());
@@ -196,7 +196,7 @@ impl Run {
         self.runner.stage_times_mut().begin();
     }
 
-    /// What comes from outside for the next tick.
+    /// The external inputs of the next tick.
     fn external(&self) -> ExternalInputs {
         let mut devices = self.pace.inputs(self.inputs);
         devices.link_patience = self.first_patience.or(self.patience);
@@ -312,7 +312,7 @@ impl Run {
         None
     }
 
-    /// End the run as soon as the robot rests. What ends it first is what it ends with.
+    /// End the run as soon as the robot rests. The first ending given is kept.
     fn end_at_rest(&mut self, ending: Ending) {
         if self.ramp.is_none() {
             self.neighbours.stop_commanding();
@@ -341,8 +341,8 @@ impl Run {
             .advance(tick, &mut self.workstation.cell, outputs, || acknowledged(&controller.state()));
     }
 
-    /// A board is lost. The robot hears nothing any more and the valves stay as they are, while time goes on
-    /// in the cell.
+    /// A board is lost. The robot gets no more frames and the valves stay as they are, while the cell is simulated
+    /// further.
     fn lost(&mut self, lost: &Lost, external: &ExternalInputs) -> Failure {
         let memory = *self.runner.memory();
         let silent = DeviceOutputs { link_tx: LinkBytes::default(), ..memory.device_outputs() };
@@ -357,8 +357,7 @@ impl Run {
         }
     }
 
-    /// Take up the reloads that the job has asked for, and let the next tick see them if no command is in
-    /// progress.
+    /// Accept the reloads that the job has asked for; they take effect in the next tick if no command is in progress.
     fn reload(&mut self) {
         let reloads = &self.job.reloads;
         let reload =

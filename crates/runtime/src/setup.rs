@@ -1,4 +1,4 @@
-//! Everything that must be there before the first tick.
+//! Everything that is set up before the first tick.
 
 use std::{
     fs,
@@ -48,7 +48,7 @@ pub use plant::description::CELL;
 /// Ticks in 40 ms at most: a tick with the simulated cell takes some 0.2 ms.
 pub const MOST_SPEED: u8 = 20;
 
-/// What a run works with.
+/// The parts of a run.
 pub struct Setup {
     /// Task data.
     pub store: Store,
@@ -64,11 +64,11 @@ pub struct Setup {
     pub faults_text: String,
     /// The other end of the line.
     pub robot: Robot,
-    /// Who commands, and the Data System.
+    /// The source of commands, and the Data System.
     pub neighbours: Neighbours,
     /// Where the log goes.
     pub log: Option<LogFile>,
-    /// Who looks on.
+    /// The live view.
     pub live: Option<Live>,
 }
 
@@ -127,7 +127,7 @@ impl Setup {
     }
 }
 
-/// What the control processes work with, on every board.
+/// The data of the control processes on every board.
 pub struct TaskFiles {
     /// Task data.
     pub store: Store,
@@ -176,7 +176,7 @@ pub struct CellFile {
 }
 
 impl CellFile {
-    /// Read the description, and check that task data, job and description mean the same cell.
+    /// Read the description, and check that task data, job and description describe the same cell.
     ///
     /// # Errors
     /// [`StartError`], with all errors of the data.
@@ -200,7 +200,7 @@ impl CellFile {
     }
 }
 
-/// Who is in this process, and where the others can connect.
+/// The neighbours in this process, and the address at which the others connect.
 fn neighbours(
     config: &RunConfig,
     job: &Job,
@@ -283,7 +283,7 @@ pub fn fault_file(path: &Path, cell: &CellDescription) -> Result<(FaultFile, Str
     }
 }
 
-/// Warnings do not keep a run from beginning; one line says that there are some.
+/// Warnings do not prevent a run; one line gives their number.
 fn warning(report: &Diagnostics, what: &str) -> Option<String> {
     match report.warnings().count() {
         0 => None,

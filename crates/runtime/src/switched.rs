@@ -29,9 +29,9 @@ use crate::{
     event::Event, neighbours::Emulator, outside::OutsideWorkstation, workstation::SimulatedWorkstation,
 };
 
-/// Where the robot is to be when the workstation controller is connected (IV.4.1).
+/// Where the robot must be when the workstation controller takes over (IV.4.1).
 const HOME: &str = "HOME";
-/// The command that is to be the last one then.
+/// The command that must be the last one then.
 const PAUSE: &str = "PAUSE";
 
 /// What a tick has written, and what is known around it.
@@ -54,7 +54,7 @@ pub struct Switched {
     wait: u32,
     /// When it took over.
     since: Tick,
-    /// It has been there since.
+    /// It has been connected since.
     was_connected: bool,
 }
 
@@ -141,7 +141,7 @@ impl Switched {
         }
     }
 
-    /// The workstation controller commands, or has gone.
+    /// The workstation controller commands, or has disconnected.
     fn follow(
         &mut self,
         around: &Around<'_>,

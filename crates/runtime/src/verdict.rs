@@ -1,4 +1,4 @@
-//! How a run ended, and why: what becomes the last line on standard error, and the exit status.
+//! How a run ended, and why: the last line on standard error and the exit status follow from it.
 
 use ::neighbours::workstation::player::{JobFailure, Workstation as _};
 use executive::failure::{self, Failure};
@@ -19,7 +19,7 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// In words, as the log has it.
+    /// As text, for the log.
     #[must_use]
     pub fn text(&self) -> &str {
         match self {
@@ -29,7 +29,7 @@ impl Ending {
         }
     }
 
-    /// A job in which something went wrong in the cell has not finished; one that failed may have failed because of it.
+    /// A job with an error in the cell counts as failed; a job that failed may have failed because of it.
     fn checked(self, verdict: Failure) -> Self {
         match self {
             Self::Finished | Self::Stopped => Self::Failed(verdict),
@@ -57,14 +57,13 @@ impl Run {
         verdicts.into_iter().map(simulated).fold(ending, Ending::checked)
     }
 
-    /// The end of a run that another process commands. It has no job that would fail because of it, so that
-    /// it counts how the robot is left.
+    /// The end of a run that another process commands. It has no job that can fail, so the state of the robot decides.
     pub(super) fn left(&self, ending: Ending) -> Ending {
         let commanding = self.neighbours.are_commanding();
         self.standing().filter(|_| commanding).map_or(ending, Ending::Failed)
     }
 
-    /// What keeps the robot from moving now: an emergency, or a line that is lost.
+    /// What prevents the robot from moving at the end: an emergency, or a lost link.
     fn standing(&self) -> Option<Failure> {
         if let Some(what) = self.workstation.emergency() {
             return self.stopped(&what);
@@ -90,14 +89,14 @@ impl Run {
         }
     }
 
-    /// The emergency that has stopped the robot, and what has become of the arm.
+    /// The emergency that has stopped the robot, and where the arm is.
     fn stopped(&self, what: &str) -> Option<Failure> {
         let emergency = self.workstation.last_emergency()?;
         let text = format!("{what}; the arm {}", emergency.droop.end());
         Some(Failure { stopped: true, ..outside(emergency.tick, "T3", text) })
     }
 
-    /// Why the job failed: the explanation of the process that knows, or what the workstation controller saw.
+    /// Why the job failed: the reason of the process that reports it, or what the workstation controller saw.
     pub(super) fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Failure {
         match failure {
             JobFailure::Emergency(what) => {

@@ -12,8 +12,8 @@ use taskdata::load::job::{
     Workstation as Action,
 };
 
-/// Ticks that an arm without pressure is given to come to rest before the run ends: two minutes. From HOME it takes
-/// 40 s; one that slides off what it has fallen on, twice as long.
+/// Ticks to wait for an arm without pressure to come to rest before the run ends: two minutes. From HOME it takes 40 s;
+/// an arm that slides off an obstacle takes twice as long.
 const SETTLING_LIMIT: u64 = 120_000 / TICK_MS;
 
 /// A job that hands over needs a run in which a workstation controller can connect.
@@ -25,7 +25,7 @@ const NO_HAND_OVER: &str = "no workstation controller can connect to this run; \
 pub struct Emergency {
     /// When the pressure went.
     pub tick: Tick,
-    /// Why, where, and what has become of the arm.
+    /// Cause, position, and the state of the arm.
     pub droop: Droop,
 }
 
@@ -36,7 +36,7 @@ pub struct SimulatedWorkstation {
     state: WorkstationState,
 }
 
-/// What is known of a workstation beside its cell.
+/// State of a workstation beside its cell.
 #[derive(Clone, Debug, Default)]
 pub struct WorkstationState {
     fault: Option<String>,
@@ -62,7 +62,7 @@ impl SimulatedWorkstation {
         Self { cell, state }
     }
 
-    /// What is to be kept with a cell that is saved.
+    /// State to save with the cell.
     pub const fn state(&self) -> &WorkstationState {
         &self.state
     }
@@ -119,7 +119,7 @@ impl SimulatedWorkstation {
         std::mem::take(&mut self.state.loads)
     }
 
-    /// Begin what an operator asks for; `line` is how it is said.
+    /// Begin an action that an operator asks for; `line` is its text.
     ///
     /// # Errors
     /// A sentence, if the workstation cannot do it.
@@ -203,7 +203,7 @@ const fn at_the_panel(key: Panel) -> Key {
     }
 }
 
-/// The words of a job are those of a person, the box has switches.
+/// Translate the words of a job into switches of the box.
 pub const fn at_the_box(action: Joystick) -> BoxAction {
     match action {
         Joystick::Frame(frame) => BoxAction::Frame(match frame {

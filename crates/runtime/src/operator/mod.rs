@@ -1,14 +1,14 @@
-//! The operator of a run (IV): what is asked for between two ticks, who may ask for it, and what becomes of it.
+//! The operator of a run (IV): requests between two ticks, who may send them, and how they are carried out.
 //!
-//! A request is a line of text ([`Request`]). What the controller reads anyway goes into its joystick box
-//! ([`Operator::at_the_box`]); what is entered at the terminals of the boards is an input beside it
-//! ([`Operator::at_the_terminals`]); what the cell takes is applied to the cell; a command goes through the mailbox of the
-//! job player, whose numbers it shares. All of it happens in [`Run::operate`](crate::Run), after the cell has moved and
-//! before the job player looks: the next tick is the first one that sees it. Every request stands in the log with that
-//! tick, so that the same inputs can be given again.
+//! A request is a line of text ([`Request`]). Switches go to the joystick box, which the controller reads
+//! ([`Operator::at_the_box`]); entries at the terminals of the boards are a further input
+//! ([`Operator::at_the_terminals`]); requests to the cell are applied to the cell; a command goes through the mailbox
+//! of the job player and shares its command numbers. All of it happens in [`Run::operate`](crate::Run), after the cell
+//! has moved and before the job player steps: the next tick is the first one that sees it. Every request is in the log
+//! with that tick, so that the inputs can be replayed.
 //!
-//! One operator commands at a time: the first who asks for something that moves, until it leaves. Stops are never
-//! arbitrated.
+//! One operator commands at a time: the first that sends a request that moves something, until it sends `leave` or
+//! disconnects. Stops are accepted from every operator.
 
 mod request;
 mod source;
@@ -31,14 +31,14 @@ pub use self::source::{Input, Inputs};
 use self::{request::Request, terminals::Terminals};
 use crate::{neighbours::Neighbours, workstation::SimulatedWorkstation};
 
-/// Requests that are taken in a tick; more wait for the next one.
+/// Most requests carried out in a tick; others wait for the next one.
 pub const A_TICK: usize = 16;
 
 /// The operators of a run.
 pub struct Operator {
-    /// The joystick box that they work; it stands beside that of the job's lines.
+    /// The joystick box of the operators; the lines of a job have their own.
     hand: Joystick,
-    /// What it shows in the next tick.
+    /// Its state in the next tick.
     shown: JoystickBox,
     /// What is entered at the terminals of the boards.
     terminals: Terminals,
@@ -46,16 +46,16 @@ pub struct Operator {
     later: Option<Later>,
     /// The velocity knob is at zero until `go`.
     is_stopped: bool,
-    /// Who is connected.
+    /// Names of the connected operators.
     sessions: Vec<String>,
-    /// Who commands.
+    /// Name of the operator that commands.
     commander: Option<String>,
-    /// The robot is at a port: what moves it must not go on when nobody is heard of.
+    /// The robot is at a port: motion must stop when the operator is silent.
     robot_elsewhere: bool,
     counts: Requests,
 }
 
-/// How many requests there were.
+/// Counts of requests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Requests {
     /// All, those about the status not counted.
@@ -73,17 +73,17 @@ pub enum Later {
     Play(String),
 }
 
-/// What a request works on.
+/// The parts of a run that a request reads and changes.
 pub struct Around<'a> {
     /// The tick that is over.
     pub tick: Tick,
-    /// What it has left.
+    /// Common memory after it.
     pub memory: &'a CommonMemory,
     /// Task data, with which lines are read.
     pub store: &'a Store,
-    /// The directory that they come from.
+    /// Their directory.
     pub data: &'a Path,
-    /// Who commands Task.
+    /// The source of Task's commands.
     pub neighbours: &'a mut Neighbours,
     /// The cell.
     pub workstation: &'a mut SimulatedWorkstation,
@@ -92,7 +92,7 @@ pub struct Around<'a> {
 }
 
 impl Operator {
-    /// Nobody is connected, and the box is as a box is at the start.
+    /// No operator is connected, and the box is in its initial state.
     #[must_use]
     pub fn new(robot_elsewhere: bool) -> Self {
         Self {
@@ -109,7 +109,7 @@ impl Operator {
     }
 
     /// The joystick box of the next tick: that of the job's lines, with that of the operators beside it. The lower
-    /// velocity holds, a stick that is moved and a frame that is on come first, and switches and buttons add up.
+    /// velocity counts; a moved stick and an enabled frame take precedence; switches and buttons are combined by OR.
     #[must_use]
     pub fn at_the_box(&self, job: JoystickBox) -> JoystickBox {
         let own = &self.shown;
@@ -132,7 +132,7 @@ impl Operator {
         }
     }
 
-    /// What the controller reads of the terminals in the next tick.
+    /// Input of the controller from the terminals in the next tick.
     #[must_use]
     pub const fn at_the_terminals(&self) -> &OperatorInputs {
         self.terminals.inputs()
@@ -149,7 +149,7 @@ impl Operator {
         self.later.take()
     }
 
-    /// A request is answered.
+    /// Count an answered request.
     pub fn count(&mut self, input: &Input, verdict: &Result<String, String>) {
         if matches!(input.event(), Event::Line(_)) && !input.is_question() {
             self.counts.requests += 1;
@@ -163,7 +163,7 @@ impl Operator {
         (self.counts != Requests::default()).then_some(self.counts)
     }
 
-    /// Carry an event out. The answer says what there is to say, or why it is refused.
+    /// Carry out an event. Returns the text of the answer, or why it is refused.
     pub fn carry_out(&mut self, input: &Input, around: &mut Around<'_>) -> Result<String, String> {
         let who = input.source();
         match input.event() {
@@ -188,7 +188,7 @@ impl Operator {
         Ok(String::new())
     }
 
-    /// The stick and the buttons go back. A robot at a port comes to rest.
+    /// The operator is silent: stick and buttons are released. A robot at a port comes to rest.
     fn is_silent(&mut self, who: &str) -> Result<String, String> {
         if self.commander.as_deref() == Some(who) && self.hand.busy() {
             self.hand.let_go();
@@ -210,7 +210,7 @@ impl Operator {
         Ok(String::new())
     }
 
-    /// A job waits for an operator only while one is there.
+    /// A job waits for an operator only while one is connected.
     fn attend(&self, around: &mut Around<'_>) {
         if let Ok(job) = around.neighbours.job_under_way() {
             job.attend(!self.sessions.is_empty());
@@ -287,7 +287,7 @@ impl Operator {
         }
     }
 
-    /// How things stand, in a line.
+    /// The status of the run in one line.
     fn status(&self, around: &mut Around<'_>) -> String {
         let stand_alone = around.neighbours.is_stand_alone();
         let job = match around.neighbours.job_under_way() {
@@ -302,7 +302,7 @@ impl Operator {
     }
 }
 
-/// A directory, also for a program in another one; what the program carries has no other name.
+/// An absolute path, for a program in another directory; data built into the program keep their name.
 fn directory(data: &Path) -> String {
     let absolute = if data.is_dir() { path::absolute(data) } else { Ok(data.to_owned()) };
     absolute.unwrap_or_else(|_| data.to_owned()).display().to_string()

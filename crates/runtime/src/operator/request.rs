@@ -1,4 +1,4 @@
-//! What an operator can ask of a run, and how it is said.
+//! Requests of an operator, and their text.
 
 use interfaces::HwsCommand;
 use plant::BoxAction;
@@ -13,9 +13,9 @@ use crate::workstation::at_the_box;
 /// A request.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
-    /// How things stand; changes nothing.
+    /// Ask for the status; changes nothing.
     Status,
-    /// Where the task data are; changes nothing.
+    /// Ask for the directory of the task data; changes nothing.
     Data,
     /// The velocity knob to zero.
     Stop,
@@ -23,7 +23,7 @@ pub enum Request {
     Go,
     /// Another operator may command.
     Leave,
-    /// Something that is to stand in the log.
+    /// A note for the log.
     Note,
     /// The job waits when its line has ended.
     Wait,
@@ -33,30 +33,30 @@ pub enum Request {
     Skip,
     /// A command for Task, and its line.
     Command(String, HwsCommand),
-    /// Something at the operator's own joystick box.
+    /// An action at the operator's own joystick box.
     Box(BoxAction),
     /// Something at the terminal of a board.
     Terminal(Entry),
     /// A block of the data directory is loaded.
     Load(BlockNumber),
-    /// A job of the data directory is played in the place of the rest of the present one.
+    /// A job of the data directory replaces the rest of the present one.
     Play(String),
-    /// The workstation controller of another process commands no more.
+    /// The operator takes over from a workstation controller in another process.
     StandAlone {
         /// Also in the middle of a command.
         now: bool,
     },
-    /// It commands again.
+    /// The workstation controller commands again.
     Workstation,
-    /// Something else in the cell, and its line.
+    /// Another action in the cell, and its line.
     Cell(Workstation, String),
 }
 
-/// Requests that change nothing, and stand in no log.
+/// Requests that change nothing and are not logged.
 pub const QUESTIONS: [&str; 2] = [STATUS, DATA];
-/// How one asks for the status.
+/// Request for the status.
 const STATUS: &str = "status";
-/// How one asks for the directory of the task data.
+/// Request for the directory of the task data.
 const DATA: &str = "data";
 
 /// The requests that are no lines of a job.
@@ -109,8 +109,7 @@ impl Request {
         }
     }
 
-    /// It can only bring something to rest, or changes nothing: every operator may ask for it, also while
-    /// another commands.
+    /// It can only stop something, or changes nothing: every operator may send it, also while another commands.
     pub const fn is_stop(&self) -> bool {
         match self {
             Self::Status
@@ -139,7 +138,7 @@ impl Request {
         }
     }
 
-    /// A command for Task comes of it.
+    /// It sends a command to Task.
     pub const fn is_of_the_job(&self) -> bool {
         matches!(
             self,
@@ -153,7 +152,8 @@ impl Request {
     }
 }
 
-/// `line-load BLOCK LINE LINE` (IV.3.3): the command that stands there; none if the words begin another request.
+/// `line-load BLOCK LINE LINE` (IV.3.3): the command in these lines of the block; `None` if the words begin another
+/// request.
 fn line_load(words: &[&str], store: &Store) -> Option<Result<Request, String>> {
     let ["line-load", numbers @ ..] = words else { return None };
     let expected = || "line-load BLOCK LINE LINE was expected, such as line-load 863 12 12".to_owned();

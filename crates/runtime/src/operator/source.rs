@@ -21,11 +21,11 @@ pub enum Inputs {
     None,
     /// Operators who connect.
     Sessions(Listener),
-    /// A log, tick by tick, with the texts that were read meanwhile.
+    /// A log, tick by tick, with the texts that were loaded during the run.
     Recorded(VecDeque<OperatorLine>, Texts),
 }
 
-/// What operators have let a run read, as its log has it.
+/// Blocks and jobs that operators have loaded during a run, from its log.
 #[derive(Default)]
 pub struct Texts {
     /// Blocks by the generation of the task data that they made.
@@ -34,7 +34,7 @@ pub struct Texts {
     jobs: Vec<(u32, Source)>,
 }
 
-/// An input, from wherever.
+/// An input from a session or a log.
 pub enum Input {
     /// Of a session.
     Given(Given),
@@ -72,7 +72,7 @@ impl Input {
         QUESTIONS.contains(&self.event().to_string().as_str())
     }
 
-    /// How it stands in the log, with the tick that sees it first; none for what changes nothing.
+    /// Its line in the log, with the tick that sees it first; `None` if it changes nothing.
     pub fn line(&self, tick: Tick, verdict: &Result<String, String>) -> Option<OperatorLine> {
         (!self.is_question()).then(|| OperatorLine {
             tick,
@@ -83,7 +83,7 @@ impl Input {
         })
     }
 
-    /// Say what has become of it. In a repetition it should be what it was: if not, that is what is returned.
+    /// Answer it. In a repetition the verdict should be that of the log: if not, the difference is returned.
     pub fn answer(self, tick: Tick, verdict: &Result<String, String>) -> Option<String> {
         match self {
             Self::Given(given) => {

@@ -1,5 +1,5 @@
-//! What is entered at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3): boards are stopped and started, a level is
-//! executed once, the link is initialized. The record goes to the controller with the other inputs of the tick.
+//! Entries at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3): boards are stopped and started, a level is executed
+//! once, the link is initialized. The record goes to the controller with the other inputs of the tick.
 
 use std::collections::VecDeque;
 
@@ -10,10 +10,10 @@ use interfaces::{
 };
 use rcs_core::handshake::successor;
 
-/// Most passes of a process that can be asked for at once.
+/// Most passes of a process in one request.
 pub const PASSES: u8 = 100;
 
-/// What can be entered.
+/// An entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entry {
     /// `^C`: the processes of the board stop; of board 0, the pulse.
@@ -82,7 +82,7 @@ pub struct Terminals {
 }
 
 impl Terminals {
-    /// What the controller reads of them.
+    /// Their state as an input of the controller.
     #[must_use]
     pub const fn inputs(&self) -> &OperatorInputs {
         &self.shown
@@ -131,7 +131,7 @@ impl Terminals {
         Ok(format!("{process} is executed, passes: {passes}"))
     }
 
-    /// E-move gives Prim ROBOT-INIT while E-PAUSE stands. On a board that is stopped, each takes the pass that it needs.
+    /// E-move gives Prim ROBOT-INIT during E-PAUSE. On a stopped board each process is executed as often as needed.
     fn initialize(&mut self, memory: &CommonMemory) -> Result<String, String> {
         let command = memory.subtask.emove.command;
         if !matches!(command, EmoveVerb::None | EmoveVerb::Pause) {

@@ -1,4 +1,4 @@
-//! What the result says of the cell: parts, faults, emergencies, items, and what has happened in it.
+//! The cell in the result: parts, faults, emergencies, items and events.
 
 use std::fmt;
 
@@ -20,7 +20,7 @@ pub struct CellFaultResult {
     pub times: u64,
     /// The tick in which it began first.
     pub first: u64,
-    /// The last tick in which it was there.
+    /// The last tick in which it was present.
     pub last: u64,
 }
 
@@ -52,7 +52,7 @@ pub struct ContactResult {
     pub depth_in: f64,
 }
 
-/// The last loss of hydraulic pressure in an emergency, and what became of the arm.
+/// The last loss of hydraulic pressure in an emergency, and where the arm came to rest.
 #[derive(Clone, Debug, Serialize)]
 pub struct EmergencyResult {
     /// Tick in which the pressure went.
@@ -65,7 +65,7 @@ pub struct EmergencyResult {
     pub at_rest: bool,
     /// The shot pin has stopped the shoulder.
     pub on_shot_pin: bool,
-    /// What the sagging arm has run into, the deepest first.
+    /// Contacts of the sagging arm, the deepest first.
     pub touched: Vec<ContactResult>,
 }
 
@@ -162,7 +162,7 @@ impl fmt::Display for ItemResult {
     }
 }
 
-/// What has happened, and when.
+/// An event and its tick.
 #[derive(Clone, Debug, Serialize)]
 pub struct EventResult {
     /// The tick.
@@ -182,7 +182,7 @@ impl fmt::Display for EventResult {
 /// Events that a run remembers; the log has all. A run of a year must not fill the memory.
 const REMEMBERED: usize = 1000;
 
-/// What has happened in a run beside what was commanded: in the cell, and with the neighbours.
+/// Events of a run in the cell and with the neighbours.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Events {
     /// How many events there were.

@@ -1,4 +1,4 @@
-//! What the result says of the robot and the line to it.
+//! The robot and the line to it, in the result.
 
 use std::{collections::BTreeMap, fmt};
 
@@ -66,7 +66,7 @@ impl fmt::Display for FaultsResult {
     }
 }
 
-/// What went over a serial port.
+/// Counts of a serial port.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct PortResult {
     /// Bytes received.
@@ -88,7 +88,7 @@ impl From<&Port> for PortResult {
     }
 }
 
-/// What went over the line to a robot with EGM.
+/// Counts and times of the line to a robot with EGM.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct EgmResult {
     /// Messages received that were new.

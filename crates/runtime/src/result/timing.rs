@@ -1,4 +1,4 @@
-//! What the result says of times: those of ticks, and of boards.
+//! Times of ticks and boards, in the result.
 
 use executive::{boards::coordinator::BoardFigures, histogram};
 use serde::Serialize;
@@ -20,7 +20,7 @@ impl From<histogram::Summary> for TickTimes {
     }
 }
 
-/// What a board with control processes did.
+/// Result of a board with control processes.
 #[derive(Clone, Debug, Serialize)]
 pub struct BoardResult {
     /// Its number.

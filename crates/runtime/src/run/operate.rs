@@ -1,4 +1,4 @@
-//! Between two ticks: what operators ask for.
+//! Requests of operators, between two ticks.
 
 use std::path::{Component, Path};
 
@@ -17,7 +17,7 @@ use crate::{
 };
 
 impl Run {
-    /// What operators have asked for since the last tick. The next tick is the first to see it.
+    /// Carry out the requests since the last tick. The next tick is the first to see them.
     pub(super) fn operate(&mut self, tick: Tick) {
         let first = tick.next();
         if let Some((input, verdict)) = self.follow_load(tick) {
@@ -56,7 +56,7 @@ impl Run {
         self.operator.end_tick();
     }
 
-    /// Answer an input, and let it stand in the log.
+    /// Answer an input and log it.
     fn settle(&mut self, first: Tick, input: Input, verdict: Result<String, String>) {
         self.operator.count(&input, &verdict);
         let line = input.line(first, &verdict);
@@ -68,7 +68,7 @@ impl Run {
         }
     }
 
-    /// Play a job of the data directory in the place of the rest of the present one.
+    /// Play a job of the data directory instead of the rest of the present one.
     fn play(&mut self, tick: Tick, name: &str) -> Result<String, String> {
         let number = self.loads.played.saturating_add(1);
         let source = match self.asked.recorded_job(number) {
@@ -90,7 +90,8 @@ impl Run {
         Ok(format!("the job {name} plays, lines: {lines}"))
     }
 
-    /// A job that is begun while a run goes on loads nothing and hands nothing over, and the cell has what it needs.
+    /// Whether a job can be started during a run: it must load no blocks, not hand over, and need nothing that the cell
+    /// does not have.
     fn can_be_played(&self, job: &Job) -> Result<(), String> {
         if job.steps.is_empty() {
             return Err(format!("the job {} has no line", job.name));

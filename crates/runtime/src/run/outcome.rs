@@ -1,4 +1,4 @@
-//! What became of a run.
+//! The outcome of a run.
 
 use ::neighbours::workstation::player::BegunStep;
 use rcs_core::tick::TICK_S;
@@ -13,18 +13,18 @@ use crate::{
     verdict::Ending,
 };
 
-/// What became of a run.
+/// The outcome of a run.
 #[non_exhaustive]
 pub struct RunOutcome {
     /// How it ended.
     pub ending: Ending,
-    /// All that is known of it, for scripts.
+    /// The result, for scripts.
     pub result: RunResult,
     /// All steps of the job, those of the workstation included.
     pub steps: Vec<BegunStep>,
-    /// What became of the log, in words.
+    /// The log's file and size, or why it ended, as text.
     pub log: String,
-    /// The processes that took longest, in words.
+    /// The slowest processes, as text.
     pub slowest: String,
     /// What a person has to do before a job that has failed can go on.
     pub remedy: Option<&'static str>,
@@ -116,7 +116,7 @@ impl Run {
         }
     }
 
-    /// What the data base holds at the end.
+    /// Items in the data base at the end.
     fn items(&mut self) -> Vec<ItemResult> {
         let items = self.neighbours.items().inspect_err(|why| {
             self.observer.message(&format!("the items cannot be listed: {why}"));
@@ -124,7 +124,7 @@ impl Run {
         items.unwrap_or_default().into_iter().map(Into::into).collect()
     }
 
-    /// End the log and say what became of it. A log that broke does not make a finished job a failed one.
+    /// End the log and describe it. A finished job stays finished if its log could not be written.
     fn finish_log(&mut self, ending: &Ending, result: &mut RunResult) -> String {
         let Some(log) = self.log.take() else { return "none".to_owned() };
         let outcome = ending.text().to_owned();

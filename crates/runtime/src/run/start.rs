@@ -1,4 +1,4 @@
-//! What comes before the first tick.
+//! The start of a run, before the first tick.
 
 use depc::host::{PATIENCE_TICKS, RESTART_TICKS};
 use executive::{
@@ -28,7 +28,7 @@ use crate::{
     workstation::SimulatedWorkstation,
 };
 
-/// Ticks that the first answer of a robot controller at a port may take: it may be powered up after the run has begun.
+/// Ticks to wait for the first answer of a robot controller at a port: it may be powered up after the run has begun.
 fn first_patience(config: &RunConfig) -> Option<u16> {
     if config.robot.kind == RobotKind::Sim {
         return None;
@@ -38,7 +38,7 @@ fn first_patience(config: &RunConfig) -> Option<u16> {
     Some(u16::try_from(wait).unwrap_or(u16::MAX).max(patience))
 }
 
-/// Shared memory is a convenience: a run that cannot have it says so and goes on.
+/// Shared memory is optional: if it is not available the run prints a message and goes on.
 fn publisher(config: &RunConfig, name: &RunName, observer: &mut dyn Observer) -> Option<Publisher> {
     if !config.shared_memory {
         return None;
@@ -67,7 +67,7 @@ impl Run {
         Self::start(config, None, observer)
     }
 
-    /// Like [`Run::new`], with a robot of the caller's own in the place of that of the configuration.
+    /// Like [`Run::new`], with a robot of the caller instead of that of the configuration.
     ///
     /// # Errors
     /// As [`Run::new`].

@@ -1,4 +1,4 @@
-//! What a run tells its log, its viewers and its operators.
+//! What a run sends to its log, its viewers and its operators.
 
 use interfaces::CommonMemory;
 use plant::CellEvent;
@@ -16,7 +16,7 @@ impl Run {
         }
     }
 
-    /// Tell the log of the next tick's cell, and of what happened in it.
+    /// Log the cell of the next tick, and its events.
     pub(super) fn show_cell(&mut self) {
         let tick = self.runner.tick().next();
         let Some(log) = &mut self.log else { return self.fresh.clear() };
@@ -30,7 +30,7 @@ impl Run {
         log.cell(tick, &self.workstation.cell, self.robot.egm().map(EgmPort::frames));
     }
 
-    /// Show programs outside the cell as a tick has left it. A robot elsewhere has none.
+    /// Publish the cell after a tick to other programs. With a robot at a port there is none.
     pub(super) fn publish_cell(&mut self, tick: Tick) {
         let publisher = self.runner.publisher().filter(|_| !self.robot.is_elsewhere());
         if let Some(publisher) = publisher {
@@ -40,7 +40,7 @@ impl Run {
         }
     }
 
-    /// Say what the line to the robot suffers, as soon as it is something else.
+    /// Log the state of the line to the robot when it changes.
     pub(super) fn watch_link(&mut self, tick: Tick, memory: &CommonMemory) {
         if memory.t3i.status.link_running {
             self.first_patience = None;
@@ -54,7 +54,7 @@ impl Run {
         }
     }
 
-    /// The job has begun to wait: who looks at the program or its log is told, too.
+    /// The job has begun to wait: send it also to the terminal and the log.
     pub(super) fn tell_operators(&mut self, tick: Tick) {
         let Some(event) = self.neighbours.operator_news().map(Event::Waits) else { return };
         self.observer.message(&format!("tick {tick}: {event}"));
@@ -81,7 +81,7 @@ impl Run {
         }
     }
 
-    /// What neighbours say beside their mailboxes is an event of the run; Task learns no more than their statuses tell.
+    /// Remarks of neighbours beside their mailboxes are events of the run; Task reads only their statuses.
     pub(super) fn note_neighbours(&mut self, tick: Tick) {
         for event in self.neighbours.events() {
             self.log_event(tick, &event);
