@@ -1,18 +1,17 @@
 //! When ticks are run (docs/design/tick.md "Grid").
 //!
-//! The controller itself has no clock. [`Clock::Fast`] begins a tick at once: the
-//! simulated cell advances 40 ms a tick, however long that takes. [`Clock::Real`] says it on an absolute 40
-//! ms [`Grid`]: slot `n` starts 40 ms x `n` after the start of the run, a late wake-up does not shift the
-//! slots after it, and a slot whose start has passed is skipped and counted. So this holds at every wake-up,
-//! by construction:
+//! The controller itself has no clock. [`Clock::Fast`] begins a tick at once: the simulated cell advances 40 ms a tick,
+//! however long that takes. [`Clock::Real`] begins ticks on an absolute 40 ms [`Grid`]: slot `n` starts 40 ms x `n`
+//! after the start of the run, a late wake-up does not shift the slots after it, and a slot whose start has passed is
+//! skipped and counted. This holds at every wake-up:
 //!
 //! ```text
 //! ticks run + slots skipped = time elapsed / 40 ms    (rounded down)
 //! ```
 //!
-//! Sleeping has a price: the system wakes a thread some ten microseconds late, and 40 ms are enough for other
-//! programs to take the caches. A caller that must be ready when a slot begins calls [`Grid::wake_early`], makes
-//! use of the time that is left, and then [`Grid::wait`]s, awake, for the slot.
+//! The system wakes a sleeping thread some ten microseconds late, and within 40 ms other programs evict its data from
+//! the caches. A caller that must be ready when a slot begins calls [`Grid::wake_early`], warms up in the time that is
+//! left, and then calls [`Grid::wait`], which stays awake until the slot.
 
 use std::time::Duration;
 
@@ -29,7 +28,7 @@ pub const SLOT: Duration = Duration::from_millis(TICK_MS);
 /// cold caches (some 0.1 ms), and little beside a slot: a core is kept awake for at most 1.25 % of the time.
 pub const LEAD: Duration = Duration::from_micros(500);
 
-/// Where time comes from; tests bring their own.
+/// Source of time; tests have their own.
 pub trait Time {
     /// Time since some fixed moment; never goes back.
     fn now(&mut self) -> Duration;
@@ -148,13 +147,13 @@ impl<T: Time> Grid<T> {
         self.skipped
     }
 
-    /// The slot that runs: time elapsed at the last wake-up, in 40 ms.
+    /// The present slot: time elapsed at the last wake-up, in units of 40 ms.
     #[must_use]
     pub const fn slot(&self) -> u64 {
         self.slot
     }
 
-    /// How long after the beginning of the slot that it was for the last [`wait`](Self::wait) returned.
+    /// How late the last [`wait`](Self::wait) returned, from the beginning of its slot.
     #[must_use]
     pub const fn late(&self) -> Duration {
         self.late

@@ -1,8 +1,8 @@
-//! The ticks of a ladder, and what follows from them alone: common memory, digest, the first failure.
+//! The ticks of a ladder, with common memory, digest and the first failure.
 //!
-//! Common memory is doubled by tick parity: the processes read what stands in one half and write the other,
-//! so that their order within a tick cannot matter. After every tick the buffers go into the digest, and the
-//! statuses are watched for the first sign of a failure.
+//! Common memory is doubled by tick parity: the processes read one half and write the other, so that their order within
+//! a tick has no effect. After every tick the buffers go into the digest, and the statuses are watched for the first
+//! sign of a failure.
 //!
 //! A [`Course`] reads no clock and allocates nothing once it is made. It can be cloned: the copy goes on from the same
 //! tick. [`Runner`](crate::runner::Runner) times a course and publishes it; `rcs-run campaign` forks it.
@@ -21,8 +21,8 @@ pub trait Levels<Data: ?Sized> {
     /// Why a tick could not be finished.
     type Error;
 
-    /// One tick of all processes: read `before` and `external`, write `after`, all of it; calls `observe` after
-    /// each stage, as [`Ladder::step_observed`] does. What is not told of counts as the executive's.
+    /// One tick of all processes: read `before` and `external`, write `after`, all of it; calls `observe` after each
+    /// stage, as [`Ladder::step_observed`] does. Time outside of the stages counts as the executive's.
     ///
     /// # Errors
     /// If processes that run elsewhere did not take part. There must be no further tick then.
@@ -36,7 +36,7 @@ pub trait Levels<Data: ?Sized> {
         observe: &mut dyn FnMut(Option<ProcessId>),
     ) -> Result<(), Self::Error>;
 
-    /// A copy that can warm up a tick; `None` if there is nothing here that a warm-up would make faster.
+    /// A copy that can warm up a tick; `None` if a warm-up would make nothing faster.
     fn shadow(&self) -> Option<Box<Self>>
     where
         Self: Sized,
@@ -107,11 +107,10 @@ impl<L> Course<L> {
         }
     }
 
-    /// Run the next tick on what came from outside for it, and call `observe` after each stage of it.
-    /// [`sum_up`](Self::sum_up) follows.
+    /// Run the next tick on its external inputs, and call `observe` after each stage. [`sum_up`](Self::sum_up) follows.
     ///
     /// # Errors
-    /// Those of the levels. The tick does not count then, and common memory is as the tick before left it.
+    /// Those of the levels. Then the tick does not count, and common memory stays as after the tick before.
     pub fn step<Data: ?Sized>(
         &mut self,
         external: &ExternalInputs,
@@ -165,7 +164,7 @@ impl<L> Course<L> {
         self.tick
     }
 
-    /// Common memory as the last tick left it.
+    /// Common memory after the last tick.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
         let [even, odd] = &self.halves;

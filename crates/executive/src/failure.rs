@@ -1,9 +1,8 @@
-//! Says why something failed: which process, which decision table, which row, in one sentence.
+//! Explains a failure in one sentence: process, decision table and row.
 //!
-//! A reason travels up the ladder unchanged, a tick a level, so the process that knows most is the lowest one
-//! that bears the reason which arrived at Task. By the time it arrives there the lower processes have moved
-//! on: [`Watch`] therefore keeps, for each process, common memory as it was in the tick when the process
-//! began to report its reason.
+//! A reason travels up the ladder unchanged, a tick a level, so the origin is the lowest process that reports the
+//! reason which arrived at Task. When it arrives there, the lower processes may be doing something else: [`Watch`]
+//! therefore keeps, for each process, common memory as it was in the tick when the process began to report its reason.
 
 use interfaces::{CommonMemory, Detail, ExternalInputs, Fault, Header, HwsCommand, Reason};
 use levels::ladder::{PROCESS_COUNT, ProcessId, ProcessInfo};
@@ -22,15 +21,15 @@ pub const PROCESSES: usize = PROCESS_COUNT;
 pub struct Failure {
     /// Tick in which it began.
     pub tick: Tick,
-    /// The process that knows why; the manual's name.
+    /// The process that reports the reason; the manual's name.
     pub process: String,
     /// Its decision table, if one was used.
     pub table: Option<String>,
     /// The row that fired, from 1.
     pub row: Option<u8>,
-    /// The whole in one sentence.
+    /// The failure in one sentence.
     pub text: String,
-    /// The link to the robot is lost, or the robot was stopped: not a matter of the job.
+    /// The link to the robot is lost, or the robot was stopped: not a failure of the job.
     pub stopped: bool,
 }
 
@@ -45,7 +44,7 @@ struct Cause {
     detail: Detail,
 }
 
-/// Looks at every tick and keeps when, and amid what, each process began to report what it reports now.
+/// Watches every tick and keeps, for each process, when its present report began and common memory in that tick.
 #[derive(Clone)]
 pub struct Watch {
     last: [Fault; PROCESSES],
@@ -59,8 +58,7 @@ impl Default for Watch {
 }
 
 impl Watch {
-    /// Look at a tick: what came from outside, what the processes read, and what they wrote. Does not
-    /// allocate.
+    /// Observe a tick: external inputs, what the processes read, and what they wrote. Does not allocate.
     pub fn observe(
         &mut self,
         tick: Tick,
@@ -140,7 +138,7 @@ fn while_doing(process: ProcessId, cause: &Cause) -> String {
     if command.is_empty() { "without a command".to_owned() } else { format!("while it executed {command}") }
 }
 
-/// The command that a process has, as one says it; empty for none.
+/// The command of a process as text; empty for none.
 #[must_use]
 pub fn command(process: ProcessId, hws: &HwsCommand, memory: &CommonMemory) -> String {
     memory.show_command(process, |command| command.to_string()).unwrap_or_else(|| hws.to_string())
@@ -164,7 +162,7 @@ pub fn present_commands(
     lines.collect::<Vec<_>>().join("; ")
 }
 
-/// The commands that processes have not finished, as people say them: `Grip executed CLOSE-GRIP (...)`; empty for none.
+/// The commands that processes have not finished, as text: `Grip executed CLOSE-GRIP (...)`; empty for none.
 #[must_use]
 pub fn unfinished_commands(
     of: impl Iterator<Item = ProcessId>,

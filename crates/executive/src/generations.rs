@@ -1,10 +1,10 @@
 //! Generations of the task data: blocks that are loaded while the robot runs
 //! (docs/design/ownership.md "Reload").
 //!
-//! A reload is built and checked outside the tick. It becomes visible as a whole between two ticks, and only
-//! when no command is being executed: a command in progress keeps the records that it began with. Record
-//! numbers of names that existed stay the same from one generation to the next, so that what the processes
-//! remember between commands (where the robot is, what it holds) stays true.
+//! A reload is built and checked outside the tick. It becomes visible as a whole between two ticks, and only when no
+//! command is being executed: a command in progress keeps the records that it began with. Record numbers of names that
+//! existed stay the same from one generation to the next, so that the states that processes keep between commands
+//! (where the robot is, what it holds) stay valid.
 
 use std::collections::VecDeque;
 
@@ -37,8 +37,7 @@ impl Generations {
         self.number
     }
 
-    /// Let task data wait for the end of the command in progress. Several that wait become visible one after
-    /// the other, a tick each.
+    /// Queue task data until the command in progress has ended. Several become visible one after the other, one a tick.
     pub fn propose(&mut self, store: Store) {
         self.waiting.push_back(store);
     }
@@ -54,7 +53,7 @@ impl Generations {
         true
     }
 
-    /// Between two ticks: use what waits, if `memory` says that no command is being executed. True if the
+    /// Between two ticks: use the queued task data if no command is being executed according to `memory`. True if the
     /// generation is a new one.
     pub fn advance(&mut self, memory: &CommonMemory) -> bool {
         if is_busy(memory) {

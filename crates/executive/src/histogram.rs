@@ -1,5 +1,4 @@
-//! Times of ticks in a fixed number of buckets, so that a run of any length is summed up without an
-//! allocation.
+//! Times of ticks in a fixed number of buckets, so that a run of any length needs no allocation.
 
 /// Buckets an octave: a percentile is right to 1/32, about 3 %.
 const PER_OCTAVE: u64 = 32;
@@ -16,7 +15,7 @@ pub struct Histogram {
     max: u64,
 }
 
-/// What people want to know of a histogram, in microseconds.
+/// Summary of a histogram, in microseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Summary {
     /// Half of the values are at most this.

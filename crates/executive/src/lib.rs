@@ -1,12 +1,12 @@
 //! Runs the levels: clocks, boards, common memory, real-time set-up.
 //!
-//! The control processes are pure state machines; this crate gives them time and surroundings. [`course`]
-//! steps them with tick-parity buffers and sums up what they did, [`runner`] times that and publishes it, [`clock`] says when, [`realtime`] asks the
-//! system for punctuality, [`timing`] says where the time goes and [`overrun`] what is done if there is too little
-//! of it, [`serial`] is the line to a real robot, [`alloc`] proves that nothing is allocated
-//! on the way, [`boards`] spreads the processes over operating system processes, [`memory`] lets others look on,
-//! [`status`] sums up what they see, [`generations`] lets task data be loaded between commands, and
-//! [`failure`] finds the process, the table and the row that explain why something went wrong.
+//! The control processes are pure state machines; this crate runs them. [`course`] steps them with tick-parity buffers
+//! and keeps digest and first failure, [`runner`] times the steps and publishes the buffers, [`clock`] gives the time
+//! of each tick, [`realtime`] asks the system for real-time priority, [`timing`] measures the parts of a tick,
+//! [`overrun`] reacts to skipped slots, [`serial`] is the line to a real robot, [`alloc`] counts allocations,
+//! [`boards`] distributes the processes over operating system processes, [`memory`] publishes the buffers in shared
+//! memory, [`status`] sums them up, [`generations`] exchanges task data between commands, and [`failure`] finds
+//! process, table and row of a failure.
 
 #![deny(unsafe_code)]
 

@@ -1,8 +1,8 @@
-//! What the machine is, as far as it decides about punctuality: kernel, preemption, clock frequency governor.
+//! Properties of the machine that affect real time: kernel, preemption, clock frequency governor.
 
 use std::{fmt, fs};
 
-/// What was found.
+/// The properties found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Machine {
     /// Release of the kernel, or why it is not known.
@@ -14,7 +14,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Look at this machine. What cannot be read is not there.
+    /// Examine this machine. Properties that cannot be read are left out.
     #[must_use]
     pub fn look() -> Self {
         let read = |path: &str| fs::read_to_string(path).map(|text| text.trim().to_owned()).ok();

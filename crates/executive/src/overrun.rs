@@ -1,12 +1,10 @@
-//! What is done about slots of the 40 ms grid that were skipped.
+//! The reaction to skipped slots of the 40 ms grid.
 //!
-//! A skipped slot is always counted, with the part of the tick before that took too long, or the system that
-//! woke the thread too late. What else happens is for the user to say ([`Policy`]): nothing; the robot holds
-//! until the ticks are punctual again; or it comes to rest and the run ends. Holding is what an operator would
-//! do: the velocity knob goes to zero, Prim ramps down on its path and keeps the position
-//! (docs/design/motion.md "Knob"), every
-//! grip stays as it is. The knob is an input of the controller like any other, so it is in the log, and a
-//! replay needs to know nothing of clocks.
+//! A skipped slot is always counted, with its cause: a part of the tick before that took too long, or the system that
+//! woke the thread too late. The user chooses the further reaction ([`Policy`]): none; the robot holds until ticks are
+//! on time again; or it comes to rest and the run ends. To hold, the velocity knob is set to zero: Prim ramps down on
+//! its path and keeps the position (docs/design/motion.md "Knob"), and every grip stays as it is. The knob is an input
+//! of the controller like any other, so it is logged, and a replay needs no clock.
 
 use std::{fmt, str::FromStr, time::Duration};
 
@@ -18,10 +16,10 @@ use crate::{
     timing::{Stage, StageTimes},
 };
 
-/// Ticks in a row, one second, that must be punctual before a robot that holds goes on.
+/// Ticks in a row, one second, that must be on time before a robot that holds goes on.
 pub const PUNCTUAL: u32 = 25;
 
-/// What is done about skipped slots.
+/// The reaction to skipped slots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Policy {
     /// They are counted.
@@ -87,7 +85,7 @@ impl fmt::Display for Overrun {
     }
 }
 
-/// What the robot is made to do.
+/// The present reaction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Reaction {
     None,
@@ -168,7 +166,7 @@ impl Overruns {
         }
     }
 
-    /// The velocity knob as the controller is to see it.
+    /// The velocity knob for the controller.
     #[must_use]
     pub const fn knob(&self, knob: u16) -> u16 {
         match self.reaction {
@@ -191,8 +189,7 @@ impl Overruns {
         (self.rest.is_at_rest() || *ticks >= AT_LAST).then_some(*because)
     }
 
-    /// Skipped slots by what is to blame: `None` is the system that woke the thread late. What is not to blame
-    /// for any is left out.
+    /// Skipped slots by cause: `None` if the system woke the thread late. Parts without skipped slots are left out.
     pub fn by_part(&self) -> impl Iterator<Item = (Option<Stage>, u64)> {
         let parts = self.parts.iter().map(|(part, count)| (Some(*part), *count));
         std::iter::once((None, self.waking)).chain(parts).filter(|(_, count)| *count > 0)

@@ -1,10 +1,9 @@
-//! Asks the system for what real time needs, and says plainly what it did not get.
+//! Asks the system for what real time needs, and reports what was not granted.
 //!
-//! Asked for are: no page of the program is ever fetched from disk or made in the middle of a tick (`mlockall`,
-//! and a stack that has been touched), the thread of the ticks comes before everything that is not real time
-//! (`SCHED_FIFO`), it stays on one core, and the cores do not fall into a sleep from which they take long to
-//! wake (`/dev/cpu_dma_latency`). None of them is needed for right results, only for punctual ones, so a
-//! refusal is a sentence in the verdict and not an error.
+//! It asks for: no page faults in a tick (`mlockall`, and a stack that has been touched), priority of the tick thread
+//! over everything that is not real time (`SCHED_FIFO`), one fixed core, and no deep idle states of the cores
+//! (`/dev/cpu_dma_latency`). None of them is needed for correct results, only for ticks on time, so a refusal is a note
+//! in the verdict and not an error.
 //!
 //! Threads inherit policy and core: start log and progress threads before [`acquire`] is called.
 
@@ -30,7 +29,8 @@ pub const PRIORITY: u8 = 80;
 
 /// Stack that is touched beforehand; a tick needs a fraction of it.
 const STACK_BYTES: usize = 512 * 1024;
-/// While a program holds this file open, cores do not sleep deeper than it has written: microseconds.
+/// While a program holds this file open, cores use no idle state with a longer wake-up time than the written one,
+/// microseconds.
 const IDLE_STATES: &str = "/dev/cpu_dma_latency";
 
 /// One of the things that were asked for.
@@ -82,15 +82,15 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// What was granted, for as long as this lives: idle states are limited only so long.
+/// What was granted. Idle states are limited until this is dropped.
 pub struct RealTime {
     /// What was granted and what was not.
     pub verdict: Verdict,
     _idle_states: Option<File>,
 }
 
-/// Ask for everything, for the calling thread. `core` is the one to run on; without it the highest that is
-/// allowed, since interrupts and other programs prefer low ones.
+/// Ask for everything, for the calling thread. `core` is the one to run on; without it the highest number that the
+/// process may use, because interrupts and other programs prefer low ones.
 #[must_use]
 pub fn acquire(core: Option<usize>) -> RealTime {
     let mut verdict = Verdict::default();
@@ -123,7 +123,7 @@ fn in_words(error: thread_priority::Error) -> String {
     }
 }
 
-/// Has the system lay pages under the stack before the first tick needs them.
+/// Allocates the pages of the stack before the first tick needs them.
 #[inline(never)]
 fn touch_stack() {
     let mut stack = [0_u8; STACK_BYTES];

@@ -1,11 +1,11 @@
-//! Does the commanded frame rest? So that a stream of points ends at rest, whatever ends the run.
+//! Detects that the commanded frame rests, so that the stream of points ends at rest, however the run ends.
 
 use geometry::pose::WireFrame;
 use interfaces::CommonMemory;
 
 /// The robot is at rest when the commanded frame has not changed for so many ticks.
 pub const AT_REST: u32 = 5;
-/// It is taken to be at rest after so many ticks, 3 s, with the velocity knob at zero: no ramp takes longer.
+/// It counts as at rest after so many ticks, 3 s, with the velocity knob at zero: no ramp takes longer.
 pub const AT_LAST: u32 = 75;
 
 /// Looks at the commanded frame after each tick.

@@ -1,12 +1,12 @@
-//! Steps the ladder, one tick after the other, and sums up what it did.
+//! Steps the ladder, one tick after the other, with times and publication.
 //!
 //! The ticks themselves are a [`Course`]. A runner times them and, if asked for, publishes their buffers in shared
 //! memory.
 //!
-//! A tick takes some microseconds if its code and its data are in the caches, and ten times as long if they
-//! are not; in the 40 ms between two ticks they go. The processes are pure state machines, so a tick can be
-//! *warmed up* ([`Runner::warm_up`]): a copy of the ladder runs it on what is there already, and the result
-//! is thrown away. The caches, the translation buffers and the branch predictor keep what they have learned.
+//! A tick takes some microseconds if its code and its data are in the caches, and ten times as long if they are not;
+//! within the 40 ms between two ticks they are evicted. The processes are pure state machines, so a tick can be *warmed
+//! up* ([`Runner::warm_up`]): a copy of the ladder runs it on the present buffers, and the result is discarded. Caches,
+//! translation buffers and branch predictor are then warm.
 
 use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{digest::Digest, tick::Tick};
@@ -53,8 +53,8 @@ impl<L> Runner<L> {
         }
     }
 
-    /// Run the next tick on what came from outside for it. `skipped` are the slots of the grid that were
-    /// skipped so far; they are published, and change nothing else.
+    /// Run the next tick on its external inputs. `skipped` are the slots of the grid that were skipped so far; they are
+    /// published, and change nothing else.
     ///
     /// Allocations are counted from here to the end of the call. The time that counts as the controller's is
     /// that of the processes and of publishing; the digest and the watch for failures belong to the
@@ -103,8 +103,8 @@ impl<L> Runner<L> {
         self.course.levels_mut()
     }
 
-    /// Run the next tick on a copy and forget it: see the head of this module. Changes nothing that another process
-    /// can see; what was published last is published once more. Between two ticks, when there is time.
+    /// Run the next tick on a copy and forget it: see the head of this module. Changes nothing that another process can
+    /// see; the last buffers are published once more. Call it between two ticks, when there is time.
     ///
     /// The first warm-up makes the copy, which allocates; no later one does.
     pub fn warm_up<Data: ?Sized>(&mut self, external: &ExternalInputs, data: &Data)
@@ -122,8 +122,7 @@ impl<L> Runner<L> {
         }
     }
 
-    /// Stopwatch of the parts of a tick; who runs more of a tick than [`step`](Self::step) tells it of the
-    /// other parts.
+    /// Stopwatch of the parts of a tick; a caller marks the parts that [`step`](Self::step) does not run.
     pub const fn stage_times_mut(&mut self) -> &mut StageTimes {
         &mut self.stage_times
     }

@@ -1,6 +1,5 @@
-//! A run at a glance: for each process its command, its status and the row that fired, and what the executive
-//! counts. What monitors print, and what is mirrored for programs that cannot read the buffers
-//! ([`crate::memory::Mirror`]).
+//! Summary of a run: for each process its command, its status and the row that fired, and the executive's counts.
+//! Monitors print it, and it is mirrored for programs that cannot read the buffers ([`crate::memory::Mirror`]).
 
 use std::fmt;
 
@@ -30,7 +29,7 @@ pub struct ProcessStatus {
     pub suspended: bool,
     /// It runs in another system.
     pub elsewhere: bool,
-    /// Nothing has come from it in this tick.
+    /// It has written nothing in this tick.
     pub lost: bool,
 }
 
@@ -41,7 +40,7 @@ pub struct Status {
     pub run: String,
     /// The tick that was run last.
     pub tick: u64,
-    /// Time that the robot went through, seconds.
+    /// Simulated time, s.
     pub simulated_s: f64,
     /// Slots of the 40 ms grid that were skipped.
     pub skipped: u64,
@@ -58,7 +57,7 @@ pub struct Status {
 }
 
 impl Status {
-    /// Sum up what a tick left.
+    /// The status after a tick.
     #[must_use]
     pub fn of(run: &str, external: &ExternalInputs, memory: &CommonMemory, pulse: &Pulse) -> Self {
         let processes = ProcessId::ALL.iter().zip(Ladder::processes()).map(|(&id, info)| {

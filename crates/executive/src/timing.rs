@@ -1,9 +1,9 @@
-//! Where the time of a tick goes: each part of it, timed.
+//! Times of the parts of a tick.
 //!
-//! A tick is a chain of parts, one after the other; the code that has finished one calls
-//! [`StageTimes::mark`], which takes the time since the part before. Nothing is summed up until the tick is
-//! over ([`StageTimes::finish`]), so that measuring costs a look at the clock a part. If slots of the grid
-//! were skipped, [`StageTimes::worst`] says which part is to blame.
+//! A tick is a chain of parts, one after the other; the code that has finished one calls [`StageTimes::mark`], which
+//! takes the time since the part before. Nothing is summed up until the tick is over ([`StageTimes::finish`]), so that
+//! each part costs one read of the clock. If slots of the grid were skipped, [`StageTimes::worst`] gives the part that
+//! caused it.
 
 use std::{fmt, time::Instant};
 
@@ -14,8 +14,7 @@ use crate::histogram::{Histogram, Summary};
 /// A part of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// What came over a serial line, task data that are to be taken up, and what the log is told before the
-    /// controller runs.
+    /// Receive from a serial line, exchange of task data, and log entries before the controller runs.
     Inputs,
     /// A control process.
     Process(ProcessId),
@@ -23,7 +22,7 @@ pub enum Stage {
     Buffers,
     /// Digest, and the watch for failures.
     Bookkeeping,
-    /// What goes over a serial line.
+    /// Send over a serial line.
     Line,
     /// Hand-off to the log.
     Log,

@@ -30,7 +30,7 @@ pub enum ClientError {
     /// The run has ended the session, and says why.
     #[error("the run has ended the session: {0}")]
     Refused(String),
-    /// It is no run that answers.
+    /// The answer is not from a run.
     #[error(transparent)]
     Protocol(#[from] ProtocolError),
     /// The run does not answer.
@@ -168,7 +168,7 @@ impl Client {
         Ok(self.stream.write_all(line.as_bytes())?)
     }
 
-    /// Take in what has come; false at the end of the session.
+    /// Read what has arrived; false at the end of the session.
     fn read(&mut self) -> io::Result<bool> {
         let mut bytes = [0; 512];
         let count = self.stream.read(&mut bytes)?;

@@ -1,4 +1,4 @@
-//! How an operator reaches a run (IV): lines of text over a Unix socket.
+//! Connection of an operator to a run (IV): lines of text over a Unix socket.
 //!
 //! ```text
 //!  console ── Client ──socket── session thread ──bounded queue── run, between two ticks
@@ -9,7 +9,7 @@
 //! * [`Listener`]: the side of the run, one thread a session; its [`Entrance`] is for a network;
 //! * [`Client`]: the side of a console or a script.
 //!
-//! What the lines mean is the run's to say.
+//! The run defines the meaning of the lines.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

@@ -26,9 +26,9 @@ use crate::protocol::{self, Answer, Event, GREETING, Lines, Name, ProtocolError,
 
 /// Sessions at a time.
 const SESSIONS: usize = 8;
-/// Events that wait for the next tick. A session that says more waits.
+/// Events that wait for the next tick. A session that sends more waits.
 const QUEUE: usize = 64;
-/// A session has to say who it is within this time.
+/// Time limit for the first line of a session, with its name.
 const HELLO: Duration = Duration::from_secs(2);
 
 /// An event of a session, as the run gets it.
@@ -53,7 +53,7 @@ impl Given {
     }
 }
 
-/// Lets operators connect to a run, as long as it lives.
+/// Lets operators connect to a run, until it is dropped.
 pub struct Listener {
     path: PathBuf,
     events: Receiver<Given>,
@@ -67,7 +67,7 @@ impl Listener {
     /// Listen at a path, which only this user may use. Its directory must be this user's alone.
     ///
     /// # Errors
-    /// Why the socket or the thread cannot be had.
+    /// If the socket or the thread cannot be made.
     pub fn start(path: &Path, run: &str) -> io::Result<Self> {
         let socket = UnixListener::bind(path)?;
         fs::set_permissions(path, fs::Permissions::from_mode(0o600))?;
@@ -124,7 +124,7 @@ fn say(stream: &UnixStream, line: &str) -> io::Result<()> {
     if sent == line.len() { Ok(()) } else { Err(io::ErrorKind::WriteZero.into()) }
 }
 
-/// Nothing is read or written any more; it may be closed already.
+/// End reading and writing; the stream may be closed already.
 fn end(stream: &UnixStream) {
     let _ = stream.shutdown(std::net::Shutdown::Both);
 }
@@ -240,7 +240,7 @@ struct Session {
 enum End {
     /// It or the run has ended.
     Closed,
-    /// What it says is not the protocol.
+    /// It has broken the protocol.
     Wrong(ProtocolError),
 }
 

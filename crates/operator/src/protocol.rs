@@ -2,14 +2,14 @@
 //!
 //! | direction | line | meaning |
 //! |---|---|---|
-//! | to the run | `hello NAME` | first line: who speaks, 1 to 24 letters, digits, `-`, `_` and `.` |
+//! | to the run | `hello NAME` | first line: name of the operator, 1 to 24 letters, digits, `-`, `_` and `.` |
 //! | to the run | `NUMBER LINE` | a request; the number comes back with its answer |
 //! | to the run | an empty line | the operator is still there |
 //! | from the run | `rcs-operator 1 RUN` | answer to `hello` |
 //! | from the run | `NUMBER ok TEXT` | the request was carried out in the tick that TEXT begins with |
 //! | from the run | `NUMBER refused TEXT` | it was not, and why |
 //!
-//! A line ends with a line feed and has at most [`LINE`] bytes of printable UTF-8 before it. What breaks these
+//! A line ends with a line feed and has at most [`LINE`] bytes of printable UTF-8 before it. A line that breaks these
 //! rules ends the session.
 
 use std::{fmt, str::FromStr, time::Duration};
@@ -18,7 +18,7 @@ use std::{fmt, str::FromStr, time::Duration};
 pub const LINE: usize = 240;
 /// First word of the run's first line, and the version of the protocol.
 pub const GREETING: &str = "rcs-operator 1";
-/// A session that holds a stick or a button has to send something in this time, or both are let go.
+/// A session that holds a stick or a button has to send something in this time, or both are released.
 pub const SILENCE: Duration = Duration::from_millis(250);
 /// Bytes of a name.
 const NAME: usize = 24;
@@ -48,7 +48,7 @@ impl fmt::Display for Name {
     }
 }
 
-/// A name that cannot be.
+/// A name that is not allowed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the name of an operator has 1 to {NAME} letters, digits, -, _ and .; found {0:?}")]
 pub struct NameError(String);
@@ -67,12 +67,12 @@ impl FromStr for Name {
     }
 }
 
-/// What a session does.
+/// An event of a session.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
     /// It begins.
     Connected,
-    /// It says something.
+    /// It sends a line.
     Line(String),
     /// Nothing has come for [`SILENCE`].
     Silent,
@@ -80,7 +80,7 @@ pub enum Event {
     Disconnected,
 }
 
-/// How the events that are no lines stand in a log; no line of a session begins like this.
+/// Text in a log of events that are not lines; no line of a session begins like this.
 const CONNECTED: &str = "(connected)";
 const SILENT: &str = "(silent)";
 const DISCONNECTED: &str = "(disconnected)";
@@ -107,12 +107,12 @@ impl From<&str> for Event {
     }
 }
 
-/// What becomes of a request.
+/// The answer to a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
     /// Number of the request.
     pub number: u32,
-    /// It was carried out: in which tick, and what there is to say; or why not.
+    /// If it was carried out: the tick and a text; else why not.
     pub verdict: Result<String, String>,
 }
 
@@ -128,13 +128,13 @@ impl fmt::Display for Answer {
     }
 }
 
-/// Why a line is none of the protocol.
+/// Why a line breaks the protocol.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProtocolError {
-    /// The session says who it is first.
+    /// The first line must be the name of the session.
     #[error("hello NAME was expected as the first line; found {0:?}")]
     NoHello(String),
-    /// Its name cannot be.
+    /// Its name is not allowed.
     #[error(transparent)]
     Name(#[from] NameError),
     /// A request without a number, or without words.

@@ -1,9 +1,8 @@
-//! Board 0's side of `--boards split`: gives the pulse, waits for the stamps, gathers common memory.
+//! Board 0's side of `--boards split`: gives the pulse, waits for the stamps, collects common memory.
 //!
-//! To the run the boards are a ladder like any other ([`Levels`]): what stands in common memory after a tick
-//! is the same, to the bit. What can go wrong is new: a board that does not stamp. Then there are no more
-//! pulses, so that no process anywhere takes another step and no further point goes to the robot; valves and
-//! fingers stay as they are.
+//! For the run the boards are a ladder like any other ([`Levels`]): common memory after a tick is the same, bit for
+//! bit. There is one new failure: a board that does not stamp. Then board 0 gives no more pulses. So no process is
+//! stepped again and the robot gets no further point; valves and fingers stay as they are.
 
 use std::{
     process::{Child, ExitStatus},
@@ -36,26 +35,26 @@ use crate::{
 
 /// Name of board 0 among the nodes of a run.
 pub const BOARD_0: &str = "board-0";
-/// How long board 0 waits before it looks for itself.
+/// How long board 0 waits for a notification before it checks by itself.
 const LOOK: Duration = Duration::from_millis(10);
-/// Time between two looks for boards that are not there yet.
+/// Time between two checks for boards that have not joined yet.
 const GATHER: Duration = Duration::from_millis(20);
-/// Looks after which it is asked whether a board that was there still lives.
+/// Checks after which board 0 tests whether a board that had joined is still alive.
 const LIFE: u32 = 25;
-/// How long boards have to end by themselves when the run is over.
+/// Time limit for boards to end by themselves when the run is over.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// A change among the boards while they come together.
+/// A board joins or leaves before the first tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoardEvent {
-    /// One has come.
+    /// A board has joined.
     Came {
         /// Which.
         board: Board,
         /// Its process.
         pid: u32,
     },
-    /// One that had come is gone.
+    /// A board that had joined has left.
     Left {
         /// Which.
         board: Board,
@@ -64,17 +63,17 @@ pub enum BoardEvent {
     },
 }
 
-/// What board 0 knows of another board.
+/// State of another board in board 0.
 struct Seat {
     board: Board,
     /// Its process, if it was started from here.
     child: Option<Child>,
-    /// Its services, once it has come.
+    /// Its services, once it has joined.
     ports: Option<(Readers, ReportReader)>,
-    /// Those of boards that had the place before.
+    /// Services of earlier processes of this board.
     former: Vec<(Readers, ReportReader)>,
     report: BoardReport,
-    /// Allocations of those who had the place before.
+    /// Allocations of earlier processes of this board.
     former_allocations: u64,
     times: Box<Histogram>,
 }
@@ -92,7 +91,7 @@ impl Seat {
         }
     }
 
-    /// A process has the place.
+    /// A process has joined as this board.
     const fn has_come(&self) -> bool {
         self.report.pid != 0
     }
@@ -122,7 +121,7 @@ impl Seat {
     }
 }
 
-/// What a board did, for the result of the run.
+/// Figures of a board, for the result of the run.
 #[derive(Clone, Copy)]
 pub struct BoardFigures<'a> {
     /// The board.
@@ -137,8 +136,8 @@ pub struct BoardFigures<'a> {
     pub punctual: bool,
 }
 
-/// Board 0. Dropping it ends the run for all boards, reaps those that were started from here, and removes
-/// what was shared.
+/// Board 0. Dropping it ends the run for all boards, waits for the processes that it started, and removes the shared
+/// memory.
 pub struct Coordinator {
     name: RunName,
     // Taken out before the files are removed: iceoryx2 must have let go of them by then.
@@ -150,10 +149,10 @@ pub struct Coordinator {
 }
 
 impl Coordinator {
-    /// Set up the pulse of a run. What killed runs left behind is removed first.
+    /// Set up the pulse of a run. The remains of killed runs are removed first.
     ///
     /// # Errors
-    /// [`SharedMemoryError`] if this machine does not give the memory or the name is taken.
+    /// [`SharedMemoryError`] if there is not enough shared memory or the name is taken.
     pub fn create(name: &RunName, card: &RunCard) -> Result<Self, SharedMemoryError> {
         runs::clean()?;
         memory::have_room()?;
@@ -177,16 +176,16 @@ impl Coordinator {
         &self.name
     }
 
-    /// Take charge of a board's process that was started from here.
+    /// Register a board's process that this process has started.
     pub fn adopt(&mut self, board: Board, child: Child) {
         self.seats[board.index()].child = Some(child);
     }
 
-    /// Wait until all boards are there and read each other. `heard` is told of each that comes or leaves
-    /// again, and which are missing then.
+    /// Wait until all boards have joined and read each other. `heard` is called for each board that joins or leaves,
+    /// with the list of those still missing.
     ///
     /// # Errors
-    /// [`SplitError`] if one does not come, or comes with other data.
+    /// [`SplitError`] if a board does not join, or has other data.
     pub fn gather(
         &mut self,
         patience: Duration,
@@ -235,7 +234,7 @@ impl Coordinator {
         self.seats.iter().filter(|seat| are_so(seat)).map(|seat| seat.board).collect()
     }
 
-    /// Look for a board; true if it has come since the last look.
+    /// Check for a board; true if it has joined since the last check.
     fn look_for(&mut self, at: usize) -> Result<bool, SplitError> {
         let (Some((_, node)), Some(seat)) = (&self.ports, self.seats.get_mut(at)) else { return Ok(false) };
         let board = seat.board;
@@ -261,7 +260,7 @@ impl Coordinator {
         Ok(seat.has_come() && !had_come)
     }
 
-    /// A board that was there and lives no more, before all have come together, leaves its place to the next one.
+    /// Before all boards have joined: if the process of a board has ended, another process can join as this board.
     fn give_up_the_dead(&mut self, at: usize) -> Option<BoardEvent> {
         let seat = self.seats.get(at)?;
         let came = seat.child.is_none() && seat.ports.is_some();
@@ -273,13 +272,12 @@ impl Coordinator {
         Some(event)
     }
 
-    /// Wait for a process that takes the place of a lost board. It comes under the next epoch: whatever the
-    /// lost one still does, it is not read. Afterwards the tick is to be run again on the same inputs;
-    /// boards that have stamped it already take no further step, and the new one starts its processes anew
-    /// upon the outputs that the lost one left.
+    /// Wait for a process that replaces a lost board. It joins under the next epoch, so that later writes of the lost
+    /// one are not read. Afterwards run the tick again on the same inputs: boards that have stamped it already take no
+    /// further step, and the new one restarts its processes on the last outputs of the lost one.
     ///
     /// # Errors
-    /// [`SplitError`] if none comes, or one with other data.
+    /// [`SplitError`] if none joins, or it has other data.
     pub fn await_successor(
         &mut self,
         lost: &Lost,
@@ -302,13 +300,13 @@ impl Coordinator {
         giver.give(&self.pulse);
     }
 
-    /// What the processes remember after the last tick.
+    /// The states of the processes after the last tick.
     #[must_use]
     pub const fn states(&self) -> &LadderState {
         &self.states
     }
 
-    /// What the boards did.
+    /// Figures of the boards.
     pub fn figures(&self) -> impl Iterator<Item = BoardFigures<'_>> {
         self.seats.iter().map(|seat| BoardFigures {
             board: seat.board,
@@ -333,10 +331,10 @@ impl Coordinator {
         }
     }
 
-    /// True if all boards have checked the load and have come to task data with this fingerprint.
+    /// True if all boards have checked the load and have task data with this fingerprint.
     ///
     /// # Errors
-    /// A board that has come to others.
+    /// The board that has other task data.
     pub fn have_checked(&mut self, load: u32, data: u64) -> Result<bool, Board> {
         let mut all = true;
         for seat in &mut self.seats {
@@ -389,7 +387,7 @@ impl Coordinator {
         }
     }
 
-    /// Common memory of a tick, and what the processes remember after it.
+    /// Collect common memory of a tick, and the states of the processes after it.
     fn collect(&mut self, tick: Tick, after: &mut CommonMemory) -> Result<(), Lost> {
         for seat in &mut self.seats {
             seat.times.add(seat.report.step_ns);
@@ -405,7 +403,7 @@ impl Coordinator {
         Ok(())
     }
 
-    /// Wait for the processes that were started from here, and end those that do not.
+    /// Wait for the processes that were started here to end, and end those that do not.
     fn reap(&mut self) {
         let deadline = Instant::now() + FAREWELL;
         for child in self.seats.iter_mut().filter_map(|seat| seat.child.as_mut()) {

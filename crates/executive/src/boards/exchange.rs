@@ -1,13 +1,12 @@
-//! What the boards exchange: the outputs of each process, doubled by tick parity, and what it remembers.
+//! Data exchange of the boards: the outputs of each process, doubled by tick parity, and its state.
 //!
-//! Each process has one blackboard service with three entries: its outputs in even ticks, its outputs in odd
-//! ticks, its state. An entry is a byte image under the number of the tick that wrote it; iceoryx2 hands it
-//! over whole or not at all. A reader that finds another number than the one it needs takes nothing: then the
-//! process's outputs keep their old stamp, and its neighbours know it for lost (docs/design/handshake.md
-//! "Stamp").
+//! Each process has one blackboard service with three entries: its outputs in even ticks, its outputs in odd ticks, its
+//! state. An entry is a byte image under the number of the tick that wrote it; iceoryx2 hands it over whole or not at
+//! all. A reader that finds another number than the one it needs reads nothing: then the process's outputs keep their
+//! old stamp, and its neighbours treat it as lost (docs/design/handshake.md "Stamp").
 //!
-//! A service belongs to the board on which the process runs, and bears the board's epoch in its name: a board
-//! that takes over from a killed one opens the next.
+//! A service belongs to the board on which the process runs, and its name has the board's epoch: a board that replaces
+//! a killed one creates services of the next epoch.
 
 use std::{fmt::Debug, marker::PhantomData};
 
@@ -31,7 +30,7 @@ use taskdata::files::TaskData;
 use super::{BOARDS, Board};
 use crate::memory::{SharedMemoryError, layout::Epoch, runs::service_name};
 
-/// Who may read a board's blackboards: the other boards, board 0, and a board that takes over.
+/// Most readers of a board's blackboards: the other boards, board 0, and a board that takes over.
 pub(super) const READERS: usize = BOARDS + 2;
 
 type StateOf<P> = <P as Process<TaskData<'static>>>::State;
@@ -199,7 +198,7 @@ macro_rules! exchange {
             /// Create the services of a board's processes.
             ///
             /// # Errors
-            /// What iceoryx2 says; a service that exists already belongs to the same board in another process.
+            /// What iceoryx2 says; if a service exists already, another process runs the same board.
             pub fn create(
                 node: &Node<ipc::Service>,
                 board: Board,
@@ -212,7 +211,7 @@ macro_rules! exchange {
                 )+ })
             }
 
-            /// Write what the board's processes wrote and remember in `tick`. Does not allocate.
+            /// Write the outputs and states of the board's processes after `tick`. Does not allocate.
             pub fn write(&self, tick: Tick, memory: &CommonMemory, state: &LadderState) {
                 $( if let Some(process) = &self.$field {
                     process.write(tick, &memory.$field, &state.$field);
@@ -234,7 +233,7 @@ macro_rules! exchange {
             /// Open the services of a board's processes.
             ///
             /// # Errors
-            /// What iceoryx2 says; a service that does not exist may come yet.
+            /// What iceoryx2 says; a service that does not exist yet may be created later.
             pub fn open(
                 node: &Node<ipc::Service>,
                 board: Board,
@@ -247,11 +246,11 @@ macro_rules! exchange {
                 )+ })
             }
 
-            /// Take over what the processes wrote in `tick`; the outputs of a process that did not write then
-            /// stay as they are. True if all did. Does not allocate.
+            /// Read the outputs of the processes in `tick`; outputs of a process that did not write in it stay as they
+            /// are. True if all wrote. Does not allocate.
             ///
             /// # Errors
-            /// If there are bytes that no process writes.
+            /// If bytes are not a valid record.
             pub fn outputs(&self, tick: Tick, memory: &mut CommonMemory) -> Result<bool, DecodeError> {
                 let mut complete = true;
                 $( if let Some(process) = &self.$field {
@@ -263,10 +262,10 @@ macro_rules! exchange {
                 Ok(complete)
             }
 
-            /// Take over what the processes remember after `tick`. Does not allocate.
+            /// Read the states of the processes after `tick`. Does not allocate.
             ///
             /// # Errors
-            /// If there are bytes that no process writes.
+            /// If bytes are not a valid record.
             pub fn states(&self, tick: Tick, states: &mut LadderState) -> Result<(), DecodeError> {
                 $( if let Some(process) = &self.$field
                     && let Some(state) = process.state.read_at(tick)?

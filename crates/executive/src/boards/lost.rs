@@ -1,4 +1,4 @@
-//! Why boards do not come together, and how one is lost while they run.
+//! Why boards cannot start together, and how a board is lost during a run.
 
 use std::{fmt, process::ExitStatus, time::Duration};
 
@@ -11,11 +11,11 @@ use rcs_core::{
 use super::Board;
 use crate::{failure, memory::SharedMemoryError};
 
-/// Slots without a stamp after which a board is lost
-/// (docs/design/handshake.md "Lost board"); in fast clock the same time.
+/// Time without a stamp after which a board is lost (docs/design/handshake.md "Lost board"); in fast clock the same
+/// time.
 pub const LOST_AFTER: Duration = Duration::from_millis(25 * TICK_MS);
 
-/// Why the boards did not come together.
+/// Why the boards could not start together.
 #[derive(Debug, thiserror::Error)]
 pub enum SplitError {
     /// Boards need shared memory.
@@ -37,7 +37,7 @@ pub enum SplitError {
         /// How.
         status: ExitStatus,
     },
-    /// A board runs with something else.
+    /// A board has another program, other data or another job.
     #[error("{board} (process {pid}) cannot take part: {difference}")]
     Different {
         /// Which.
@@ -47,7 +47,7 @@ pub enum SplitError {
         /// In what it differs.
         difference: &'static str,
     },
-    /// Boards did not come.
+    /// Boards did not join.
     #[error("{} did not come within {} s", list(.missing), .patience.as_secs())]
     Missing {
         /// Which.
@@ -55,7 +55,7 @@ pub enum SplitError {
         /// How long they were waited for.
         patience: Duration,
     },
-    /// The operator gave up.
+    /// The wait was interrupted.
     #[error("interrupted while waiting for {}", list(.0))]
     Interrupted(Vec<Board>),
 }
@@ -70,17 +70,17 @@ fn list(boards: &[Board]) -> String {
 pub enum How {
     /// Its process ended.
     Ended(ExitStatus),
-    /// It said that it leaves.
+    /// It has reported that it leaves.
     Left,
     /// It does not answer.
     Silent,
-    /// It wrote what no process writes.
+    /// It wrote bytes that are not a valid record.
     Garbled(DecodeError),
     /// It stamped a tick without having written its outputs.
     Unwritten,
 }
 
-/// A board that was lost. Small and without heap, since it comes up within a tick.
+/// A board that was lost. Small and without heap, because it is made within a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct Lost {
     /// The board.
@@ -109,8 +109,8 @@ impl fmt::Display for Lost {
 }
 
 impl Lost {
-    /// The whole in a sentence: what the board's processes were about, and what follows. `hws` and `memory`
-    /// are those that the tick began with.
+    /// The loss in one sentence: what the board's processes were doing, and what follows. `hws` and `memory` are those
+    /// at the start of the tick.
     #[must_use]
     pub fn explain(&self, hws: &HwsCommand, memory: &CommonMemory) -> String {
         let doing = failure::unfinished_commands(self.board.processes(), hws, memory);

@@ -1,14 +1,13 @@
 //! A board's side of `--boards split`: waits for the pulse and steps its processes.
 //!
-//! A board does what the ladder does on one board, with the same code ([`Ladder::step_in_order`]), for its
-//! own processes. Everything it needs to know of a tick comes with the pulse: the number, what came from
-//! outside, the generation of the task data. It never counts pulses and never looks at a clock.
+//! A board does what the ladder does on one board, with the same code ([`Ladder::step_in_order`]), for its own
+//! processes. Everything it needs for a tick comes with the pulse: the number, the external inputs, the generation of
+//! the task data. It never counts pulses and never reads a clock.
 //!
-//! A board that takes over from a killed one in the middle of a run finds a pulse that the other has not
-//! answered. It latches the outputs of its predecessor, and writes them again under its own epoch, so that its
-//! neighbours read the same whether they look before or after the change. The processes it starts anew: they
-//! adopt the numbers of the commands that they find and report that they were restarted
-//! (docs/design/handshake.md "Restart").
+//! A board that replaces a killed one in the middle of a run finds a pulse that the killed one has not answered. It
+//! latches the outputs of its predecessor and writes them again under its own epoch, so that its neighbours read the
+//! same before and after the change. It restarts the processes: they adopt the numbers of the commands that they find
+//! and report that they were restarted (docs/design/handshake.md "Restart").
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
@@ -38,22 +37,22 @@ use crate::{
     },
 };
 
-/// How long a board sleeps for a pulse before it looks for itself.
+/// How long a board waits for a notification before it checks for a pulse by itself.
 const LOOK: Duration = Duration::from_millis(100);
-/// Looks without a pulse after which it is asked whether board 0 still lives.
+/// Checks without a pulse after which the board tests whether board 0 is still alive.
 const LIFE: u32 = 10;
-/// How long a place that is taken may become free: its holder may just have been killed.
+/// How long to wait for a board's name to become free: its process may just have been killed.
 const CROWDED: Duration = Duration::from_secs(2);
-/// Time between two attempts to open what is not there yet.
+/// Time between two attempts to open a service that does not exist yet.
 const AGAIN: Duration = Duration::from_millis(5);
 
-/// Why a board cannot take part, or no longer.
+/// Why a board cannot take part in a run, or cannot go on.
 #[derive(Debug, thiserror::Error)]
 pub enum MemberError {
     /// Shared memory.
     #[error(transparent)]
     SharedMemory(#[from] SharedMemoryError),
-    /// Another program or other data than those of the run.
+    /// The board has another program or other data than the run.
     #[error("{board} cannot take part in {run}: {difference}")]
     Different {
         /// This board.
@@ -73,7 +72,7 @@ pub enum MemberError {
         /// What iceoryx2 says.
         source: SharedMemoryError,
     },
-    /// What the devices of the board are to do is not known.
+    /// The last outputs to the devices of the board are not known.
     #[error("{board} cannot be taken over: what it wrote in tick {last} is lost")]
     NothingToLatch {
         /// This board.
@@ -81,10 +80,10 @@ pub enum MemberError {
         /// The last tick of all boards.
         last: Tick,
     },
-    /// There is nothing to take part in any more.
+    /// The run is over.
     #[error("{0} is over")]
     RunIsOver(RunName),
-    /// Shared memory holds something that no process writes.
+    /// Shared memory holds an invalid record.
     #[error("shared memory holds an invalid record: {0}")]
     Decode(#[from] DecodeError),
     /// A generation of the task data that was never loaded.
@@ -100,12 +99,12 @@ pub enum MemberError {
     },
 }
 
-/// The task data of a board, with what is loaded while the run goes on.
+/// The task data of a board, with the loads during the run.
 pub trait BoardData {
-    /// A generation, when the loads up to `loaded` count; `None` if it was never loaded. Called in a tick.
+    /// A generation of the task data with the loads up to `loaded`; `None` if it was never loaded. Called in a tick.
     fn generation(&mut self, generation: u32, loaded: u32) -> Option<TaskData<'_>>;
 
-    /// Begin to check a load beside the ticks, if it is a new one. What has been checked last.
+    /// Begin to check a load beside the ticks, if it is a new one. Returns the last result.
     fn check(&mut self, load: u32) -> Checked;
 }
 
@@ -116,7 +115,7 @@ pub enum MemberEnd {
     Over,
     /// This board was asked to leave.
     Asked,
-    /// Board 0 is gone.
+    /// Board 0 has ended.
     Orphaned,
     /// Board 0 gave this board up for lost, and its place to another process.
     Replaced,

@@ -1,11 +1,10 @@
 //! The system pulse (II.2.3) and the stamps that answer it.
 //!
-//! Board 0 owns the service `pulse`: what every board must know of the run ([`RunCard`]), and for each tick
-//! its number and what came from outside ([`SystemPulse`]). It needs no halves: the next pulse is not given
-//! before all boards have stamped this one. Each board owns a service with its [`BoardReport`], which it
-//! writes last in a tick.
+//! Board 0 owns the service `pulse`: the facts of the run for every board ([`RunCard`]), and for each tick its number
+//! and the external inputs ([`SystemPulse`]). It is not doubled: the next pulse is given only after all boards have
+//! stamped this one. Each board owns a service with its [`BoardReport`], which it writes last in a tick.
 //!
-//! Two event services wake: `pulse/wake` the boards, `pulse/done` board 0. Events carry nothing; a
+//! Two event services wake the processes: `pulse/wake` the boards, `pulse/done` board 0. Events carry no data; a
 //! process that wakes reads a number.
 
 use std::{fmt::Debug, time::Duration};
@@ -33,7 +32,7 @@ use crate::memory::{
 /// Epoch of the services of board 0, which is never taken over: a run ends with it.
 const BOARD_0: Epoch = 1;
 
-/// What a program and its data are, told by their bytes: boards that differ in them must not run together.
+/// Fingerprint of a program and its data: boards with different fingerprints must not run together.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Fingerprint {
     /// Of the program: version control, and the layout of all buffers.
@@ -67,7 +66,7 @@ impl Fingerprint {
         }
     }
 
-    /// In what this one differs from that of the run, in words; `None` if in nothing.
+    /// The difference from that of the run, as text; `None` if they are equal.
     #[must_use]
     pub fn difference(&self, run: &Self) -> Option<&'static str> {
         if self.program != run.program {
@@ -82,7 +81,7 @@ impl Fingerprint {
     }
 }
 
-/// What a board must know of the run before the first tick.
+/// Facts of the run that a board needs before the first tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct RunCard {
     /// What every board must have.
@@ -97,7 +96,7 @@ pub type Epochs = [Epoch; BOARDS];
 /// One pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct SystemPulse {
-    /// The tick that is to be run; [`Tick::BEFORE_START`] until all boards are there.
+    /// The tick to run; [`Tick::BEFORE_START`] until all boards have joined.
     pub tick: Tick,
     /// The run is over: boards end.
     pub over: bool,
@@ -105,13 +104,13 @@ pub struct SystemPulse {
     pub epochs: Epochs,
     /// The load that boards are to check beside their ticks ([`load_file`](crate::memory::load_file)); 0 for none.
     pub load: u32,
-    /// The loads up to this one count, but for those that were refused.
+    /// The loads up to this one are in effect, except those that were refused.
     pub loaded: u32,
-    /// What came from outside for the tick.
+    /// External inputs of the tick.
     pub external: ExternalInputs,
 }
 
-/// What a board has made of a load.
+/// Result of a board's check of a load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Checked {
     /// The load.
@@ -120,16 +119,16 @@ pub struct Checked {
     pub data: u64,
 }
 
-/// What a board says of itself, after each tick.
+/// Report of a board after each tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct BoardReport {
-    /// What it runs with.
+    /// Its program, data and job.
     pub fingerprint: Fingerprint,
     /// Its process number in the operating system.
     pub pid: u32,
-    /// It reads all its neighbours and waits for pulses; no more once it has left.
+    /// It reads all its neighbours and waits for pulses; false once it has left.
     pub ready: bool,
-    /// It got everything that it asked of the system for real time; true if it asked for nothing.
+    /// The system granted everything that it asked for real time; true if it asked for nothing.
     pub punctual: bool,
     /// Heap allocations in its ticks so far.
     pub allocations: u64,
@@ -179,7 +178,7 @@ fn notifier(
     event(node, service)?.notifier_builder().create().map_err(|error| failed(service)(&error))
 }
 
-/// Sleep until a notification comes, or for so long. A signal ends it early.
+/// Sleep until a notification comes or the time has passed. A signal ends it early.
 pub(super) fn sleep(listener: &Listener<ipc::Service>, at_most: Duration) {
     // Who notified, and how often, does not matter: the caller looks at numbers. Without a listener that
     // works it looks more often, but not all the time.
@@ -222,8 +221,8 @@ impl PulseGiver {
         self.wake();
     }
 
-    /// Wake the boards once more. A board that cannot be woken, because it is gone or does not empty its
-    /// socket, is found by its missing stamp.
+    /// Wake the boards once more. A board that cannot be woken, because it has ended or does not empty its socket, is
+    /// detected by its missing stamp.
     pub(super) fn wake(&self) {
         let _ = self.wake.notify();
     }
@@ -262,7 +261,7 @@ impl PulseTaker {
         self.pulse.read().map(|(_, pulse)| pulse)
     }
 
-    /// Tell board 0 that there is a stamp to be read. If it cannot be told it looks by itself before long.
+    /// Notify board 0 that there is a stamp to read. If this fails, board 0 checks by itself soon.
     pub(super) fn done(&self) {
         let _ = self.done.notify();
     }
@@ -315,7 +314,7 @@ impl ReportReader {
         Ok(Self(EntryReader::new(port.entry(&0).map_err(|error| failed(&error))?)))
     }
 
-    /// The tick that the board has stamped last, and what it says.
+    /// The tick that the board has stamped last, and its report.
     pub(super) fn read(&self) -> Result<(Tick, BoardReport), DecodeError> {
         self.0.read()
     }

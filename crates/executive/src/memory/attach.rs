@@ -1,4 +1,4 @@
-//! The side of the others: look into a run without disturbing it.
+//! The side of the readers: read the buffers of a run without disturbing it.
 
 use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{plain::DecodeError, tick::Tick};
@@ -8,7 +8,7 @@ use super::{
     name::RunName, place, publish::FIRST_EPOCH, runs,
 };
 
-/// How often a reader looks again when it meets the writer at work. Writing takes microseconds of a tick.
+/// How often a reader tries again while the writer writes, which takes some microseconds of a tick.
 const ATTEMPTS: usize = 1000;
 
 /// Why nothing was read.
@@ -53,8 +53,8 @@ impl Attached {
         &self.name
     }
 
-    /// Common memory as one tick left it: all processes bear its stamp, but for those of a pedestal in
-    /// another system that does not answer, which bear an older one.
+    /// Common memory after one tick: all processes have its stamp, except those of a pedestal in another system that
+    /// does not answer, which have an older one.
     ///
     /// # Errors
     /// [`ReadError`].
@@ -73,7 +73,7 @@ impl Attached {
         Err(ReadError::Busy)
     }
 
-    /// What came from outside for the last tick.
+    /// The external inputs of the last tick.
     ///
     /// # Errors
     /// [`ReadError`].
@@ -82,7 +82,7 @@ impl Attached {
         Ok(ports.readers.outside.read()?.inputs)
     }
 
-    /// What the executive says of the run.
+    /// The executive's counts of the run.
     ///
     /// # Errors
     /// [`ReadError`].
@@ -102,8 +102,8 @@ impl Attached {
         Ok(ports.readers.history.read(after, last)?)
     }
 
-    /// What the simulated cell shows; `None` if the run has none, or before its first tick. It is published
-    /// after the tick whose number it bears, so that it may be a tick behind [`Self::memory`].
+    /// The view of the simulated cell; `None` if the run has none, or before its first tick. It is published after the
+    /// tick whose number it has, so it may be a tick behind [`Self::memory`].
     ///
     /// # Errors
     /// [`ReadError`].

@@ -1,9 +1,8 @@
 //! The buffers in shared memory, service by service.
 //!
-//! Each process has a service with one entry, its output buffers as a byte image. More services hold what came
-//! from outside, what the executive says, what the simulated cell shows, and the headers of the last ten seconds
-//! ([`super::history`]). iceoryx2 hands an entry over whole, so all buffers that a
-//! reader finds in it are of one tick.
+//! Each process has a service with one entry, its output buffers as a byte image. Further services hold the external
+//! inputs, the executive's counts, the view of the simulated cell, and the headers of the last ten seconds
+//! ([`super::history`]). iceoryx2 hands an entry over whole, so all buffers that a reader finds in it are of one tick.
 
 use std::fmt::Debug;
 
@@ -108,9 +107,9 @@ macro_rules! services {
         pub struct Writers {
             $( $field: ServiceWriter<{ <$outputs as Plain>::SIZE }, $outputs>, )+
             outside: ServiceWriter<{ Outside::SIZE }, Outside>,
-            /// What the executive says.
+            /// The executive's counts.
             pub executive: ServiceWriter<{ Pulse::SIZE }, Pulse>,
-            /// What the simulated cell shows.
+            /// The view of the simulated cell.
             pub(super) cell: ServiceWriter<{ CellView::SIZE }, CellView>,
             history: HistoryWriter,
         }
@@ -143,11 +142,11 @@ macro_rules! services {
         /// A reader's ends of all services.
         pub struct Readers {
             $( $field: ServiceReader<{ <$outputs as Plain>::SIZE }, $outputs>, )+
-            /// What came from outside.
+            /// External inputs.
             pub outside: ServiceReader<{ Outside::SIZE }, Outside>,
-            /// What the executive says.
+            /// The executive's counts.
             pub executive: ServiceReader<{ Pulse::SIZE }, Pulse>,
-            /// What the simulated cell shows.
+            /// The view of the simulated cell.
             pub(super) cell: ServiceReader<{ CellView::SIZE }, CellView>,
             /// The headers of the last ten seconds.
             pub(super) history: HistoryReader,
@@ -171,7 +170,7 @@ macro_rules! services {
             /// The outputs of all processes, each whole, maybe of different ticks.
             ///
             /// # Errors
-            /// If there are bytes that no process writes.
+            /// If bytes are not a valid record.
             pub fn processes(&self) -> Result<CommonMemory, DecodeError> {
                 Ok(CommonMemory { $( $field: self.$field.read()?, )+ })
             }

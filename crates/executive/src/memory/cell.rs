@@ -1,7 +1,7 @@
-//! What the simulated cell shows, for screens: published after each tick, when the cell has moved.
+//! The view of the simulated cell for screens: published after each tick, when the cell has moved.
 //!
-//! It is no input of the controller and stands in no log: a log has the cell on `/tf` and `/joint_states`. With a robot
-//! at a port there is none.
+//! It is not an input of the controller and is not logged: a log has the cell on `/tf` and `/joint_states`. A run with
+//! a robot at a port has none.
 
 use rcs_core::{Plain, name::Name16, tick::Tick};
 
@@ -12,10 +12,10 @@ pub(super) const CELL: &str = "cell";
 /// Parts of a cell that are shown.
 pub const PARTS: usize = 24;
 
-/// What the cell shows.
+/// The view of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct CellView {
-    /// The tick after which it looks so; [`Tick::BEFORE_START`] if no simulated cell has shown itself.
+    /// The tick after which it was taken; [`Tick::BEFORE_START`] if there is none yet.
     pub tick: Tick,
     /// The robot controller.
     pub controller: ControllerView,
@@ -43,16 +43,16 @@ pub struct CellView {
     pub lateness: LatenessView,
 }
 
-/// The controller of the robot (IV.3.3): what stands on its console.
+/// The console of the robot controller (IV.3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ControllerView {
-    /// How far its start-up has come, in words: `hydraulics enabled`, `DEPC`.
+    /// Stage of its start-up: `hydraulics enabled`, `DEPC`.
     pub stage: Text<24>,
     /// Lamps and keys that stay.
     pub lamps: Lamps,
     /// The last warning or error on its screen, with its code; empty if there was none.
     pub screen: Text<96>,
-    /// When it came up.
+    /// The tick of this warning or error.
     pub screen_tick: Tick,
     /// Why the actuators have no pressure; empty while they have it.
     pub cut: Text<48>,
@@ -60,7 +60,7 @@ pub struct ControllerView {
     pub estops: [bool; 5],
     /// Axes with an asterisk on the screen.
     pub aligned: [bool; 6],
-    /// The arm stands where it was sent.
+    /// The arm is at rest at its commanded position.
     pub at_rest: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Why common memory is not shared, in words for a person.
+//! Why common memory is not shared, with messages for a person.
 
 use std::{fmt::Debug, io, path::PathBuf, time::Duration};
 
@@ -15,7 +15,7 @@ pub enum SharedMemoryError {
     NoSuchRun {
         /// As asked for; `None` if any would do.
         run: Option<String>,
-        /// The runs that live.
+        /// The runs that are alive.
         alive: Vec<RunName>,
     },
     /// A run whose program has another layout of buffers.
@@ -62,7 +62,7 @@ pub enum SharedMemoryError {
         /// Bytes that a run needs.
         needed: u64,
     },
-    /// Another program kept something for longer than it ever takes.
+    /// An operation of another program took too long.
     #[error("{what} took longer than {}: another program may be stopped in the middle of it", seconds(*.limit))]
     Late {
         /// What was waited for.
@@ -70,7 +70,7 @@ pub enum SharedMemoryError {
         /// How long.
         limit: Duration,
     },
-    /// iceoryx2 has panicked over its own objects.
+    /// iceoryx2 has panicked because its objects are damaged.
     #[error(
         "the objects of iceoryx2 in /dev/shm are damaged, another program has written into them; the next run \
          removes them"

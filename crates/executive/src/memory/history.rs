@@ -1,9 +1,8 @@
 //! The headers of the last ten seconds, in a service of their own.
 //!
-//! A reader that looks every 80 ms sees every second tick at best, and one that has just attached nothing of what led
-//! here. So the run keeps the headers of all processes for [`HISTORY_TICKS`] ticks: an entry a tick, which is written
-//! over when its place comes round again. A tick writes one entry of about a kilobyte; a reader takes all of them, or
-//! those since its last look.
+//! A reader that reads every 80 ms sees every second tick at best, and one that has just attached sees no earlier tick.
+//! So the run keeps the headers of all processes for [`HISTORY_TICKS`] ticks in a ring with one entry a tick. A tick
+//! writes one entry of about a kilobyte; a reader takes all of them, or those since its last read.
 
 use iceoryx2::{
     node::Node,
@@ -24,7 +23,7 @@ pub const HISTORY_TICKS: u32 = 250;
 /// The name of the service.
 pub(super) const HISTORY: &str = "history";
 
-/// The headers of all processes as a tick has left them.
+/// The headers of all processes after a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Headers {
     /// The tick.

@@ -1,5 +1,5 @@
-//! The layout of a run's services: their names, the records that the executive adds to those of the
-//! processes, and a version of it all.
+//! The layout of a run's services: their names, the records that the executive adds to those of the processes, and
+//! their common version.
 
 use interfaces::{ExternalInputs, for_each_process};
 use rcs_core::{Plain, digest::Digest, plain::Schema, tick::Tick};
@@ -14,7 +14,7 @@ use super::{
 /// name.
 pub type Epoch = u32;
 
-/// What the executive says about a run, once a tick. Holds counts of this machine: not part of the digest.
+/// The executive's counts of a run, once a tick. They depend on the machine and are not part of the digest.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Pulse {
     /// The tick that was run last.
@@ -31,7 +31,7 @@ pub struct Pulse {
     pub over: bool,
 }
 
-/// What came from outside for a tick.
+/// External inputs of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Outside {
     /// The tick that reads it.

@@ -1,8 +1,8 @@
 //! Limits for what iceoryx2 sets up or opens.
 //!
 //! It follows indices and flags in shared memory. If another program damages these while a run is set up, iceoryx2
-//! 0.10.0 can panic, which becomes an error here, or wait for a flag that never comes. Such a call cannot be ended
-//! from outside: only the process can.
+//! 0.10.0 can panic, which becomes an error here, or wait for a flag that never comes. Such a call cannot be cancelled:
+//! only the whole process can be ended.
 
 use std::{
     panic::{self, AssertUnwindSafe},
@@ -13,12 +13,12 @@ use std::{
 
 use super::{error::SharedMemoryError, place::root};
 
-/// Longest time that shared memory may take to set up or to open: it takes some milliseconds, on a busy machine
-/// a second.
+/// Longest time that shared memory may take to set up or to open: it usually takes some milliseconds, on a busy machine
+/// up to a second.
 pub const SET_UP_LIMIT: Duration = Duration::from_secs(20);
 
-/// Called with the limit, on a thread of its own, when that is over. It should end the process: the other call does
-/// not return.
+/// Called with the limit, on a separate thread, when it has passed. It should end the process, because the other call
+/// does not return.
 pub type OnStuck = fn(Duration);
 
 /// Set up or open something. If this takes longer than `limit`, `on_stuck` is called; without it there is no limit.

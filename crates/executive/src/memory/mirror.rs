@@ -1,9 +1,9 @@
-//! The status of a run for programs that know nothing of it: mirrored on publish-subscribe.
+//! The status of a run for programs without knowledge of its buffers: mirrored on publish-subscribe.
 //!
-//! `iox2`, the tool of iceoryx2 (`cargo install iceoryx2-cli`), lists nodes and services of a run, but shows
-//! no values of blackboards. So a thread of its own, far from the tick, sums up ten times a second what was
-//! published last ([`Status`]) and publishes the sum as one JSON object, on the service [`SERVICE`]. `iox2`
-//! finds a run by the configuration file that the mirror writes into the run's directory:
+//! `iox2`, the tool of iceoryx2 (`cargo install iceoryx2-cli`), lists nodes and services of a run, but shows no values
+//! of blackboards. So a separate thread sums up the last published buffers ten times a second ([`Status`]) and
+//! publishes the sum as one JSON object on the service [`SERVICE`]. `iox2` finds a run by the configuration file that
+//! the mirror writes into the run's directory:
 //!
 //! ```sh
 //! cd "$(rcs-run status --directory)"
@@ -12,10 +12,10 @@
 //! iox2 service subscribe rcs-ii/status
 //! ```
 //!
-//! The mirror is a convenience inside the program that moves a robot, so it must not be what ends it: it reads
-//! what the tick left for it in this program's own memory, where no other process can write; its shared memory is laid
-//! out beforehand and never grows, and it is silent while there is so little of it that a new subscriber
-//! could not be served.
+//! The mirror is optional, and it runs inside the program that moves a robot, so it must not cause that program to
+//! fail. It reads a copy of the buffers in this program's own memory, where no other process can write. Its shared
+//! memory is allocated at the start and never grows. It publishes nothing while there is too little shared memory to
+//! serve a new subscriber.
 
 use std::{
     fs,
@@ -48,7 +48,7 @@ use crate::status::Status;
 pub const SERVICE: &str = "rcs-ii/status";
 /// Time between two messages.
 const PERIOD: Duration = Duration::from_millis(100);
-/// How often the thread looks whether it is to end.
+/// How often the thread checks whether it should end.
 const LOOK: Duration = Duration::from_millis(10);
 /// How long the start and the end of a run wait for the thread.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -142,7 +142,7 @@ impl Ports {
         self.publish();
     }
 
-    /// False if the tick is just being written. What cannot be published now is left out: the next message comes soon.
+    /// False if the tick is being written at the moment: then this message is left out, and the next one comes soon.
     fn publish(&self) -> bool {
         let Some(Published { external, memory, pulse }) = self.window.with(|published| *published) else {
             return false;

@@ -1,10 +1,9 @@
 //! Common memory that others can see
 //! (docs/design/memory.md "Shared memory"): the buffers of a run in shared memory.
 //!
-//! The run publishes, once a tick, what its processes wrote. Programs outside attach and leave whenever they
-//! like and read the latest values; nothing they do changes a tick. Each writer (a control process, the HWSC,
-//! the devices, the executive) has one iceoryx2 *blackboard* service: latest value, one writer, no
-//! allocation. Its buffers are the keys.
+//! The run publishes, once a tick, what its processes wrote. Other programs attach and leave at any time and read the
+//! latest values; nothing they do changes a tick. Each writer (a control process, the HWSC, the devices, the executive)
+//! has one iceoryx2 *blackboard* service: latest value, one writer, no allocation. Its buffers are the keys.
 //!
 //! A value is bytes, never a Rust structure: a [`Header`](interfaces::Header) with the tick that
 //! wrote it, then the buffer's byte image (`rcs_core::record`). So there is no padding, no pointer and no
@@ -12,13 +11,13 @@
 //!
 //! * [`mod@layout`]: which services there are, [`buffers`]: how they are written and read;
 //! * [`publish`]: the side of the run;
-//! * [`attach`]: the side of the others;
-//! * [`history`]: the headers of the last ten seconds, [`cell`]: what the simulated cell shows;
-//! * [`mirror`]: the status for programs that know nothing of the buffers;
-//! * [`name`], [`place`]: names, directories, prefixes, and that they are this user's alone;
-//! * [`presence`]: which programs of a run live;
+//! * [`attach`]: the side of the readers;
+//! * [`history`]: the headers of the last ten seconds, [`cell`]: the view of the simulated cell;
+//! * [`mirror`]: the status for programs without knowledge of the buffers;
+//! * [`name`], [`place`]: names, directories and prefixes, and the check that only this user can use them;
+//! * [`presence`]: which programs of a run are alive;
 //! * [`runs`]: entering, finding and removing runs;
-//! * [`limit`]: how long setting up may take.
+//! * [`limit`]: time limit of the set-up.
 
 pub mod attach;
 pub mod buffers;

@@ -1,5 +1,5 @@
-//! Where runs live: a directory that lists them by name, a prefix for the names of objects in shared memory,
-//! a directory among these for the files of iceoryx2, and the checks that all belong to this user alone.
+//! Places of a run: the directory of all runs by name, the prefix for the names of objects in shared memory, the
+//! directory for the files of iceoryx2 among them, and the checks that only this user can use them.
 //!
 //! The files of iceoryx2 do not lie under `TMPDIR`: there are sockets among them, whose paths have 107 bytes at most,
 //! and it panics over paths of more than 255 bytes.
@@ -75,7 +75,7 @@ pub fn load_file(name: &RunName, load: u32) -> PathBuf {
     files(&prefix(name, &layout())).join(format!("load-{load}"))
 }
 
-/// What the names of a run's objects in shared memory start with: short, since it stands in paths of sockets too.
+/// Prefix of the names of a run's objects in shared memory: short, because paths of sockets contain it.
 #[must_use]
 pub fn prefix(name: &RunName, layout: &str) -> String {
     let mut digest = Digest::new();
@@ -131,7 +131,7 @@ pub(super) fn own_file(path: &Path) -> Result<File, SharedMemoryError> {
     Ok(file)
 }
 
-/// The random number of this directory of runs is there. Only while the lock is held.
+/// Make sure that the random number of this directory of runs exists. Call it only while the lock is held.
 pub(super) fn have_salt() -> Result<(), SharedMemoryError> {
     let path = root().join("salt");
     let mut file = own_file(&path)?;
@@ -143,12 +143,12 @@ pub(super) fn have_salt() -> Result<(), SharedMemoryError> {
     Ok(())
 }
 
-/// The directory of runs is there, and this user's alone.
+/// Make sure that the directory of runs exists and only this user can use it.
 fn own_root() -> Result<(), SharedMemoryError> {
     own_directory(root())
 }
 
-/// A directory is there, and this user's alone.
+/// Make sure that a directory exists and only this user can use it.
 pub(super) fn own_directory(path: PathBuf) -> Result<(), SharedMemoryError> {
     let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
     match DirBuilder::new().mode(0o700).create(&path) {
@@ -224,15 +224,15 @@ pub(super) fn have_nodes(prefix: &str) -> Result<(), SharedMemoryError> {
     }
 }
 
-/// See that there is shared memory for a run. A page that the system cannot lay under an object when it is
-/// first touched ends the program with a bus error, so one has to ask beforehand.
+/// Check that there is enough shared memory for a run. If the system has no page for an object when it is first
+/// accessed, the program ends with a bus error, so this is checked before.
 pub(crate) fn have_room() -> Result<(), SharedMemoryError> {
     let Ok(found) = statvfs(SHARED_MEMORY) else { return Ok(()) };
     let free = found.f_bavail.saturating_mul(found.f_frsize);
     if free < NEEDED { Err(SharedMemoryError::Full { free, needed: NEEDED }) } else { Ok(()) }
 }
 
-/// Have the system lay pages under all objects of a run, so that none is missing when it is first touched.
+/// Allocate the pages of all objects of a run, so that none is missing at the first access.
 pub(crate) fn reserve(name: &RunName) -> Result<(), SharedMemoryError> {
     let prefix = prefix(name, &layout());
     let directory = files(&prefix);

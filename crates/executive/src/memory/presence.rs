@@ -1,7 +1,7 @@
 //! Which programs use a run: a lock for each role. The system releases it when the program ends, for whatever reason.
 //!
-//! The lock is on a file beside the run's objects in shared memory. So whether a run lives is known without opening
-//! anything that a killed or damaged run left.
+//! The lock is on a file beside the run's objects in shared memory. So whether a run is alive is known without opening
+//! remains of a killed or damaged run.
 
 use std::{
     fs::{self, File, TryLockError},
@@ -26,7 +26,7 @@ const ASKING: Duration = Duration::from_millis(2);
 /// How often a held lock is looked at again, to tell a holder from a program that asks.
 const LOOKS: usize = 3;
 
-/// Holds a role in a run as long as it lives. Several readers share one.
+/// Holds a role in a run until it is dropped. Several readers share one role.
 pub(super) struct Presence {
     _lock: File,
 }

@@ -28,14 +28,13 @@ pub(super) struct Published {
     pub pulse: Pulse,
 }
 
-/// What was published last, for other threads of this program: nothing that another process writes into shared
-/// memory gets in here. Neither side ever waits for the other, so that no tick is late because of a thread
-/// that looks.
+/// What was published last, for other threads of this program: no other process can change it. Neither side waits for
+/// the other, so that a reading thread never delays a tick.
 #[derive(Default)]
 pub(super) struct Window(Mutex<Published>);
 
 impl Window {
-    /// Do something with what stands here; `None` while the other side is at it.
+    /// Run `work` on the copy; `None` while the other side uses it.
     pub(super) fn with<T>(&self, work: impl FnOnce(&mut Published) -> T) -> Option<T> {
         match self.0.try_lock() {
             Ok(mut published) => Some(work(&mut published)),
@@ -63,11 +62,10 @@ struct Ports {
 }
 
 impl Publisher {
-    /// Set up all services of a run. What killed runs left behind is removed first.
+    /// Set up all services of a run. The remains of killed runs are removed first.
     ///
     /// # Errors
-    /// [`SharedMemoryError`] with what iceoryx2 says, if this machine does not give the memory or the name is
-    /// taken.
+    /// [`SharedMemoryError`] with what iceoryx2 says, if there is not enough shared memory or the name is taken.
     pub fn create(name: &RunName) -> Result<Self, SharedMemoryError> {
         // Half a run is none: what was set up before something failed goes again.
         Self::set_up(name).inspect_err(|_| {
@@ -106,7 +104,7 @@ impl Publisher {
 }
 
 impl Publisher {
-    /// Show the simulated cell as a tick has left it. Does not allocate.
+    /// Publish the simulated cell after a tick. Does not allocate.
     pub fn show_cell(&self, view: &CellView) {
         if let Some(ports) = &self.ports {
             ports.writers.cell.write(view);

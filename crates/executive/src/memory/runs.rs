@@ -1,8 +1,8 @@
 //! How runs are entered, found and removed.
 //!
-//! Every run has a name, a directory of its own, and its own prefix of names in shared memory
-//! ([`super::place`]). A run lives as long as a program holds a role in it
-//! ([`super::presence`]). What lives no more is removed by name; nothing of it is opened.
+//! Every run has a name, a directory of its own, and its own prefix of names in shared memory ([`super::place`]). A run
+//! is alive as long as a program holds a role in it ([`super::presence`]). Other runs are removed by name, without
+//! opening their objects.
 
 use std::{
     fs, io,
@@ -47,9 +47,9 @@ pub struct Found {
 pub struct Cleaned {
     /// Runs that were removed.
     pub removed: Vec<RunName>,
-    /// Runs that live and were left alone.
+    /// Runs that are alive and were not touched.
     pub alive: Vec<RunName>,
-    /// What could not be removed.
+    /// Errors of removals.
     pub failed: Vec<SharedMemoryError>,
 }
 
@@ -68,7 +68,7 @@ impl Deref for RunNode {
     }
 }
 
-/// What is left of a run: its directory, and its objects in shared memory.
+/// The remains of a run: its directory, and its objects in shared memory.
 #[must_use]
 pub fn traces(name: &RunName) -> Vec<PathBuf> {
     let (place, prefix) = (place(name, &layout()), prefix(name, &layout()));
@@ -168,11 +168,10 @@ pub(crate) fn has_living(name: &RunName, role: &str) -> bool {
     presence::is_held(&prefix(name, &layout()), role)
 }
 
-/// Remove what killed runs left; living runs are left alone, those under another `TMPDIR` too.
+/// Remove the remains of killed runs; runs that are alive are not touched, also those under another `TMPDIR`.
 ///
 /// # Errors
-/// [`SharedMemoryError::Io`] if the directory of runs cannot be read. What could not be removed is in the
-/// answer.
+/// [`SharedMemoryError::Io`] if the directory of runs cannot be read. Failed removals are in the result.
 pub fn clean() -> Result<Cleaned, SharedMemoryError> {
     let mut cleaned = Cleaned::default();
     for run in list()? {
@@ -185,8 +184,8 @@ pub fn clean() -> Result<Cleaned, SharedMemoryError> {
     Ok(cleaned)
 }
 
-/// Remove the objects of killed runs whose directory is gone or lies under another `TMPDIR`; says how many
-/// runs these were.
+/// Remove the objects of killed runs whose directory is gone or lies under another `TMPDIR`; returns the number of
+/// these runs.
 ///
 /// # Errors
 /// [`SharedMemoryError::Io`] with the first object that could not be removed.

@@ -1,4 +1,4 @@
-//! A short text in shared memory: what a lamp, a screen or a line of a job says.
+//! A short text in shared memory: the text of a lamp, a screen or a line of a job.
 
 use std::fmt;
 

@@ -1,11 +1,10 @@
-//! A serial port as the controller needs it: what has arrived is taken, what is due is handed over, and
-//! nothing waits (docs/design/link.md "Serial port").
+//! A serial port for the controller: bytes are received and sent without waiting (docs/design/link.md "Serial port").
 //!
-//! [`SerialLine`] stands between the T3 Interface, which knows bytes only, and the port. In a tick it makes a
-//! handful of system calls, never blocks and never allocates. The port may disappear at any time, by an
-//! unplugged adapter or a peer that hangs up: that is a line that is not ready and brings no bytes, never an
-//! error. A helper thread then closes the dead port (closing may wait for the hardware) and tries once a
-//! second to open it again; the tick only looks whether a new one has been handed over.
+//! [`SerialLine`] stands between the T3 Interface, which knows bytes only, and the port. In a tick it makes a handful
+//! of system calls, never blocks and never allocates. The port may disappear at any time, by an unplugged adapter or a
+//! peer that closes the line: then the line is not ready and gives no bytes; this is not an error. A helper thread then
+//! closes the dead port (closing may wait for the hardware) and tries once a second to open it again; the tick only
+//! checks whether the thread has opened a new one.
 //!
 //! ```text
 //!  tick thread                                helper thread
@@ -14,9 +13,9 @@
 //!       └─────────────────── taken over at the next tick ─────────────────────────┘
 //! ```
 //!
-//! There are two descriptors of the same port. The serialport crate sets the line up, holds it exclusively
-//! and knows the modem lines, but its descriptor blocks on a write that does not fit, and it allocates for
-//! each error, even for "nothing there". Bytes go through the other one, which does neither.
+//! There are two descriptors of the same port. The serialport crate sets the line up, holds it exclusively and reads
+//! the modem lines, but its descriptor blocks on a write that does not fit, and it allocates for each error, even for
+//! "nothing there". Bytes go through the other one, which does neither.
 
 mod settings;
 
@@ -39,7 +38,7 @@ use serialport::{ClearBuffer, SerialPort as _, TTYPort};
 
 pub use self::settings::{Parity, SerialSettings};
 
-/// Time between two attempts to open a port that has gone.
+/// Time between two attempts to open a port that has disappeared.
 pub const RETRY: Duration = Duration::from_secs(1);
 
 /// Why a port cannot be opened.
@@ -64,7 +63,7 @@ pub enum OpenError {
     },
 }
 
-/// What went over the line since it was opened.
+/// Counts of the line since it was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SerialCounts {
     /// Bytes received.
@@ -79,14 +78,14 @@ pub struct SerialCounts {
     pub reopened: u32,
 }
 
-/// A serial line that outlives its port.
+/// A serial line that stays when its port disappears.
 #[derive(Debug)]
 pub struct SerialLine {
     path: PathBuf,
     port: Option<Port>,
     /// The port took a part of a frame only; the line rests for a tick.
     cut: bool,
-    /// The port, or the lack of one, has left bytes of the last tick over.
+    /// Not all bytes of the last tick were sent.
     unsent: bool,
     counts: SerialCounts,
     dead: SyncSender<Port>,
@@ -101,7 +100,7 @@ impl SerialLine {
     /// before asking for real time.
     ///
     /// # Errors
-    /// [`OpenError`] if the port cannot be had now. Later losses are none.
+    /// [`OpenError`] if the port cannot be opened now. A later loss of the port is not an error.
     pub fn open(settings: SerialSettings) -> Result<Self, OpenError> {
         let port = Port::open(&settings)?;
         let (dead, to_close) = sync_channel(1);
@@ -320,7 +319,7 @@ impl Port {
     }
 }
 
-/// Nothing is wrong; there is nothing, or no room, right now.
+/// Not an error: there are no bytes to read, or no room to write, at the moment.
 fn waits(kind: ErrorKind) -> bool {
     matches!(kind, ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }

@@ -1,4 +1,4 @@
-//! How a port is set up, and how a person writes it: `/dev/ttyUSB0,parity=even,stop=2`.
+//! Settings of a port, and their text: `/dev/ttyUSB0,parity=even,stop=2`.
 
 use std::{fmt, path::PathBuf, str::FromStr, time::Duration};
 
@@ -15,7 +15,7 @@ pub enum Parity {
     Odd,
 }
 
-/// A port and its set-up: eight data bits, no flow control, and what is said here.
+/// A port and its set-up: eight data bits, no flow control, and these settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SerialSettings {
     /// Device file of the port.
@@ -94,7 +94,7 @@ impl FromStr for SerialSettings {
 }
 
 impl fmt::Display for SerialSettings {
-    /// As a person would type it: what is as [`SerialSettings::new`] has it is left out.
+    /// As typed by a person; settings as in [`SerialSettings::new`] are left out.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { path, baud, parity, two_stop_bits, clear_to_send } = self;
         let usual = Self::new(path);
