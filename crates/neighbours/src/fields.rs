@@ -1,4 +1,4 @@
-//! What can be wrong with a field of a mailbox's data, and the numbers of commands.
+//! Errors of the fields of a mailbox's data, and the numbers of commands.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ pub enum FieldError {
         /// The field, in the manual's words.
         field: &'static str,
     },
-    /// A character that no name has.
+    /// A character that a name cannot have.
     Character {
         /// The field, in the manual's words.
         field: &'static str,
@@ -21,7 +21,7 @@ pub enum FieldError {
         /// The character.
         found: u8,
     },
-    /// A word that is none of the field's.
+    /// A word that is not a value of the field.
     Word {
         /// The field, in the manual's words.
         field: &'static str,
@@ -37,12 +37,12 @@ pub enum FieldError {
         /// The integer.
         found: u16,
     },
-    /// A floating-point number that is infinite, or none.
+    /// A floating-point number that is infinite or not a number.
     Infinite {
         /// The field, in the manual's words.
         field: &'static str,
     },
-    /// A code that is none of the field's.
+    /// A code that is not a value of the field.
     Code {
         /// The field, in the manual's words.
         field: &'static str,

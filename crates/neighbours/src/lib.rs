@@ -1,18 +1,16 @@
-//! The neighbours of the controller: what is reached through a mailbox of the factory network (chapter IX).
+//! The neighbours of the controller: systems that it reaches through mailboxes of the factory network (chapter IX).
 //!
-//! * [`mailbox`]: the eight mailboxes of Table IX.1 and what stands in front of their data;
+//! * [`mailbox`]: the eight mailboxes of Table IX.1 and the words before their data;
 //! * [`mod@layout`]: how the data of a mailbox are defined, once for encoding, decoding and documentation;
-//! * [`workstation`]: the command and the status of V.4.2 to the byte, and what refuses commands that cannot
-//!   be;
-//! * [`data_system`]: the command of Figure IX.2 to the byte, the status that answers it, and a server that
-//!   keeps the items of the workstation in SQLite.
-//! * [`pedestal`]: the Active Pedestal as a system of its own, its mailboxes to the byte and both ends of
-//!   them.
-//! * [`vision`]: the areas of the vision mailbox (IX.4), and what E-move reads and writes there;
+//! * [`workstation`]: the command and the status of V.4.2 as bytes, and the check of commands;
+//! * [`data_system`]: the command of Figure IX.2 as bytes, its status, and a server that keeps the items of the
+//!   workstation in SQLite.
+//! * [`pedestal`]: the Active Pedestal as a separate system, its mailboxes as bytes, and both ends of them.
+//! * [`vision`]: the areas of the vision mailbox (IX.4), which E-move reads and writes;
 //! * [`network`]: how mailboxes travel to other processes.
 //!
-//! A level never sees a mailbox: what Task asks of the Data System is a record of common memory
-//! ([`interfaces::DataBaseCommand`]), and this crate makes bytes of it.
+//! A level never uses a mailbox: Task's request to the Data System is a record of common memory
+//! ([`interfaces::DataBaseCommand`]), which this crate encodes.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

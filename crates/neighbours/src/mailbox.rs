@@ -1,8 +1,8 @@
 //! Mailboxes of the factory network (IX, Table IX.1).
 //!
-//! A mailbox is a piece of common memory of fixed size at a fixed address: its length, a mailgram number, a read and a write
-//! lock, and data. The order and the sizes of the first four stood in Figure IX.1, which is lost. CHOSEN here: four 16-bit
-//! words in the order in which the text names them, low byte first as the boards' processors have them.
+//! A mailbox is a piece of common memory of fixed size at a fixed address: its length, a mailgram number, a read and a
+//! write lock, and data. Figure IX.1, which gave the order and sizes of the first four, is lost. CHOSEN here: four
+//! 16-bit words in the order in which the text names them, low byte first as the boards' processors have them.
 //!
 //! ```text
 //!   byte  0        2            4          6           8 ...
@@ -46,12 +46,13 @@ pub const PEDESTAL_GRIPPER_STATUS: Place =
 pub const PEDESTAL_TABLE_STATUS: Place =
     Place { name: "Pedestal Table to RCS Status", address: 0xF_5900, size: 256 };
 
-/// Workstation to Cell Command: not in the table. What the workstation does itself (vise, trays, machine), for the simulated cell.
+/// Workstation to Cell Command: not in the table. Actions of the workstation itself (vise, trays, machine), for the
+/// simulated cell.
 pub const CELL_COMMAND: Place = Place { name: "Workstation to Cell Command", address: 0xF_6400, size: 256 };
 /// Workstation from Cell Status: not in the table.
 pub const CELL_STATUS: Place = Place { name: "Workstation from Cell Status", address: 0xF_6600, size: 256 };
 
-/// Pedestal from Cell Sensors: not in the table. What the devices of the pedestal read, in the simulated cell.
+/// Pedestal from Cell Sensors: not in the table. Sensor words of the pedestal's devices in the simulated cell.
 pub const PEDESTAL_SENSORS: Place =
     Place { name: "Pedestal from Cell Sensors", address: 0xF_5C00, size: 256 };
 /// Pedestal to Cell Orders: not in the table.
@@ -60,7 +61,7 @@ pub const PEDESTAL_ORDERS: Place = Place { name: "Pedestal to Cell Orders", addr
 pub const VISION_REQUEST: Place = Place { name: "Vision from RCS Request", address: 0xF_8000, size: 256 };
 /// Vision to RCS Response: the ready words and the response areas of the vision mailbox. Address and size CHOSEN.
 pub const VISION_RESPONSE: Place = Place { name: "Vision to RCS Response", address: 0xF_8200, size: 256 };
-/// Vision from Cell Picture: not in the manual. What the camera of the simulated cell sees.
+/// Vision from Cell Picture: not in the manual. The picture of the camera in the simulated cell.
 pub const VISION_PICTURE: Place =
     Place { name: "Vision from Cell Picture", address: 0xF_8400, size: MAX_SIZE };
 
@@ -76,7 +77,7 @@ pub const TABLE: [Place; 8] = [
     PEDESTAL_TABLE_STATUS,
 ];
 
-/// Why bytes are no mailbox, or no data for one.
+/// Why bytes are not a mailbox, or not data for one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MailboxError {
     /// More data than the mailbox holds.
@@ -97,7 +98,7 @@ pub enum MailboxError {
         /// Bytes found.
         found: usize,
     },
-    /// The length word says more than the mailbox holds, or less than its head.
+    /// The length word is more than the mailbox holds, or less than its head.
     #[error("{mailbox}: a length of {HEAD} to {} was expected, found {found}", .mailbox.size)]
     Length {
         /// The mailbox.
@@ -116,7 +117,7 @@ impl fmt::Display for Place {
 /// Size of the largest mailbox, bytes.
 pub const MAX_SIZE: usize = 4096;
 
-/// A mailbox: what a process writes into it, or has read from it. Writing and copying do not allocate.
+/// A mailbox: the data that a process writes into it, or has read from it. Writing and copying do not allocate.
 #[derive(Debug)]
 pub struct Mailbox {
     place: Place,
@@ -171,7 +172,7 @@ impl Mailbox {
     /// A mailbox from its image.
     ///
     /// # Errors
-    /// [`MailboxError`] if the size or the length word cannot be.
+    /// [`MailboxError`] if the size or the length word is wrong.
     pub fn from_image(place: Place, image: &[u8]) -> Result<Self, MailboxError> {
         if image.len() != place.size {
             return Err(MailboxError::Size { mailbox: place, found: image.len() });
@@ -186,7 +187,7 @@ impl Mailbox {
         }
     }
 
-    /// Take over what the network has brought: head and data, without the unused rest. Nothing changes if it cannot be.
+    /// Take head and data from the network, without the unused rest. An error changes nothing.
     ///
     /// # Errors
     /// [`MailboxError::Length`] if the length word is not the number of bytes, or more than the mailbox holds.
@@ -202,14 +203,14 @@ impl Mailbox {
         Ok(())
     }
 
-    /// Head and data, without the unused rest: what the network carries.
+    /// Head and data, without the unused rest, as the network carries them.
     #[must_use]
     pub fn used(&self) -> &[u8] {
         &self.bytes[..usize::from(self.word(0))]
     }
 
-    /// Write data, and count the mailgram number on so that the network sends it (IX): from 65535 it goes to 1, since 0 is
-    /// what initialization leaves.
+    /// Write data and increment the mailgram number, so that the network sends it (IX): from 65535 it goes to 1,
+    /// because 0 is the value after initialization.
     ///
     /// # Errors
     /// [`MailboxError::TooLong`]; the mailbox stays as it was.

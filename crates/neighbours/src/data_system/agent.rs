@@ -1,13 +1,11 @@
 //! The controller's side of a Data System in another process.
 //!
-//! A thread of its own, which may wait: for the disk, and for the network. A command goes into the mailbox,
-//! and the status that answers it comes back with the pulse of the same exchange, or of a later one. Updates
-//! are kept on the disk until they are answered ([`Outbox`]). Those that an earlier run could not tell
-//! follow the next STARTUP, before Task learns that it is done: the data base hears everything in the order
-//! in which it happened.
+//! It runs on a separate thread, which may wait for the disk and the network. A command goes into the mailbox, and the
+//! status that answers it comes back with the pulse of the same exchange, or of a later one. Updates are kept on the
+//! disk until they are answered ([`Outbox`]). Updates that an earlier run could not send follow the next STARTUP,
+//! before Task gets its status: so the data base gets all updates in their order.
 //!
-//! On the line the agent numbers the commands itself, since what is told after STARTUP has no number of
-//! Task's:
+//! On the line the agent numbers the commands itself, because updates sent after STARTUP have no number of Task:
 //!
 //! | what is sent                                  | command-id#     | which status answers it                                     |
 //! |-----------------------------------------------|-----------------|-------------------------------------------------------------|
@@ -15,8 +13,8 @@
 //! | the same again, since it has no answer yet    | the same        | one to any of its sendings: they are one command            |
 //! | the same again, since it is asked for anew    | the next number | one of this number: an answer that comes twice counts once  |
 //!
-//! A server that does not answer for the patience of the clock is silent, and so is one that answers with
-//! bytes that are no status. Task gets no answer then, and asks again (V.4.1).
+//! A server that does not answer within the time limit of the clock counts as silent, and so does one whose answer is
+//! not a valid status. Task gets no answer then, and asks again (V.4.1).
 
 use std::{
     fmt, thread,
@@ -35,22 +33,22 @@ use crate::{
     network::{Endpoint, NetEvent, Presence, StopHandle, clock::answer_limit},
 };
 
-/// Between two looks at a server that has not answered yet.
+/// Time between two checks for the answer of the server.
 const PAUSE: Duration = Duration::from_millis(5);
 
-/// What there is to say of the Data System.
+/// A remark about the Data System for the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remark {
     /// It has connected or disconnected, or a connection was refused.
     Network(NetEvent),
-    /// What it wrote cannot be read; said once for every sending of a command.
+    /// Its status cannot be read; reported once for each time a command is sent.
     Garbled(StatusError),
-    /// It is connected, and does not answer.
+    /// It is connected, but does not answer.
     Silent {
-        /// command-id# of what it was asked.
+        /// command-id# of the unanswered command.
         command_id: u16,
-        /// For so long it was waited for.
+        /// Time waited.
         patience: Duration,
     },
 }
@@ -90,22 +88,22 @@ impl fmt::Display for Remark {
 pub struct Agent {
     endpoint: Endpoint,
     outbox: Outbox,
-    /// How long an answer is waited for.
+    /// Time limit for an answer.
     patience: Duration,
     exchanges: u64,
     /// command-id# of the command that was sent last; 0 before the first.
     command_id: u16,
     /// That command has not been answered.
     open: bool,
-    /// Mailgram number of the status that stood there when it was sent for the first time: it answers
-    /// something else.
+    /// Mailgram number of the status in the mailbox when the command was first sent: that status answers an earlier
+    /// command.
     before: u16,
     remarks: Vec<Remark>,
 }
 
 impl Agent {
-    /// Works with an endpoint, and keeps updates in an outbox. An answer is waited for as long as the
-    /// network waits for a pulse: 10 s on the 40 ms grid, 60 s in fast clock.
+    /// Works with an endpoint, and keeps updates in an outbox. The time limit for an answer is that of the network for
+    /// a pulse: 10 s on the 40 ms grid, 60 s in fast clock.
     #[must_use]
     pub fn new(endpoint: Endpoint, outbox: Outbox) -> Self {
         let patience = answer_limit(endpoint.clock());
@@ -128,24 +126,23 @@ impl Agent {
         self
     }
 
-    /// Ends all waiting from another thread, for the rest of the run: then no answer comes.
+    /// A handle with which another thread ends all waiting for the rest of the run; then there are no answers.
     #[must_use]
     pub fn stop_handle(&self) -> StopHandle {
         self.endpoint.stop_handle()
     }
 
-    /// What there is to say, since the last call.
+    /// The remarks since the last call.
     pub fn remarks(&mut self) -> Vec<Remark> {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Between commands: see whether a server is connected.
+    /// Between commands: check whether a server is connected.
     pub fn idle(&mut self) {
         self.exchange();
     }
 
-    /// Have a command carried out; `None` if no answer comes. The answer has the number that Task has given
-    /// to the command.
+    /// Execute a command; `None` if no answer comes. The answer has the number that Task has given to the command.
     pub fn execute(&mut self, bytes: &[u8]) -> Option<Answer> {
         let (command_id, transaction) = match command::decode(bytes) {
             Ok(received) => (received.command_id, received.transaction),
@@ -159,7 +156,7 @@ impl Agent {
         Some(Answer { status: Status { command_id, ..answer.status }, ..answer })
     }
 
-    /// STARTUP, and what is kept behind it.
+    /// STARTUP, and then the kept updates.
     fn start_up(&mut self, bytes: &[u8]) -> Option<Answer> {
         let answer = self.ask(bytes)?;
         if answer.status.summary != Summary::Done {
@@ -172,7 +169,7 @@ impl Agent {
         Some(Answer { why, ..answer })
     }
 
-    /// Keep an update, and tell all that is kept.
+    /// Keep an update, and send all kept ones.
     fn update(&mut self, bytes: &[u8]) -> Option<Answer> {
         let kept = bytes.try_into().map_err(|_| format!("{DML} bytes were expected, found {}", bytes.len()));
         let kept: Result<_, String> =
@@ -183,8 +180,8 @@ impl Agent {
         }
     }
 
-    /// Tell all that is kept, the oldest first; the last answer, if there was anything to tell, or `None` if
-    /// no answer comes.
+    /// Send all kept updates, the oldest first. Returns the last answer, if there were any updates; `None` if no answer
+    /// comes.
     #[expect(clippy::option_option, reason = "no answer differs from nothing to tell")]
     fn tell_all(&mut self) -> Option<Option<Answer>> {
         let pending = match self.outbox.pending() {
@@ -282,7 +279,7 @@ impl Agent {
     }
 }
 
-/// What the controller itself cannot do for a command.
+/// The answer to a command that the controller itself refuses.
 fn refused(why: String) -> Answer {
     let summary = Summary::Refused(Refusal::Store);
     Answer { status: Status { command_id: 0, server: ServerStatus::Idle, summary }, why }

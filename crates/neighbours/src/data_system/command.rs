@@ -126,7 +126,7 @@ const STRING: [Piece; 29] = [
     Piece::Fixed("'", 1),
     Piece::Value(Value::ItemNumber, 16),
 ];
-/// What closes the string.
+/// End of the string.
 const END: u8 = b'\'';
 
 /// What a command asks for.
@@ -163,7 +163,7 @@ impl Transaction {
     }
 }
 
-/// Why a command has no bytes.
+/// Why a command cannot be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EncodeError {
     /// There is nothing to ask.
@@ -172,7 +172,7 @@ pub enum EncodeError {
     /// A name with an apostrophe would end its field of the string.
     #[error("the name {0} has an apostrophe, which the DML string cannot hold")]
     Apostrophe(Name16),
-    /// A sector that has no character.
+    /// A sector above the greatest that one character can give.
     #[error("a sector from 0 to {MAX_SECTOR} was expected, found {0}")]
     Sector(i32),
 }
@@ -278,7 +278,7 @@ pub struct Received<'a> {
     pub statement: &'a str,
 }
 
-/// Why bytes are no command.
+/// Why bytes are not a command.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DecodeError {
     /// Neither of the two lengths.
@@ -310,7 +310,7 @@ pub enum DecodeError {
 /// Read the bytes of a command.
 ///
 /// # Errors
-/// [`DecodeError`] with the place of the first byte that cannot be.
+/// [`DecodeError`] with the place of the first wrong byte.
 pub fn decode(bytes: &[u8]) -> Result<Received<'_>, DecodeError> {
     let size = bytes.len();
     if size != RECONFIGURATION && size != DML {

@@ -1,8 +1,8 @@
-//! The Data System as a run has it: mailboxes at one end, a server on a thread of its own at the other.
+//! The Data System of a run: mailboxes at one end, a server on a separate thread at the other.
 //!
-//! A disk takes its time and must not take the tick's. A run in fast clock waits for the server where an
-//! answer is due, so that its ticks are the same in every run; a run on the 40 ms grid takes the answer when
-//! it is there. Neither waits beyond its own end: a server in another process may be silent for long.
+//! The disk must not delay a tick. A run in fast clock waits for the server where an answer is due, so that its ticks
+//! are the same in every run; a run on the 40 ms grid takes the answer when it has come. Neither waits after its own
+//! end, because a server in another process may not answer for a long time.
 
 use std::{
     sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
@@ -28,25 +28,25 @@ use crate::{
     network::StopHandle,
 };
 
-/// Ticks for an answer unless a run asks for others: 1 s.
+/// Default number of ticks for an answer: 1 s.
 pub const ANSWER_TICKS: u64 = 25;
-/// A server that is silent for so long in a run that waits for it is taken for dead: for a disk it is long.
-/// An agent gives up by itself.
+/// A run that waits for the server takes it as dead after this time, which is long for a disk. An agent has its own
+/// time limit.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Between two looks at whether a server is connected while nothing is asked.
+/// Time between two checks for a server while no command is in progress.
 const IDLE: Duration = Duration::from_millis(500);
 
 /// Whether a run waits for the server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// Where an answer is due the tick waits for it: for runs in fast clock.
+    /// The tick waits for an answer that is due: for runs in fast clock.
     Wait,
-    /// The answer counts from the tick in which it is there: for runs on the grid.
+    /// The answer takes effect in the tick in which it has come: for runs on the grid.
     Poll,
 }
 
-/// What the server's thread is asked for.
+/// A request to the server's thread.
 enum Request {
     /// The command of this number.
     Execute(u16, Vec<u8>),
@@ -55,7 +55,7 @@ enum Request {
 
 /// What it answers.
 enum Response {
-    /// What became of the command of this number.
+    /// The answer to the command of this number.
     Executed(u16, Answer),
     /// The command of this number has no answer.
     Silent(u16),
@@ -92,7 +92,7 @@ impl Keeper {
         }
     }
 
-    /// What there is to tell.
+    /// The remarks since the last call.
     fn remarks(&mut self) -> Vec<Remark> {
         match self {
             Self::Here(_) => Vec::new(),
@@ -101,7 +101,7 @@ impl Keeper {
     }
 }
 
-/// The thread does not answer, and will not.
+/// The thread has ended and does not answer.
 struct Dead;
 
 /// Mailboxes, and the server behind them.
@@ -117,7 +117,7 @@ pub struct DataSystem {
     status_box: Mailbox,
     refusals: Vec<String>,
     remarks: Receiver<Remark>,
-    /// Ends the waiting for a server in another process; none if it is in this one.
+    /// Ends the waiting for a server in another process; `None` if it is in this one.
     stop_handle: Option<StopHandle>,
     requests: Option<Sender<Request>>,
     responses: Receiver<Response>,
@@ -131,8 +131,8 @@ impl DataSystem {
         Self::with(Keeper::Here(Box::new(Server::new(store))), answer_ticks, pace)
     }
 
-    /// A Data System in another process. Where a run waits its answers count after as many ticks as those of
-    /// one here, so that both runs are the same; on the grid they count when they are there.
+    /// A Data System in another process. In a run that waits, its answers take effect after as many ticks as those of a
+    /// server in this process, so that both runs are the same; on the grid they take effect when they come.
     #[must_use]
     pub fn elsewhere(agent: Agent, pace: Pace) -> Self {
         let ticks = if pace == Pace::Wait { ANSWER_TICKS } else { 0 };
@@ -180,7 +180,7 @@ impl DataSystem {
         }
     }
 
-    /// What Task will read in the next tick.
+    /// The status that Task reads in the next tick.
     #[must_use]
     pub const fn status(&self) -> DataBaseStatus {
         self.status
@@ -203,7 +203,7 @@ impl DataSystem {
         std::mem::take(&mut self.refusals)
     }
 
-    /// What there is to say of a server in another process, since the last call.
+    /// Remarks about a server in another process since the last call.
     pub fn remarks(&self) -> Vec<Remark> {
         self.remarks.try_iter().collect()
     }
@@ -218,7 +218,7 @@ impl DataSystem {
         }
     }
 
-    /// UPDATE-MAILGRAM->DAS-?: write the mailbox and let the network have it.
+    /// UPDATE-MAILGRAM->DAS-?: write the mailbox, which the network then sends.
     fn send(&mut self, tick: Tick, command: &DataBaseCommand) {
         self.due = None;
         self.status = DataBaseStatus { echo: self.receiver.echo, report: DataBaseReport::Executing };
@@ -238,8 +238,8 @@ impl DataSystem {
         }
     }
 
-    /// Take the answer to the command under way, if it is there; one to a command before it comes too late
-    /// and belongs to no command.
+    /// Take the answer to the command in progress, if it has come; an answer to an earlier command is too late and is
+    /// dropped.
     fn receive(&mut self) {
         loop {
             match self.response() {
@@ -314,7 +314,7 @@ impl DataSystem {
     /// asked where it keeps them.
     ///
     /// # Errors
-    /// Why the data base does not give them.
+    /// Why the data base cannot list them.
     pub fn items(&mut self) -> Result<Vec<Item>, String> {
         if self.stop_handle.is_some() {
             // The agent may be waiting for it.

@@ -1,9 +1,8 @@
-//! Updates that the Data System has not taken yet, on the controller's disk.
+//! Updates that the Data System has not answered yet, on the controller's disk.
 //!
-//! An update is kept here before it is sent, under a number that no other one has had, and struck out when
-//! the Data System has answered it. A run that is killed in between leaves it to the next one, and sends it
-//! with the same number: the Data System knows it by that number, and counts it once. The file is an SQLite
-//! data base, whose journal is flushed to the disk before anything is sent.
+//! An update is kept here before it is sent, under a new number, and deleted when the Data System has answered it. If
+//! the run is killed in between, the next run sends it with the same number, and the Data System counts it once. The
+//! file is an SQLite data base, whose journal is flushed to the disk before anything is sent.
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +26,7 @@ const TABLES: &str = "
 /// Why updates cannot be kept.
 #[derive(Debug, thiserror::Error)]
 pub enum OutboxError {
-    /// SQLite says no.
+    /// SQLite reports an error.
     #[error("updates cannot be kept in {}: {source}", .file.display())]
     Sqlite {
         /// The file.
@@ -81,7 +80,7 @@ impl Outbox {
         Ok(Self { connection })
     }
 
-    /// Keep an update; its number. One that says the same as the last one kept is that one, asked again.
+    /// Keep an update; returns its number. An update equal to the last one kept is a repetition of that one.
     ///
     /// # Errors
     /// What SQLite says; then it is not kept.

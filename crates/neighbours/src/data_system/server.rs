@@ -1,9 +1,8 @@
 //! The server: bytes of a command in, bytes of a status out.
 //!
-//! It is strict about the order of a connection: an item is taken only from a client that has made itself
-//! known and begun (IV.4.2: Abort, Initiate, Startup). A step that is asked for once more, since its answer
-//! was lost, is done already. How far a client has come stands in the data base: a server that is restarted
-//! goes on as if it had only been slow.
+//! It is strict about the order of a connection: it accepts an item only from a client that has connected by the steps
+//! of IV.4.2 (Abort, Initiate, Startup). A step that is repeated, because its answer was lost, counts as done. The
+//! state of a client is in the data base, so that a restarted server continues.
 //!
 //! ```text
 //!            INITIATE              STARTUP
@@ -19,7 +18,7 @@ use super::{
     store::{Item, Said, Store},
 };
 
-/// How far a client has come.
+/// State of a client's connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 enum Session {
@@ -27,7 +26,7 @@ enum Session {
     Closed = 0,
     /// It is known.
     Initiated = 1,
-    /// Its commands are taken.
+    /// Its commands are accepted.
     Started = 2,
 }
 
@@ -41,7 +40,7 @@ impl Session {
     }
 }
 
-/// What happened to a command, for the log.
+/// The answer to a command, with the reason for the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
     /// For the client.

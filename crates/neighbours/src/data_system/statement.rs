@@ -4,8 +4,8 @@
 //! UPDATE EQUIP_ITEM_ACTION SET ( column, ... ) = ( 'value', ... ) WHERE ITEM_NBR = 'value'
 //! ```
 //!
-//! A parser, not a template: blanks between words do not matter, columns come in any order, and what is wrong is said with
-//! its place. Blanks behind a value do not belong to it.
+//! A parser, not a template: blanks between words do not matter, columns come in any order, and errors name their
+//! place. Blanks behind a value do not belong to it.
 
 use std::fmt;
 
@@ -76,7 +76,7 @@ pub enum Found {
     End,
     /// A word or a sign.
     Word(String),
-    /// So many of something.
+    /// A number of items.
     Count(usize),
 }
 
@@ -93,7 +93,7 @@ impl fmt::Display for Found {
 /// Read a statement.
 ///
 /// # Errors
-/// [`StatementError`] for the first thing that does not belong there.
+/// [`StatementError`] for the first error.
 pub fn parse(text: &str) -> Result<Update<'_>, StatementError> {
     let mut scanner = Scanner { text, at: 0 };
     for word in ["UPDATE", "EQUIP_ITEM_ACTION", "SET"] {

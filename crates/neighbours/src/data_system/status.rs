@@ -1,6 +1,6 @@
 //! The status of the Data System.
 //!
-//! Task extracts from it the server status and the summary status (IX.2); how its bytes stand is not in the manual. CHOSEN,
+//! Task extracts from it the server status and the summary status (IX.2); the manual does not give its bytes. CHOSEN,
 //! in the manner of the command:
 //!
 //! ```text
@@ -38,9 +38,9 @@ pub enum ServerStatus {
 pub enum Refusal {
     /// The bytes are no command.
     Protocol = 0x80,
-    /// The connection is not far enough for it, or farther.
+    /// The connection is not in the state for it.
     Sequence = 0x81,
-    /// The string is no statement that this server knows.
+    /// The string is not a statement that this server supports.
     Statement = 0x82,
     /// The statement names no item or no place.
     Value = 0x83,
@@ -48,7 +48,7 @@ pub enum Refusal {
     Store = 0x84,
 }
 
-/// What became of the command that is answered.
+/// Result of the command that is answered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Summary {
     /// Nothing yet.
@@ -67,11 +67,11 @@ pub struct Status {
     pub command_id: u16,
     /// What the server is doing.
     pub server: ServerStatus,
-    /// What became of the command.
+    /// Result of the command.
     pub summary: Summary,
 }
 
-/// Why bytes are no status.
+/// Why bytes are not a status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StatusError {
     /// More or less bytes.
@@ -127,7 +127,7 @@ impl Status {
     /// Read the bytes: Parse-das-status.
     ///
     /// # Errors
-    /// [`StatusError`] with the first byte that cannot be.
+    /// [`StatusError`] with the first wrong byte.
     pub fn decode(bytes: &[u8]) -> Result<Self, StatusError> {
         let bytes: &[u8; STATUS] = bytes.try_into().map_err(|_| StatusError::Size(bytes.len()))?;
         let blank = Self::default().encode();

@@ -1,15 +1,15 @@
 //! The data base: items, devices, storage positions, and where every item has been, in one SQLite file.
 //!
-//! An item with a number is found by it, whatever it is called: a blank that has been machined keeps its
-//! number and changes its name. Items without a number are told apart by name. A report that says what is
-//! known already changes nothing, so that one that is sent twice counts once.
+//! An item with a number is found by it, whatever it is called: a blank that has been machined keeps its number and
+//! changes its name. Items without a number are told apart by name. A report of a known position changes nothing, so
+//! that one that is sent twice counts once.
 //!
 //! ```sql
 //! SELECT * FROM whereabouts WHERE number = '17';   -- where it is
 //! SELECT * FROM history WHERE number = '17';       -- where it has been
 //! ```
 //!
-//! The file keeps a journal ahead of it: what was answered survives a killed program.
+//! The file has a write-ahead journal: an answered report is not lost if the program is killed.
 
 use std::path::{Path, PathBuf};
 
@@ -20,8 +20,7 @@ const APPLICATION_ID: i32 = 0x5243_5332;
 /// Version of the tables.
 const VERSION: i32 = 2;
 
-/// What came with version 2: the controllers that connect, the last number of each, and the last command
-/// under a number.
+/// Tables new in version 2: the controllers that connect, the last number of each, and the last command under a number.
 const CLIENTS: &str = "
     CREATE TABLE client (
         name TEXT PRIMARY KEY,
@@ -107,7 +106,7 @@ pub struct Visit {
     pub sector: u8,
 }
 
-/// A statement as a client has said it.
+/// A statement of a client.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Said<'a> {
     /// trans-id#: 0 for a statement without a number.
@@ -116,10 +115,10 @@ pub struct Said<'a> {
     pub statement: &'a str,
 }
 
-/// Why the data base cannot be had.
+/// Why the data base cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// SQLite says no.
+    /// SQLite reports an error.
     #[error("{}: {source}", .file.display())]
     Sqlite {
         /// The file.
@@ -216,7 +215,7 @@ impl Store {
         Ok(Self { connection })
     }
 
-    /// How far a client has come; 0 if it is not known.
+    /// State of a client's connection; 0 if it is not known.
     ///
     /// # Errors
     /// What SQLite says.
@@ -225,7 +224,7 @@ impl Store {
         Ok(rows.query_row(params![client], |row| row.get(0)).optional()?.unwrap_or(0))
     }
 
-    /// A client has come so far.
+    /// Set the state of a client's connection.
     ///
     /// # Errors
     /// What SQLite says.
@@ -239,10 +238,10 @@ impl Store {
             .map(drop)
     }
 
-    /// An item is where a client says. True if that is news.
+    /// Store the position of an item that a client reports. True if it is new.
     ///
-    /// With a number other than 0 a statement counts once: said again under the same number it changes
-    /// nothing, whatever has been said since by others.
+    /// A statement with a number other than 0 counts once: repeated under the same number it changes nothing, also
+    /// after reports of other clients.
     ///
     /// # Errors
     /// What SQLite says; nothing has changed then.

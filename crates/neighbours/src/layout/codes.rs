@@ -12,7 +12,7 @@ use rcs_core::{
 use super::{At, Codec, Width};
 use crate::fields::{FieldError, command_number};
 
-/// What stands behind a text that is shorter than its field.
+/// The character that fills a field after its text.
 const BLANK: u8 = b' ';
 
 /// Declare codes and their bytes.
@@ -48,7 +48,7 @@ codes! {
     Number = 2;
     /// A name of `W` characters, with blanks or zeros behind it.
     Chars<W> = W;
-    /// A text of `W` printable characters; what does not fit is cut off.
+    /// A text of `W` printable characters; a longer text is cut off.
     Text<W> = W;
     /// A value by its word, in `W` characters.
     Spelled<W> = W;
@@ -56,7 +56,7 @@ codes! {
     Coded<W> = W;
 }
 
-/// A value that need not be there: blank or 0 for none, in the code `C`.
+/// An optional value: blank or 0 for none, in the code `C`.
 #[derive(Clone, Copy, Debug)]
 pub struct Given<C>(std::marker::PhantomData<C>);
 

@@ -39,7 +39,7 @@ pub use codes::{
 
 use crate::fields::FieldError;
 
-/// Why data cannot be what stands in a mailbox.
+/// Why the data of a mailbox cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
     /// Another number of bytes.
@@ -52,7 +52,7 @@ pub enum LayoutError {
         /// Bytes found.
         found: usize,
     },
-    /// A field that cannot be.
+    /// A field with a wrong value.
     #[error(transparent)]
     Field(#[from] FieldError),
 }
@@ -109,7 +109,7 @@ pub trait Width {
 
 /// How a value is coded in [`Width::BYTES`] bytes.
 pub trait Codec<'a, T>: Width {
-    /// The value, if the bytes cannot hold it; then they hold the nearest that they can.
+    /// The value, if the bytes cannot hold it; then they hold the nearest value that they can.
     #[must_use]
     fn misfit(_value: &T) -> Option<i32> {
         None
@@ -121,7 +121,7 @@ pub trait Codec<'a, T>: Width {
     /// Read a value.
     ///
     /// # Errors
-    /// [`FieldError`] if the bytes are none.
+    /// [`FieldError`] if the bytes are not a value.
     fn take(at: At, from: &'a [u8]) -> Result<T, FieldError>;
 }
 
@@ -144,7 +144,7 @@ macro_rules! layout {
         impl $name {
             /// Bytes of the data.
             pub const BYTES: usize = 0 $( + <$codec as $crate::layout::Width>::BYTES )+;
-            /// The layout in words.
+            /// The layout as a table.
             pub const TABLE: $crate::layout::Table = $crate::layout::Table {
                 what: $what,
                 rows: &[ $( $crate::layout::Row {
@@ -184,7 +184,7 @@ macro_rules! layout {
             /// Read the bytes.
             ///
             /// # Errors
-            /// [`LayoutError`]($crate::layout::LayoutError) for the size, or the first field that cannot be.
+            /// [`LayoutError`]($crate::layout::LayoutError) for the size, or the first wrong field.
             pub fn decode(bytes: &[u8]) -> Result<$type, $crate::layout::LayoutError> {
                 let mut record = <$type>::default();
                 $crate::layout::sized($what, Self::BYTES, bytes)?;

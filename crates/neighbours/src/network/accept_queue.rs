@@ -1,9 +1,8 @@
-//! The accept queue: connections that have not said yet which neighbour they are.
+//! The accept queue: connections that have not yet sent a hello.
 //!
-//! It is short, so that strangers cost the run little. A connection that has been in it for a while without
-//! a hello makes room for the next: clients that send nothing, or a byte now and then, keep no other client
-//! out. One that was refused keeps its slot for the same while, so that no client can guess quickly or fill
-//! the log.
+//! It is short, so that unknown clients cost the run little. When it is full, the oldest connection without a hello is
+//! closed after a minimum time: clients that send nothing, or only single bytes, cannot block other clients. A refused
+//! connection keeps its slot for the same time, so that no client can guess quickly or fill the log.
 
 use std::{
     io,
@@ -15,7 +14,7 @@ use super::{shared::locked, socket::Socket};
 
 /// Connections without a hello, at most.
 pub(super) const SLOTS: usize = 8;
-/// A slot is safe for so long: enough for TLS and a hello, and the penalty for a wrong one.
+/// Minimum time in a slot: enough for TLS and a hello, and the penalty for a wrong one.
 pub(super) const SAFE: Duration = Duration::from_secs(1);
 
 /// The queue.
@@ -37,15 +36,14 @@ struct Waiting {
     socket: Socket,
 }
 
-/// A slot; free again when this is dropped, if no other connection has it by then.
+/// A slot; it is released when this is dropped, unless another connection has it.
 pub(super) struct Slot<'a> {
     queue: &'a AcceptQueue,
     ticket: u64,
 }
 
 impl AcceptQueue {
-    /// Give a connection a slot, if need be that of the one which has waited longest; its ticket. `None` if
-    /// there is none.
+    /// Give a connection a slot, if necessary that of the oldest one. Returns its ticket; `None` if no slot is free.
     ///
     /// # Errors
     /// If the system has no descriptor left.

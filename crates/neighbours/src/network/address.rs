@@ -15,7 +15,7 @@ pub enum Address {
     Zenoh(ZenohAddress),
 }
 
-/// Why a text is no address.
+/// Why a text is not an address.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
     /// An unknown scheme.
@@ -24,7 +24,7 @@ pub enum AddressError {
     /// No IP address and port.
     #[error("an IP address and a port were expected behind tcp:, as in tcp:127.0.0.1:7400, found {0}")]
     Socket(String),
-    /// No zenoh.
+    /// Not a Zenoh address.
     #[error(transparent)]
     ZenohAddress(#[from] ZenohAddressError),
     /// A configuration of Zenoh for another kind of address.

@@ -18,11 +18,11 @@ use super::{session::Session, socket::Socket};
 /// Bytes that are read at once.
 const CHUNK: usize = 8192;
 
-/// A socket, and TLS if there is to be some.
+/// A socket, with or without TLS.
 pub(super) struct Channel {
     socket: Socket,
     tls: Option<Connection>,
-    /// What the system has not taken yet.
+    /// Bytes that the system has not accepted yet.
     pending: Vec<u8>,
 }
 
@@ -42,13 +42,12 @@ impl Channel {
         self.socket.check_user()
     }
 
-    /// All that was to be sent is with the system.
+    /// The system has accepted all bytes to send.
     pub const fn is_flushed(&self) -> bool {
         self.pending.is_empty()
     }
 
-    /// Send what a session wants to be sent, as far as the system takes it; what it does not take waits for
-    /// the next call.
+    /// Send the output of a session, as far as the system accepts it; the rest waits for the next call.
     pub fn send(&mut self, session: &mut Session) -> io::Result<()> {
         self.send_bytes(session.output())
     }
@@ -81,7 +80,7 @@ impl Channel {
         Ok(())
     }
 
-    /// Give a session what has come; false if the other side has closed the connection.
+    /// Pass received bytes to a session; false if the other side has closed the connection.
     ///
     /// # Errors
     /// What the system says; [`io::ErrorKind::InvalidData`] for TLS, after the other side was sent the alert;
@@ -156,8 +155,8 @@ impl Channel {
         self.socket.finish();
     }
 
-    /// Read on after [`Channel::finish`] until the other side has closed, or until a time: a socket that is
-    /// closed with bytes unread takes back what it has sent.
+    /// Read on after [`Channel::finish`] until the other side has closed, or until a time: if a socket is closed with
+    /// unread bytes, the system may discard the bytes it has sent.
     pub fn drain(&self, until: Instant) {
         let mut buffer = [0; CHUNK];
         while Instant::now() < until {
@@ -175,7 +174,7 @@ impl Channel {
     }
 }
 
-/// Nothing has come yet: that is no error.
+/// No bytes have come yet: this is not an error.
 fn or_later(read: io::Result<bool>) -> io::Result<bool> {
     use io::ErrorKind::{Interrupted, WouldBlock};
     match read {

@@ -1,4 +1,4 @@
-//! The clock of a run, as its neighbours see it.
+//! The clock of a run, for its neighbours.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use std::time::Duration;
 pub enum ClockKind {
     /// A tick every 40 ms: it waits for no neighbour.
     Real = 0,
-    /// Ticks at once: each waits for all neighbours that are connected.
+    /// Ticks without waiting for time: each waits for all connected neighbours.
     Fast = 1,
 }
 

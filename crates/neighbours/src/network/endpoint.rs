@@ -1,9 +1,9 @@
 //! The tick's side of the mailboxes of one neighbour.
 //!
-//! [`Endpoint::exchange`] copies what the controller has written into the shared mailboxes, and what the
-//! neighbour has written out of them, once a tick. On the 40 ms grid it takes a lock only if it is free, and
-//! else tries again in the next tick; it does not wait and does not allocate. In fast clock it waits for the
-//! neighbour's answer to the pulse of the tick.
+//! [`Endpoint::exchange`] copies, once a tick, the mailboxes that the controller has written to the network's side, and
+//! those that the neighbour has written back. On the 40 ms grid it takes a lock only if it is free, and otherwise tries
+//! again in the next tick; it does not wait and does not allocate. In fast clock it waits for the neighbour's answer to
+//! the pulse of the tick.
 //!
 //! A neighbour connects and disconnects at any time. When it connects, the mailboxes that it writes are
 //! initialized (IX), and all that it reads are sent.
@@ -24,7 +24,7 @@ use super::{
 };
 use crate::mailbox::{Mailbox, Place};
 
-/// Between two looks at whether the run is interrupted while a tick waits for a neighbour.
+/// Time between two checks for an interruption while a tick waits for a neighbour.
 const LOOK: Duration = Duration::from_millis(50);
 /// How long the end of a run waits until its last session has sent the disconnect reason.
 const FAREWELL: Duration = Duration::from_secs(2);
@@ -34,14 +34,14 @@ pub struct Endpoint {
     shared: Arc<Shared>,
     outgoing: Vec<Mailbox>,
     incoming: Vec<Mailbox>,
-    /// Number of the session that the tick knows of.
+    /// Number of the last session that the tick has seen.
     session: u32,
     events: (Sender<NetEvent>, Receiver<NetEvent>),
     /// The run is to end: no neighbour is waited for any longer.
     interrupted: Arc<AtomicBool>,
 }
 
-/// What an exchange found.
+/// Result of an exchange.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Presence {
     /// The neighbour is connected.
@@ -68,8 +68,8 @@ impl Endpoint {
         })
     }
 
-    /// The same, without waiting for the neighbour once the run is `interrupted`: an exchange takes what is
-    /// there then.
+    /// The same, without waiting for the neighbour once the run is `interrupted`: an exchange then takes what has come
+    /// so far.
     #[must_use]
     pub fn until(mut self, interrupted: Arc<AtomicBool>) -> Self {
         self.interrupted = interrupted;
@@ -88,7 +88,7 @@ impl Endpoint {
         EndpointHandle { shared: Arc::clone(&self.shared), events: self.events.0.clone() }
     }
 
-    /// Ends the endpoint from another thread.
+    /// A handle that ends the endpoint from another thread.
     #[must_use]
     pub fn stop_handle(&self) -> StopHandle {
         StopHandle { shared: Arc::clone(&self.shared) }
@@ -125,13 +125,13 @@ impl Endpoint {
         mailbox.unwrap_or_else(|| panic!("{place} does not come from {}", self.shared.role))
     }
 
-    /// What happened since the last call, the oldest first.
+    /// The next event since the last call, the oldest first.
     pub fn event(&self) -> Option<NetEvent> {
         self.events.1.try_recv().ok()
     }
 
-    /// Once a tick: the network gets what was written in it, and the tick what has come. In fast clock a
-    /// neighbour that is connected is waited for.
+    /// Once a tick: pass the written mailboxes to the network, and take those that have come. In fast clock this waits
+    /// for a connected neighbour.
     pub fn exchange(&mut self, tick: u64) -> Presence {
         let session = self.shared.session.load(Ordering::Acquire);
         let waits = self.shared.clock == ClockKind::Fast && session != 0;
@@ -185,7 +185,7 @@ impl Endpoint {
     }
 }
 
-/// Look at a shared mailbox; if it is locked and the tick does not wait, another time.
+/// Use a shared mailbox; if it is locked and the tick does not wait, skip it in this tick.
 fn with(shared: &Mutex<Mailbox>, waits: bool, look: impl FnOnce(&mut Mailbox)) {
     if waits {
         look(&mut locked(shared));

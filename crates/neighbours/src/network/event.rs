@@ -11,14 +11,14 @@ pub enum Disconnect {
     Closed,
     /// The connection broke, and how.
     Lost(String),
-    /// The controller has closed the connection: no pulse was answered for so long.
+    /// The controller has closed the connection: no pulse was answered for this time.
     Silent(Duration),
-    /// The controller has closed the connection: what the neighbour sent breaks the protocol, and how.
+    /// The controller has closed the connection: the neighbour has broken the protocol, with the reason.
     Violation(String),
 }
 
 impl Disconnect {
-    /// The controller has ended the session, not the neighbour or the line.
+    /// The controller has ended the session, and not the neighbour or the line.
     #[must_use]
     pub const fn is_by_controller(&self) -> bool {
         matches!(self, Self::Silent(_) | Self::Violation(_))

@@ -72,10 +72,10 @@ impl<'a> Frame<'a> {
         &self.bytes[ADDRESS + HEAD..]
     }
 
-    /// The tick of a pulse; `None` if it is none.
+    /// The tick of a pulse; `None` if the frame is not a pulse.
     ///
     /// # Errors
-    /// [`FrameError::Pulse`] if its data are no number of a tick.
+    /// [`FrameError::Pulse`] if its data are not the number of a tick.
     pub fn as_pulse(&self) -> Result<Option<u64>, FrameError> {
         if self.address() != PULSE {
             return Ok(None);
@@ -91,7 +91,7 @@ pub fn put_mailbox(out: &mut Vec<u8>, mailbox: &Mailbox) {
     out.extend_from_slice(mailbox.used());
 }
 
-/// Append a frame that is no mailbox; data that a frame cannot hold are cut off.
+/// Append a frame that is not a mailbox; data that a frame cannot hold are cut off.
 pub fn put(out: &mut Vec<u8>, address: u32, data: &[u8]) {
     let data = &data[..data.len().min(MAX_SIZE - HEAD)];
     let length = u16::try_from(HEAD + data.len()).unwrap_or(u16::MAX);
@@ -106,10 +106,10 @@ pub fn put_pulse(out: &mut Vec<u8>, tick: u64) {
     put(out, PULSE, &tick.to_le_bytes());
 }
 
-/// Why bytes are no frame of the sender.
+/// Why bytes are not a frame of the sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
-    /// A length that no mailbox has.
+    /// A length that a mailbox cannot have.
     #[error("a length of {HEAD} to {MAX_SIZE} was expected behind the address {address:05X}, found {found}")]
     Length {
         /// In front of it.

@@ -4,15 +4,15 @@
 //!
 //! | file | what is in it |
 //! |---|---|
-//! | `ca.pem` | certificates of the authorities that are believed |
+//! | `ca.pem` | certificates of the trusted authorities |
 //! | `controller.pem`, `controller.key` | certificate, with those of intermediate authorities behind it, and private key |
 //! | `workstation.pem`, `workstation.key`, ... | the same of a neighbour |
 //! | `roles` | at the controller, if it is there: a role and a SHA-256 fingerprint a line |
 //!
-//! The controller's certificate has the DNS name [`CONTROLLER_NAME`], wherever it is reached, and is for TLS
-//! servers. That of a neighbour is for TLS clients, and is bound to the roles that its URI names say
-//! (`rcs2:workstation`), or to those of its fingerprint in `roles`: with that file no other certificate is
-//! admitted, whatever authority has signed it. The common name has no meaning.
+//! The controller's certificate has the DNS name [`CONTROLLER_NAME`], at every address, and is for TLS servers. That of
+//! a neighbour is for TLS clients, and is bound to the roles of its URI names (`rcs2:workstation`), or to those of its
+//! fingerprint in `roles`: with that file no other certificate is admitted, whatever authority has signed it. The
+//! common name has no meaning.
 
 use std::{
     fmt::Write as _,
@@ -61,10 +61,10 @@ pub enum KeysError {
         /// Why.
         source: io::Error,
     },
-    /// A private key that is none.
+    /// A private key that other users can read.
     #[error("the private key {} can be read by others than its owner: chmod 600", .0.display())]
     Public(PathBuf),
-    /// A file has nothing of what it should have.
+    /// A file lacks the expected PEM entry.
     #[error("{what} in PEM was expected in {}", .file.display())]
     Pem {
         /// Which.
@@ -82,7 +82,7 @@ pub enum KeysError {
         /// The line.
         found: String,
     },
-    /// Certificate and private key do not fit, or an authority is none.
+    /// Certificate and private key do not match, or an authority is not valid.
     #[error("the keys in {} cannot be used: {source}", .directory.display())]
     Tls {
         /// Where.
@@ -90,16 +90,16 @@ pub enum KeysError {
         /// Why.
         source: Box<rustls::Error>,
     },
-    /// Any computer of the network could command the robot.
+    /// An address on a network without keys: any computer could command the robot.
     #[error("{0}: TLS with keys on both sides was expected; name their directory with --keys")]
     Missing(Address),
-    /// A socket in the file system is for one user, with or without keys.
+    /// Keys for a socket in the file system, which is for one user anyway.
     #[error("{0}: keys are for an address that begins with tcp: or zenoh:")]
     Needless(Address),
 }
 
 impl KeysError {
-    /// Keys are there if an address needs them, and only then.
+    /// Check that there are keys if the address needs them, and only then.
     pub(super) fn check(address: &Address, has_keys: bool) -> Result<(), Self> {
         match (address, has_keys) {
             (Address::Unix(_), true) => Err(Self::Needless(address.clone())),
@@ -182,7 +182,7 @@ impl ControllerKeys {
         ServerConnection::new(Arc::clone(&self.config))
     }
 
-    /// Whether a certificate, which TLS has verified, is bound to a role; else a sentence that says what it
+    /// Check that a certificate, which TLS has verified, is bound to a role; the error is a sentence with the roles it
     /// is bound to.
     pub(super) fn check(&self, certificate: &CertificateDer<'_>, role: Role) -> Result<(), String> {
         let bound = self.bound(certificate);

@@ -1,7 +1,7 @@
 //! Where the controller accepts connections: a thread waits at a socket, another serves each connection.
 //!
-//! At a socket in the file system processes of the same user are admitted; at a TCP port, neighbours with a
-//! certificate ([`keys`](super::keys)). All others are refused with a reason, and the controller is told.
+//! At a socket in the file system processes of the same user are admitted; at a TCP port, neighbours with a certificate
+//! ([`keys`](super::keys)). All others are refused with a reason, and the controller gets an event.
 
 use std::{
     fs, io,
@@ -30,7 +30,7 @@ use super::{
 /// Why no neighbour can connect.
 #[derive(Debug, thiserror::Error)]
 pub enum ListenError {
-    /// The address cannot be had.
+    /// The address cannot be used.
     #[error("{address}: {source}")]
     Address {
         /// The address.
@@ -41,16 +41,16 @@ pub enum ListenError {
     /// Another run has it.
     #[error("{0}: another run waits for its neighbours there")]
     InUse(Address),
-    /// The keys do not go with the address.
+    /// The keys do not fit the address.
     #[error(transparent)]
     Keys(#[from] KeysError),
-    /// Zenoh is left out of this program.
+    /// This program was built without Zenoh.
     #[cfg(not(feature = "zenoh"))]
     #[error("{0}: {NO_ZENOH}")]
     NoZenoh(Address),
 }
 
-/// What a program without Zenoh says.
+/// Message of a program without Zenoh.
 #[cfg(not(feature = "zenoh"))]
 pub(super) const NO_ZENOH: &str = "this program was built without Zenoh; cargo build --release --workspace --features zenoh \
                                    builds it with Zenoh";
@@ -60,14 +60,14 @@ enum Accepting {
     Tcp(TcpListener),
 }
 
-/// Accepts connections as long as it lives.
+/// Accepts connections until it is dropped.
 pub struct Listener {
-    /// Where neighbours can connect: with the port that the system has chosen, if it was to.
+    /// Where neighbours can connect: with the port that the system has chosen, for port 0.
     address: Address,
     _line: Line,
 }
 
-/// What it waits at.
+/// The kind of address it listens at.
 enum Line {
     Socket {
         _socket: ListeningSocket,

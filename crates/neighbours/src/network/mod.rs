@@ -1,8 +1,8 @@
-//! How mailboxes travel between the controller and neighbours in other processes, or on other machines.
+//! Transport of mailboxes between the controller and neighbours in other processes or on other machines.
 //!
-//! The mailboxes are the controller's: common memory, which the network fills and empties (IX). The tick
-//! copies in and out of it and never waits for a socket; a thread for each connection carries what is new.
-//! As in the original a mailbox holds the latest mailgram, and nothing queues.
+//! The mailboxes are in the controller's common memory, which the network reads and writes (IX). The tick copies them
+//! and never waits for a socket; a thread for each connection sends and receives changes. As in the original a mailbox
+//! holds the latest mailgram, without a queue.
 //!
 //! ```text
 //!   tick -- Endpoint -- mailboxes in memory -- Link -- thread with Session -- Channel -- Peer in another process
@@ -10,10 +10,8 @@
 //!
 //! * [`role`]: which neighbours there are, and which mailboxes each has;
 //! * `clock`: the clock of the run, and how long it waits for a neighbour;
-//! * [`frame`]: a mailgram on the line, and the pulse that tells of ticks; [`session`]: the protocol,
-//!   without I/O;
-//! * [`endpoint`]: the tick's side of the mailboxes, `shared`: the network's; [`event`]: what the tick is
-//!   told;
+//! * [`frame`]: a mailgram on the line, and the pulse for each tick; [`session`]: the protocol, without I/O;
+//! * [`endpoint`]: the tick's side of the mailboxes, `shared`: the network's; [`event`]: events for the tick;
 //! * [`keys`]: TLS between machines, and which certificate is which neighbour;
 //! * `socket`, `channel`: bytes of a session over a socket, with TLS or without;
 //! * [`listener`], `accept_queue`, `server`: the controller's end of connections, [`peer`]: the neighbour's;

@@ -1,9 +1,9 @@
 //! Connections between machines through a [Zenoh](https://zenoh.io) network, peer to peer, without a server.
 //!
-//! Zenoh carries the bytes of a socket pair: at one end of it a [`Server`] or a [`Peer`](super::Peer) speaks
-//! TLS, as over TCP; at the other a thread publishes what comes. So authentication does not depend on the
-//! Zenoh network: routers carry bytes that they cannot read. A client that may publish under the keys of a
-//! connection can cut it, and no more; Zenoh's own access control keeps strangers out.
+//! Zenoh carries the bytes of a socket pair: at one end of it a [`Server`] or a [`Peer`](super::Peer) speaks TLS, as
+//! over TCP; at the other a thread publishes what comes. So authentication does not depend on the Zenoh network:
+//! routers carry bytes that they cannot read. A client that may publish under the keys of a connection can only cut it;
+//! Zenoh's own access control keeps other clients out.
 //!
 //! | key | what is under it | from |
 //! |---|---|---|
@@ -43,7 +43,7 @@ const PAUSE: Duration = Duration::from_millis(50);
 const QUERY_TIME: Duration = Duration::from_secs(10);
 /// Queries that wait, at most.
 const WAITING: usize = 64;
-/// A liveliness token may go in front of the last bytes: they have so long to come.
+/// A liveliness token may end before the last bytes have come: this is the time to wait for them.
 const GRACE: Duration = Duration::from_millis(500);
 /// How long the end waits until the last bytes are published.
 const FAREWELL: Duration = Duration::from_secs(2);
@@ -64,8 +64,8 @@ fn failed(error: zenoh::Error) -> io::Error {
     io::Error::other(error.to_string())
 }
 
-/// Zenoh's configuration: the endpoint of the address, what the file says, and, where neither says anything,
-/// what is best for two sides that know where they are.
+/// Zenoh's configuration: the endpoint of the address, the values of the file, and otherwise defaults for two sides
+/// that know each other's address.
 fn configuration(address: &ZenohAddress, side: Side) -> Result<Config, zenoh::Error> {
     let mut config = address.configuration().map_or_else(|| Ok(Config::default()), Config::from_file)?;
     let Some(endpoint) = address.endpoint() else { return Ok(config) };
@@ -169,7 +169,7 @@ fn deliver(socket: &UnixStream, bytes: &[u8]) {
     }
 }
 
-/// The controller's end: accepts connections as long as it lives.
+/// The controller's end: accepts connections until it is dropped.
 pub(super) struct Acceptor {
     session: Session,
     ends: SyncSender<Option<Query>>,
@@ -257,8 +257,8 @@ pub(super) struct Tunnel {
 }
 
 impl Tunnel {
-    /// Connect to the controller at an address; as long as none answers, try again until a time. The tunnel,
-    /// and the socket whose bytes it carries.
+    /// Connect to the controller at an address; while none answers, try again until a time. Returns the tunnel, and the
+    /// socket whose bytes it carries.
     pub fn open(address: &ZenohAddress, until: Instant) -> io::Result<(Self, UnixStream)> {
         let session = open(address, Side::Neighbour)?;
         let front = format!("rcs2/{}", address.name());

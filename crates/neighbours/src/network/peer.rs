@@ -27,7 +27,7 @@ const PAUSE: Duration = Duration::from_millis(50);
 /// How long the end of a connection may take.
 const FAREWELL: Duration = Duration::from_secs(1);
 
-/// Why a connection does not come about, or ends.
+/// Why a connection cannot be made, or ends.
 #[derive(Debug, thiserror::Error)]
 pub enum PeerError {
     /// No controller is there, or the line broke.
@@ -54,29 +54,29 @@ pub enum PeerError {
         /// How.
         source: SessionError,
     },
-    /// The line is dead.
+    /// Nothing was received for this time.
     #[error("nothing has come from the controller for {} s", .0.as_secs())]
     Silent(Duration),
-    /// The controller has gone without a reason.
+    /// The controller has closed the connection without a reason.
     #[error("the controller has closed the connection")]
     Closed,
-    /// What came fits no mailbox.
+    /// The received data do not fit a mailbox.
     #[error(transparent)]
     Mailbox(#[from] MailboxError),
-    /// The controller has closed the connection, and said why.
+    /// The controller has closed the connection, with this reason.
     #[error("the controller says: {0}")]
     Disconnected(String),
-    /// The keys do not go with the address.
+    /// The keys do not fit the address.
     #[error(transparent)]
     Keys(#[from] KeysError),
-    /// Zenoh is left out of this program.
+    /// This program was built without Zenoh.
     #[cfg(not(feature = "zenoh"))]
     #[error("{0}: {NO_ZENOH}")]
     NoZenoh(Address),
 }
 
 impl PeerError {
-    /// True if a later attempt may succeed: no controller is there, or it has just gone.
+    /// True if a later attempt may succeed: there is no controller, or it has just ended.
     #[must_use]
     pub fn is_passing(&self) -> bool {
         match self {
@@ -87,7 +87,7 @@ impl PeerError {
         }
     }
 
-    /// True if the neighbour was started in a way in which it can never connect.
+    /// True if the neighbour can never connect with these arguments.
     #[must_use]
     pub const fn is_usage(&self) -> bool {
         match self {
@@ -104,7 +104,7 @@ impl PeerError {
 pub enum Received {
     /// A mailgram has come: the mailbox holds it.
     Mailgram(Place),
-    /// A tick is over, and all that was written in it has come. It is to be answered by [`Peer::pulse`].
+    /// A tick is over, and all its mailboxes have come. Answer it by [`Peer::pulse`].
     Pulse(u64),
 }
 
@@ -118,7 +118,7 @@ pub struct Peer {
     incoming: Vec<Mailbox>,
     /// The controller has not closed the connection.
     open: bool,
-    /// What carries the connection, if it is not the system.
+    /// The Zenoh tunnel of the connection, if there is one.
     #[cfg(feature = "zenoh")]
     _tunnel: Option<over_zenoh::Tunnel>,
 }
@@ -127,12 +127,12 @@ impl Peer {
     /// Connect as a neighbour.
     ///
     /// # Errors
-    /// [`PeerError`]; [`PeerError::Disconnected`] if it is not admitted.
+    /// [`PeerError`]; [`PeerError::Disconnected`] if it is refused.
     pub fn connect(address: &Address, role: Role, keys: Option<&NeighbourKeys>) -> Result<Self, PeerError> {
         Self::connect_within(Duration::ZERO, address, role, keys)
     }
 
-    /// Connect, and try again for a while as long as no controller is there.
+    /// Connect; try again for a while if there is no controller.
     ///
     /// # Errors
     /// The last [`PeerError`].
@@ -268,7 +268,7 @@ impl Peer {
         self.flush()
     }
 
-    /// Until the system has taken all that is to be sent.
+    /// Wait until the system has accepted all bytes to send.
     fn flush(&mut self) -> Result<(), PeerError> {
         let until = Instant::now() + NEIGHBOUR_LIMIT;
         loop {
@@ -282,7 +282,7 @@ impl Peer {
         }
     }
 
-    /// Why the controller has closed the connection: its reason stands behind what was not read yet.
+    /// Why the controller has closed the connection: read the rest up to its reason.
     fn reason(&mut self) -> PeerError {
         loop {
             if let Err(error) = self.receive() {
@@ -336,7 +336,7 @@ fn broken(address: &Address) -> impl FnOnce(SessionError) -> PeerError {
     }
 }
 
-/// The other side has closed the connection, with or without what was still under way.
+/// The other side has closed the connection, maybe with bytes in transit.
 fn is_end(error: &io::Error) -> bool {
     use io::ErrorKind::{BrokenPipe, ConnectionReset, UnexpectedEof};
     matches!(error.kind(), BrokenPipe | ConnectionReset | UnexpectedEof)

@@ -1,4 +1,4 @@
-//! The controller's end of connections: each is served by a thread of its own, from the hello to its end.
+//! The controller's end of connections: each is served by its own thread, from the hello to its end.
 
 use std::{
     fmt, io,
@@ -28,7 +28,7 @@ pub(super) struct Server {
     keys: Option<ControllerKeys>,
     clock: ClockKind,
     queue: AcceptQueue,
-    /// When it was said last that too many connect.
+    /// When "too many connect" was reported last.
     crowded: Mutex<Option<Instant>>,
 }
 
@@ -183,7 +183,7 @@ impl Connection {
         }
     }
 
-    /// Send what is new, wait, and take in what has come.
+    /// Send changes, wait, and receive.
     fn turn(&mut self, link: &mut Link) -> Result<(), Disconnect> {
         let lost = |error: io::Error| Disconnect::Lost(error.to_string());
         let now = Instant::now();
@@ -222,7 +222,7 @@ fn said(error: impl fmt::Display) -> String {
     error.to_string()
 }
 
-/// Why a connection ends in front of its hello.
+/// Why a connection ends before its hello.
 fn refusal(error: io::Error) -> String {
     if error.kind() == io::ErrorKind::InvalidData {
         format!("TLS: {error}")

@@ -17,10 +17,9 @@
 //!                                             close
 //! ```
 //!
-//! The caller moves bytes: what has come goes to [`Session::receive`], then [`Session::event`] is called
-//! until there is none, then [`Session::output`] is sent. [`Session::deadline`] says when
-//! [`Session::check_time`] is due. Authentication is for the socket (user) or TLS (certificate) below the
-//! session.
+//! The caller moves bytes: received bytes go to [`Session::receive`], then [`Session::event`] is called until there is
+//! none, then [`Session::output`] is sent. [`Session::deadline`] says when [`Session::check_time`] is due. The socket
+//! (user) or TLS (certificate) below the session authenticates the peer.
 
 use std::{
     fmt,
@@ -45,7 +44,7 @@ pub const VERSION: u16 = 3;
 /// How long a neighbour waits for hello and welcome; on the 40 ms grid, for the next byte as well.
 pub const NEIGHBOUR_LIMIT: Duration = Duration::from_secs(10);
 
-/// What has happened in a session.
+/// An event of a session.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Event<'a> {
     /// At the controller: a neighbour asks for admission.
@@ -73,13 +72,13 @@ pub enum SessionError {
     /// No clock has this number.
     #[error("0 (real) or 1 (fast) was expected for the clock, found {0}")]
     Clock(u16),
-    /// The controller sends something else before it has admitted the neighbour.
+    /// The controller has sent another frame before the welcome.
     #[error("a welcome was expected, found a frame with the address {0:05X}")]
     Welcome(u32),
-    /// It is no frame, or none of the sender's.
+    /// Not a frame, or not one that the sender may send.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// The neighbour answers a pulse that was never sent.
+    /// The neighbour has answered a pulse that was never sent.
     #[error("an answer to a pulse up to {sent} was expected, found one to {found}")]
     Early {
         /// The last one that was sent.
@@ -90,7 +89,7 @@ pub enum SessionError {
     /// Hello or welcome have not come in time.
     #[error("no hello within {} s", .0.as_secs())]
     NoHello(Duration),
-    /// Nothing has come for so long.
+    /// Nothing was received for this time.
     #[error("no answer for {} s", .0.as_secs())]
     Silent(Duration),
     /// The controller has closed the connection, and said why.
@@ -127,12 +126,12 @@ struct Pulses {
 pub struct Session {
     side: Side,
     state: State,
-    /// What has come; the bytes in front of `read` are done with.
+    /// Received bytes; those before `read` have been processed.
     input: Vec<u8>,
     read: usize,
     output: Vec<u8>,
     pulses: Pulses,
-    /// When it began, and when something has come last.
+    /// When it began, and when bytes were received last.
     began: Instant,
     heard: Instant,
 }
@@ -140,7 +139,7 @@ pub struct Session {
 /// Since when is the other side silent, how long may it be, and what is wrong then?
 type Limit = (Instant, Duration, fn(Duration) -> SessionError);
 
-/// An event, with places in the input in the place of bytes.
+/// An event, with positions in the input instead of bytes.
 enum Step {
     Hello(Role),
     Welcome(ClockKind),
@@ -185,7 +184,7 @@ impl Session {
         Self::new(Side::Neighbour { role, clock: ClockKind::Real }, now)
     }
 
-    /// Bytes have come. The caller takes all events before it brings more.
+    /// Add received bytes. The caller takes all events before it adds more.
     pub fn receive(&mut self, bytes: &[u8], now: Instant) {
         if self.state == State::Closed {
             return;
@@ -294,7 +293,7 @@ impl Session {
         Ok(Some(Step::Mailgram(*place, start..end)))
     }
 
-    /// A neighbour answers a pulse; answers that were given before answer nothing.
+    /// A neighbour has answered a pulse; repeated answers have no effect.
     fn pulse_came(&mut self, found: u64, now: Instant) -> Result<(), SessionError> {
         let Side::Controller { .. } = self.side else { return Ok(()) };
         let sent = self.pulses.sent;
@@ -322,9 +321,8 @@ impl Session {
         }
     }
 
-    /// Send the pulse of a tick: the controller behind the mailgrams of the tick, the neighbour as its
-    /// answer to all up to this one. A neighbour that has answered the last one has its whole time for this
-    /// one.
+    /// Send the pulse of a tick: the controller behind the mailgrams of the tick, the neighbour as its answer to all up
+    /// to this one. A neighbour that has answered the last one has the full time limit for this one.
     pub fn pulse(&mut self, tick: u64, now: Instant) {
         if self.state != State::Open {
             return;
@@ -351,7 +349,7 @@ impl Session {
         error
     }
 
-    /// When the time is to be checked again; `None` if silence is no matter.
+    /// When to check the time again; `None` if there is no time limit.
     #[must_use]
     pub fn deadline(&self) -> Option<Instant> {
         self.limit().and_then(|(since, limit, _)| since.checked_add(limit))
@@ -409,7 +407,7 @@ impl Session {
     }
 }
 
-/// A text that came over a line, without the characters that a terminal would obey.
+/// A received text without control characters, which a terminal would execute.
 fn plain(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).replace(char::is_control, "?")
 }

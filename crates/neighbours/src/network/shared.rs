@@ -22,7 +22,7 @@ use crate::mailbox::{Mailbox, MailboxError, Place};
 /// Disconnect reason of a run that has ended.
 pub const OVER: &str = "the run is over";
 
-/// What both sides see.
+/// State that both sides share.
 pub(super) struct Shared {
     pub role: Role,
     pub clock: ClockKind,
@@ -46,13 +46,12 @@ pub(super) struct Shared {
     wake: OwnedFd,
 }
 
-/// A panic in another thread is reported where it happened; what is behind the locks of the network is whole
-/// all the same.
+/// Lock a mutex, also after a panic in another thread: the data behind the locks of the network are always consistent.
 pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Mailboxes as initialization leaves them.
+/// Initialized mailboxes.
 pub(super) fn initialized(places: &[Place]) -> Vec<Mailbox> {
     places.iter().map(|&place| Mailbox::initialized(place)).collect()
 }
@@ -81,7 +80,7 @@ impl Shared {
         let _ = rustix::io::write(&self.wake, &1_u64.to_ne_bytes());
     }
 
-    /// No session is there any more, and none begins.
+    /// End the session, and accept no other.
     pub fn end(&self) {
         // The tick that waits looks at the flag behind this lock.
         let answered = locked(&self.answered);
@@ -112,10 +111,10 @@ impl fmt::Debug for EndpointHandle {
 /// Why a neighbour gets no session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AttachError {
-    /// There is one already.
+    /// It has a session already.
     #[error("{0} is connected already")]
     Occupied(Role),
-    /// It comes too late.
+    /// The run is over.
     #[error("{OVER}")]
     Over,
 }
@@ -210,7 +209,7 @@ impl EndpointHandle {
     }
 }
 
-/// What the tick wants to be sent.
+/// Something to send for the tick.
 pub(super) enum Outgoing<'a> {
     /// A mailbox that has changed.
     Mailbox(&'a Mailbox),
@@ -218,7 +217,7 @@ pub(super) enum Outgoing<'a> {
     Pulse(u64),
 }
 
-/// A session as the mailboxes see it: what of them was sent already.
+/// The state of a session: which mailboxes were sent already.
 pub(super) struct Link {
     pub handle: EndpointHandle,
     sent: Vec<Mailbox>,

@@ -26,8 +26,7 @@ impl Socket {
         })
     }
 
-    /// Do not block; send each mailgram at once (without that TCP keeps some back for up to 40 ms, a whole
-    /// tick).
+    /// Do not block; send each mailgram at once (otherwise TCP may delay some for up to 40 ms, a whole tick).
     pub fn prepare(&self) -> io::Result<()> {
         match self {
             Self::Unix(stream) => stream.set_nonblocking(true),
@@ -52,12 +51,12 @@ impl Socket {
         Err(io::Error::new(io::ErrorKind::PermissionDenied, why))
     }
 
-    /// Nothing more goes out; the other side reads what is under way, and then the end.
+    /// Close the sending direction; the other side reads the bytes in transit, and then the end.
     pub fn finish(&self) {
         self.shut(Shutdown::Write);
     }
 
-    /// Close it, whatever is under way.
+    /// Close both directions at once.
     pub fn shut_down(&self) {
         self.shut(Shutdown::Both);
     }

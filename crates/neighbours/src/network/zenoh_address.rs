@@ -1,4 +1,4 @@
-//! The address of a controller in a Zenoh network: the name under which it is found, and where.
+//! The address of a controller in a Zenoh network: its name, and optionally an endpoint.
 //!
 //! `t3` finds it by multicast, `t3@tcp/10.0.0.1:7447` at an address of its own: there the controller
 //! listens, there neighbours connect, and there is no multicast. A file of Zenoh's own configuration adds
@@ -12,7 +12,7 @@ use std::{
 
 /// Letters of a name at most: it is a part of every key.
 const MAX_NAME: usize = 32;
-/// What Zenoh is built with here.
+/// Transports that Zenoh is built with here.
 const LINKS: [&str; 2] = ["tcp/", "tls/"];
 
 /// A controller in a Zenoh network.
@@ -23,7 +23,7 @@ pub struct ZenohAddress {
     configuration: Option<PathBuf>,
 }
 
-/// Why a text is no such address.
+/// Why a text is not such an address.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ZenohAddressError {
     /// Its name cannot be a part of a key.

@@ -1,14 +1,13 @@
 //! The controller's side of a pedestal in another process: the mailboxes of Subtask and Diagnostics (IX.3).
 //!
-//! Once a tick the command of Subtask goes out, and what the pedestal has written comes in, as an input of
-//! the next tick. The processes of the controller see common memory, and in it a pedestal that answers or
-//! one that is lost:
+//! Once a tick it sends the command of Subtask and receives the pedestal's statuses, as an input of the next tick. The
+//! processes of the controller read common memory, where the pedestal answers or is lost:
 //!
 //! | what happens                                       | common memory                                                   |
 //! |----------------------------------------------------|-----------------------------------------------------------------|
 //! | it is connected and has written a status           | its buffers, with the stamp of the tick                         |
 //! | on the 40 ms grid its status is not there yet      | its last buffers, republished until the echo comes, 2 s at most |
-//! | it has gone, has not come, or writes what is none  | its last buffers with their old stamp: it is lost               |
+//! | it is not connected, or writes invalid data  | its last buffers with their old stamp: it is lost               |
 
 use interfaces::{OutsidePedestal, device::PedestalSensors, pedestal::PedestalCommand};
 use rcs_core::tick::Tick;
@@ -29,23 +28,23 @@ use crate::{
     network::{ClockKind, Endpoint, NetEvent},
 };
 
-/// Ticks in which a command must be echoed over a network on the 40 ms grid: 2 s. In fast clock nothing is
-/// late.
+/// Ticks in which a command must be echoed over a network on the 40 ms grid: 2 s. In fast clock every tick waits for
+/// the answer.
 const ECHO_TICKS: u64 = 50;
 
-/// What there is to say of the pedestal.
+/// A remark about the pedestal for the log.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Remark {
     /// It has connected or disconnected, or a connection was refused.
     Network(NetEvent),
-    /// It refuses what was sent to it.
+    /// It refuses a command.
     Refuses(String),
-    /// What it wrote cannot be read: it counts as not answering.
+    /// Its status cannot be read: it counts as not answering.
     Garbled(Place, PedestalError),
-    /// It is there and does not echo a command.
+    /// It is connected but does not echo a command.
     Silent(u32),
-    /// What is to be sent does not fit its mailbox.
+    /// The data to send do not fit the mailbox.
     Unsent(MailboxError),
 }
 
@@ -89,7 +88,7 @@ pub struct Agent {
     garbled: Option<Place>,
     /// Since when the last command has not been echoed.
     waiting: Option<Tick>,
-    /// It was remarked that it does not echo.
+    /// The missing echo was reported.
     silent: bool,
     remarks: Vec<Remark>,
 }
@@ -109,19 +108,19 @@ impl Agent {
         }
     }
 
-    /// What the next tick reads of the pedestal.
+    /// Input of the next tick from the pedestal.
     #[must_use]
     pub const fn sent(&self) -> &OutsidePedestal {
         &self.sent
     }
 
-    /// What there is to say, since the last call.
+    /// The remarks since the last call.
     pub fn remarks(&mut self) -> Vec<Remark> {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Between two ticks: send the command that stands in common memory and the sensor words that the tick
-    /// `next` reads, and receive what it reads of the pedestal.
+    /// Between two ticks: send the command that stands in common memory and the sensor words that the tick `next`
+    /// reads, and receive the pedestal's statuses for it.
     pub fn exchange(&mut self, next: Tick, command: &PedestalCommand, sensors: &PedestalSensors) {
         self.put(PEDESTAL_COMMAND, &CommandLayout::encode(command));
         self.put(PEDESTAL_SENSORS, &SensorsLayout::encode(sensors));
@@ -159,8 +158,8 @@ impl Agent {
         }
     }
 
-    /// Take over what stands in its four mailboxes, all of it or nothing. False if it has not written a
-    /// status yet; what it does not write otherwise it has not.
+    /// Read its four mailboxes, all or none of them. False if it has not written a status yet; an optional mailbox that
+    /// it does not write counts as initial.
     fn receive(&mut self) -> Result<bool, (Place, PedestalError)> {
         let endpoint = &self.endpoint;
         let Some(status) = read(endpoint, PEDESTAL_STATUS, Status::decode)? else { return Ok(false) };
@@ -180,8 +179,7 @@ impl Agent {
         Ok(true)
     }
 
-    /// It echoes the last command, or there is still time for that. Until then its status belongs to another
-    /// command.
+    /// It echoes the last command, or the time limit has not passed. Until then its status belongs to another command.
     fn is_heard(&mut self, next: Tick, number: u32) -> bool {
         if number == 0 || self.sent.pedestal.status.echo == number || self.endpoint.clock() == ClockKind::Fast
         {
@@ -199,7 +197,7 @@ impl Agent {
     }
 }
 
-/// What stands in a mailbox; nothing if nothing was written since it was initialized.
+/// Decode a mailbox; `None` if it was not written since it was initialized.
 fn read<'a, T, E: Into<PedestalError>>(
     endpoint: &'a Endpoint,
     place: Place,

@@ -1,5 +1,4 @@
-//! The Active Pedestal (VI.7, IX.3) as a system of its own: what stands in its mailboxes, and both ends of
-//! them.
+//! The Active Pedestal (VI.7, IX.3) as a separate system: the data of its mailboxes, and both ends of them.
 //!
 //! ```text
 //!   PedestalCommand --CommandLayout--> Pedestal from RCS Command --> System: pedestal, hand and table process
@@ -8,17 +7,15 @@
 //!                   <--TableLayout---- Pedestal Table to RCS Status      <-- the rotary table, for Diagnostics
 //! ```
 //!
-//! [`Agent`] is the controller's end, [`System`] the pedestal's: the same three processes that the
-//! controller steps itself if the pedestal is in its own process. What the agent gets is an input of the
-//! next tick ([`interfaces::OutsidePedestal`]), so that boards, logs and replays need to know nothing of the
-//! network.
+//! [`Agent`] is the controller's end, [`System`] the pedestal's: the same three processes that the controller steps
+//! itself if the pedestal is in its own process. What the agent gets is an input of the next tick
+//! ([`interfaces::OutsidePedestal`]), so that boards, logs and replays do not depend on the network.
 //!
-//! A pedestal of the simulated cell has its devices there: their words travel in two mailboxes more
-//! ([`cell`]). A real one has devices of its own.
+//! A pedestal of the simulated cell has its devices there: their words are sent in two further mailboxes ([`cell`]). A
+//! real one has its own devices.
 //!
-//! All integers have four bytes, `cycle-cnt` eight, as in the controller (CHOSEN: the manual gives no
-//! widths): so whatever can be commanded can be said, and a run is the same to the bit wherever its pedestal
-//! is.
+//! All integers have four bytes, `cycle-cnt` eight, as in the controller (CHOSEN: the manual gives no widths): so the
+//! mailboxes can hold every command, and a run is the same, bit for bit, in whichever process its pedestal is.
 
 mod agent;
 pub mod cell;
@@ -42,13 +39,13 @@ const WORD: usize = 10;
 /// Characters of a step.
 const STEP: usize = 16;
 
-/// Why data cannot be what stands in a mailbox of the pedestal.
+/// Why the data of a mailbox of the pedestal cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PedestalError {
-    /// One has a command and the other none.
+    /// Number and status contradict each other: only one of them means "no command".
     #[error("executing, done, can't-do or error was expected for the command {0}, found idle")]
     Idle(u32),
-    /// Size or fields cannot be.
+    /// Wrong size or field.
     #[error(transparent)]
     Layout(#[from] LayoutError),
 }

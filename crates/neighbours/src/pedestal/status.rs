@@ -16,9 +16,9 @@ pub const REASON: usize = 160;
 /// `verdict`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Verdict {
-    /// What was read last was taken.
+    /// The last mailgram was accepted.
     Taken,
-    /// It is no command.
+    /// It is not a command.
     #[text = "no command"]
     NoCommand,
     /// The sensor words of the simulated cell cannot be read.
@@ -86,7 +86,7 @@ fn set_known(read: &mut Status<'_>, known: bool) {
 }
 
 impl<'a> Status<'a> {
-    /// The bytes; what is longer than [`REASON`] is cut off.
+    /// The bytes; a reason longer than [`REASON`] is cut off.
     #[must_use]
     pub fn encode(&self) -> [u8; StatusLayout::BYTES] {
         StatusLayout::encode(self)
@@ -95,7 +95,7 @@ impl<'a> Status<'a> {
     /// Read the bytes.
     ///
     /// # Errors
-    /// [`PedestalError`] for the first thing that cannot be.
+    /// [`PedestalError`] for the first wrong field.
     pub fn decode(data: &'a [u8]) -> Result<Self, PedestalError> {
         let read = StatusLayout::decode(data)?;
         let status = &read.status;

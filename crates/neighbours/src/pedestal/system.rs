@@ -7,13 +7,12 @@
 //!                             | hand table
 //! ```
 //!
-//! A step is a tick of the controller: the pedestal runs on the pulses that it gets, with a cycle count of
-//! its own.
+//! A step is a tick of the controller: the pedestal runs on the pulses that it gets, with its own cycle count.
 //!
-//! Whenever it joins a controller, the command that stands in the mailbox then is adopted and not executed
-//! (IX.1: numbers are synchronized): it reports *restarted* for it, and the next number is executed. What
-//! was given up while the line was cut is thus not made up for afterwards. One that was switched on just now
-//! takes the number for more than that:
+//! When it connects to a controller, it adopts the number of the command in the mailbox without executing it (IX.1:
+//! numbers are synchronized): it reports *restarted* for it, and executes the next number. So a command that was given
+//! up while the line was cut is not executed later. A pedestal that has just been started uses the number to tell two
+//! cases apart:
 //!
 //! | command number | what it means                             | hand and table                                            |
 //! |----------------|-------------------------------------------|-----------------------------------------------------------|
@@ -42,8 +41,7 @@ use crate::{
     mailbox::{Mailbox, PEDESTAL_GRIPPER_STATUS, PEDESTAL_ORDERS, PEDESTAL_STATUS, PEDESTAL_TABLE_STATUS},
 };
 
-/// Number of the command that hand and table of a pedestal find which replaces another one: they did not
-/// execute it.
+/// Command number that hand and table find in a pedestal that replaces another one; they did not execute it.
 const OF_THE_LAST_ONE: u32 = 1;
 
 /// The pedestal's system.
@@ -57,7 +55,7 @@ pub struct System {
     /// Mailgram number of the command mailbox that was read last.
     read: u16,
     refused: Option<(Verdict, LayoutError)>,
-    /// The number in the command mailbox is to be adopted.
+    /// The number in the command mailbox has to be adopted.
     joining: bool,
     outgoing: [Mailbox; 4],
 }
@@ -81,13 +79,13 @@ impl Default for System {
 }
 
 impl System {
-    /// A connection to a controller begins: what stands in its command mailbox is not to be executed.
+    /// A connection to a controller begins: the command in its mailbox must not be executed.
     pub const fn join(&mut self) {
         (self.read, self.joining) = (0, true);
     }
 
-    /// One tick on what stands in the mailboxes. Without a command mailbox and sensor words that can be read
-    /// nothing is stepped, and the status says why.
+    /// One tick on the mailboxes. If the command mailbox or the sensor words cannot be read, no process is stepped, and
+    /// the status says why.
     pub fn step(&mut self, command_box: &Mailbox, sensors_box: &Mailbox) {
         if command_box.mailgram() == 0 || sensors_box.mailgram() == 0 {
             return;
@@ -117,7 +115,7 @@ impl System {
         &self.memory.subtask.pedestal
     }
 
-    /// Why what was read last was refused, if so.
+    /// Why the last mailgram was refused, if it was.
     #[must_use]
     pub fn refusal(&self) -> Option<&LayoutError> {
         self.refused.as_ref().map(|(_, why)| why)
@@ -146,7 +144,7 @@ impl System {
         }
     }
 
-    /// Take the number that stands in the mailbox for one that is over.
+    /// Adopt the number in the mailbox as that of a finished command.
     fn adopt(&mut self, number: u32) {
         self.joining = false;
         let mut state = *Process::<()>::state(&self.pedestal);
@@ -171,7 +169,7 @@ impl System {
         sensors.is_ok()
     }
 
-    /// A tick of the three processes: each reads what the tick before left.
+    /// A tick of the three processes: each reads the buffers of the tick before.
     fn run(&mut self) {
         self.tick = self.tick.next();
         let before = *self.memory;
@@ -200,7 +198,7 @@ impl System {
     }
 }
 
-/// Write what is new.
+/// Write the data if they have changed.
 fn put(mailbox: &mut Mailbox, data: &[u8]) {
     if mailbox.data() != data {
         // The layouts are shorter than the mailboxes, as a test holds.

@@ -1,5 +1,5 @@
-//! The status of the pedestal's rotary table for Diagnostics (IX.3). CHOSEN: the manual gives no layout, and
-//! nothing of the table process but that it is there.
+//! The status of the pedestal's rotary table for Diagnostics (IX.3). CHOSEN: the manual gives no layout, and of the
+//! table process only that it exists.
 
 use interfaces::{TableOutputs, pedestal::TableCommand};
 

@@ -1,4 +1,4 @@
-//! What vision writes (IX.4): the two ready words and the response. CHOSEN, Figure IX.3 is lost.
+//! The areas that vision writes (IX.4): the two ready words and the response. CHOSEN, Figure IX.3 is lost.
 
 use interfaces::device::{VisionResponse, VisionStatus};
 
@@ -97,7 +97,7 @@ crate::layout! {
 }
 
 impl Areas {
-    /// As initialization leaves them (IX.4, blocks 984-986).
+    /// The areas after initialization (IX.4, blocks 984-986).
     pub const INITIALIZED: Self = Self {
         input: Ready::Ready,
         output: Ready::NotReady,
@@ -119,7 +119,7 @@ impl Areas {
         AreasLayout::check(self).map(|()| AreasLayout::encode(self))
     }
 
-    /// Read the bytes. Whether the values can be is for E-move to judge.
+    /// Read the bytes. E-move checks the values.
     ///
     /// # Errors
     /// [`VisionError`] for the first thing that cannot be read.

@@ -1,9 +1,9 @@
 //! The NBS vision system and E-move (IX.4, V.2.1 LOCATE-OBJ).
 //!
-//! Vision has a parallel interface of its own, which to the software looks like a slightly modified mailbox:
-//! a request area and a response area, the byte-count of each, and two words that say which of them may be
-//! used. Figure IX.3, with addresses and sizes, is lost. CHOSEN: two mailboxes, one each way, so that each
-//! has one writer; their data are the areas.
+//! Vision has its own parallel interface, which the software uses like a slightly modified mailbox: a request area and
+//! a response area, the byte-count of each, and two words that say which of them may be used. Figure IX.3, with
+//! addresses and sizes, is lost. CHOSEN: two mailboxes, one each way, so that each has one writer; their data are the
+//! areas.
 //!
 //! ```text
 //!   E-move --VisionRequest--> Port --request---> F8000 --> vision
@@ -11,14 +11,13 @@
 //!                             Port --picture---> F8400 --> vision, for the simulated cell only
 //! ```
 //!
-//! Both ready words are vision's: `vision-ready-input` is 2 while the response area is at rest and may be
-//! read, `vision-ready-output` is 2 while a request may be written. The controller sets them once, by
-//! initialization (blocks 984-986): input "ready", since there is nothing in the response area that could be
-//! half written, and output "not ready", since no vision system is there yet. Vision establishes
-//! communications when it writes its mailbox the first time.
+//! Both ready words are vision's: `vision-ready-input` is 2 while the response area is at rest and may be read,
+//! `vision-ready-output` is 2 while a request may be written. The controller sets them once, by initialization (blocks
+//! 984-986): input "ready", because the response area is empty, and output "not ready", because no vision system is
+//! connected yet. Vision establishes communications when it writes its mailbox the first time.
 //!
-//! [`Port`] stands where E-move's READ-VISION-DATA and WRITE-VISION-REQUEST stood (IV.4.4). E-move knows
-//! nothing of it: what it reads is part of its device inputs, and with them in the log.
+//! [`Port`] does the work of E-move's READ-VISION-DATA and WRITE-VISION-REQUEST (IV.4.4). E-move is independent of it:
+//! it reads the response as part of its device inputs, which are logged.
 
 pub mod areas;
 pub mod picture;
@@ -31,10 +30,10 @@ pub use port::{Port, Remark};
 
 use crate::{fields::FieldError, layout::LayoutError};
 
-/// Why bytes are no request, no areas or no picture.
+/// Why bytes are not a request, areas or a picture.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum VisionError {
-    /// Size or fields of a fixed layout cannot be.
+    /// Wrong size or field of a fixed layout.
     #[error(transparent)]
     Layout(#[from] LayoutError),
     /// More parts than the mailbox holds.

@@ -1,6 +1,6 @@
-//! What the camera of the simulated cell sees: an extension for a vision system that has no camera of its
-//! own. A real one does not read it. All numbers are those of the cell to the last bit, so that the answer
-//! is the same wherever it is worked out.
+//! The picture of the camera in the simulated cell: an extension for a vision system without a camera. A real one does
+//! not read it. All numbers are exactly those of the cell, so that the answer does not depend on the process that
+//! computes it.
 
 use super::VisionError;
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
 };
 
 crate::layout! {
-    /// What stands in front of the parts.
+    /// The head before the parts.
     HeadLayout: Head = "the head of a picture";
     "request-#"    (number)  U16,  "request for which the picture was taken";
     "parts"        (parts)   U16,
@@ -42,7 +42,7 @@ pub const MAX_PARTS: usize = (VISION_PICTURE.size - MAILBOX_HEAD - HEAD) / PART;
 /// Points of a face.
 const POINTS: u32 = 81;
 
-/// What stands in front of the parts.
+/// The head before the parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Head {
     number: u16,
@@ -125,28 +125,27 @@ pub struct Picture {
     pub number: u16,
     /// Seed of the run.
     pub seed: u64,
-    /// Fingerprint of what the answer depends on in the cell description.
+    /// Fingerprint of the entries of the cell description on which the answer depends.
     pub cell: u64,
-    /// Parts of which something is seen.
+    /// Visible parts.
     pub parts: Vec<Part>,
 }
 
-/// A part in a picture: its face that looks at the camera, in camera axes, in.
+/// A part in a picture: its face towards the camera, in camera axes, in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Part {
     /// Middle of the face.
     pub centre: [f64; 3],
     /// Directions and lengths of its edges.
     pub edges: [([f64; 3], f64); 2],
-    /// Share of the light that it throws back.
+    /// Share of the light that it reflects.
     pub reflectance: f64,
     /// Which points are seen: bit n for the nth.
     pub seen: u128,
 }
 
 impl Picture {
-    /// Leave out the parts farthest from the optical axis, if there are more than the mailbox holds; how
-    /// many.
+    /// Leave out the parts farthest from the optical axis, if there are more than the mailbox holds; returns how many.
     pub fn crop(&mut self) -> usize {
         let Some(excess) = self.parts.len().checked_sub(MAX_PARTS).filter(|excess| *excess > 0) else {
             return 0;
@@ -175,7 +174,7 @@ impl Picture {
     /// Read the bytes.
     ///
     /// # Errors
-    /// [`VisionError`] for the first thing that cannot be.
+    /// [`VisionError`] for the first wrong field.
     pub fn decode(bytes: &[u8]) -> Result<Self, VisionError> {
         let (head, rest) = bytes.split_at(bytes.len().min(HEAD));
         let Head { number, parts, seed, cell } = HeadLayout::decode(head)?;

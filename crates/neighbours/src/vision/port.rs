@@ -9,8 +9,8 @@
 //! | a response while `vision-ready-input` is 1      | not read                                                                  |
 //! | what is no response                             | not read; the ready words stay as they were                               |
 //!
-//! What E-move does not read leaves it with what it had: at worst it waits until vision counts as silent. A
-//! mailbox that is read is read every cycle (IX), and what is not to be understood is said once.
+//! If a response is not read, E-move keeps the earlier one: at worst it waits until vision counts as silent. The
+//! mailbox is read every cycle (IX), and invalid data are reported once.
 
 use std::fmt;
 
@@ -23,13 +23,13 @@ use crate::{
     network::{Endpoint, NetEvent},
 };
 
-/// What is worth a word in the log.
+/// A remark about vision for the log.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Remark {
-    /// Vision has come, or gone.
+    /// Vision has connected or disconnected.
     Network(NetEvent),
-    /// What it wrote cannot be read.
+    /// Its mailbox cannot be read.
     Refused(VisionError),
     /// It has answered another request than the present one.
     Stranger {
@@ -38,7 +38,7 @@ pub enum Remark {
         /// The present one; 0 if there is none.
         expected: u16,
     },
-    /// It has written an answer that may not be read.
+    /// It has written an answer while `vision-ready-input` is not ready.
     Unread {
         /// The request that it answers.
         echo: u16,
@@ -118,11 +118,11 @@ pub struct Port {
     output: Ready,
     /// What E-move reads.
     response: VisionResponse,
-    /// What was found in the response area last.
+    /// The last content of the response area.
     found: VisionResponse,
-    /// Why the mailbox cannot be read, as it was said last.
+    /// Why the mailbox cannot be read, as reported last.
     refused: Option<VisionError>,
-    /// It was said that the request waits.
+    /// The waiting request was reported.
     waits: bool,
     remarks: Vec<Remark>,
 }
@@ -158,13 +158,13 @@ impl Port {
         &self.response
     }
 
-    /// What is worth a word since the last call.
+    /// The remarks since the last call.
     pub fn remarks(&mut self) -> Vec<Remark> {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Once a tick, after E-move and the cell: `wanted` is what E-move asks for, `picture` what the camera of
-    /// the simulated cell sees in the tick in which the request is written.
+    /// Once a tick, after E-move and the cell: `wanted` is what E-move asks for, `picture` the picture of the camera of
+    /// the simulated cell in the tick in which the request is written.
     pub fn step(&mut self, tick: u64, wanted: &VisionRequest, picture: impl FnOnce() -> Vec<Part>) {
         if wanted.number != self.wanted.number {
             (self.wanted, self.written, self.waits) = (*wanted, false, false);
@@ -198,7 +198,7 @@ impl Port {
         self.wanted.number != 0 && self.wanted.picture != Kind::None && !self.written && !answered
     }
 
-    /// As blocks 984-986 leave the ready words and the response area. What E-move has read it has read.
+    /// Initialize the ready words and the response area as blocks 984-986 do. The response that E-move has read stays.
     fn initialize(&mut self) {
         self.output = Areas::INITIALIZED.output;
         self.found = Areas::INITIALIZED.response;

@@ -33,7 +33,7 @@ pub fn encode(request: &VisionRequest) -> [u8; RequestLayout::BYTES] {
 /// Read the bytes of a request.
 ///
 /// # Errors
-/// [`VisionError`] for the first thing that cannot be.
+/// [`VisionError`] for the first wrong field.
 pub fn decode(bytes: &[u8]) -> Result<VisionRequest, VisionError> {
     let request = RequestLayout::decode(bytes)?;
     if request.picture == Picture::None {

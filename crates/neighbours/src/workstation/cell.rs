@@ -1,5 +1,5 @@
-//! What the workstation does itself, in a simulated cell (an extension: the manual's workstation has its own
-//! lines to vise, trays and machine).
+//! Actions of the workstation itself in a simulated cell (an extension: the manual's workstation has its own lines to
+//! vise, trays and machine).
 
 use rcs_core::Plain;
 
@@ -61,7 +61,7 @@ crate::layout! {
     "text"     (text)     Text<TEXT>,  "what is wrong";
 }
 
-/// The bytes of a line; what is longer than [`TEXT`] is cut off.
+/// The bytes of a line; a text longer than [`TEXT`] is cut off.
 #[must_use]
 pub fn encode_line(number: u16, line: &str) -> [u8; LineLayout::BYTES] {
     LineLayout::encode(&(number, line))
@@ -96,7 +96,7 @@ impl<'a> CellStatus<'a> {
     /// Read the bytes.
     ///
     /// # Errors
-    /// [`LayoutError`] for the first field that cannot be.
+    /// [`LayoutError`] for the first wrong field.
     pub fn decode(bytes: &'a [u8]) -> Result<Self, LayoutError> {
         CellStatusLayout::decode(bytes)
     }

@@ -51,10 +51,10 @@ impl Codec<'_, ()> for Length {
     }
 }
 
-/// Why bytes are no command.
+/// Why bytes are not a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CommandError {
-    /// Size or fields cannot be.
+    /// Wrong size or field.
     #[error(transparent)]
     Layout(#[from] LayoutError),
     /// 0 stands for no command.
@@ -73,10 +73,10 @@ pub fn encode(command: &HwsCommand) -> Result<[u8; CommandLayout::BYTES], RangeE
     CommandLayout::check(command).map(|()| CommandLayout::encode(command))
 }
 
-/// Read the bytes of a command. What its words mean is for Task to say.
+/// Read the bytes of a command. Task checks the words.
 ///
 /// # Errors
-/// [`CommandError`] for the first thing that cannot be.
+/// [`CommandError`] for the first wrong field.
 pub fn decode(bytes: &[u8]) -> Result<HwsCommand, CommandError> {
     let command = CommandLayout::decode(bytes)?;
     if command.number == 0 {

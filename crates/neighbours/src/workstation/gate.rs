@@ -1,7 +1,7 @@
-//! What Task reads of the mailbox, and what it answers: READ-HWS-COMMAND, WRITE-HWS-STATUS and
-//! UPDATE-MAILGRAM? (Figure IV.1, IX.1).
+//! Task's end of the workstation controller's mailboxes: READ-HWS-COMMAND, WRITE-HWS-STATUS and UPDATE-MAILGRAM?
+//! (Figure IV.1, IX.1).
 //!
-//! A command is executed once. Its number says so:
+//! A command is executed once. Its number decides:
 //!
 //! | number of the mailgram                    | what becomes of it                                                   |
 //! |-------------------------------------------|----------------------------------------------------------------------|
@@ -28,7 +28,7 @@ use crate::{
 /// Why a mailgram with a command was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// The bytes are no command.
+    /// The bytes are not a command.
     Garbled(CommandError),
     /// The number was given to another command.
     Changed {
@@ -83,7 +83,7 @@ pub struct Gate {
     command: HwsCommand,
     /// No command was taken since the mailboxes were initialized.
     fresh: bool,
-    /// Task's last status, and what went with its reason when it came.
+    /// Task's last status, with the details of its reason.
     told: (HwsStatus, Detail),
     status_box: Mailbox,
 }
@@ -102,7 +102,7 @@ impl Default for Gate {
 }
 
 impl Gate {
-    /// What stands in Task's command buffer.
+    /// Task's command buffer.
     #[must_use]
     pub const fn command(&self) -> &HwsCommand {
         &self.command
@@ -121,12 +121,12 @@ impl Gate {
         self.status_box.initialize();
     }
 
-    /// What stands in the mailbox was sent before it is read again, and is not to be executed.
+    /// Skip the command in the mailbox: it was sent while the mailbox was not read, and must not be executed.
     pub fn pass_over(&mut self, command_box: &Mailbox) {
         self.read = command_box.mailgram();
     }
 
-    /// READ-HWS-COMMAND, once a tick: look into the mailbox. Some if a mailgram has come that is refused.
+    /// READ-HWS-COMMAND, once a tick: read the mailbox. `Some` if a mailgram is refused.
     pub fn read(&mut self, command_box: &Mailbox) -> Option<Refusal> {
         debug_assert_eq!(command_box.place(), HWSC_COMMAND);
         let mailgram = command_box.mailgram();
@@ -155,8 +155,8 @@ impl Gate {
         Ok(())
     }
 
-    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, once a tick: what Task has written goes into the mailbox if it
-    /// is news. True if it is. Names and distances that go with a reason are those of the tick in which it came.
+    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, once a tick: write Task's status into the mailbox if it has changed; true
+    /// if it has. Names and distances of a reason are those of the tick in which the reason came.
     pub fn write(&mut self, memory: &CommonMemory, state: TaskState) -> bool {
         let task = memory.task.status;
         if task != self.told.0 {

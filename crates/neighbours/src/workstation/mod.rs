@@ -8,8 +8,8 @@
 //!   HWSC <--status::decode--- F6200 <-------- HwsStatus  <-- Task
 //! ```
 //!
-//! [`Gate`] stands where Task's READ-HWS-COMMAND and WRITE-HWS-STATUS stood (Figure IV.1). What it refuses never reaches Task:
-//! the command that is being executed goes on, and nothing new begins. [`player`] is an emulator of the other end, that plays jobs.
+//! [`Gate`] does the work of Task's READ-HWS-COMMAND and WRITE-HWS-STATUS (Figure IV.1). A refused mailgram never
+//! reaches Task: the command in progress goes on. [`player`] is an emulator of the other end, that plays jobs.
 
 pub mod cell;
 pub mod command;

@@ -1,13 +1,12 @@
 //! The workstation controller (HWSC), emulated: plays a job.
 //!
-//! A job is a list of steps: commands for Task, and actions of the workstation itself (vise, machining)
-//! between them. The emulator first sends PAUSE, as the startup sequence does (V.4.1), and then one step
-//! after the other: a command is over when Task answers its number with `finished`, an action when the
-//! workstation is no longer busy. A command that is not answered is sent once more, as it was. An error, a
-//! lost Task, a fault of the workstation or a step that takes too long end the job with a [`JobFailure`].
-//! With [`Hwsc::with_retries`] the emulator does what an operator does after an error: it sends PAUSE and the
-//! same command again. While the workstation does something, the operator may have the robot: a joystick box
-//! that is on ends only a command.
+//! A job is a list of steps: commands for Task, and actions of the workstation itself (vise, machining) between them.
+//! The emulator first sends PAUSE, as the startup sequence does (V.4.1), and then one step after the other: a command
+//! is over when Task answers its number with `finished`, an action when the workstation is no longer busy. A command
+//! that is not answered is sent once more, unchanged. An error, a lost Task, a fault of the workstation or a step that
+//! takes too long end the job with a [`JobFailure`]. With [`Hwsc::with_retries`] the emulator does what an operator
+//! does after an error: it sends PAUSE and the same command again. During an action of the workstation the operator may
+//! move the robot: a joystick box that is on ends only a command.
 //!
 //! ```text
 //!           PAUSE           command finished, or workstation idle
@@ -18,21 +17,19 @@
 //!                     +---- error, a retry is left ----> PAUSE ----> Sent
 //! ```
 //!
-//! An emergency ([`Workstation::emergency`]) ends the job at once, unless the job itself resets it further
-//! down, by a line with `** panel fault-reset`: then a command that comes to nothing meanwhile is noted as
-//! failed, and the job goes on. It must finish when the job sends it again, or the job has failed.
+//! An emergency ([`Workstation::emergency`]) ends the job at once, unless the job itself resets it further down, by a
+//! line with `** panel fault-reset`: then a command that fails meanwhile is noted as failed, and the job goes on. It
+//! must finish when the job sends it again, or the job has failed.
 //!
 //! A command whose line ends with `expect error` must fail: the job goes on when it has, and ends when it finishes.
 //!
-//! Actions that are to happen while the robot executes a command stand in the job before that command. They
-//! are kept until it is sent, and begun when their time comes, whatever step is going on then. A job is not
-//! over before they are.
+//! Actions that happen while the robot executes a command are in the job before that command. They are kept until it is
+//! sent, and begin at their time, during whatever step. A job ends only after they have ended.
 //!
 //! An operator can stop the job, command the robot meanwhile, and let the job go on ([`operator`]).
 //!
-//! The emulator knows Task by its mailboxes only: it reads a [`Status`], and writes a command
-//! ([`Hwsc::mailgram`]). So it can run in the controller's process or in one of its own, and the program that speaks
-//! the same mailboxes can take its place.
+//! The emulator uses only Task's mailboxes: it reads a [`Status`], and writes a command ([`Hwsc::mailgram`]). So it can
+//! run in the controller's process or in another one, and a real workstation controller can replace it.
 
 mod operator;
 mod outcome;
@@ -54,9 +51,9 @@ pub use self::{
 use super::status::{Status, TaskState};
 use crate::fields::command_number;
 
-/// What the workstation can do by itself.
+/// Actions of the workstation.
 pub trait Workstation {
-    /// Begin an action; `line` is how the job says it, without the asterisks.
+    /// Begin an action; `line` is its line in the job, without the asterisks.
     ///
     /// # Errors
     /// A sentence, if the workstation cannot do it.
@@ -77,15 +74,15 @@ pub trait Workstation {
 /// Ticks that a step may take: five minutes, three times the longest step of the linkbar.
 pub const TIME_LIMIT: u64 = 5 * 60 * 1000 / TICK_MS;
 
-/// Ticks from the PAUSE after an error to the command that is sent again: what has disturbed it may pass
-/// meanwhile. An operator is not faster. CHOSEN: 1 s.
+/// Ticks from the PAUSE after an error to the command that is sent again: the cause of the error may pass in this time.
+/// An operator would not be faster. CHOSEN: 1 s.
 pub const RETRY_TICKS: u64 = 1000 / TICK_MS;
 
 /// The emulator of the workstation controller.
 #[derive(Debug)]
 pub struct Hwsc {
     steps: Vec<JobLine>,
-    /// The step that is going on: 0 is the first PAUSE, `n` is `steps[n - 1]`.
+    /// The present step: 0 is the first PAUSE, `n` is `steps[n - 1]`.
     current: usize,
     began: Option<Tick>,
     commander: Commander,
@@ -108,10 +105,10 @@ pub struct Hwsc {
     retries: u32,
     /// Retries that the current line has had.
     tried: u32,
-    /// A PAUSE goes on before the current step begins, or begins again.
+    /// A PAUSE is executed before the current step begins, or begins again.
     pausing: bool,
     retried: Vec<Retry>,
-    /// What an operator does to the job.
+    /// State of an operator's intervention.
     intervention: Intervention,
 }
 
@@ -166,8 +163,8 @@ impl Hwsc {
         &self.retried
     }
 
-    /// Wait so many ticks for the echo of a command before it is sent again, instead of the three of a
-    /// neighbour in the same process: a network takes its time.
+    /// Wait so many ticks for the echo of a command before it is sent again, instead of the three of a neighbour in the
+    /// same process: a network is slower.
     #[must_use]
     pub const fn with_answer_ticks(mut self, ticks: u64) -> Self {
         self.answer_ticks = ticks;
@@ -179,7 +176,7 @@ impl Hwsc {
         self.steps.insert(self.current.min(self.steps.len()), line);
     }
 
-    /// Put a line in the place of the next command of the job. False, and nothing has changed, if none comes.
+    /// Replace the next command of the job by a line. False, and nothing has changed, if there is none.
     #[must_use]
     pub fn replace_command(&mut self, line: JobLine) -> bool {
         let coming = self.steps.iter_mut().skip(self.current);
@@ -193,7 +190,7 @@ impl Hwsc {
         &self.command
     }
 
-    /// The command that is to be written into the mailbox now, if there is one: each is given once.
+    /// The command to write into the mailbox now, if there is one: each is returned once.
     pub fn mailgram(&mut self) -> Option<&HwsCommand> {
         std::mem::take(&mut self.to_send).then_some(&self.command)
     }
@@ -204,7 +201,7 @@ impl Hwsc {
         &self.begun_steps
     }
 
-    /// Where the job stands.
+    /// Progress of the job.
     #[must_use]
     pub const fn progress(&self) -> &Progress {
         &self.progress
@@ -222,8 +219,7 @@ impl Hwsc {
         false
     }
 
-    /// Once a tick, after the controller: read what Task wrote in `tick`, write what it will read in the next
-    /// one.
+    /// Once a tick, after the controller: read Task's status of `tick`, and write the command for the next tick.
     pub fn step(&mut self, tick: Tick, task: &Status<'_>, workstation: &mut impl Workstation) -> &Progress {
         if self.progress != Progress::Running {
             return &self.progress;
@@ -279,7 +275,7 @@ impl Hwsc {
         &self.progress
     }
 
-    /// The step that is going on, or one behind it, resets a fault of the robot controller.
+    /// The present step, or a later one, resets a fault of the robot controller.
     fn resets(&self) -> bool {
         let reset = Step::Workstation(Action::Panel(Panel::FaultReset));
         self.steps.iter().skip(self.current.saturating_sub(1)).any(|line| line.step == reset)
@@ -311,7 +307,7 @@ impl Hwsc {
         }
     }
 
-    /// The command that is going on has to fail.
+    /// The present command has to fail.
     fn expects_error(&self) -> bool {
         !self.pausing
             && self
@@ -319,7 +315,7 @@ impl Hwsc {
                 .is_some_and(|line| line.expects_error && matches!(line.step, Step::Command(_)))
     }
 
-    /// How the step that is going on ended; `None` while it goes on.
+    /// How the present step ended; `None` while it is executed.
     fn end_of_step(
         &mut self,
         tick: Tick,
@@ -365,7 +361,7 @@ impl Hwsc {
         }
     }
 
-    /// What Task makes of the last command.
+    /// Task's status of the last command.
     fn read(&self, tick: Tick, task: &Status<'_>) -> Lower {
         // The mailbox has the lower part of the number.
         let last = self.commander.number;
@@ -414,8 +410,8 @@ impl Hwsc {
         self.steps.get(position.checked_sub(1)?)
     }
 
-    /// The workstation controller commands in place of the job, whose line `** workstation` has begun. The
-    /// emulator is not to be stepped until [`Self::take_back`] or [`Self::refuse`].
+    /// The workstation controller commands instead of the job, whose line `** workstation` has begun. The emulator is
+    /// not to be stepped until [`Self::take_back`] or [`Self::refuse`].
     #[must_use]
     pub fn is_handed_over(&self) -> bool {
         let hands_over = |line: &JobLine| line.step == Step::Workstation(Action::HandOver);
@@ -423,8 +419,8 @@ impl Hwsc {
         is_begun && self.step_at(self.current).is_some_and(hands_over)
     }
 
-    /// The workstation controller has gone: the job sends PAUSE, and goes on with its next line. `commands`
-    /// are those that were sent meanwhile, `last` is the number of the last one.
+    /// The workstation controller has disconnected: the job sends PAUSE, and goes on with its next line. `commands` are
+    /// those that were sent meanwhile, `last` is the number of the last one.
     pub fn take_back(&mut self, tick: Tick, last: u32, commands: Vec<BegunStep>) {
         self.took(tick);
         self.finish(Outcome::Finished);

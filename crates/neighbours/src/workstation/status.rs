@@ -1,6 +1,6 @@
-//! The status to the workstation controller (V.4.2). Fields that the manual does not have are CHOSEN: its
-//! status has neither an echo of the number nor a word for failure. A refused mailgram changes nothing in
-//! the fields before `verdict`: they go on telling of the command that Task has.
+//! The status to the workstation controller (V.4.2). Fields that the manual does not have are CHOSEN: its status has
+//! neither an echo of the number nor a word for failure. A refused mailgram changes nothing in the fields before
+//! `verdict`: they still describe the command that Task has.
 
 use interfaces::{
     Detail, Reason,
@@ -120,7 +120,7 @@ pub fn encode(
 /// Read the bytes of a status.
 ///
 /// # Errors
-/// [`LayoutError`] for the first field that cannot be.
+/// [`LayoutError`] for the first wrong field.
 pub fn decode(bytes: &[u8]) -> Result<Status<'_>, LayoutError> {
     StatusLayout::decode(bytes)
 }

@@ -1,4 +1,4 @@
-//! What an operator does to a job: stop it between two lines, command Task meanwhile, and let it go on (IV.3).
+//! Interventions of an operator in a job: stop it between two lines, command Task meanwhile, and let it go on (IV.3).
 //!
 //! ```text
 //!            wait: at the end of the line; a command: at once;
@@ -10,7 +10,7 @@
 //! ```
 //!
 //! There is one sequence of command numbers: commands of the operator and of the job take theirs from the same
-//! [`Commander`](rcs_core::handshake::Commander). While an operator is there, a command that fails, a joystick box
+//! [`Commander`](rcs_core::handshake::Commander). While an operator is connected, a command that fails, a joystick box
 //! that is on, an emergency, and a refused action do not end the job: it waits.
 
 use std::fmt;
@@ -22,13 +22,13 @@ use taskdata::load::job::{JobLine, Step};
 use super::{BegunStep, Hwsc, JobFailure, Outcome, Progress};
 use crate::workstation::status::Status;
 
-/// What an operator does to a job.
+/// State of an operator's intervention.
 #[derive(Debug, Default)]
 pub(super) struct Intervention {
-    /// An operator is there.
+    /// An operator is connected.
     attended: bool,
     state: State,
-    /// What the job waits for has not been said yet.
+    /// Why the job waits, if it was not reported yet.
     news: Option<WaitReason>,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct Intervention {
 pub enum WaitReason {
     /// The operator commands the robot.
     Commanded,
-    /// The operator has asked it to.
+    /// The operator has asked for it.
     Asked,
     /// A line has failed.
     Failed(JobFailure),
@@ -59,7 +59,7 @@ enum State {
     /// It does.
     #[default]
     Plays,
-    /// It waits when the line that is going on has ended.
+    /// It waits when the present line has ended.
     Asked,
     /// It waits.
     Waits {
@@ -80,7 +80,7 @@ pub enum OperatorError {
         "the job plays already; `job wait` stops it at the end of its line, any command stops it at once"
     )]
     Plays,
-    /// A command of the operator goes on.
+    /// A command of the operator is executed.
     #[error("{0} is still executed: wait for its end, or send PAUSE")]
     Executes(String),
     /// There is nothing to skip.
@@ -99,8 +99,8 @@ impl Hwsc {
         self
     }
 
-    /// An operator has come, or the last one has left. Then a job that waits because a line has failed ends with that
-    /// failure.
+    /// An operator has connected, or the last one has disconnected. Then a job that waits because a line has failed
+    /// ends with that failure.
     pub fn attend(&mut self, is_there: bool) {
         self.intervention.attended = is_there;
         if let (false, State::Waits { failure, .. }) = (is_there, &mut self.intervention.state)
@@ -121,7 +121,7 @@ impl Hwsc {
         self.intervention.news.take()
     }
 
-    /// The job is to wait when the line that is going on has ended, and before its first line.
+    /// Make the job wait when the present line has ended, or before its first line.
     ///
     /// # Errors
     /// [`OperatorError::Ended`].
@@ -134,7 +134,7 @@ impl Hwsc {
     }
 
     /// The job goes on with the line that was interrupted or has failed: PAUSE comes first, as after every
-    /// interruption. A line of the workstation that is still going on is not begun again.
+    /// interruption. An action of the workstation that has not ended is not begun again.
     ///
     /// # Errors
     /// [`OperatorError`].
@@ -142,8 +142,8 @@ impl Hwsc {
         self.resume(tick, false)
     }
 
-    /// The job goes on with the line behind the one that was interrupted or has failed. The caller answers for
-    /// the world being as if it had finished.
+    /// The job goes on with the line behind the one that was interrupted or has failed. The caller must make sure that
+    /// the cell is as if that line had finished.
     ///
     /// # Errors
     /// [`OperatorError`].
@@ -151,8 +151,8 @@ impl Hwsc {
         self.resume(tick, true)
     }
 
-    /// Play other lines in the place of the rest of the job, which waits: PAUSE, then the first of them. What the rest was
-    /// to do later is dropped, too, and what has failed of it.
+    /// Play other lines instead of the rest of the job, which waits: PAUSE, then the first of them. Waiting actions and
+    /// noted failures of the job are dropped, too.
     ///
     /// # Errors
     /// [`OperatorError`].
@@ -180,7 +180,7 @@ impl Hwsc {
         Ok(())
     }
 
-    /// An emulator without a job, for commands of an operator in the place of a workstation controller, whose last command
+    /// An emulator without a job, for commands of an operator instead of a workstation controller, whose last command
     /// had this number.
     #[must_use]
     pub fn stand_alone(last: u32, time_limit: u64) -> Self {
@@ -192,7 +192,7 @@ impl Hwsc {
         hwsc
     }
 
-    /// What was played is over, or has failed: the emulator waits for an operator.
+    /// The played job is over, or has failed: the emulator waits for an operator.
     pub fn wait_without_job(&mut self) {
         self.steps.clear();
         self.later.clear();
@@ -202,7 +202,7 @@ impl Hwsc {
         self.intervention.state = State::Waits { failure: None, before_line: true, command: None };
     }
 
-    /// Send a command of the operator in the place of the job's, which waits from now on.
+    /// Send a command of the operator; the job waits from now on.
     ///
     /// # Errors
     /// [`OperatorError::Ended`].
@@ -250,7 +250,7 @@ impl Hwsc {
         }
     }
 
-    /// What goes on is a command of the job, or a PAUSE before its line.
+    /// A command of the job is executed, or the PAUSE before its line.
     fn is_commanding(&self) -> bool {
         let line = self.step_at(self.current).map(|line| line.step);
         self.pausing || self.current == 0 || matches!(line, Some(Step::Command(_)))
@@ -266,7 +266,7 @@ impl Hwsc {
         true
     }
 
-    /// The line that goes on has failed: true if the job waits for an operator instead of ending.
+    /// The present line has failed: true if the job waits for an operator instead of ending.
     pub(super) fn waits_for_operator(&mut self, failure: &JobFailure) -> bool {
         let can_be_mended = match failure {
             JobFailure::Command(_)
@@ -290,7 +290,7 @@ impl Hwsc {
         waits
     }
 
-    /// Once a tick while the job waits: what becomes of the operator's command.
+    /// Once a tick while the job waits: follow the operator's command.
     pub(super) fn follow_operator(&mut self, tick: Tick, task: &Status<'_>) {
         let State::Waits { command: Some(entry), .. } = self.intervention.state else { return };
         let outcome = match self.read(tick, task) {

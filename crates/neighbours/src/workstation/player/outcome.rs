@@ -1,4 +1,4 @@
-//! What becomes of a job: its steps, its retries, and why it failed.
+//! Outcome of a job: its steps, its retries, and why it failed.
 
 use std::fmt;
 
@@ -8,9 +8,9 @@ use rcs_core::tick::{TICK_MS, Tick};
 /// How a step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It is going on.
+    /// It is executed.
     Executing,
-    /// As it should.
+    /// It has finished.
     Finished,
     /// It failed.
     Failed,
@@ -61,7 +61,7 @@ pub enum JobFailure {
     /// The mailbox of the command is refused.
     #[error("the controller refuses the command: {0}")]
     Refused(String),
-    /// The operator has the robot.
+    /// The joystick box is on: the operator moves the robot.
     #[error("the joystick box is on")]
     Joystick,
     /// A command has finished that should have failed.
@@ -91,10 +91,10 @@ pub enum JobFailure {
     Commander(String),
 }
 
-/// Where the job stands.
+/// Progress of a job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// Going on.
+    /// It is played.
     Running,
     /// All steps are finished.
     Over,

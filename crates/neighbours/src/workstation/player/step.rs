@@ -12,7 +12,7 @@ pub struct Later {
     /// Ticks from the command.
     pub ticks: u64,
     pub action: Action,
-    /// The line without what says when.
+    /// The line without `after` and its number.
     pub line: String,
     /// When the command was sent; `None` as long as it was not.
     pub since: Option<Tick>,
@@ -25,7 +25,7 @@ impl Later {
 }
 
 impl Hwsc {
-    /// The step that is going on has taken its time.
+    /// Record the duration of the present step.
     pub(super) fn took(&mut self, tick: Tick) {
         if let (Some(step), Some(began)) = (self.begun_steps.get_mut(self.entry), self.began) {
             step.ticks = tick.since(began);
