@@ -49,7 +49,7 @@ impl Diagnostic {
         }
     }
 
-    /// How bad it is.
+    /// Severity.
     #[must_use]
     pub const fn severity(&self) -> Severity {
         self.problem.severity
@@ -85,7 +85,7 @@ impl Diagnostic {
         self.problem.found.as_deref()
     }
 
-    /// The way to the entry of a file of TOML: `gripper.parts.body[0]`.
+    /// The path of the entry in a TOML file: `gripper.parts.body[0]`.
     #[must_use]
     pub fn entry(&self) -> Option<&str> {
         self.problem.entry.as_deref()
@@ -139,7 +139,7 @@ impl Diagnostic {
         &self.text
     }
 
-    /// File, block, line and column in words.
+    /// File, block, line and column as text.
     #[must_use]
     pub fn place(&self) -> String {
         match self.position {

@@ -24,9 +24,9 @@ pub struct Finding {
     pub column: Option<u32>,
     /// Number of bytes from there on.
     pub length: Option<u32>,
-    /// File, block, line and column in words.
+    /// File, block, line and column as text.
     pub place: String,
-    /// The way to the entry, in a file of TOML.
+    /// The path of the entry in a TOML file.
     pub entry: Option<String>,
     /// One sentence: what was found and what was expected.
     pub message: String,

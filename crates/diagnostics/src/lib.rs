@@ -1,7 +1,7 @@
-//! What is wrong in text files: all problems of a file at once, each with its place, what was expected, what was
-//! found, and the nearest known name.
+//! Diagnostics of text files: all problems of a file at once, each with its place, what was expected, what was found,
+//! and the nearest known name.
 //!
-//! A reader notes what it finds in [`Problems`] and goes on. [`Diagnostics::new`] ties the problems to the texts by
+//! A reader adds what it finds to [`Problems`] and reads on. [`Diagnostics::new`] ties the problems to the texts by
 //! [`Places`] and makes a report of them: for a person, with the line underlined; for programs, as a list of
 //! [`Finding`]. A [`Problem`] names either a piece of text ([`At`]) or an entry of TOML (`gripper.parts.body[0]`),
 //! whose place [`toml::Document`] knows.

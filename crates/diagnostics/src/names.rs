@@ -1,6 +1,6 @@
 //! The nearest known name, for messages about a name that is not known.
 
-/// The candidate that differs least from `wanted`, if it is near enough to be a slip of the pen.
+/// The candidate that differs least from `wanted`, if it is near enough to be a typing error.
 ///
 /// Of several that are equally near the first is taken.
 #[must_use]
@@ -20,7 +20,7 @@ pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) 
     best.map(|(_, name)| name)
 }
 
-/// How many slips of the pen make one word of another: a character more, less, other, or swapped with the next.
+/// Edit distance of two words: number of characters inserted, deleted, replaced, or swapped with the next.
 #[must_use]
 pub fn distance(one: &str, other: &str) -> usize {
     strsim::osa_distance(one, other)

@@ -1,10 +1,10 @@
-//! Block, line and column of a piece of text: worked out when something is said of it, from the text itself.
+//! Block, line and column of a piece of text: computed from the text when a message needs it.
 
 use std::collections::HashMap;
 
 use crate::source::{At, BlockLines, BlockNumber, Source, lines_of};
 
-/// A place as a person finds it.
+/// A place as a person counts it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Position {
     /// Block and offset, if it lies in a block.
@@ -17,7 +17,7 @@ pub struct Position {
     pub begin: u32,
 }
 
-/// A source that something is said of.
+/// A source with findings.
 struct Lines<'s> {
     text: &'s str,
     blocks: Vec<BlockLines>,
@@ -25,7 +25,7 @@ struct Lines<'s> {
     starts: Vec<u32>,
 }
 
-/// The places of pieces of some sources. Each source is gone through once, when its first piece is asked for.
+/// The places of pieces of some sources. Each source is scanned once, when its first piece is needed.
 pub struct Places<'s> {
     sources: &'s [Source],
     /// The blocks of a source, if its lines count in them.
@@ -96,7 +96,7 @@ impl<'s> Places<'s> {
         remarks.filter_map(accepted).any(|accepted| accepted)
     }
 
-    /// A place in words: file, block and line.
+    /// A place as text: file, block and line.
     #[must_use]
     pub fn words(&mut self, at: At) -> String {
         let file = self.source(at).map_or("?", |source| source.name.as_str());

@@ -1,10 +1,10 @@
-//! What was found, before it is tied to the text of its source.
+//! A finding before it is tied to the text of its source.
 
 use std::fmt::Display;
 
 use crate::{names::nearest, source::At};
 
-/// How bad it is.
+/// Severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
     /// The data cannot be used.
@@ -24,16 +24,16 @@ impl Severity {
     }
 }
 
-/// Something found, before it is tied to the text of its source.
+/// A finding before it is tied to the text of its source.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    /// How bad.
+    /// Severity.
     pub severity: Severity,
     /// Stable short name of the kind of problem.
     pub code: &'static str,
     /// Where; `None` for a file that could not be read.
     pub at: Option<At>,
-    /// The way to the entry of a file of TOML: `gripper.parts.body[0]`; lists count from 0.
+    /// The path of the entry in a TOML file: `gripper.parts.body[0]`; lists count from 0.
     pub entry: Option<String>,
     /// One sentence: what was found and what was expected.
     pub message: String,
@@ -47,7 +47,7 @@ pub struct Problem {
     pub found: Option<String>,
     /// The nearest known name, for programs; the help says it too.
     pub nearest: Option<String>,
-    /// What findings have in common that are the same in several lines; the message if nothing is said.
+    /// Key of equal findings in several lines; without one the message.
     pub same: Option<String>,
 }
 
@@ -68,13 +68,13 @@ impl Problem {
         }
     }
 
-    /// An error of an entry of TOML, whose message says it all.
+    /// An error of a TOML entry, with its complete message.
     #[must_use]
     pub fn of_entry(code: &'static str, entry: &str, message: String) -> Self {
         Self { entry: Some(entry.to_owned()), ..Self::new(Severity::Error, code, None, message) }
     }
 
-    /// An entry of TOML in which something else was found than was expected.
+    /// An error of a TOML entry: what was expected, and what was found.
     #[must_use]
     pub fn unlike(code: &'static str, entry: &str, expected: impl Display, found: impl Display) -> Self {
         let (expected, found) = (expected.to_string(), found.to_string());
@@ -126,7 +126,7 @@ impl Problems {
         self.list.iter_mut()
     }
 
-    /// Give the problems of entries that have no place theirs.
+    /// Set the place of problems of entries that have none.
     pub(crate) fn place_entries(&mut self, place: impl Fn(&str) -> At) {
         for problem in self.list.iter_mut().filter(|problem| problem.at.is_none()) {
             problem.at = problem.entry.as_deref().map(&place);
@@ -208,7 +208,7 @@ impl Problems {
         }
     }
 
-    /// Say what the last problem has in common with others that are the same.
+    /// Set the key by which the last problem is equal to others.
     pub fn same_as(&mut self, key: String) {
         if let Some(last) = self.list.last_mut() {
             last.same = Some(key);
@@ -234,7 +234,7 @@ impl Problems {
         self.list.push(Problem::new(Severity::Error, code, None, message));
     }
 
-    /// Add what the operating system said about a file.
+    /// Add an error of the operating system about a file.
     pub fn unreadable(&mut self, path: &str, error: &std::io::Error) {
         self.general("file", format!("{path} cannot be read: {error}"));
     }

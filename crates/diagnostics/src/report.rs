@@ -1,4 +1,4 @@
-//! What a load found: every error and warning at once, each with its place, and what was loaded.
+//! The report of a load: every error and warning, each with its place, and what was loaded.
 
 use std::{fmt, io::IsTerminal};
 
@@ -6,7 +6,7 @@ use miette::{GraphicalReportHandler, GraphicalTheme};
 
 use crate::{Diagnostic, Places, Problems, Severity, Source};
 
-/// So many things: `1 error`, `2 errors`.
+/// A count with its noun: `1 error`, `2 errors`.
 #[must_use]
 pub fn amount(count: usize, one: &str) -> String {
     if count == 1 { format!("1 {one}") } else { format!("{count} {one}s") }
@@ -31,7 +31,7 @@ pub struct Diagnostics {
     pub blocks: usize,
     /// Records in each file; empty if there were errors.
     pub loaded: Vec<Loaded>,
-    /// Findings that an earlier report tells.
+    /// Findings that an earlier report has already.
     pub(crate) told: usize,
 }
 
@@ -49,13 +49,13 @@ impl Diagnostics {
         Self::new(problems, Places::in_lines(std::slice::from_ref(source)), 0, Vec::new())
     }
 
-    /// What was found without a text: of a file that cannot be read, or of values that come from no file.
+    /// A report without a text: for a file that cannot be read, or values that come from no file.
     #[must_use]
     pub fn without_text(problems: Problems) -> Self {
         Self::new(problems, Places::in_lines(&[]), 0, Vec::new())
     }
 
-    /// The same with what another look at one of the sources found.
+    /// The same with the findings of another check of one of the sources.
     #[must_use]
     pub fn with(mut self, other: Self) -> Self {
         self.diagnostics.extend(other.diagnostics);

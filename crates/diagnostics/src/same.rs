@@ -1,14 +1,14 @@
-//! Findings that are the same in several lines of jobs are told once.
+//! Reports equal findings of several lines of jobs once.
 
 use std::collections::HashMap;
 
 use crate::{Diagnostic, Diagnostics, Severity};
 
-/// So many of the other lines are named.
+/// Most other lines that are named.
 const NAMED: usize = 3;
 
 impl Diagnostic {
-    /// What the same finding in another line has in common with it.
+    /// The key of equal findings.
     fn key(&self) -> (bool, &'static str, String) {
         let same = self.problem.same.as_ref().unwrap_or(&self.problem.message);
         (self.problem.severity == Severity::Error, self.problem.code, same.clone())

@@ -2,7 +2,7 @@
 
 use std::{fmt, sync::Arc};
 
-/// A file that something is said of.
+/// A file with its text.
 #[derive(Clone, Debug)]
 pub struct Source {
     /// Path as it is shown.
@@ -42,7 +42,7 @@ pub struct BlockNumber {
 }
 
 impl BlockNumber {
-    /// Stands for the offset of a block whose header cannot be read.
+    /// The offset of a block whose header cannot be read.
     pub const UNREADABLE: u32 = u32::MAX;
 }
 
@@ -52,7 +52,7 @@ impl fmt::Display for BlockNumber {
     }
 }
 
-/// Where the lines of a block stand in its source.
+/// The lines of a block in its source.
 #[derive(Clone, Debug)]
 pub struct BlockLines {
     /// Which block.

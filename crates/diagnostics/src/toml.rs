@@ -1,11 +1,10 @@
-//! Reads TOML into structures, such as a cell description, and finds at once everything in it that does not fit.
+//! Reads TOML into structures, such as a cell description, and reports everything in it that does not fit at once.
 //!
-//! The structures derive serde's `Deserialize`, which gives up at the first value that does not fit. This
-//! deserializer does not let it: a value of another kind is noted with its place and replaced by one that
-//! fits, a *stand-in*, and an unknown key is noted and left out. That a key is missing is known only when the
-//! structure says so, since it may have a default; then reading begins anew with a stand-in for that key.
-//! What was read with stand-ins is never used; it only lets the numbers of all other entries be checked in
-//! the same go.
+//! The structures derive serde's `Deserialize`, which stops at the first value that does not fit. This deserializer
+//! continues: it reports a value of another kind with its place and replaces it by one that fits, a *stand-in*; it
+//! reports an unknown key and leaves it out. Only the structure knows whether a key is missing, because it may have a
+//! default; then reading starts again with a stand-in for that key. Values read with stand-ins are never used; they
+//! only allow the numbers of all other entries to be checked in the same pass.
 
 mod reader;
 
@@ -20,29 +19,29 @@ use toml::{
 use self::reader::{Node, Notes, Reader, Stop};
 use crate::{At, Diagnostics, Problem, Problems, Source};
 
-/// The way to an entry: `gripper.parts.body[0]`.
+/// The path of an entry: `gripper.parts.body[0]`.
 pub type Path = String;
 
-/// The way to a key of a table.
+/// The path of a key of a table.
 #[must_use]
 pub fn join(path: &str, key: &str) -> Path {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
-/// The way to an element of an array.
+/// The path of an element of an array.
 #[must_use]
 pub fn element(path: &str, index: usize) -> Path {
     format!("{path}[{index}]")
 }
 
-/// What messages call the whole of a kind of file, the codes of its problems, and the numbers that it may have.
+/// A kind of file: its name in messages, the codes of its problems, and the range of its numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct FileKind {
     /// The whole, as a message says it: `the description`.
     pub whole: &'static str,
-    /// Code of what is no TOML.
+    /// Code of a syntax error.
     pub syntax: &'static str,
-    /// Code of a key that there is not.
+    /// Code of an unknown key.
     pub key: &'static str,
     /// Code of a key that is missing.
     pub missing: &'static str,
@@ -64,8 +63,8 @@ pub struct Document<'a> {
 pub struct StandIns(BTreeSet<Path>);
 
 impl StandIns {
-    /// What stands at a path is what the text says: neither it, nor a part of it, nor what it is a part of has a
-    /// stand-in.
+    /// True if the value at a path comes from the text: neither it, nor a part of it, nor an entry that contains it has
+    /// a stand-in.
     #[must_use]
     pub fn trusts(&self, path: &str) -> bool {
         let holds = |whole: &str, part: &str| {
@@ -74,15 +73,15 @@ impl StandIns {
         !self.0.iter().any(|stand_in| holds(stand_in, path) || holds(path, stand_in))
     }
 
-    /// The ways to the entries.
+    /// The paths of the entries.
     pub fn iter(&self) -> impl Iterator<Item = &str> {
         self.0.iter().map(String::as_str)
     }
 }
 
-/// What was read.
+/// Result of reading.
 pub struct Reading<T> {
-    /// The structure; `None` if not even stand-ins make one.
+    /// The structure; `None` if it cannot be made even with stand-ins.
     pub value: Option<T>,
     /// What did not fit.
     pub problems: Problems,
@@ -91,7 +90,7 @@ pub struct Reading<T> {
 }
 
 impl<'a> Document<'a> {
-    /// Take a text apart; also what is wrong with it as TOML.
+    /// Parse a text; also returns its syntax errors.
     #[must_use]
     pub fn parse(source: &'a Source, kind: FileKind) -> (Self, Problems) {
         let (root, errors) = DeTable::parse_recoverable(&source.text);
@@ -217,7 +216,7 @@ impl FileKind {
         format!("0, or a number from {smallest} to {largest} or from -{largest} to -{smallest}")
     }
 
-    /// Say of numbers of a wrong magnitude that they must be more than 0, where that holds of their entries.
+    /// For numbers of a wrong magnitude, add that they must be more than 0, where their entries need it.
     pub fn above_zero(&self, positive: &BTreeSet<Path>, problems: &mut Problems) {
         let [smallest, largest] = self.magnitudes;
         for problem in problems.iter_mut() {
@@ -230,7 +229,7 @@ impl FileKind {
     }
 }
 
-/// Some bytes of a text. What goes over several lines is underlined in the first.
+/// Some bytes of a text. Text of several lines is underlined in the first.
 fn at(text: &str, bytes: Range<usize>) -> At {
     let small = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
     let start = (0..=bytes.start.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);

@@ -1,4 +1,4 @@
-//! The thread of a client: takes what it says, and gives it what waits for it.
+//! The thread of a client: reads its messages, and sends the queued ones.
 
 use std::{
     io::{self, ErrorKind, Read, Write},
@@ -31,19 +31,19 @@ const PING: Duration = Duration::from_secs(1);
 const FAREWELL: Duration = Duration::from_millis(500);
 /// From one count of dropped messages to the next.
 const COUNT: Duration = Duration::from_secs(5);
-/// Messages of a client that are read before others are written.
+/// Most messages of a client that are read before messages are written.
 const READS: usize = 16;
-/// Items that are written before messages of the client are read.
+/// Most items that are written before messages of the client are read.
 const WRITES: usize = 512;
 
-/// A connection. Until a moment it waits for bytes, and then fails; later it never waits.
+/// A connection. During the handshake it waits for bytes up to a time limit, and then fails; after it, it never waits.
 pub struct Connection {
     stream: TcpStream,
     until: Option<Instant>,
 }
 
 impl Connection {
-    /// A connection that has so long for its handshake.
+    /// A connection with a time limit for its handshake.
     pub fn new(stream: TcpStream, handshake: Duration) -> io::Result<Self> {
         stream.set_nodelay(true)?;
         stream.set_write_timeout(Some(handshake))?;
@@ -82,9 +82,9 @@ impl Write for Connection {
 /// Why a session ends.
 #[derive(Debug)]
 enum End {
-    /// The client is gone, or takes nothing.
+    /// The client has disconnected, or reads nothing.
     Gone,
-    /// It is told why.
+    /// It is closed with a reason.
     Told(CloseCode, String),
 }
 
@@ -112,19 +112,19 @@ pub struct Client {
     feed: Feed,
     queue: Arc<Queue>,
     session: Session,
-    /// How the run takes requests.
+    /// Access to the run for requests.
     access: Option<Access>,
     /// The session with the run, from the first request on.
     operator: Option<Operator>,
     /// Name of that session.
     name: Name,
-    /// How long it may take nothing.
+    /// How long it may read nothing.
     patience: Duration,
     /// Number and time of the last ping.
     ping: (u64, Instant),
     /// Number of the last ping that was answered, and when.
     pong: (u64, Instant),
-    /// Dropped messages that it was told of, and when.
+    /// Number of dropped messages that it was sent last, and when.
     dropped: (u64, Instant),
 }
 
@@ -154,7 +154,7 @@ impl Client {
         }
     }
 
-    /// Serve the client until it is gone or nothing more comes. It is told `first` at first.
+    /// Serve the client until it disconnects or the feed is over. `first` is sent first.
     pub fn run(mut self, mut first: Vec<String>) {
         first.extend(self.session.services());
         if let Err(End::Told(code, reason)) = self.serve(first) {
@@ -179,7 +179,7 @@ impl Client {
         }
     }
 
-    /// Take what the client says; true if there may be more.
+    /// Read messages of the client; true if there may be more.
     fn listen(&mut self) -> Result<bool, End> {
         for _ in 0..READS {
             let actions = match self.socket.read() {
@@ -224,7 +224,7 @@ impl Client {
         Ok(())
     }
 
-    /// Ask the run as an operator. It answers between two ticks.
+    /// Send a request to the run as an operator. It answers between two ticks.
     fn ask(&mut self, line: &str) -> Result<String, String> {
         let access = self.access.as_ref().ok_or("this run accepts no requests")?;
         let mut operator = match self.operator.take() {
@@ -239,7 +239,7 @@ impl Client {
         answer.map_err(|error| error.to_string())?
     }
 
-    /// Give the client what waits for it; true if there may be more.
+    /// Send queued items to the client; true if there may be more.
     fn speak(&mut self) -> Result<bool, End> {
         for _ in 0..WRITES {
             let Some(item) = self.queue.pop() else {
@@ -260,7 +260,7 @@ impl Client {
         self.flush()
     }
 
-    /// Is it still there, and does it know what it has missed?
+    /// Check that the client still answers, and send it the number of dropped messages.
     fn look_after(&mut self) -> Result<(), End> {
         if self.pong.1.elapsed() > self.patience {
             return Err(End::Gone);
@@ -281,7 +281,7 @@ impl Client {
         Ok(())
     }
 
-    /// It has taken everything up to a ping.
+    /// It has read everything up to a ping.
     fn answered(&mut self, number: &[u8]) {
         let number = number.try_into().map_or(0, u64::from_le_bytes);
         if (self.pong.0..=self.ping.0).contains(&number) && number != self.pong.0 {
@@ -289,7 +289,7 @@ impl Client {
         }
     }
 
-    /// Hand a message over; false if the client does not take it at once.
+    /// Write a message; false if the client does not take it at once.
     fn write(&mut self, message: Message) -> Result<bool, End> {
         taken(self.socket.write(message))
     }
@@ -299,7 +299,7 @@ impl Client {
         taken(self.socket.flush())
     }
 
-    /// Say why, and wait a little for the client to have read it.
+    /// Close with a reason, and wait a little until the client has read it.
     fn close(mut self, code: CloseCode, reason: String) {
         // The reason has 123 bytes at most.
         let mut reason = reason;
@@ -325,7 +325,7 @@ impl Drop for Client {
     }
 }
 
-/// False if it would have to wait: what was to be written is kept.
+/// False if writing would have to wait: the message is kept.
 fn taken(written: tungstenite::Result<()>) -> Result<bool, End> {
     match written {
         Ok(()) => Ok(true),

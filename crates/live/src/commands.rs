@@ -1,7 +1,7 @@
-//! What a viewer may ask of a run: requests of an operator as services, and the velocity knob as a parameter.
+//! Requests of a viewer to a run: requests of an operator as services, and the velocity knob as a parameter.
 //!
-//! Nothing here does anything to the robot. A request is a line for the run's operator socket (crate
-//! `operator`), which checks it as it checks those of a console. It needs the token that the run has printed.
+//! This module does not act on the robot. A request is a line for the run's operator socket (crate `operator`), and the
+//! run checks it like those of a console. It needs the token that the run has printed.
 
 use std::{
     path::PathBuf,
@@ -13,38 +13,38 @@ use std::{
 
 use serde_json::{Value, json};
 
-/// The velocity knob, as the controller sees it: 0 to 1000.
+/// The velocity knob, as the controller reads it: 0 to 1000.
 #[derive(Clone, Debug, Default)]
 pub struct Knob(Arc<AtomicU16>);
 
 impl Knob {
-    /// Where the knob is now. This does not wait.
+    /// Set the position of the knob. This does not wait.
     pub fn set(&self, velocity: u16) {
         self.0.store(velocity, Ordering::Relaxed);
     }
 
-    /// Where the knob is.
+    /// Position of the knob.
     #[must_use]
     pub fn get(&self) -> u16 {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// How a run takes requests of viewers.
+/// Access for requests of viewers.
 #[derive(Clone, Debug)]
 pub struct Access {
     /// The socket for operators.
     pub socket: PathBuf,
-    /// What a request must hold.
+    /// The token that a request must contain.
     pub token: Token,
 }
 
-/// A secret of the run. It is not printed by mistake.
+/// A secret of the run. Its `Debug` text does not show it.
 #[derive(Clone)]
 pub struct Token(String);
 
 impl Token {
-    /// A token out of 128 random bits.
+    /// A token of 128 random bits.
     ///
     /// # Errors
     /// [`NoRandom`](crate::NoRandom).
@@ -58,7 +58,7 @@ impl Token {
         &self.0
     }
 
-    /// True for the right one. How long this takes does not tell how much of it is right.
+    /// True for the right token. The comparison takes the same time for every token of this length.
     #[must_use]
     pub fn is(&self, given: &str) -> bool {
         let differences = self.0.bytes().zip(given.bytes()).map(|(own, given)| own ^ given);
@@ -77,11 +77,11 @@ impl std::fmt::Debug for Token {
 pub struct Service {
     /// Its name.
     pub name: &'static str,
-    /// The line for the run; none if the viewer says it.
+    /// The line for the run; `None` if the viewer gives it.
     pub line: Option<&'static str>,
 }
 
-/// What is offered; the place in the list, counted from 1, is the number of the service.
+/// The services; the position in the list, from 1, is the number of the service.
 pub const SERVICES: [Service; 9] = [
     Service { name: "/operator/status", line: Some("status") },
     Service { name: "/operator/stop", line: Some("stop") },

@@ -1,7 +1,7 @@
-//! What clients get: channels, the newest message of each, and a queue a client.
+//! The messages for clients: channels, the newest message of each, and a queue per client.
 //!
-//! A client that subscribes gets the newest message of the channel at once, with the present time: what was
-//! sent once at the start of the run, and what has not changed since. Of transforms it gets those of all links.
+//! A client that subscribes gets the newest message of the channel at once, with the present time, also if that was
+//! sent once at the start of the run. Of transforms it gets those of all links.
 
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -24,7 +24,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What a run or a log has to show. Clones are the same feed.
+/// The channels and messages of a run or a log. Clones share the same feed.
 #[derive(Clone, Debug, Default)]
 pub struct Feed(Arc<Mutex<Inner>>);
 
@@ -64,13 +64,13 @@ impl Newest {
 }
 
 impl Feed {
-    /// What a log is to be given: the feed is over when it is dropped.
+    /// The tap for a log: the feed is over when it is dropped.
     #[must_use]
     pub fn tap(&self) -> Box<dyn Tap> {
         Box::new(Tapped(self.clone()))
     }
 
-    /// A new client: its queue, and the channels that it is to be told first.
+    /// A new client: its queue, and the channels to advertise to it first.
     #[must_use]
     pub fn join(&self) -> (Arc<Queue>, String) {
         let mut inner = lock(&self.0);
@@ -80,7 +80,7 @@ impl Feed {
         (queue, protocol::advertise(inner.channels.values().map(|known| known.advertised.as_str())))
     }
 
-    /// A client is gone.
+    /// A client has disconnected.
     pub fn leave(&self, queue: &Arc<Queue>) {
         lock(&self.0).queues.retain(|known| !Arc::ptr_eq(known, queue));
     }
@@ -121,7 +121,7 @@ impl Feed {
     }
 }
 
-/// The end of a feed at which the log is.
+/// The log's end of a feed.
 struct Tapped(Feed);
 
 impl Tap for Tapped {
@@ -170,7 +170,7 @@ impl Drop for Tapped {
 pub enum Item {
     /// A text of the protocol.
     Text(Arc<str>),
-    /// The time has come to this, nanoseconds.
+    /// The present time, nanoseconds.
     Time(u64),
     /// A message.
     Message {
@@ -196,7 +196,7 @@ impl Item {
     }
 }
 
-/// What waits for a client.
+/// The queue of a client.
 #[derive(Debug, Default)]
 pub struct Queue(Mutex<Waiting>);
 
@@ -204,9 +204,9 @@ pub struct Queue(Mutex<Waiting>);
 struct Waiting {
     /// The client's numbers by channel.
     subscriptions: BTreeMap<u16, u32>,
-    /// What is not dropped: new channels, and one message a subscription.
+    /// Items that are never dropped: new channels, and one message per subscription.
     first: VecDeque<Item>,
-    /// What is: the oldest goes first.
+    /// Items that can be dropped, the oldest first.
     later: VecDeque<Item>,
     /// Bytes of `later`.
     bytes: usize,
@@ -250,13 +250,13 @@ impl Queue {
         waiting.bytes = waiting.later.iter().map(Item::bytes).sum();
     }
 
-    /// Messages that found no room so far.
+    /// Number of messages dropped so far.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         lock(&self.0).dropped
     }
 
-    /// Nothing more comes, and nothing waits.
+    /// The feed is over, and the queue is empty.
     #[must_use]
     pub fn is_over(&self) -> bool {
         let waiting = lock(&self.0);

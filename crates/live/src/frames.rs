@@ -1,4 +1,4 @@
-//! The newest place of each link, out of messages that hold only what has moved.
+//! The newest place of each link, from messages that contain only links that have moved.
 //!
 //! `foxglove.FrameTransforms` has transforms as field 1, each with its link, `child_frame_id`, as field 3. A
 //! viewer that begins in the middle needs all of them.
@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 
 use record::proto::wire::{self, Fields, Value};
 
-/// Schema of the messages that are put together here.
+/// Schema of the messages that are assembled here.
 pub const SCHEMA: &str = "foxglove.FrameTransforms";
-/// Bytes of one transform at most; what is longer is none.
+/// Most bytes of one transform; a longer field is not a transform.
 const LONGEST: usize = 4096;
 /// Links at most.
 const LINKS: usize = 4096;
 
-/// Transforms as they stood in their messages, in the order in which their links came up.
+/// The bytes of the transforms, in the order in which their links first came.
 #[derive(Debug, Default)]
 pub struct Frames {
     transforms: Vec<Vec<u8>>,
@@ -23,7 +23,7 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Take in a message.
+    /// Add the transforms of a message.
     pub fn add(&mut self, message: &[u8]) {
         for field in Fields(message) {
             let (1, Value::Bytes(transform)) = field else { continue };

@@ -1,17 +1,17 @@
-//! The live view: what a log gets, over WebSocket, to Foxglove and Lichtblick.
+//! The live view: the messages of a log, sent over WebSocket to Foxglove and Lichtblick.
 //!
 //! ```text
 //!  tick ──ring──> writer of the log ──Tap──> Feed ──bounded queue──> client's thread ──> viewer
 //! ```
 //!
 //! * [`protocol`]: the messages of both subprotocols, to and from bytes;
-//! * [`commands`]: what a client may ask of the run;
-//! * [`session`]: what one client may ask for and what it gets, without I/O;
-//! * [`feed`]: channels, the newest message of each, and a queue a client;
-//! * [`server`]: listens on this machine, one thread a client.
+//! * [`commands`]: requests of a client to the run;
+//! * [`session`]: the session of one client, without I/O;
+//! * [`feed`]: channels, the newest message of each, and a queue per client;
+//! * [`server`]: listens on this machine, with one thread per client.
 //!
-//! A client is never waited for. A queue that is full drops its oldest messages and counts them, and a client
-//! that takes nothing for five seconds is disconnected.
+//! The run never waits for a client. A full queue drops its oldest messages and counts them, and a client that reads
+//! nothing for five seconds is disconnected.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

@@ -1,15 +1,15 @@
-//! Which pages of a browser may connect.
+//! Web pages that may connect.
 //!
-//! A browser tells with each WebSocket which site has opened it. Without a check any page that is open on the
-//! machine could watch and command the robot.
+//! A browser sends the origin of the page with each WebSocket. Without a check any page open on the machine could watch
+//! and command the robot.
 
 use std::{fmt, str::FromStr};
 
-/// The site of a page: `https://app.foxglove.dev`, `http://localhost:8080`, `file://`.
+/// The origin of a page: `https://app.foxglove.dev`, `http://localhost:8080`, `file://`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin(String);
 
-/// Text that is no origin.
+/// A text that is not an origin.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("SCHEME://HOST or SCHEME://HOST:PORT was expected, such as http://localhost:8080; found {0}")]
 pub struct OriginError(String);
@@ -21,7 +21,7 @@ impl Origin {
         Self("https://app.foxglove.dev".to_owned())
     }
 
-    /// True for what a browser has sent, but for upper and lower case.
+    /// True if the header of a browser has this origin, in upper or lower case.
     #[must_use]
     pub fn is(&self, header: &[u8]) -> bool {
         self.0.as_bytes().eq_ignore_ascii_case(header)

@@ -1,4 +1,4 @@
-//! Messages of `foxglove.websocket.v1` and `foxglove.sdk.v1`, which are the same as far as they are used here.
+//! Messages of `foxglove.websocket.v1` and `foxglove.sdk.v1`, which are the same for the parts used here.
 //!
 //! Text is JSON with a field `op`; binary messages begin with an operation code, and their numbers are
 //! little-endian. Source: Foxglove WebSocket protocol v1, `docs/spec.md` of github.com/foxglove/ws-protocol.
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 /// The subprotocols, the preferred one first.
 pub const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
-/// Encodings of schemas that are no text, and stand in JSON as base64.
+/// Encodings of schemas that are not text; JSON has them as base64.
 const BINARY_SCHEMAS: [&str; 2] = ["protobuf", "flatbuffer"];
 
 /// Operation codes of binary messages to the client.
@@ -27,7 +27,7 @@ mod from_client {
     pub const SERVICE_REQUEST: u8 = 0x02;
 }
 
-/// What a client says in text.
+/// A text message of a client.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "op", rename_all = "camelCase")]
 pub enum Request {
@@ -42,28 +42,28 @@ pub enum Request {
         /// By the client's numbers.
         subscription_ids: Vec<u32>,
     },
-    /// Say what parameters are.
+    /// Ask for the values of parameters.
     #[serde(rename_all = "camelCase")]
     GetParameters {
         /// Their names; all if there is none.
         parameter_names: Vec<String>,
-        /// Stands in the answer.
+        /// Repeated in the answer.
         id: Option<String>,
     },
     /// Change parameters.
     SetParameters {
         /// Which.
         parameters: Vec<Parameter>,
-        /// Stands in the answer.
+        /// Repeated in the answer.
         id: Option<String>,
     },
-    /// Say it when parameters change.
+    /// Send parameters when they change.
     #[serde(rename_all = "camelCase")]
     SubscribeParameterUpdates {
         /// Their names; all if there is none.
         parameter_names: Vec<String>,
     },
-    /// Say it no more.
+    /// No longer send them.
     #[serde(rename_all = "camelCase")]
     UnsubscribeParameterUpdates {
         /// Their names; all if there is none.
@@ -95,7 +95,7 @@ pub struct ServiceCall {
 }
 
 impl ServiceCall {
-    /// Read a binary message; none if it is something else.
+    /// Read a binary message; `None` if it is not a service call.
     #[must_use]
     pub fn read(bytes: &[u8]) -> Option<Self> {
         let (code, mut rest) = bytes.split_first()?;
@@ -141,7 +141,7 @@ pub fn advertise_services(services: &[Value]) -> String {
     json!({ "op": "advertiseServices", "services": services }).to_string()
 }
 
-/// What parameters are.
+/// Values of parameters.
 #[must_use]
 pub fn parameter_values(parameters: &[Parameter], id: Option<&str>) -> String {
     match id {
@@ -161,7 +161,7 @@ pub struct Subscription {
     pub channel_id: u64,
 }
 
-/// How much a status matters.
+/// Severity of a status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StatusLevel {
     /// It does not harm.
@@ -185,19 +185,19 @@ pub fn random_word() -> Result<String, NoRandom> {
     Ok(HEXLOWER.encode(&bits))
 }
 
-/// Who serves, in the first message to a client.
+/// The server's facts, the first message to a client.
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ServerInfo {
     /// Shown to the person.
     pub name: String,
-    /// What the client may use.
+    /// Capabilities for the client.
     pub capabilities: Vec<&'static str>,
     /// Encodings of service calls.
     pub supported_encodings: Vec<&'static str>,
-    /// What else there is to know.
+    /// Further facts.
     pub metadata: BTreeMap<String, String>,
-    /// Another run has another one.
+    /// Different for each run.
     pub session_id: String,
 }
 
@@ -221,7 +221,7 @@ impl ServerInfo {
     }
 }
 
-/// A channel as it stands in a message of [`advertise`].
+/// A channel in a message of [`advertise`].
 #[must_use]
 pub fn channel(id: u16, channel: &Channel<'_>) -> String {
     let schema = if BINARY_SCHEMAS.contains(&channel.schema_encoding) {
@@ -247,7 +247,7 @@ pub fn advertise<'a>(channels: impl Iterator<Item = &'a str>) -> String {
     format!(r#"{{"op":"advertise","channels":[{}]}}"#, channels.join(","))
 }
 
-/// Something that the person should know. A later status with the same `id` takes its place.
+/// A message for the person at the viewer. A later status with the same `id` replaces it.
 #[must_use]
 pub fn status(level: StatusLevel, message: &str, id: Option<&str>) -> String {
     let level = match level {
@@ -272,7 +272,7 @@ pub fn message(subscription: u32, time: u64, data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// What time it is in the run, in nanoseconds.
+/// The present time of the run, in nanoseconds.
 #[must_use]
 pub fn time(time: u64) -> Vec<u8> {
     let mut bytes = vec![to_client::TIME];

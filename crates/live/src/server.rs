@@ -33,11 +33,11 @@ pub const PORT: u16 = 8765;
 pub const CLIENTS: usize = 16;
 /// Bytes of a client's message at most.
 pub const MESSAGE: usize = 64 * 1024;
-/// How long a client may take nothing.
+/// How long a client may read nothing.
 pub const PATIENCE: Duration = Duration::from_secs(5);
 /// How long a handshake may take.
 const HANDSHAKE: Duration = Duration::from_secs(3);
-/// How long the clients may take the rest at the end.
+/// How long clients may read the rest at the end.
 const LAST: Duration = Duration::from_secs(2);
 /// How long to wait after a connection that could not be accepted.
 const AGAIN: Duration = Duration::from_millis(100);
@@ -47,13 +47,13 @@ const AGAIN: Duration = Duration::from_millis(100);
 pub struct Options {
     /// Pages that may connect, besides Foxglove's.
     pub origins: Vec<Origin>,
-    /// What clients are told first.
+    /// First message to clients.
     pub info: ServerInfo,
-    /// How long a client may take nothing.
+    /// How long a client may read nothing.
     pub patience: Duration,
     /// The velocity knob, if there is one.
     pub knob: Option<Knob>,
-    /// How the run takes requests, if it does.
+    /// Access for requests; `None` if the run accepts none.
     pub access: Option<Access>,
 }
 
@@ -72,13 +72,13 @@ impl Port {
     /// Take a port; 0 for any that is free.
     ///
     /// # Errors
-    /// Why it cannot be had.
+    /// Why the port cannot be used.
     pub fn take(port: u16) -> io::Result<Self> {
         TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map(Self)
     }
 }
 
-/// Serves a feed as long as it lives. At the end the clients get what is left, for two seconds at most.
+/// Serves a feed until it is dropped. At the end clients can read the rest for at most two seconds.
 #[derive(Debug)]
 pub struct Server {
     address: SocketAddr,
@@ -89,10 +89,10 @@ pub struct Server {
 }
 
 impl Server {
-    /// Serve who connects to a [`Port`]. The threads inherit the priority of the caller.
+    /// Serve clients that connect to a [`Port`]. The threads inherit the priority of the caller.
     ///
     /// # Errors
-    /// Why the thread cannot be had.
+    /// Why the thread cannot be started.
     pub fn start(port: Port, mut options: Options, feed: Feed) -> io::Result<Self> {
         let info = &mut options.info;
         info.capabilities.push("time");
@@ -140,7 +140,7 @@ impl Drop for Server {
     }
 }
 
-/// The thread that lets clients in.
+/// The thread that accepts clients.
 struct Accept {
     listener: TcpListener,
     options: Arc<Options>,
@@ -182,7 +182,7 @@ impl Accept {
     }
 }
 
-/// Counts a client as long as it lives.
+/// Counts a client until it is dropped.
 struct Open(Arc<AtomicUsize>);
 
 impl Drop for Open {
@@ -215,7 +215,7 @@ fn serve(stream: TcpStream, options: &Options, feed: Feed, name: Name) {
     Client::new(socket, feed, queue, options, name).run(vec![options.info.encode(), channels]);
 }
 
-/// Checks who connects, and agrees on a subprotocol.
+/// Checks the origin of a client, and agrees on a subprotocol.
 struct Handshake<'a>(&'a [Origin]);
 
 impl Callback for Handshake<'_> {

@@ -1,7 +1,6 @@
-//! One client: what it may ask for, and what it gets. No I/O.
+//! The session of one client, without I/O: its requests and the actions that follow.
 //!
-//! What is wrong is answered with a status and changes nothing; a client that is wrong too often is
-//! disconnected.
+//! A wrong message is answered with a status and changes nothing; after too many the client is disconnected.
 
 use std::collections::BTreeMap;
 
@@ -23,15 +22,15 @@ pub const VELOCITY: &str = "/operator/velocity";
 pub const TOKEN: &str = "/operator/token";
 /// Full speed of the knob.
 const FULL: u16 = 1000;
-/// Characters of a client's message that stand in the answer.
+/// Characters of a client's message that are quoted in the answer.
 const QUOTED: usize = 60;
-/// Why nothing can be asked for.
+/// Why there are no requests.
 const NO_REQUESTS: &str =
     "this run accepts no requests of viewers: it needs --clock real and an operator (docs/operator.md)";
-/// Why something was not asked for.
+/// Why a request was not sent.
 const NO_TOKEN: &str = "the token that the run has printed was expected";
 
-/// What is to be done for a client.
+/// An action for a client.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Send text.
@@ -50,18 +49,18 @@ pub enum Action {
         /// The channel.
         channel: u16,
     },
-    /// Ask the run for something, and say what it answers: [`Session::answered`].
+    /// Send a request to the run, and pass its answer to [`Session::answered`].
     Ask {
         /// The line for the operator's socket.
         line: String,
-        /// What waits for the answer.
+        /// The request of the client that the answer belongs to.
         reply: Reply,
     },
     /// Disconnect.
     Close(String),
 }
 
-/// What waits for an answer of the run.
+/// A request of the client that waits for an answer of the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
     /// A service was called.
@@ -80,16 +79,16 @@ pub enum Reply {
     },
 }
 
-/// What a session works with.
+/// What a session may use.
 #[derive(Clone, Debug, Default)]
 pub struct Rights {
     /// The velocity knob; a log that is played has none.
     pub knob: Option<Knob>,
-    /// What a request must hold; none if nothing can be asked for.
+    /// The token that a request must contain; `None` if the run accepts no requests.
     pub token: Option<Token>,
 }
 
-/// What a client has asked for so far.
+/// State of a client.
 #[derive(Debug, Default)]
 pub struct Session {
     rights: Rights,
@@ -97,7 +96,7 @@ pub struct Session {
     subscriptions: BTreeMap<u32, u16>,
     /// The token was given as a parameter.
     has_token: bool,
-    /// Where the knob was when the client heard of it last; none if it does not want to hear of it.
+    /// The position of the knob that was sent last; `None` if the client has not subscribed to it.
     knob: Option<u16>,
     mistakes: u32,
 }
@@ -118,7 +117,7 @@ impl Session {
         Self { rights, ..Self::default() }
     }
 
-    /// What the client is told of services before anything else.
+    /// The first message to the client, which advertises services.
     #[must_use]
     pub fn services(&self) -> Option<String> {
         self.rights.token.as_ref()?;
@@ -188,7 +187,7 @@ impl Session {
         }
     }
 
-    /// What is to be said if the knob was turned since the client heard of it.
+    /// The message to send if the knob was turned since the last one.
     pub fn knob(&mut self) -> Option<String> {
         let (seen, now) = (self.knob?, self.rights.knob.as_ref()?.get());
         self.knob = Some(now);
@@ -245,7 +244,7 @@ impl Session {
         }
     }
 
-    /// What a call asks of the run, or why it may not.
+    /// The line for the run of a call, or why it is refused.
     fn line(&self, asked: &ServiceCall) -> Result<String, String> {
         let token = self.rights.token.as_ref().ok_or(NO_REQUESTS)?;
         let wanted =
@@ -298,7 +297,7 @@ impl Session {
         self.counted(why).map_or_else(|| vec![status], |close| vec![close])
     }
 
-    /// A mistake more: the client may have come to the end of the session.
+    /// Count a mistake: after too many the session ends.
     fn counted(&mut self, why: &str) -> Option<Action> {
         self.mistakes = self.mistakes.saturating_add(1);
         let close = || Action::Close(format!("{MISTAKES} wrong messages, at last: {why}"));
@@ -311,7 +310,7 @@ fn is_wanted(names: &[String], name: &str) -> bool {
     names.is_empty() || names.iter().any(|wanted| wanted == name)
 }
 
-/// A number that the knob can be turned to; viewers may send it as a decimal number.
+/// A position of the knob; viewers may send it as a decimal number.
 fn knob(value: &Value) -> Option<u16> {
     let number = value.as_f64()?;
     (0..=FULL).find(|velocity| f64::from(*velocity) == number)

@@ -1,4 +1,4 @@
-//! The deserializer that goes on: it notes what does not fit, and gives something that fits in its place.
+//! The deserializer that continues after an error: it notes what does not fit, and gives a value that fits instead.
 
 use std::{
     cell::RefCell,
@@ -23,7 +23,7 @@ use crate::{Problem, Problems, nearest};
 pub(super) enum Stop {
     /// A key is missing; the caller adds of which table.
     Field(&'static str),
-    /// A key is missing, by its whole way.
+    /// A key is missing, by its whole path.
     Missing(Path),
     /// Something else.
     Other(String),
@@ -51,7 +51,7 @@ impl de::Error for Stop {
     }
 }
 
-/// What is noted on one way through the text.
+/// Notes of one pass through the text.
 pub(super) struct Notes<'n> {
     pub(super) text: &'n str,
     pub(super) kind: FileKind,
@@ -61,7 +61,7 @@ pub(super) struct Notes<'n> {
 }
 
 impl Notes<'_> {
-    /// An entry that is not used, since something is wrong with it.
+    /// An entry that is not used because it has an error.
     fn unusable(&self, path: &str, problem: Problem) {
         self.stand_ins.borrow_mut().insert(path.to_owned());
         self.problems.borrow_mut().add(problem);
@@ -75,7 +75,7 @@ pub(super) enum Node<'a> {
     Table(&'a DeTable<'a>),
     /// A value.
     Value(&'a DeValue<'a>),
-    /// Nothing is there; something that fits is given.
+    /// There is no entry; a value that fits is given.
     StandIn,
 }
 
@@ -106,7 +106,7 @@ impl<'n, 'a> Reader<'n, 'a> {
         self.value()?.as_array().map(|array| &array[..])
     }
 
-    /// Note that something else was expected, unless nothing is there anyway.
+    /// Note that something else was expected, unless the entry is a stand-in.
     fn unfit(&self, expected: impl Display, known: &[&str]) {
         let found = match self.node {
             Node::Value(value) => said(value),
@@ -118,12 +118,12 @@ impl<'n, 'a> Reader<'n, 'a> {
         self.notes.unusable(&self.path, problem.near(wanted, known));
     }
 
-    /// The table, as a message calls it.
+    /// The table's name in messages.
     fn whose(&self) -> &str {
         if self.path.is_empty() { self.notes.kind.whole } else { &self.path }
     }
 
-    /// A whole number of a type, or 1 in its place.
+    /// A whole number of a type, or 1 instead.
     fn whole<T: TryFrom<i64> + Default>(&self, low: impl Display, high: impl Display) -> T {
         let number = match self.value() {
             Some(DeValue::Integer(number)) => i64::from_str_radix(number.as_str(), number.radix()).ok(),
@@ -186,7 +186,7 @@ impl<'n, 'a> Reader<'n, 'a> {
         }
     }
 
-    /// The entries of a structure: its keys that are there, and stand-ins for those that must be and are not.
+    /// The entries of a structure: its existing keys, and stand-ins for missing keys that it needs.
     fn entries(&self, fields: &'static [&'static str]) -> Vec<(&'static str, Node<'a>)> {
         let Some(table) = self.table() else {
             self.unfit("a table", &[]);
@@ -221,7 +221,7 @@ impl<'n, 'a> Reader<'n, 'a> {
 /// The text of a stand-in.
 const STAND_IN: &str = "?";
 
-/// A value as a message says it.
+/// A value in a message.
 fn said(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => format!("{text:?}"),
