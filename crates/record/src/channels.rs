@@ -2,8 +2,8 @@
 //! schemas.
 //!
 //! The outputs of a process are a header and buffers. Each buffer gets a channel `/process/buffer`, a command
-//! `/process/buffer_command`; the header gets `/process/row` ([`crate::rows`]). A message is written when its buffer changes, and every ten
-//! seconds anyway, so that a viewer that jumps into the middle finds a value soon.
+//! `/process/buffer_command`; the header gets `/process/row` ([`crate::rows`]). A message is written when its buffer
+//! changes, and every ten seconds anyway, so that a viewer that starts in the middle finds a value soon.
 
 use std::{
     collections::BTreeMap,
@@ -36,7 +36,7 @@ pub struct Output<W: Write + Seek> {
     pub mcap: mcap::Writer<W>,
     /// Time of tick 0.
     pub epoch: Epoch,
-    /// Who else gets it.
+    /// A further receiver of the messages.
     pub tap: Option<Box<dyn Tap>>,
 }
 
@@ -46,7 +46,7 @@ impl<W: Write + Seek> Output<W> {
         self.channel(topic, schema, PROTOBUF, descriptors, PROTOBUF)
     }
 
-    /// A new channel with a schema of its own encoding.
+    /// A new channel with a schema in any encoding.
     pub fn channel(
         &mut self,
         topic: &str,
@@ -80,20 +80,20 @@ impl<W: Write + Seek> Output<W> {
     }
 }
 
-/// Fields that count on by themselves while the robot runs: clocks of the T3 interface, frames on the line, and
-/// numbers of changing poses. Their being new is no reason to write a buffer; their values are on `/replay`.
+/// Fields that count on by themselves while the robot runs: clocks of the T3 interface, frames on the line, and numbers
+/// of changing poses. A buffer is not written only because of them; their values are on `/replay`.
 const CLOCKS: [&str; 7] =
     ["cycle", "cycle_echo", "frames", "acknowledged", "reference_pose", "present_pose", "sensor_pose"];
 
-/// Buffers that are new in every tick and say nothing that others do not: Prim's changing poses are the frames
-/// of `/t3i/status`. They are written with the repetitions only.
+/// Buffers that change in every tick and add nothing to others: Prim's changing poses are the frames of `/t3i/status`.
+/// They are written with the repetitions only.
 const SCRATCH: [&str; 1] = ["/prim/poses"];
 
 /// A part of an image with a channel of its own.
 struct Buffer {
     channel: u16,
     bytes: Range<usize>,
-    /// Where the image is looked at for changes: all but the [`CLOCKS`].
+    /// Parts of the image that are compared: all but the [`CLOCKS`].
     compared: Vec<Range<usize>>,
     schema: StructSchema,
 }
@@ -101,7 +101,7 @@ struct Buffer {
 /// The buffers of one image.
 pub struct Buffers(Vec<Buffer>);
 
-/// Where a buffer stands in its image, and its topic.
+/// Position of a buffer in its image, and its topic.
 struct Place {
     topic: String,
     bytes: Range<usize>,
@@ -230,7 +230,7 @@ impl HeaderPlace {
     }
 }
 
-/// The headers of all processes. Processes and fields of common memory stand in the same order.
+/// The headers of all processes. Processes and fields of common memory have the same order.
 #[must_use]
 pub fn headers() -> Vec<HeaderPlace> {
     let mut offset = 0;

@@ -1,6 +1,6 @@
 //! Marks where the robot, or what it carries, touches something: `/contacts`.
 //!
-//! A message holds all marks that there are from its tick on, so that a reader needs only the last one.
+//! A message has all marks that are valid from its tick on, so that a reader needs only the last one.
 
 use crate::{
     input::Touch,
@@ -18,7 +18,7 @@ const PERMITTED: (f64, Colour) = (0.03, [0.15, 0.75, 0.30, 0.9]);
 const COLLISION: (f64, Colour) = (0.06, [0.90, 0.10, 0.10, 0.85]);
 /// Height of the letters at a collision, m.
 const LETTERS: f64 = 0.05;
-/// How far above its middle the letters stand, and those of each further collision above them, m.
+/// Height of the letters above the middle of a mark, and distance of those of further collisions above it, m.
 const ABOVE: (f64, f64) = (0.14, 0.07);
 
 /// Append the marks to a `foxglove.SceneUpdate`. `time` in nanoseconds since 1970.

@@ -8,9 +8,9 @@
 //! count of changed fields | fields to skip before each | the differences, one behind the other
 //! ```
 //!
-//! all as varints, differences with their sign in the lowest bit. The skips stand together because they
-//! hardly differ from tick to tick, which is what a compressor is good at. Names and frames on the line are
-//! bytes, not numbers: their difference is a list of runs. A full image is a delta from zeros.
+//! all as varints, differences with their sign in the lowest bit. The skips are stored together because they hardly
+//! differ from tick to tick, so that they compress well. Names and frames on the line are bytes, not numbers: their
+//! difference is a list of runs. A full image is a delta from zeros.
 
 use rcs_core::plain::StructSchema;
 
@@ -42,7 +42,7 @@ impl Codec {
         self.size
     }
 
-    /// Append to `out` what turns `from` into `to`.
+    /// Append to `out` the delta that turns `from` into `to`.
     pub fn encode(&self, from: &[u8], to: &[u8], out: &mut Vec<u8>) {
         let (mut count, mut skipped) = (0, 0);
         let (mut skips, mut values) = (Vec::new(), Vec::new());
@@ -61,8 +61,7 @@ impl Codec {
         out.extend_from_slice(&values);
     }
 
-    /// Turn `image` into what `delta` was made from; false if the delta does not fit the image, which is then
-    /// of no use.
+    /// Apply `delta` to `image`; false if the delta does not fit, and then the image is invalid.
     #[must_use]
     pub fn apply(&self, delta: &[u8], image: &mut [u8]) -> bool {
         self.try_apply(delta, image).is_some()

@@ -1,4 +1,4 @@
-//! What a file says of its channels and schemas.
+//! Descriptions of the channels and schemas of a file.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use mcap::records::{self, Record};
 
 use crate::tap::{Channel, Tap};
 
-/// Channels and schemas by number; what stands first counts.
+/// Channels and schemas by number; the first entry of a number counts.
 #[derive(Default)]
 pub struct Described {
     channels: BTreeMap<u16, records::Channel>,
@@ -14,7 +14,7 @@ pub struct Described {
 }
 
 impl Described {
-    /// Take in a record, if it is one of these.
+    /// Add a record, if it is a channel or schema.
     pub fn note(&mut self, record: &Record<'_>) {
         match record {
             Record::Channel(channel) => {
@@ -27,7 +27,7 @@ impl Described {
         }
     }
 
-    /// Tell a tap of the channels. One without its schema is left out.
+    /// Pass the channels to a tap. A channel without its schema is left out.
     pub fn tell(&self, tap: &mut dyn Tap) {
         for (id, channel) in &self.channels {
             let Some((header, schema)) = self.schemas.get(&channel.schema_id) else { continue };

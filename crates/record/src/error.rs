@@ -44,7 +44,7 @@ pub enum RecordError {
     Thread,
 }
 
-/// What lies at the bottom of an error: the file system's word, not that of the layers above it.
+/// The deepest source of an error, usually that of the file system.
 fn deepest(error: &dyn std::error::Error) -> String {
     match error.source() {
         Some(source) => deepest(source),
@@ -64,7 +64,7 @@ pub enum ReadError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// The file is no MCAP file.
+    /// The file is not an MCAP file.
     #[error("{path} is not an MCAP file: {source}")]
     NotMcap {
         /// The file.
@@ -87,7 +87,7 @@ pub enum ReadError {
         /// The file.
         path: PathBuf,
     },
-    /// A log of a program whose buffers were laid out differently.
+    /// A log of a program with another layout of buffers.
     #[error(
         "the log was written with layout {found}, this program has layout {expected}: \
          replay it with the program that wrote it{}",
@@ -98,7 +98,7 @@ pub enum ReadError {
         expected: String,
         /// Layout of the log.
         found: String,
-        /// Version of the program that wrote it, if it says so.
+        /// Version of the program that wrote it, if known.
         version: String,
     },
     /// A message on `/replay` that does not fit the layout.
@@ -122,7 +122,7 @@ pub enum ReplayError {
     /// The log holds no tick.
     #[error("the log holds no tick there that a replay could start from")]
     Empty,
-    /// The recorded inputs of a tick are no legal record.
+    /// The recorded inputs of a tick are not a valid record.
     #[error("the inputs of tick {tick} cannot be read: {source}")]
     Inputs {
         /// The tick.

@@ -1,4 +1,4 @@
-//! The file of a log: one run writes it, and sees what other programs do to it.
+//! The file of a log: one run writes it, and detects changes by other programs.
 
 use std::{
     fs::{self, File, TryLockError},
@@ -11,18 +11,19 @@ use os_io::files;
 
 use crate::error::RecordError;
 
-/// A file that this run alone writes, until it is dropped. One that was made for a log that never began is removed then.
+/// A file that only this run writes, until it is dropped. If it was made for a log that never began, it is removed
+/// then.
 pub struct LogFile {
     path: PathBuf,
     file: File,
     /// Device and inode.
     identity: (u64, u64),
-    /// It was not there before, and the log has not begun.
+    /// The file is new, and the log has not begun.
     unused: bool,
 }
 
 impl LogFile {
-    /// Claim a file, and make it, with its directory, if it is not there. What is in it stays until the log begins.
+    /// Claim a file; create it, with its directory, if missing. Its content stays until the log begins.
     ///
     /// # Errors
     /// [`RecordError::InUse`] if another run writes it, [`RecordError::Create`] if it cannot be opened.
@@ -63,7 +64,7 @@ impl LogFile {
         }
     }
 
-    /// Where it is.
+    /// Its path.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -76,7 +77,7 @@ impl LogFile {
         self.file.try_clone()
     }
 
-    /// The file is still at its path.
+    /// Check that the file is still at its path.
     ///
     /// # Errors
     /// [`RecordError::Removed`].

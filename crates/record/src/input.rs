@@ -1,4 +1,4 @@
-//! What the run gives to its log: at the start, in each tick, and at the end.
+//! Data that the run gives to its log: at the start, in each tick, and at the end.
 
 use std::{
     collections::BTreeMap,
@@ -15,7 +15,7 @@ pub const MAX_LINKS: usize = 64;
 /// Joints at most.
 pub const MAX_JOINTS: usize = 16;
 
-/// What time tick 0 of a log has.
+/// Time of tick 0 of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Epoch {
     /// The beginning of the day on which the manual's system was finished, 1987-12-16: for runs in fast
@@ -44,12 +44,12 @@ impl Epoch {
     }
 }
 
-/// A file that travels in the log.
+/// A file attached to the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attachment {
-    /// Name with slashes. What begins with [`Attachment::TASK_DATA`] is the task data of the run.
+    /// Name with slashes. Names that begin with [`Attachment::TASK_DATA`] are the task data of the run.
     pub name: String,
-    /// What it is: `text/plain`, `application/toml`, `application/xml`.
+    /// Media type: `text/plain`, `application/toml`, `application/xml`.
     pub media_type: String,
     /// The bytes.
     pub data: Vec<u8>,
@@ -58,9 +58,9 @@ pub struct Attachment {
 impl Attachment {
     /// Directory of the task data among the attachments.
     pub const TASK_DATA: &'static str = "taskdata/";
-    /// Directory of what was loaded while the robot ran: `reload/<generation>/` and the name of the file.
+    /// Directory of blocks that were loaded during the run: `reload/<generation>/` and the name of the file.
     pub const RELOAD: &'static str = "reload/";
-    /// Directory of the jobs that operators put in the place of the rest of the job: `played/<number>/` and the file's name.
+    /// Directory of jobs with which operators replaced the rest of the job: `played/<number>/` and the file's name.
     pub const PLAYED: &'static str = "played/";
     /// Name of the job.
     pub const JOB: &'static str = "job";
@@ -102,7 +102,7 @@ impl Attachment {
         Some((generation.parse().ok()?, self.source(name)))
     }
 
-    /// A job that an operator has put in the place of the rest of the job, the first with the number 1.
+    /// A job with which an operator has replaced the rest of the job; the first has the number 1.
     #[must_use]
     pub fn played(number: u32, job: &Source) -> Self {
         Self::text(&format!("{}{number}/{}", Self::PLAYED, job.name), &job.text)
@@ -122,16 +122,16 @@ impl Attachment {
     }
 }
 
-/// A link of the cell: a frame, and the frame that it is given in.
+/// A link of the cell: a frame and its parent frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Link {
     /// Name, as in the URDF.
     pub name: String,
-    /// Name of the parent in the URDF; `world` for what stands or moves freely.
+    /// Name of the parent in the URDF; `world` for bodies that are fixed or move freely.
     pub parent: String,
 }
 
-/// What a link looks like.
+/// The shape of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Model {
     /// Its name, unique among the models.
@@ -142,10 +142,10 @@ pub struct Model {
     pub glb: Vec<u8>,
 }
 
-/// A name beside a thing.
+/// A name drawn beside a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
-    /// What is written.
+    /// The text.
     pub text: String,
     /// The link that it moves with.
     pub frame: String,
@@ -153,19 +153,18 @@ pub struct Name {
     pub position: [f64; 3],
 }
 
-/// The cell as viewers need it.
+/// The cell for viewers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CellModel {
     /// Geometry of all links.
     pub urdf: String,
-    /// The looks of links and of what stands still.
+    /// The shapes of links and fixed bodies.
     pub models: Vec<Model>,
-    /// Names of things.
+    /// Names of bodies.
     pub names: Vec<Name>,
     /// Links that move, in the order of [`CellFrame::transforms`].
     pub links: Vec<Link>,
-    /// Links that do not, with their places in their parents. A viewer draws no link whose place it is not
-    /// told, URDF or not.
+    /// Fixed links, with their places in their parents. A viewer draws no link without a transform, even with a URDF.
     pub fixed: Vec<(Link, Transform)>,
     /// Names of the joints in the order of [`CellFrame::joints`].
     pub joints: Vec<String>,
@@ -185,7 +184,7 @@ impl CellModel {
     }
 }
 
-/// Where everything in the cell is in one tick.
+/// The positions of everything in the cell in one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellFrame {
     /// The tick.
@@ -194,7 +193,7 @@ pub struct CellFrame {
     pub transforms: [Transform; MAX_LINKS],
     /// Positions of the joints, radians or metres, in the order of [`CellModel::joints`].
     pub joints: [f64; MAX_JOINTS],
-    /// Digest of everything in the cell; none if it was not worked out.
+    /// Digest of the state of the cell; `None` if it was not computed.
     pub digest: Option<u64>,
 }
 
@@ -212,7 +211,7 @@ impl CellFrame {
         self
     }
 
-    /// A frame from lists; what is beyond the limits is left out.
+    /// A frame from lists; entries beyond the limits are left out.
     #[must_use]
     pub fn of(
         tick: Tick,
@@ -226,10 +225,10 @@ impl CellFrame {
     }
 }
 
-/// Something of the robot, or what it carries, that touches something.
+/// A contact of the robot, or of a part that it carries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Touch {
-    /// What touches, by its name in the cell.
+    /// The link or part, by its name in the cell.
     pub mover: String,
     /// What it touches.
     pub obstacle: String,
@@ -237,26 +236,26 @@ pub struct Touch {
     pub point: [f64; 3],
     /// How deep, inches.
     pub depth: f64,
-    /// The cell description does not let them touch now.
+    /// The contact is not permitted by the cell description.
     pub collides: bool,
 }
 
-/// What viewers are shown beside the frames of the cell.
+/// Data for viewers besides the frames of the cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shown {
-    /// What the camera on the wrist saw: a PNG file.
+    /// The picture of the wrist camera: a PNG file.
     Picture(Vec<u8>),
-    /// Everything that touches something, from this tick on.
+    /// All contacts from this tick on.
     Touches(Vec<Touch>),
 }
 
-/// What a log is told before the first tick.
+/// Data of a log from before the first tick.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// Time of tick 0.
     pub epoch: Epoch,
-    /// What the metadata say of the run: version, seed, command line, job, configuration digest, real-time
-    /// verdict. The layout version is added.
+    /// Metadata of the run: version, seed, command line, job, configuration digest, real-time verdict. The layout
+    /// version is added.
     pub run: BTreeMap<String, String>,
     /// Task data, job, cell description. URDF and layout are added.
     pub attachments: Vec<Attachment>,
@@ -270,14 +269,14 @@ impl Default for Setup {
     }
 }
 
-/// What a log is told after the last tick.
+/// Data of a log from after the last tick.
 #[derive(Clone, Debug, Default)]
 pub struct End {
     /// Digest of all output buffers of all ticks.
     pub digest: Option<u64>,
     /// How the job ended, one line.
     pub result: String,
-    /// What else is to be told of the run: real-time verdict, overruns, faults, where the parts are.
+    /// Further facts of the run: real-time verdict, overruns, faults, where the parts are.
     pub facts: BTreeMap<String, String>,
 }
 

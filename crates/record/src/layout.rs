@@ -1,8 +1,7 @@
-//! The layout of byte images: which field stands at which byte, what a value is as text, and the version of
-//! it all.
+//! The layout of byte images: the position of each field, the text of a value, and the version of the whole layout.
 //!
-//! Everything here walks the [`Schema`] trees that `#[derive(Plain)]` makes, so that a field that is added
-//! to a buffer is described, compared and versioned without another line being written.
+//! Everything here walks the [`Schema`] trees that `#[derive(Plain)]` makes, so that a new field of a buffer is
+//! described, compared and versioned without further code.
 //!
 //! | in the schema                              | leaves                                | as text           |
 //! |--------------------------------------------|---------------------------------------|-------------------|
@@ -26,7 +25,7 @@ use rcs_core::{
 
 use crate::proto::descriptor;
 
-/// A field that is not made of other fields: where it stands in the image and what it holds.
+/// A field that is not made of other fields: its position in the image and its schema.
 #[derive(Clone, Debug)]
 pub struct Leaf {
     /// Names from the outermost record inwards, joined by dots; array elements in brackets:
@@ -55,15 +54,14 @@ impl Leaf {
         self.given.iter().all(|(at, byte)| image.get(*at) == Some(byte))
     }
 
-    /// The value in `image` as people write it.
+    /// The value in `image` as text.
     #[must_use]
     pub fn text(&self, image: &[u8]) -> String {
         if self.is_in(image) { value_text(self.schema, self.bytes(image)) } else { NONE.to_owned() }
     }
 
-    /// The field holds a record number of the task data. A record has another number when something is added
-    /// before it, and means the same: runs with different task data are compared without these fields, by
-    /// what is named and by what comes of it.
+    /// The field holds a record number of the task data. A record has another number when something is added before it,
+    /// and means the same: runs with different task data are compared without these fields, by names and results.
     #[must_use]
     pub fn is_record_number(&self) -> bool {
         let number = match self.schema {
@@ -101,7 +99,7 @@ const RECORD_NUMBERS: [&str; 16] = [
     "trajectory_parameters",
 ];
 
-/// What people read where a value is absent.
+/// Text of an absent value.
 const NONE: &str = "none";
 
 /// All leaves of a record in the order of the image.
@@ -121,7 +119,7 @@ pub fn leaves_of(fields: &'static [FieldSchema]) -> Vec<Leaf> {
 /// A walk through a schema.
 #[derive(Default)]
 struct Walk {
-    /// What must be in the image, where the walk is now.
+    /// Conditions on the image at the present position of the walk.
     given: Vec<(usize, u8)>,
     found: Vec<Leaf>,
 }
@@ -160,7 +158,7 @@ impl Walk {
         }
     }
 
-    /// What stands behind the flag of an option or the code of a variant.
+    /// The value after the flag of an option or the code of a variant.
     fn carried(&mut self, schema: &'static Schema, path: String, offset: usize, given: u8) {
         self.given.push((offset, given));
         self.schema(schema, path, offset + 1);
@@ -172,7 +170,7 @@ impl Walk {
     }
 }
 
-/// True if people read the value as one word.
+/// True if the value is shown as one word.
 fn is_leaf(schema: &Schema) -> bool {
     match schema {
         Schema::Struct(_) => false,
@@ -207,8 +205,8 @@ pub struct Piece {
     pub number: bool,
 }
 
-/// The pieces of a record: each byte of its image is in one of them. What the variants of a union carry
-/// stands in the same bytes, so it is one piece.
+/// The pieces of a record: each byte of its image is in one of them. The payloads of the variants of a union share the
+/// same bytes, so they are one piece.
 #[must_use]
 pub fn pieces(record: &'static StructSchema) -> Vec<Piece> {
     let mut found = Vec::new();
@@ -246,8 +244,7 @@ fn schema_pieces(schema: &Schema, offset: usize, found: &mut Vec<Piece>) {
     }
 }
 
-/// The value of a leaf as people write it: numbers in decimal, names and variants as their text, bytes in
-/// hexadecimal.
+/// The value of a leaf as text: numbers in decimal, names and variants as their text, bytes in hexadecimal.
 #[must_use]
 pub fn value_text(schema: &Schema, bytes: &[u8]) -> String {
     match schema {
@@ -271,7 +268,7 @@ pub fn value_text(schema: &Schema, bytes: &[u8]) -> String {
     }
 }
 
-/// The variant, and what it carries if that stands behind it.
+/// The variant, and its payload if it follows.
 fn union_text(of: &UnionSchema, bytes: &[u8]) -> String {
     let (code, carried) = bytes.split_first().map_or((0, bytes), |(code, carried)| (*code, carried));
     let Some(variant) = of.variants.iter().find(|variant| variant.code == code) else {
@@ -398,7 +395,7 @@ pub fn description() -> String {
     .concat()
 }
 
-/// Version of what goes in and out of the ladder, without its states.
+/// Version of the inputs and outputs of the ladder, without its states.
 #[must_use]
 pub fn interface_version() -> String {
     let mut digest = Digest::new();
@@ -407,8 +404,8 @@ pub fn interface_version() -> String {
     digest.to_string()
 }
 
-/// Version of the layout: a digest of [`description`], so that it changes when and only when an image means
-/// something else.
+/// Version of the layout: a digest of [`description`], so that it changes if, and only if, the meaning of an image
+/// changes.
 #[must_use]
 pub fn version() -> String {
     let mut digest = Digest::new();

@@ -1,4 +1,4 @@
-//! What operators have asked for, on a channel of its own: a run can be given the same inputs again.
+//! Requests of operators, on a separate channel, so that they can be replayed in another run.
 
 use std::io::{Seek, Write};
 
@@ -17,13 +17,13 @@ use crate::{
 /// The topic. A run without operators has no such channel.
 pub const OPERATOR: &str = "/operator";
 
-/// Plain numbers of the message.
+/// Field numbers of the message.
 const SOURCE: u32 = 1;
 const LINE: u32 = 2;
 const ANSWER: u32 = 3;
 const REFUSED: u32 = 4;
 
-/// Something that an operator has asked for.
+/// A request of an operator.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OperatorLine {
     /// The first tick that sees it.
@@ -32,7 +32,7 @@ pub struct OperatorLine {
     pub source: String,
     /// What.
     pub line: String,
-    /// What was said to it; empty if there was nothing to say.
+    /// Text of the answer; may be empty.
     pub answer: String,
     /// Why it was refused, if it was.
     pub refused: Option<String>,

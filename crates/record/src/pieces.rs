@@ -1,9 +1,9 @@
-//! The file of a log in pieces, whatever has happened to it.
+//! The pieces of a log file, which may be damaged.
 //!
-//! No length in the file is believed before it is checked against what is there. A piece that cannot be read
-//! ends at the next record that can: a chunk or an attachment with the right checksum, or metadata of this
-//! program. What is decompressed, in all, is bounded by the size of the file, so that reading takes memory
-//! and time in proportion to it.
+//! Every length in the file is checked against the size of the file before it is used. A piece that cannot be read ends
+//! at the next record that can: a chunk or an attachment with the right checksum, or metadata of this program. The
+//! total of decompressed bytes is bounded by the size of the file, so that reading takes memory and time in proportion
+//! to it.
 
 use std::ops::Range;
 
@@ -19,9 +19,9 @@ use crate::writer::{END, RUN};
 const HEAD: usize = 9;
 /// Largest chunk, decompressed, bytes: the recorder closes a chunk at a quarter of a megabyte.
 const CHUNK: u64 = 16 << 20;
-/// Bytes that a byte of the file may stand for: the recorder's chunks stand for six to ten times their size.
+/// Largest ratio of decompressed bytes to bytes of the file: the recorder's chunks have six to ten.
 const EXPANSION: u64 = 64;
-/// Bytes that the smallest file may stand for.
+/// Decompressed bytes that are always allowed, also for a small file.
 const LEAST: u64 = 64 << 20;
 
 /// A piece of the file.
@@ -83,7 +83,7 @@ impl<'a> Pieces<'a> {
         Some(())
     }
 
-    /// The next place from `from` on where a record begins that is surely one; the end of the file if there is none.
+    /// The next position from `from` on at which a record certainly begins; the end of the file if there is none.
     fn next_good(&mut self, from: usize) -> usize {
         let surely = |piece: &Piece<'_>| match piece {
             Piece::Chunk(_) => true,
@@ -128,8 +128,8 @@ fn frame(bytes: &[u8], at: usize) -> Option<(u8, usize)> {
     (end <= bytes.len()).then_some((*opcode, end))
 }
 
-/// A record that is looked at; of another one its bytes. The library takes memory for a text before it looks
-/// whether the text is there, so the lengths are checked here.
+/// Parse a record of a kind that is used; of others only the bytes are kept. The library allocates memory for a text
+/// before it checks its length, so the lengths are checked here.
 fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     match opcode {
         op::METADATA => texts(body, text(body, 0)?)?,

@@ -1,9 +1,9 @@
-//! Reads a log back, whole or not.
+//! Reads a log, also an incomplete or damaged one.
 //!
-//! A program that was killed leaves a file without an end, perhaps with half a record in it; a disk or a hand
-//! can damage a file anywhere. Everything that can be read is read ([`crate::pieces`]). Images are
-//! differences, so after a damaged chunk the ticks go on with the next whole images, which the recorder
-//! writes once a second. What is missing is told, and is no error.
+//! A program that was killed leaves a file without an end, perhaps with half a record in it; a file can be damaged
+//! anywhere. Everything that can be read is read ([`crate::pieces`]). Images are differences, so after a damaged chunk
+//! the ticks continue with the next whole images, which the recorder writes once a second. Missing parts are reported,
+//! and are not an error.
 
 use std::{
     collections::BTreeMap,
@@ -33,7 +33,7 @@ use crate::{
     writer::{Codecs, END, LAYOUT, LOG_TOPIC, REPLAY, RUN, Timing, replay_field},
 };
 
-/// Bytes that tell an MCAP file.
+/// Bytes of the mark of an MCAP file.
 const HEAD: u64 = 8;
 
 /// A log that was read.
@@ -43,19 +43,19 @@ pub struct Log {
     segments: Vec<Segment>,
     /// Numbers of the channels by topic.
     channels: BTreeMap<String, u16>,
-    /// What the file says of channels and schemas, by number.
+    /// Channels and schemas of the file, by number.
     described: Described,
-    /// Metadata of the start: what run it was.
+    /// Metadata of the start: facts of the run.
     pub run: BTreeMap<String, String>,
     /// Metadata of the end: how the run ended; none if the program was killed.
     pub end: Option<BTreeMap<String, String>>,
-    /// Files that travelled in the log, in their order.
+    /// Files attached to the log, in their order.
     pub attachments: Vec<Attachment>,
     /// The file has its end. If not, up to a second before the end of the run is missing.
     pub complete: bool,
 }
 
-/// A part of the file, as far as messages are concerned.
+/// A part of the file that has messages.
 enum Segment {
     Chunk(Range<usize>),
     Damaged(Range<usize>),
@@ -76,7 +76,7 @@ pub struct LoggedTick {
     pub state: Option<Vec<u8>>,
     /// Fingerprint of the simulated cell before the tick, where it was recorded.
     pub world: Option<u64>,
-    /// How punctual the tick was, where it was recorded.
+    /// Times of the tick, where they were recorded.
     pub timing: Option<Timing>,
 }
 
@@ -85,9 +85,9 @@ pub struct LoggedTick {
 pub struct LogLine {
     /// The tick.
     pub tick: Tick,
-    /// How much it matters.
+    /// Its severity.
     pub level: Level,
-    /// Who says it.
+    /// Its source.
     pub source: String,
     /// The sentence.
     pub text: String,
@@ -96,10 +96,10 @@ pub struct LogLine {
 }
 
 impl Log {
-    /// Read a log, whole or not.
+    /// Read a log, also an incomplete or damaged one.
     ///
     /// # Errors
-    /// [`ReadError`] if the file is not a log. The layout is not looked at: see [`Log::check_layout`].
+    /// [`ReadError`] if the file is not a log. The layout is not checked: see [`Log::check_layout`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let unreadable = |source| ReadError::Unreadable { path: path.to_owned(), source };
         let mut file = files::open(path).map_err(unreadable)?;
@@ -181,7 +181,7 @@ impl Log {
         ReadError::NotMcap { path: self.path.clone(), source }
     }
 
-    /// What of the file cannot be read, in words; none if all can.
+    /// The damaged parts of the file, as text; `None` if there are none.
     #[must_use]
     pub fn damage(&self) -> Option<String> {
         let damaged = |segment: &Segment| match segment {
@@ -202,7 +202,7 @@ impl Log {
         self.bytes.len()
     }
 
-    /// Refuse a log whose byte images mean something else in this program.
+    /// Refuse a log whose byte images have another meaning in this program.
     ///
     /// # Errors
     /// [`ReadError::OtherLayout`].
@@ -272,7 +272,7 @@ impl Log {
         })
     }
 
-    /// What operators have asked for, in order.
+    /// Requests of operators, in order.
     pub fn operator_lines(&self) -> impl Iterator<Item = OperatorLine> {
         self.messages(OPERATOR).map(|(tick, data)| OperatorLine::decode(tick, &data))
     }
@@ -283,25 +283,24 @@ impl Log {
         &self.path
     }
 
-    /// The digests of the simulated cell, as the controller met it in each tick; none of a real one.
+    /// The digests of the simulated cell at the start of each tick; none of a real cell.
     pub fn cell_digests(&self) -> impl Iterator<Item = (Tick, u64)> {
         self.ticks().map_while(Result::ok).filter_map(|logged| Some((logged.tick, logged.world?)))
     }
 
-    /// Where links are from a tick on, in the order of the log: what never moves first, then what moved in each
-    /// tick.
+    /// Positions of links, in the order of the log: first the fixed links, then those that moved in each tick.
     pub fn places(&self) -> impl Iterator<Item = (Tick, Vec<(Link, Transform)>)> {
         let fixed = self.messages(TF_STATIC);
         fixed.chain(self.messages(TF)).map(|(tick, data)| (tick, foxglove::take_transforms(&data)))
     }
 
-    /// Tell a tap of the channels; one without its schema is left out.
+    /// Pass the channels to a tap; a channel without its schema is left out.
     pub fn tell_channels(&self, tap: &mut dyn Tap) {
         self.described.tell(tap);
     }
 
-    /// Give all messages to a tap, in the order of the file. `before` gets the time of each message before it is
-    /// given, nanoseconds since 1970, and may wait. A chunk is decompressed at a time.
+    /// Give all messages to a tap, in the order of the file. `before` gets the time of each message before it is given,
+    /// nanoseconds since 1970, and may wait. Only one chunk is decompressed at a time.
     pub fn play(&self, tap: &mut dyn Tap, mut before: impl FnMut(u64)) {
         for segment in &self.segments {
             let Segment::Chunk(range) = segment else { continue };
@@ -345,7 +344,7 @@ fn is_full(data: &[u8]) -> bool {
     })
 }
 
-/// Go on from one recorded tick to the next; false if the message does not fit.
+/// Step from one recorded tick to the next; false if the message does not fit.
 fn advance(codecs: &Codecs, last: &mut LoggedTick, data: &[u8]) -> bool {
     let (mut full, mut sound) = (false, true);
     (last.state, last.world, last.timing) = (None, None, None);

@@ -1,15 +1,14 @@
-//! What the run calls: a bounded ring on this side, a thread that writes on the other.
+//! The run's side of the log: a bounded ring, from which a thread writes the file.
 //!
-//! In a tick the recorder copies three records into memory that was there before the first tick: it allocates
-//! nothing, and in a real-time run it never waits. A tick that finds the ring full is counted, and the count
-//! travels with the next tick that finds room. A fast run has no grid to keep, so there the
-//! recorder waits and nothing is lost.
+//! In a tick the recorder copies three records into memory that was allocated before the first tick: it allocates
+//! nothing, and in a real-time run it never waits. If the ring is full, the tick is counted as lost, and the count is
+//! recorded with the next tick that has room. In a run in fast clock the recorder waits instead, and no tick is lost.
 //!
 //! The writer thread ends at the first error. Then the ring has no reader, the recorder returns at once from
 //! every call, and the error is what [`Recorder::finish`] returns: a full disk ends the log, never the run.
 //!
-//! Make a recorder before the thread of the ticks gets its real-time priority: the writer inherits the
-//! priority of its maker.
+//! Make a recorder before the thread of the ticks gets its real-time priority: the writer inherits the priority of the
+//! calling thread.
 
 use std::{
     path::{Path, PathBuf},
@@ -51,10 +50,10 @@ const FILE_RING: usize = 64;
 const SHOWN_RING: usize = 256;
 /// Lines of operators that the ring holds.
 const OPERATOR_RING: usize = 256;
-/// Characters of a note; what is longer is cut.
+/// Most characters of a note; a longer one is cut.
 pub const NOTE: usize = 192;
 
-/// What happens when the ring is full.
+/// Behaviour when the ring is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// The run waits: for runs in fast clock.
@@ -73,7 +72,7 @@ struct Note {
     text: [u8; NOTE],
 }
 
-/// As much of a text as fits, without half a character at the end.
+/// The beginning of a text that fits, in whole characters.
 fn clipped<const N: usize>(text: &str) -> [u8; N] {
     let mut end = text.len().min(N);
     while !text.is_char_boundary(end) {
@@ -107,31 +106,31 @@ pub struct Recorder {
     thread: JoinHandle<Result<Written, RecordError>>,
 }
 
-/// What found no room in the ring.
+/// Counts of entries that did not fit into the ring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lost {
-    /// Ticks: the run cannot be replayed over them.
+    /// Ticks: the run cannot be replayed across them.
     pub ticks: u64,
     /// Frames of the cell.
     pub frames: u64,
     /// Lines for `/log`.
     pub notes: u64,
-    /// Files that came up during the run: without them it cannot be replayed to the end.
+    /// Files of the run, such as reloads: without them it cannot be replayed to the end.
     pub files: u64,
     /// Pictures of the camera, and lists of contacts.
     pub shown: u64,
-    /// Lines of operators: without them their inputs cannot be given again.
+    /// Requests of operators: without them the inputs cannot be replayed.
     pub operators: u64,
 }
 
-/// What became of a log.
+/// Result of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Summary {
     /// The file.
     pub path: PathBuf,
     /// Ticks in it.
     pub ticks: u64,
-    /// What is not in it.
+    /// Lost entries.
     pub lost: Lost,
     /// Bytes of the file.
     pub bytes: u64,
@@ -146,7 +145,7 @@ impl Recorder {
         Self::start_in(LogFile::claim(path)?, pace, setup, None)
     }
 
-    /// Empty the file and start the writer. A tap gets what the file gets.
+    /// Empty the file and start the writer. A tap gets the same messages as the file.
     ///
     /// # Errors
     /// [`RecordError`] if the file cannot be emptied, or its head cannot be written.
@@ -208,16 +207,16 @@ impl Recorder {
         })
     }
 
-    /// Where everything in the cell is; before [`Recorder::tick`] of the same tick.
+    /// Record the cell; call it before [`Recorder::tick`] of the same tick.
     pub fn cell(&mut self, frame: &CellFrame) {
         if !has_room(&self.cells, self.pace) || self.cells.push(*frame).is_err() {
             self.lost.frames += 1;
         }
     }
 
-    /// A line for `/log` about an event of a kind; before [`Recorder::tick`] of the same tick.
+    /// Record a line for `/log` about an event; call it before [`Recorder::tick`] of the same tick.
     ///
-    /// The writer takes notes when it comes to their tick, so waiting for room here could be for ever.
+    /// The writer takes notes when it reaches their tick, so this must not wait for room: it could wait for ever.
     pub fn note(&mut self, tick: Tick, level: Level, source: &str, code: &'static str, text: &str) {
         let note = Note { tick, level, source: clipped(source), code, text: clipped(text) };
         if !has_room(&self.notes, Pace::Drop) || self.notes.push(note).is_err() {
@@ -225,37 +224,37 @@ impl Recorder {
         }
     }
 
-    /// A file that came up during the run, such as a reload of task data; before [`Recorder::tick`] of the
-    /// tick from which it counts. The file is the caller's to allocate, outside the tick.
+    /// Record a file of the run, such as a reload of task data; call it before [`Recorder::tick`] of the tick from
+    /// which it is valid. The caller allocates the file outside of the tick.
     pub fn attach(&mut self, tick: Tick, attachment: Attachment) {
         if !has_room(&self.files, self.pace) || self.files.push((tick, attachment)).is_err() {
             self.lost.files += 1;
         }
     }
 
-    /// What viewers are shown; before [`Recorder::tick`] of the same tick.
+    /// Record data for viewers; call it before [`Recorder::tick`] of the same tick.
     pub fn show(&mut self, tick: Tick, shown: Shown) {
         if !has_room(&self.shown, Pace::Drop) || self.shown.push((tick, shown)).is_err() {
             self.lost.shown += 1;
         }
     }
 
-    /// What an operator has asked for; before [`Recorder::tick`] of the tick that sees it first. The text is the
-    /// caller's to allocate, outside the tick.
+    /// Record a request of an operator; call it before [`Recorder::tick`] of the tick that sees it first. The caller
+    /// allocates the text outside of the tick.
     pub fn operator(&mut self, line: OperatorLine) {
         if !has_room(&self.operators, Pace::Drop) || self.operators.push(line).is_err() {
             self.lost.operators += 1;
         }
     }
 
-    /// How punctual the tick is; before [`Recorder::tick`] of the same tick. A run that never calls this writes
+    /// Record times of the tick; call it before [`Recorder::tick`] of the same tick. A run that never calls this writes
     /// the same bytes each time.
     pub const fn timing(&mut self, timing: Timing) {
         self.timing = Some(timing);
     }
 
-    /// What the processes read and wrote in a tick. `state` is asked for the states after it with the first
-    /// tick, once a second, and after a gap.
+    /// Record inputs and outputs of the processes in a tick. `state` is called for their states with the first tick,
+    /// once a second, and after a gap.
     pub fn tick(
         &mut self,
         tick: Tick,
@@ -283,7 +282,7 @@ impl Recorder {
         }
     }
 
-    /// What found no room so far.
+    /// Lost entries so far.
     #[must_use]
     pub const fn lost(&self) -> Lost {
         self.lost
@@ -299,7 +298,7 @@ impl Recorder {
     /// Wait until everything is written, and end the log.
     ///
     /// # Errors
-    /// What ended the log before the run did.
+    /// The error that ended the log before the run.
     pub fn finish(self, end: End) -> Result<Summary, RecordError> {
         let Self {
             ticks, states, cells, notes, files, operators, shown, lost, path, end: slot, thread, ..
@@ -313,8 +312,7 @@ impl Recorder {
     }
 }
 
-/// A ring whose memory is there: the first lap of the run must not be the one that fetches it from the
-/// system, page by page.
+/// A ring whose memory is allocated and touched, so that the first ticks cause no page faults.
 fn ring<T: Copy>(capacity: usize, sample: T) -> (Producer<T>, Consumer<T>) {
     let (mut producer, mut consumer) = RingBuffer::new(capacity);
     while producer.push(sample).is_ok() {}
@@ -322,7 +320,7 @@ fn ring<T: Copy>(capacity: usize, sample: T) -> (Producer<T>, Consumer<T>) {
     (producer, consumer)
 }
 
-/// True if a push will succeed. In a fast run this waits for it, unless the writer is gone.
+/// True if a push will succeed. In fast clock this waits for room, unless the writer has ended.
 fn has_room<T>(ring: &Producer<T>, pace: Pace) -> bool {
     while ring.is_full() && !ring.is_abandoned() {
         match pace {

@@ -1,8 +1,8 @@
-//! The lines on `/log`: what a person wants to have been told, found by comparing two ticks.
+//! The lines on `/log` for people, made by comparing two ticks.
 //!
-//! Commands as they go down the ladder, the status of the job, what the robot met (a condition of a guarded
-//! move, a part, a gripper), what the link suffered, and each failure as one sentence: which process, why, and
-//! by which row of which decision table.
+//! They report commands down the ladder, the status of the job, sensor events of the robot (a condition of a guarded
+//! move, a part, a gripper), faults of the link, and each failure as one sentence: process, reason, and row of the
+//! decision table.
 
 use interfaces::{
     CommonMemory, Detail, Fault, Header, ProcessId,
@@ -23,9 +23,9 @@ use crate::{channels::HeaderPlace, proto::foxglove::Level};
 /// A line on `/log`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Remark {
-    /// How much it matters.
+    /// Its severity.
     pub level: Level,
-    /// Who says it: a process, the cell, the recorder.
+    /// Its source: a process, the cell, the recorder.
     pub source: String,
     /// The sentence.
     pub text: String,
@@ -35,7 +35,7 @@ pub struct Remark {
     pub line: u32,
 }
 
-/// What two successive ticks give reason to say.
+/// The remarks about two successive ticks.
 #[must_use]
 pub fn remarks(
     headers: &[HeaderPlace],
@@ -77,8 +77,8 @@ fn commands(
     down(before, after, say);
 }
 
-/// What the robot meets: the condition of a guarded move, an object between the fingers, a gripper, the
-/// operator at the joystick box.
+/// Sensor events of the robot: the condition of a guarded move, an object between the fingers, a gripper, the operator
+/// at the joystick box.
 fn encounters(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, said: &mut Vec<Remark>) {
     let mut say = |field: &str, text: String| {
         said.push(Remark { source: name_of(headers, field), text, ..Remark::default() });
@@ -106,14 +106,14 @@ fn encounters(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemo
     }
 }
 
-/// Prim has ordered T3I to begin the link anew, and T3I has not read it before: what the link suffers then is no fault.
+/// Prim has ordered T3I to begin the link anew, and T3I has not read it before: faults of the link are then expected.
 #[must_use]
 pub fn is_restart_ordered(before: &CommonMemory) -> bool {
     let command = &before.prim.t3i;
     command.command == T3iVerb::Restart && command.number != before.t3i.status.echo
 }
 
-/// What the link to the robot suffers.
+/// Faults of the link to the robot.
 fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, said: &mut Vec<Remark>) {
     let mut say = |level, text: String| {
         said.push(Remark { level, source: name_of(headers, "t3i"), text, ..Remark::default() });
@@ -151,7 +151,7 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
     }
 }
 
-/// The processes whose commands are of interest to who follows the job; those of the others are details.
+/// The processes whose commands show the progress of the job; commands of the others are details.
 const FOLLOWED: [ProcessId; 3] = [ProcessId::Subtask, ProcessId::Emove, ProcessId::Pedestal];
 
 /// A command on its way down: `-> E-move: GRASP-OBJ LINKBAR1 at PFIXTURE`. The points to T3I are left out:
@@ -203,7 +203,7 @@ fn failure(headers: &[HeaderPlace], field: &str, header: &Header, level: Level, 
     }
 }
 
-/// What has changed in what is held.
+/// A change of what is held.
 fn holding(was: &Holding, is: &Holding) -> Option<String> {
     match (was, is) {
         _ if was == is => None,
@@ -225,7 +225,7 @@ fn name_of(headers: &[HeaderPlace], field: &str) -> String {
     headers.iter().find(|place| place.field == field).map_or(field, |place| place.process.name).to_owned()
 }
 
-/// A command of the workstation as people write it: the words that it has.
+/// A command of the workstation as text, without its empty fields.
 #[must_use]
 pub fn hws_text(command: &HwsCommand) -> String {
     let mut words = vec![command.command.to_string()];

@@ -1,13 +1,12 @@
-//! A log is a test: run the control processes again on the recorded inputs, and compare.
+//! Replay: run the control processes again on the recorded inputs, and compare the outputs.
 //!
-//! The task data come from the log's attachments, the inputs from its ticks, and nothing from anywhere else.
-//! Every output buffer of every tick is compared bit for bit, and the states of the processes where they were
-//! recorded. The first difference ends the comparison: what comes after it follows from it.
+//! The task data come from the log's attachments and the inputs from its ticks. Every output buffer of every tick is
+//! compared bit for bit, and the states of the processes where they were recorded. The first difference ends the
+//! comparison, because later differences follow from it.
 //!
-//! Where ticks are missing, nothing can be computed; the replay goes on from the states recorded with the
-//! first tick after the gap. In the same way a replay can begin in the middle: states are recorded once a
-//! second. Other task data than those of the log answer the question what they would have changed: then
-//! record numbers are not compared.
+//! Missing ticks cannot be computed; the replay continues with the states recorded with the first tick after the gap.
+//! In the same way a replay can begin in the middle: states are recorded once a second. A replay with other task data
+//! shows what they would have changed; then record numbers are not compared.
 
 use std::{
     collections::BTreeMap,
@@ -34,18 +33,18 @@ use crate::{
     remarks::row_text,
 };
 
-/// Where a replay first went another way than the run.
+/// The first difference of a replay from the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     /// The tick.
     pub tick: Tick,
-    /// The process and the buffer: `prim.status`; `state.prim` for what a process remembers.
+    /// The process and the buffer: `prim.status`; `state.prim` for the state of a process.
     pub buffer: String,
     /// The field in it.
     pub field: String,
-    /// What was recorded.
+    /// The recorded value.
     pub was: String,
-    /// What the replay computed.
+    /// The computed value.
     pub is: String,
     /// The row by which the process decided in the replay.
     pub row: String,
@@ -58,10 +57,10 @@ impl std::fmt::Display for Difference {
     }
 }
 
-/// What of a log is replayed, and with which task data.
+/// The part of a log to replay, and the task data.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Task data instead of those in the log. What was loaded during the run is added to them as it was then.
+    /// Task data instead of those in the log. Blocks that were loaded during the run are added to them.
     pub data: Option<Store>,
     /// The replay begins at the last recorded states before this tick.
     pub from: Option<Tick>,
@@ -70,29 +69,28 @@ pub struct Options {
 }
 
 impl Options {
-    /// The digest at the end of the run is that of the replay only if the replay has all ticks in it, and the
-    /// records their numbers.
+    /// The digest of the run can be compared only if the replay has all ticks and the same record numbers.
     const fn has_digest(&self) -> bool {
         self.from.is_none() && self.until.is_none() && self.data.is_none()
     }
 }
 
-/// What a replay found.
+/// Result of a replay.
 #[derive(Clone, Debug)]
 pub struct ReplayReport {
     /// Ticks that were computed again.
     pub ticks: u64,
-    /// Ticks that could not be: those of gaps, and those with which the replay began anew.
+    /// Ticks that could not be computed: those of gaps, and those at which the replay started again.
     pub skipped: u64,
-    /// Where the replay first went another way; none if it never did.
+    /// The first difference; `None` if there is none.
     pub first_difference: Option<Difference>,
     /// Digest of the output buffers of the computed ticks.
     pub digest: Digest,
-    /// Digest that the run gave at its end; none if it never came to that.
+    /// Digest at the end of the run; `None` if the log has no end.
     pub recorded_digest: Option<u64>,
     /// The log has its end.
     pub complete: bool,
-    /// What of the log cannot be read, in words.
+    /// The damaged parts of the log, as text.
     pub damage: Option<String>,
     /// Time that the processes took, without reading and comparing.
     pub computing: Duration,
@@ -119,8 +117,8 @@ impl ReplayReport {
 /// Replay a whole log with its own task data.
 ///
 /// # Errors
-/// [`ReplayError`] if the log cannot be read, is of another layout, or its task data do not load. A
-/// difference is no error: it is in the report.
+/// [`ReplayError`] if the log cannot be read, is of another layout, or its task data do not load. A difference is not
+/// an error: it is in the report.
 pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
     replay_with(path, &Options::default())
 }
@@ -156,7 +154,7 @@ pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, Repla
     })
 }
 
-/// The task data that travelled in a log.
+/// The task data attached to a log.
 ///
 /// # Errors
 /// [`ReplayError::TaskData`] with the report of the loader.
@@ -182,7 +180,7 @@ pub fn generations(log: &Log) -> Result<Vec<Store>, ReplayError> {
     generations_of(log_sources(&log.attachments), &log.attachments)
 }
 
-/// The generations that grow out of task data by the reloads among the attachments.
+/// The generations of task data after each reload among the attachments.
 pub(crate) fn generations_of(
     sources: Vec<Source>,
     attachments: &[Attachment],
@@ -192,7 +190,7 @@ pub(crate) fn generations_of(
     grown(first, attachments)
 }
 
-/// A store, and what it became by each reload among the attachments.
+/// A store, and the stores after each reload among the attachments.
 pub(crate) fn grown(first: Store, attachments: &[Attachment]) -> Result<Vec<Store>, ReplayError> {
     let mut generations = vec![first];
     let mut reloads: BTreeMap<u32, Vec<Source>> = BTreeMap::new();
@@ -225,7 +223,7 @@ struct Replayer {
 }
 
 impl Replayer {
-    /// With other task data than those of the log records are compared by what is named, not by their numbers.
+    /// With other task data than those of the log, records are compared by names and not by numbers.
     fn new(by_name: bool) -> Self {
         let leaves = |record| {
             let mut leaves = layout::leaves(record);
@@ -284,7 +282,7 @@ impl Replayer {
         Ok(None)
     }
 
-    /// Compute a tick again, or take over what was recorded if there is a gap before it.
+    /// Compute a tick again, or take the recorded values if there is a gap before it.
     fn tick(
         &mut self,
         logged: &LoggedTick,
@@ -315,7 +313,7 @@ impl Replayer {
         Ok(self.compare(logged))
     }
 
-    /// Go on from what was recorded; without states the replay waits for the next tick that has them.
+    /// Continue from the recorded values; without states the replay waits for the next tick that has them.
     fn take_over(&mut self, logged: &LoggedTick) -> Result<(), ReplayError> {
         let bad = |source| ReplayError::Inputs { tick: logged.tick.0, source };
         self.before = None;

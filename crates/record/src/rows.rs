@@ -1,8 +1,8 @@
-//! The row channels: one a process, `/process/row`, which says by which row of a decision table it decided.
+//! The row channels: one per process, `/process/row`, with the row of a decision table that fired.
 //!
-//! A message tells the row as text, the values of the state variables that its table asks for, the tick in
-//! which it fired, and the rows of other tables that fired beside it. A process that rests repeats its last
-//! row in its header: then `resting` is set. A message is written when anything but the tick changes.
+//! A message has the row as text, the values of the state variables that its table asks for, the tick in which it
+//! fired, and the rows of other tables that fired beside it. A process that rests repeats its last row in its header:
+//! then `resting` is set. A message is written when anything but the tick changes.
 
 use std::io::{Seek, Write};
 
@@ -29,14 +29,14 @@ pub struct Rows(Vec<Channel>);
 struct Channel {
     id: u16,
     place: HeaderPlace,
-    /// What was written last, without its tick.
+    /// The last message, without its tick.
     last: Option<(Header, Vec<u8>)>,
 }
 
 /// Message on the row channels.
 const ROW: &str = "Row";
 
-/// The state variables that a table asks for, as one says them: `work Busy, clock Running`.
+/// The state variables that a table asks for, as text: `work Busy, clock Running`.
 #[must_use]
 pub fn values_text(table: &'static Table, values: Values) -> String {
     let asked: Vec<&str> = table.asked().map(|variable| variable.name).collect();
@@ -74,7 +74,7 @@ impl Rows {
         headers().into_iter().map(open).collect::<McapResult<_>>().map(Self)
     }
 
-    /// Write the rows that are others than in the tick before, or all of them.
+    /// Write the rows that differ from the tick before, or all of them.
     pub fn write<W: Write + Seek>(
         &mut self,
         output: &mut Output<W>,
@@ -103,7 +103,7 @@ impl Rows {
     }
 }
 
-/// The header without what changes in every tick: the stamp, and the tick of a row that fires again.
+/// The header without the fields that change in every tick: the stamp, and the tick of a row that fires again.
 fn timeless(header: &Header) -> Header {
     let resting = header.age().is_some_and(|age| age > 0);
     let tick = if resting { Tick(1) } else { Tick::BEFORE_START };

@@ -1,8 +1,8 @@
 //! The moving cell: `/tf`, `/tf_static`, `/joint_states`, `/robot_description`, `/meshes`, `/names`, `/trail`, `/contacts`
 //! and `/camera`.
 //!
-//! Links travel relative to their parents in the URDF, so that a description and its transforms can never
-//! contradict each other in a viewer, and so that a link that only turns repeats its position.
+//! Links are given relative to their parents in the URDF, so that description and transforms always agree in a viewer,
+//! and so that the position of a link that only turns does not change.
 
 use std::io::{Seek, Write};
 
@@ -21,8 +21,8 @@ use crate::{
     trail::Trail,
 };
 
-/// Steps of a metre, of a radian, and of the unit of a quaternion, in the log: 8 µm and 8 µrad are finer than
-/// any picture, and the zeros behind them compress. What the controller saw is on `/replay`, to the bit.
+/// Steps of a metre, of a radian, and of the unit of a quaternion, in the log: 8 µm and 8 µrad are finer than any
+/// picture, and the rounded values compress well. The exact inputs of the controller are on `/replay`.
 const STEP: f64 = 131_072.0;
 
 /// Topic of the links that move.
@@ -30,24 +30,24 @@ pub const TF: &str = "/tf";
 /// Topic of the links that do not.
 pub const TF_STATIC: &str = "/tf_static";
 
-/// Topic of what links look like: one message at the start of the log.
+/// Topic of the shapes of links: one message at the start of the log.
 pub const MESHES: &str = "/meshes";
-/// Topic of the names of things: one message at the start of the log.
+/// Topic of the names of bodies: one message at the start of the log.
 pub const NAMES: &str = "/names";
 
-/// Topic of what the camera on the wrist saw.
+/// Topic of the pictures of the wrist camera.
 pub const CAMERA: &str = "/camera";
 
-/// A frame at the tool point with the axes of the world: a view that rides with it does not turn.
+/// A frame at the tool point with the axes of the world: a view attached to it does not turn.
 const TOOL_POINT: &str = "tool_point";
-/// The frame of what stands still.
+/// The frame of fixed bodies.
 const WORLD: &str = "world";
 
 /// The link that the camera is on.
 const CAMERA_LINK: &str = "quick_change";
 /// Height of the letters of a name, metres.
 const LETTERS: f64 = 0.10;
-/// Their colour: on dark letters viewers put a light ground.
+/// Their colour: viewers draw dark letters on a light background.
 const INK: Colour = [0.09, 0.12, 0.14, 1.0];
 
 /// Encoding of the definitions of ROS 2 messages, and of the messages.
@@ -108,8 +108,8 @@ impl Scene {
         })
     }
 
-    /// Write what moved since the frame before, or everything that moves; before the first frame also what
-    /// does not.
+    /// Write the links that moved since the frame before, or all that can move; before the first frame also the fixed
+    /// ones.
     pub fn write<W: Write + Seek>(
         &mut self,
         output: &mut Output<W>,
@@ -151,7 +151,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Write what viewers are shown beside the frames.
+    /// Write data for viewers besides the frames.
     pub fn show<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick, shown: &Shown) -> McapResult<()> {
         let (mut data, time) = (Vec::new(), output.epoch.of(tick));
         let channel = match shown {
@@ -167,7 +167,7 @@ impl Scene {
         output.put(channel, tick, &data)
     }
 
-    /// What is true for the whole log.
+    /// Write the data that are valid for the whole log.
     fn describe<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick) -> McapResult<()> {
         let mut data = Vec::new();
         ros::string(&self.model.urdf, &mut data);
@@ -193,7 +193,7 @@ impl Scene {
     }
 }
 
-/// Adding zero turns -0.0 into 0.0: a sign that flickers around zero is no movement.
+/// Adding zero turns -0.0 into 0.0: a change of sign at zero is not a movement.
 fn round(value: f64) -> f64 {
     (value * STEP).round() / STEP + 0.0
 }

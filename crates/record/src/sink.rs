@@ -1,9 +1,8 @@
 //! The file that a log is written to.
 //!
-//! What has been flushed survives the end of the program, whatever ends it: the system has it. That it also
-//! survives the end of the power, the disk must have it, and to wait for the disk costs milliseconds. So a
-//! run in real time waits for it with every flush, once a second, in the thread of the log; a run in fast
-//! clock does not, because it can be run again.
+//! Flushed data are with the operating system and survive the end of the program. To survive a power failure they must
+//! be on the disk, which takes milliseconds. So a run in real time waits for the disk with every flush, once a second,
+//! in the thread of the log; a run in fast clock does not, because it can be repeated.
 
 use std::{
     fs::File,
@@ -19,10 +18,10 @@ pub struct Sink {
     durable: bool,
 }
 
-/// A file that must stay as long as what was written to it: behind a cut there would be zeros.
+/// A file that must not be shorter than the data written to it: after a cut it would have zeros.
 struct Whole {
     file: File,
-    /// Bytes that it has at least.
+    /// Its least length, bytes.
     length: u64,
 }
 
@@ -52,7 +51,7 @@ impl Seek for Whole {
 }
 
 impl Sink {
-    /// A sink into `file`. If it is durable, what was flushed is on the disk.
+    /// A sink into `file`. If it is durable, flushed data are on the disk.
     #[must_use]
     pub fn new(file: File, durable: bool) -> Self {
         Self { file: BufWriter::with_capacity(BUFFER, Whole { file, length: 0 }), durable }

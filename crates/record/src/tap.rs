@@ -1,7 +1,7 @@
-//! Who else gets what a log gets, while it is written.
+//! A further receiver of the messages of a log while it is written.
 
-/// Gets the channels and messages of a log as they are written, in the writer's thread and in the order of the
-/// file. It ends with the log, and the writer waits for it: what takes long delays the log, never the tick.
+/// Gets the channels and messages of a log as they are written, in the writer's thread and in the order of the file. It
+/// ends with the log. The writer waits for it: a slow tap delays the log, but not the tick.
 pub trait Tap: Send {
     /// A new channel.
     fn channel(&mut self, id: u16, channel: &Channel<'_>);
@@ -10,7 +10,7 @@ pub trait Tap: Send {
     fn message(&mut self, channel: u16, time: u64, data: &[u8]);
 }
 
-/// What a log says of a channel.
+/// Description of a channel of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Channel<'a> {
     /// The topic.

@@ -1,4 +1,4 @@
-//! The way that the tool point has come, as a line: `/trail`.
+//! The path of the tool point so far, as a line: `/trail`.
 
 use std::{
     collections::VecDeque,
@@ -23,11 +23,11 @@ pub const TRAIL: &str = "/trail";
 const TOOL: &str = "quick_change";
 /// Ticks from one point to the next.
 const STEP: u64 = 10;
-/// Ticks from one message to the next: a second, so that a reader need not look back far.
+/// Ticks from one message to the next: a second, so that a reader finds one soon.
 const MESSAGE: u64 = 25;
 /// Points of the line: those of 20 seconds.
 const POINTS: usize = 50;
-/// A point nearer than this to the last one is none, m.
+/// Least distance of a new point from the last one, m.
 const NEAR: f64 = 0.002;
 /// Thickness of the line, m.
 const THICKNESS: f64 = 0.006;
@@ -36,7 +36,7 @@ const COLOUR: Colour = [0.95, 0.20, 0.45, 0.9];
 /// The line so far.
 pub struct Trail {
     channel: u16,
-    /// The tool point's link and those that it hangs on, in the order of [`CellModel::links`].
+    /// The tool point's link and its chain of parents, in the order of [`CellModel::links`].
     chain: Vec<usize>,
     points: VecDeque<[f64; 3]>,
     longer: bool,
@@ -58,14 +58,14 @@ impl Trail {
         Ok(Self { channel, chain, points: VecDeque::new(), longer: false })
     }
 
-    /// Where the tool point of a frame is, world, metres; `None` in a cell without one.
+    /// The tool point of a frame, world, metres; `None` in a cell without one.
     pub fn tool_point(&self, frame: &CellFrame) -> Option<[f64; 3]> {
         let places = self.chain.iter().filter_map(|at| frame.transforms.get(*at));
         let point = places.fold([0.0; 3], |point, place| moved(place, point));
         (!self.chain.is_empty()).then_some(point)
     }
 
-    /// Take the tool point of a frame, and write the line once a second if it has become longer.
+    /// Add the tool point of a frame, and write the line once a second if it has become longer.
     pub fn note<W: Write + Seek>(&mut self, output: &mut Output<W>, frame: &CellFrame) -> McapResult<()> {
         let point = self.tool_point(frame).filter(|_| frame.tick.0.is_multiple_of(STEP));
         if let Some(point) = point {
@@ -90,7 +90,7 @@ impl Trail {
     }
 }
 
-/// A point of a frame, in the frame that its place is given in.
+/// A point of a frame in coordinates of its parent.
 fn moved(place: &Transform, [x, y, z]: [f64; 3]) -> [f64; 3] {
     let [a, b, c, w] = place.rotation;
     let (s, t, u) = (b * z - c * y + w * x, c * x - a * z + w * y, a * y - b * x + w * z);

@@ -1,4 +1,4 @@
-//! What a log holds, and how it gets into the file.
+//! Content of a log, and how it is written to the file.
 //!
 //! | channel | message | written |
 //! |---|---|---|
@@ -6,20 +6,20 @@
 //! | `/external/...`, `/task/...`, `/prim/...` ... | the buffers, by field | on change, and every ten seconds |
 //! | `/task/row`, `/prim/row` ... | `rcs.Row`: the row that fired, as text | on change, and every ten seconds |
 //! | `/tf`, `/joint_states`, `/robot_description` | the moving cell | on change, and every ten seconds |
-//! | `/meshes`, `/names` | what it looks like, and what things are called | at the start |
-//! | `/trail`, `/camera` | the way of the tool point, the pictures that vision worked on | once a second, on an answer |
+//! | `/meshes`, `/names` | shapes and names of bodies | at the start |
+//! | `/trail`, `/camera` | the path of the tool point, the pictures that vision analysed | once a second, on an answer |
 //! | `/contacts` | a mark where the robot, or what it carries, touches something | on change |
-//! | `/log` | `foxglove.Log` | when there is something to say |
-//! | `/operator` | `rcs.OperatorLine` | when an operator asks for something |
+//! | `/log` | `foxglove.Log` | when there is a remark |
+//! | `/operator` | `rcs.OperatorLine` | on a request of an operator |
 //!
-//! `/replay` alone is lossless: message *n* holds the difference of the images to those of message *n*-1, and
-//! once a second the whole images and the states after that tick, where a replay can start. The other
-//! channels are the same values for people; there a clock or a number that counts on by itself in every tick
-//! is no change (see [`crate::channels`]).
+//! `/replay` alone is lossless: message *n* holds the difference of the images to those of message *n*-1, and once a
+//! second the whole images and the states after that tick, where a replay can start. The other channels have the same
+//! values for people; there a clock or a counter that changes in every tick does not count as a change (see
+//! [`crate::channels`]).
 //!
-//! Once a second of simulated time the open chunk is written out, and the next one begins with the whole
-//! images: a killed run loses a second. Buffers that do not change are repeated less often: each message
-//! costs sixteen bytes of index besides its own, and fifty buffers that stand still would be a fifth of a log.
+//! Once a second of simulated time the open chunk is written out, and the next one begins with the whole images: a
+//! killed run loses a second. Buffers that do not change are repeated less often: each message costs sixteen bytes of
+//! index besides its own, and fifty unchanged buffers would be a fifth of a log.
 
 use std::{
     collections::BTreeMap,
@@ -71,7 +71,7 @@ pub const REPLAY: &str = "/replay";
 /// Topic of the log lines.
 pub const LOG_TOPIC: &str = "/log";
 
-/// Plain numbers of the message on [`REPLAY`].
+/// Field numbers of the message on [`REPLAY`].
 pub mod replay_field {
     /// The tick.
     pub const TICK: u32 = 1;
@@ -98,17 +98,17 @@ pub mod replay_field {
 pub struct TickRecord {
     /// The tick.
     pub tick: Tick,
-    /// Ticks before this one that found no room in the ring.
+    /// Ticks before this one that did not fit into the ring.
     pub gap: u32,
-    /// What the processes read from outside.
+    /// External inputs of the processes.
     pub external: ExternalInputs,
-    /// What they wrote.
+    /// Their outputs.
     pub memory: CommonMemory,
-    /// How punctual the tick was; none in a run whose log is to be the same bytes each time.
+    /// Times of the tick; `None` in a run whose log must be the same bytes each time.
     pub timing: Option<Timing>,
 }
 
-/// How punctual a tick was. It is no part of the digest, and a replay does not look at it.
+/// Times of a tick. They are not part of the digest, and a replay ignores them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timing {
     /// Time that the controller took, nanoseconds.
@@ -139,7 +139,7 @@ pub struct LogWriter<W: Write + Seek> {
     gaps: u64,
 }
 
-/// What makes the deltas of the images.
+/// Codecs for the deltas of the images.
 pub(crate) struct Codecs {
     pub(crate) external: Codec,
     pub(crate) memory: Codec,
@@ -172,7 +172,7 @@ impl<W: Write + Seek> LogWriter<W> {
     /// Begin a log: metadata, attachments, channels.
     ///
     /// # Errors
-    /// What `sink` says.
+    /// Errors of `sink`.
     pub fn create(sink: W, setup: Setup) -> McapResult<Self> {
         Self::create_with(sink, setup, None)
     }
@@ -180,7 +180,7 @@ impl<W: Write + Seek> LogWriter<W> {
     /// Like [`LogWriter::create`]; a tap gets all channels and messages, too.
     ///
     /// # Errors
-    /// What `sink` says.
+    /// Errors of `sink`.
     pub fn create_with(sink: W, setup: Setup, tap: Option<Box<dyn Tap>>) -> McapResult<Self> {
         // A profile would promise a viewer that all channels follow its rules.
         let options = WriteOptions::new()
@@ -226,7 +226,7 @@ impl<W: Write + Seek> LogWriter<W> {
     /// and after a gap.
     ///
     /// # Errors
-    /// What the sink says.
+    /// Errors of the sink.
     pub fn tick(
         &mut self,
         record: &TickRecord,
@@ -274,7 +274,7 @@ impl<W: Write + Seek> LogWriter<W> {
     /// Write a line on `/log`.
     ///
     /// # Errors
-    /// What the sink says.
+    /// Errors of the sink.
     pub fn remark(&mut self, tick: Tick, remark: &Remark) -> McapResult<()> {
         let Remark { level, source, text, file, line } = remark;
         let mut data = Vec::new();
@@ -282,26 +282,26 @@ impl<W: Write + Seek> LogWriter<W> {
         self.output.put(self.log, tick, &data)
     }
 
-    /// Write what viewers are shown; a log without a cell has no channels for it.
+    /// Write data for viewers; a log without a cell has no channels for them.
     ///
     /// # Errors
-    /// What the sink says.
+    /// Errors of the sink.
     pub fn show(&mut self, tick: Tick, shown: &Shown) -> McapResult<()> {
         self.scene.as_ref().map_or(Ok(()), |scene| scene.show(&mut self.output, tick, shown))
     }
 
-    /// Write what an operator has asked for.
+    /// Write a request of an operator.
     ///
     /// # Errors
-    /// What the sink says.
+    /// Errors of the sink.
     pub fn operator(&mut self, line: &OperatorLine) -> McapResult<()> {
         self.operator.put(&mut self.output, line)
     }
 
-    /// Write a file that came up during the run.
+    /// Write a file of the run.
     ///
     /// # Errors
-    /// What the sink says.
+    /// Errors of the sink.
     pub fn attach(&mut self, tick: Tick, attachment: Attachment) -> McapResult<()> {
         let time = self.output.epoch.of(tick);
         attach(&mut self.output, time, attachment)
@@ -310,7 +310,7 @@ impl<W: Write + Seek> LogWriter<W> {
     /// End the log: metadata and summary.
     ///
     /// # Errors
-    /// What the sink says.
+    /// Errors of the sink.
     pub fn finish(mut self, end: &End, lost: Lost) -> McapResult<Written> {
         let digest = end.digest.map_or_else(String::new, |digest| format!("{digest:016x}"));
         let entries = [
@@ -369,7 +369,7 @@ impl<W: Write + Seek> LogWriter<W> {
     }
 }
 
-/// What became of a log that was finished.
+/// Result of a finished log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Written {
     /// Ticks in it.
@@ -378,7 +378,7 @@ pub struct Written {
     pub bytes: u64,
 }
 
-/// Metadata and attachments: written first, so that they survive whatever happens to the run.
+/// Metadata and attachments: written first, so that a failure of the run cannot lose them.
 fn write_head<W: Write + Seek>(output: &mut Output<W>, setup: &Setup) -> McapResult<()> {
     let mut run: BTreeMap<String, String> = setup.run.clone();
     run.insert(LAYOUT.into(), layout::version());

@@ -1,8 +1,8 @@
-//! Images of many ticks, turned on their side: a column a field.
+//! Images of many ticks as columns: one column per field.
 //!
-//! A column is a list of changes: ticks since the change before, and the difference as a number (or, for
-//! names, frames on the line and what larger unions carry, the new bytes). A field that never changes is an
-//! empty column, the noise of a converter two small bytes a change, alike enough to be packed to a few bits.
+//! A column is a list of changes: ticks since the change before, and the difference as a number (or, for names, frames
+//! on the line and payloads of larger unions, the new bytes). A field that never changes is an empty column; the noise
+//! of a converter is two small bytes a change, which compress to a few bits.
 
 use rcs_core::plain::StructSchema;
 
@@ -11,7 +11,7 @@ use crate::{
     proto::wire::{put_varint, take_varint, unzigzag, zigzag},
 };
 
-/// A field, and what it was last.
+/// A field and its last value.
 struct Column {
     piece: Piece,
     last: Vec<u8>,
@@ -25,14 +25,14 @@ fn columns(record: &'static StructSchema) -> Vec<Column> {
     layout::pieces(record).into_iter().map(column).collect()
 }
 
-/// Takes images in.
+/// Collects images.
 pub struct Columns {
     columns: Vec<(Column, Vec<u8>)>,
     tick: u64,
 }
 
 impl Columns {
-    /// No images yet; what comes before the first is zeros.
+    /// No images yet; the image before the first is zeros.
     pub fn new(record: &'static StructSchema) -> Self {
         Self { columns: columns(record).into_iter().map(|column| (column, Vec::new())).collect(), tick: 0 }
     }
@@ -65,7 +65,7 @@ impl Columns {
     }
 }
 
-/// Gives images back.
+/// Reads images from columns.
 pub struct Reader<'a> {
     columns: Vec<(Column, Option<u64>, &'a [u8])>,
     image: Vec<u8>,
@@ -98,7 +98,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Take the change that is due, and look when the next one is.
+/// Apply the change that is due, and read when the next one is.
 fn change(column: &Column, due: &mut Option<u64>, rest: &mut &[u8], image: &mut [u8]) -> Option<()> {
     let Piece { offset, size, number } = column.piece;
     let field = image.get_mut(offset..offset + size)?;

@@ -1,10 +1,9 @@
-//! A run as a small file to keep beside the source: its inputs, and fingerprints of what came out.
+//! A run as a small file to keep beside the source: its inputs, and fingerprints of its outputs.
 //!
-//! A log says what every buffer was in every tick; a golden only whether it is still the same. It holds what
-//! the ladder read, column by column (a column is a field: how many ticks until it changes, and by how much),
-//! the task data, and the digest of all output buffers after each second. Replayed, it says in which second
-//! today's program first does something else, and writes a [`Summary`] as text, whose difference to the kept
-//! one is what a person reviews.
+//! A log has every buffer of every tick; a golden can only tell whether the outputs are still the same. It has the
+//! inputs of the ladder, column by column (a column is a field: how many ticks until it changes, and by how much), the
+//! task data, and the digest of all output buffers after each second. Its replay finds the second in which the present
+//! program first differs, and writes a [`Summary`] as text; a person reviews its difference from the kept one.
 //!
 //! ```text
 //!  run --log--> golden::from_log --> NAME.golden, NAME.txt    once, by a command
@@ -48,7 +47,7 @@ use crate::{
 const MAGIC: [u8; 8] = *b"RCSGOLD\x01";
 /// Level of the compression: it is written once and read a thousand times.
 const COMPRESSION: i32 = 19;
-/// Most bytes that a golden may become when it is unpacked: a day of running is less.
+/// Most bytes of an unpacked golden: a day of running is less.
 const LARGEST: usize = 1 << 30;
 /// Largest file of a golden, bytes.
 const FILE: u64 = 1 << 28;
@@ -57,13 +56,13 @@ pub const SECOND: u64 = 25;
 /// Extension of golden files.
 pub const EXTENSION: &str = "golden";
 
-/// What the file holds.
+/// Content of the file.
 #[derive(Clone, PartialEq, prost::Message)]
 struct Content {
     /// Version of the images of inputs and output buffers.
     #[prost(string, tag = "1")]
     layout: String,
-    /// What run it was.
+    /// Metadata of the run.
     #[prost(btree_map = "string, string", tag = "2")]
     run: BTreeMap<String, String>,
     /// Task data and reloads, under their names in the log.
@@ -88,7 +87,7 @@ struct File {
     text: String,
 }
 
-/// A run, as small as it can be and still be run again.
+/// A run with only what a replay needs.
 #[derive(Clone, PartialEq)]
 pub struct Golden(Content);
 
@@ -111,7 +110,7 @@ pub enum GoldenError {
         /// What is wrong with it.
         what: String,
     },
-    /// The buffers were laid out differently when it was made.
+    /// It was made with another layout of buffers.
     #[error(
         "the golden was made with layout {found}, this program has layout {expected}: make it again from a run"
     )]
@@ -138,17 +137,16 @@ pub enum GoldenError {
     Replay(#[from] ReplayError),
 }
 
-/// What the replay of a golden found.
+/// Result of the replay of a golden.
 #[derive(Clone, Debug)]
 pub struct Played {
     /// Ticks that were computed.
     pub ticks: u64,
-    /// First and last tick of the first second in which the output buffers were others; none if they never
-    /// were.
+    /// First and last tick of the first second in which the output buffers differed; `None` if they never did.
     pub difference: Option<(u64, u64)>,
     /// Digest of all output buffers of all ticks.
     pub digest: Digest,
-    /// What happened, as text.
+    /// Summary of the run as text.
     pub summary: String,
     /// Time of the replay.
     pub elapsed: Duration,
@@ -166,7 +164,7 @@ impl Played {
 /// Read a golden.
 ///
 /// # Errors
-/// [`GoldenError`] if the file cannot be read, is no golden, or is of another layout.
+/// [`GoldenError`] if the file cannot be read, is not a golden, or has another layout.
 pub fn read(path: &Path) -> Result<Golden, GoldenError> {
     let bytes =
         files::read(path, FILE).map_err(|source| GoldenError::File { path: path.to_owned(), source })?;
@@ -243,7 +241,7 @@ pub fn from_log(log: &Log) -> Result<Golden, GoldenError> {
     }))
 }
 
-/// What a golden keeps of the metadata: what makes the run, not what only says when and from which directory.
+/// The metadata that a golden keeps: those that define the run, without time and directory.
 fn kept(run: &BTreeMap<String, String>) -> BTreeMap<String, String> {
     let keys = ["job", "seed", "faults"];
     run.iter()
@@ -259,7 +257,7 @@ impl Golden {
         self.0.ticks
     }
 
-    /// What run it is: job, seed, faults.
+    /// Metadata of the run: job, seed, faults.
     #[must_use]
     pub const fn run(&self) -> &BTreeMap<String, String> {
         &self.0.run
@@ -281,7 +279,7 @@ impl Golden {
         generations_of(log_sources(&attachments), &attachments)
     }
 
-    /// What the ladder read in each tick, from the first on.
+    /// The inputs of the ladder in each tick, from the first on.
     pub fn inputs(&self) -> impl Iterator<Item = Result<(Tick, ExternalInputs), GoldenError>> {
         let mut reader = Reader::new(ExternalInputs::STRUCT, &self.0.columns);
         (1..=self.0.ticks).map(move |tick| {
@@ -292,16 +290,16 @@ impl Golden {
     }
 }
 
-/// Run today's program on the inputs of a golden, with the task data of the golden.
+/// Run the present program on the inputs of a golden, with the task data of the golden.
 ///
 /// # Errors
-/// [`GoldenError`] if its inputs are damaged or its task data do not load. A difference is no error: it is in
-/// the result.
+/// [`GoldenError`] if its inputs are damaged or its task data do not load. A difference is not an error: it is in the
+/// result.
 pub fn replay(golden: &Golden) -> Result<Played, GoldenError> {
     replay_with(golden, &golden.data()?)
 }
 
-/// Run today's program on the inputs of a golden, with other task data: one store a generation.
+/// Run the present program on the inputs of a golden, with other task data: one store per generation.
 ///
 /// # Errors
 /// As [`replay`].

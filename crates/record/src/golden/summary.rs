@@ -1,8 +1,8 @@
-//! What happened in a run, as text for review: commands with their durations, failures, and how often each row
-//! of each decision table fired.
+//! The summary of a run as text for review: commands with their durations, failures, and how often each row of each
+//! decision table fired.
 //!
-//! A change of behaviour that a digest only notices is legible here: a row that fires less often, a command
-//! that takes longer, a failure that was not there.
+//! A digest only detects a change of behaviour; here it can be read: a row that fires less often, a command that takes
+//! longer, a new failure.
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
@@ -31,7 +31,7 @@ struct Command {
     report: HwsReport,
 }
 
-/// Gathers what happens, tick by tick.
+/// Collects the summary, tick by tick.
 pub struct Summary {
     run: BTreeMap<String, String>,
     headers: Vec<HeaderPlace>,
@@ -44,7 +44,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Nothing has happened yet in a run with these metadata.
+    /// An empty summary of a run with these metadata.
     #[must_use]
     pub fn new(run: &BTreeMap<String, String>) -> Self {
         Self {
@@ -58,7 +58,7 @@ impl Summary {
         }
     }
 
-    /// Take a tick in.
+    /// Add a tick.
     pub fn observe(
         &mut self,
         tick: Tick,

@@ -1,4 +1,4 @@
-//! Messages of the `foxglove` package: viewers know by their names what they mean.
+//! Messages of the `foxglove` package: viewers recognize them by their names.
 //!
 //! Fields and numbers are those that foxglove publishes in its schema repository for `FrameTransforms` and
 //! `Log`; fields that this log never fills (message id, lineage) are not described.
@@ -18,22 +18,22 @@ pub const COMPRESSED_IMAGE: &str = "foxglove.CompressedImage";
 /// Full name of the message on `/log`.
 pub const LOG: &str = "foxglove.Log";
 
-/// How much a log line matters; the codes are those of `foxglove.Log`.
+/// Severity of a log line; the codes are those of `foxglove.Log`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// For those who look for a fault in the program.
+    /// Details for finding faults of the program.
     Debug = 1,
-    /// What happens.
+    /// A normal event.
     #[default]
     Info = 2,
-    /// What should not happen and does no harm yet.
+    /// Something unusual without harm so far.
     Warning = 3,
     /// A command failed.
     Error = 4,
 }
 
 impl Level {
-    /// The level with a code; what has no code here is an error.
+    /// The level with a code; an unknown code is an error.
     #[must_use]
     pub const fn from_code(code: u64) -> Self {
         match code {
@@ -118,7 +118,7 @@ pub fn compressed_image_descriptor() -> Vec<u8> {
     ])
 }
 
-/// Append a `CompressedImage` message: a PNG file of what is seen in a frame. `time` in nanoseconds since 1970.
+/// Append a `CompressedImage` message: a PNG file, with the frame of its camera. `time` in nanoseconds since 1970.
 pub fn put_png(time: u64, frame: &str, png: &[u8], out: &mut Vec<u8>) {
     timestamp(time, out);
     wire::bytes(2, png, out);
@@ -182,8 +182,7 @@ pub fn put_log(time: u64, level: Level, text: &str, source: &str, file: &str, li
     wire::fixed32(6, line, out);
 }
 
-/// The transforms of a `FrameTransforms` message, without their time stamps; what is not well-formed ends the
-/// list.
+/// The transforms of a `FrameTransforms` message, without their time stamps; the first malformed one ends the list.
 #[must_use]
 pub fn take_transforms(data: &[u8]) -> Vec<(Link, Transform)> {
     let transforms = wire::Fields(data).filter_map(|field| match field {

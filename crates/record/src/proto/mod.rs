@@ -2,7 +2,7 @@
 //! messages that carry joints and the description of the cell.
 //!
 //! * [`wire`]: the wire format;
-//! * [`descriptor`]: a record's schema as protobuf descriptors, so that a reader needs nothing but the file;
+//! * [`descriptor`]: a record's schema as protobuf descriptors, so that a reader needs only the file;
 //! * [`message`]: a record's byte image as a protobuf message;
 //! * [`foxglove`]: messages whose meaning viewers know;
 //! * [`scene`]: solids and names that viewers draw;

@@ -22,7 +22,7 @@ const ALL: u64 = 1;
 /// A colour: red, green, blue and opacity from 0 to 1.
 pub type Colour = [f64; 4];
 
-/// What an entity looks like, in its frame; metres.
+/// The shape of an entity, in its frame; metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Primitive<'a> {
     /// A GLB file: metres, Y up.
@@ -42,14 +42,14 @@ pub struct Entity<'a> {
     pub id: &'a str,
     /// The frame that it moves with.
     pub frame: &'a str,
-    /// What it looks like.
+    /// Its shape.
     pub primitive: Primitive<'a>,
-    /// What a viewer says of it when it is selected: keys and values.
+    /// Keys and values that a viewer shows when it is selected.
     pub facts: &'a [(&'a str, String)],
 }
 
 impl<'a> Entity<'a> {
-    /// A thing of which there is nothing more to say.
+    /// An entity without facts.
     #[must_use]
     pub const fn new(id: &'a str, frame: &'a str, primitive: Primitive<'a>) -> Self {
         Self { id, frame, primitive, facts: &[] }
@@ -146,7 +146,7 @@ fn deletion() -> DescriptorProto {
     }
 }
 
-/// Append to a `SceneUpdate` that everything which it has drawn before is to go. `time` in nanoseconds since 1970.
+/// Append to a `SceneUpdate` the deletion of all earlier entities. `time` in nanoseconds since 1970.
 pub fn put_clear(time: u64, out: &mut Vec<u8>) {
     wire::nested(1, out, |out| {
         timestamp(time, out);
@@ -198,12 +198,12 @@ pub fn put_entity(time: u64, entity: &Entity<'_>, out: &mut Vec<u8>) {
     });
 }
 
-/// A pose that is not turned, as the first field.
+/// A pose without rotation, as the first field.
 fn pose(position: &[f64; 3], out: &mut Vec<u8>) {
     nested_pose(1, position, out);
 }
 
-/// A pose that is not turned, as a field.
+/// A pose without rotation, as a field.
 fn nested_pose(field: u32, position: &[f64; 3], out: &mut Vec<u8>) {
     wire::nested(field, out, |out| {
         wire::nested(1, out, |out| put_doubles(position, out));

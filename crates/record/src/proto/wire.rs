@@ -1,7 +1,7 @@
-//! The protobuf wire format, as much of it as a log needs to be written.
+//! The part of the protobuf wire format that a log uses.
 //!
-//! Values that are zero are written too: readers that show a missing field as missing would break a curve at
-//! zero.
+//! Values that are zero are written too: otherwise readers that treat a missing field as missing would interrupt a
+//! curve at zero.
 
 /// Wire type of varints.
 const VARINT: u64 = 0;
@@ -39,13 +39,13 @@ pub fn take_varint(bytes: &mut &[u8]) -> Option<u64> {
     None
 }
 
-/// Signed numbers with small magnitudes as small unsigned ones.
+/// Map signed numbers of small magnitude to small unsigned ones.
 #[must_use]
 pub const fn zigzag(value: i64) -> u64 {
     ((value << 1) ^ (value >> 63)).cast_unsigned()
 }
 
-/// The number that [`zigzag`] made `value` of.
+/// Inverse of [`zigzag`].
 #[must_use]
 pub const fn unzigzag(value: u64) -> i64 {
     (value >> 1).cast_signed() ^ -((value & 1).cast_signed())
@@ -91,7 +91,7 @@ pub fn bytes(field: u32, value: &[u8], out: &mut Vec<u8>) {
     out.extend_from_slice(value);
 }
 
-/// A message or a packed array: whatever `body` appends, with its length before it.
+/// A message or a packed array: the bytes that `body` appends, with their length before them.
 pub fn nested(field: u32, out: &mut Vec<u8>, body: impl FnOnce(&mut Vec<u8>)) {
     tag(field, BYTES, out);
     let start = out.len();
