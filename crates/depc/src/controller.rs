@@ -1,11 +1,11 @@
 //! The controller's end of the link: the DEPC function of the T3 controller (A 2.3, A 2.4).
 //!
 //! The function is reached in auto mode, reports where the robot is, and then takes one command a period: it
-//! acknowledges, checks, and moves. What it cannot do becomes a warning on the controller's screen; the operator answers
-//! ENTER (begin again) or CANCEL (give up). The line says nothing of a warning: the host only sees that no answer comes.
+//! acknowledges, checks, and moves. If it cannot do something, the controller's screen shows a warning; the operator
+//! answers ENTER (begin again) or CANCEL (give up). A warning is not sent over the line: the host only gets no answer.
 //!
-//! The state machine knows no robot; it moves whatever implements [`Robot`]: the simulated T3, or a robot
-//! with another link.
+//! The state machine is independent of the robot; it moves any implementation of [`Robot`]: the simulated T3, or a
+//! robot with another link.
 
 use rcs_core::Plain;
 
@@ -18,13 +18,13 @@ use crate::{
     wire::{Control, DataCommand, FRAME_BYTES, NO_FUNCTION, Report, Response},
 };
 
-/// What the controller moves: the border to a robot, whatever drives it.
+/// The robot that the controller moves.
 ///
-/// Positions are words of the line. A robot that can use more takes the frames behind the words from
+/// Positions are words of the line. A robot that can use a higher resolution gets the unrounded frames from
 /// [`crate::exact::ExactFrames`].
 pub trait Robot {
-    /// Where the robot stands, or will stand when what it was sent is over: to command it moves nothing. The
-    /// next point comes from there.
+    /// Position of the robot, or its position at the end of the present motion: to command it moves nothing. The next
+    /// point starts from there.
     fn present(&mut self) -> Plate;
 
     /// Make `goal` the set point that is reached within the coming period.
@@ -33,13 +33,12 @@ pub trait Robot {
     /// [`Refusal`] if the robot cannot; then the set point stays as it was, and the warning is shown.
     fn accept(&mut self, goal: &Plate) -> Result<(), Refusal>;
 
-    /// What the robot complains of by itself. While there is something no command is taken, and the function
-    /// does not begin.
+    /// A warning of the robot itself. While there is one, no command is accepted, and the function does not begin.
     fn warning(&self) -> Option<Warning> {
         None
     }
 
-    /// No further point comes: the function has ended, or waits for an answer to a warning.
+    /// No further point follows: the function has ended, or waits for an answer to a warning.
     fn stop(&mut self) {}
 }
 
@@ -55,9 +54,9 @@ pub trait Robot {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum ControllerState {
-    /// The program has not come to the DEPC function.
+    /// The program has not reached the DEPC function.
     Off,
-    /// Commands are taken.
+    /// Commands are accepted.
     Running,
     /// A warning waits for ENTER or CANCEL; nothing moves.
     Warning,
@@ -67,20 +66,20 @@ pub enum ControllerState {
     Ended,
 }
 
-/// The panel and the wiring, as seen in a tick. Pushbuttons are true in the tick in which they are pressed.
+/// The panel and the wiring in a tick. Pushbuttons are true in the tick in which they are pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ControllerInputs {
     /// Bytes from the host.
     pub rx: LinkBytes,
     /// The host's DTR (A.2).
     pub cts: bool,
-    /// The RS232 boards are there.
+    /// The RS232 boards are present.
     pub board: bool,
     /// The transmitter has a hardware problem.
     pub transmitter_fault: bool,
-    /// The program comes to the DEPC function.
+    /// The program reaches the DEPC function.
     pub start: bool,
-    /// Hold, while it is on: the output in progress is completed, then nothing more is taken.
+    /// Hold, while it is on: the output in progress is completed, then no command is accepted.
     pub hold: bool,
     /// Interrupt pushbutton.
     pub interrupt: bool,
@@ -90,7 +89,7 @@ pub struct ControllerInputs {
     pub cancel: bool,
 }
 
-/// What the controller does in a tick, beside moving the robot.
+/// Outputs of the controller in a tick, besides moving the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ControllerOutputs {
     /// Bytes to the host.
@@ -115,7 +114,7 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// A controller whose program has not come to the DEPC function.
+    /// A controller whose program has not reached the DEPC function.
     #[must_use]
     pub fn new(limits: Limits) -> Self {
         Self { limits, ..Self::default() }
@@ -133,7 +132,7 @@ impl Controller {
         self.state
     }
 
-    /// What stands on the screen.
+    /// The warning on the screen.
     #[must_use]
     pub const fn warning(&self) -> Warning {
         self.warning
@@ -234,7 +233,7 @@ impl Controller {
         }
     }
 
-    /// ACK says that the command is understood; whether it can be done is found out afterwards (A 2.3).
+    /// ACK means that the command is understood; whether it can be executed is checked after that (A 2.3).
     fn execute(
         &mut self,
         inputs: &ControllerInputs,

@@ -1,11 +1,11 @@
-//! What can be wrong with a position or a frame: small, `Copy`, with what was expected and what was found.
+//! Errors of positions and frames: small, `Copy`, with what was expected and what was found.
 
 use core::fmt;
 
 /// Why a position cannot be sent, or why bytes are not a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Error {
-    /// A coordinate that sixteen bits cannot hold: the caller must not send it.
+    /// A coordinate that does not fit sixteen bits: the caller must not send it.
     OutOfRange {
         /// 0, 1, 2 for X, Y, Z.
         axis: usize,
@@ -33,7 +33,7 @@ pub enum Error {
         /// The byte found.
         found: u8,
     },
-    /// The bytes do not add up: the line has changed one.
+    /// The checksum is wrong: a byte was changed on the line.
     BadChecksum {
         /// The checksum of the bytes received.
         expected: u8,

@@ -1,9 +1,9 @@
-//! The frames behind the words: what Prim commands, before it is rounded to 0.01 in and 0.01 degree.
+//! The unrounded frames: Prim's commands before they are rounded to 0.01 in and 0.01 degree.
 //!
-//! The line carries words, and the robot is commanded by them. A robot that can use more finds here the frame
-//! that a position was rounded from: Prim's last frames are kept, each with the buffer that T3I got of it,
-//! and the one whose buffer gives the words on the line is the one. Where none does (a point that was scaled
-//! back, a position that a report brought) the words are all there is.
+//! The line carries words, which command the robot. For a robot that can use a higher resolution this module finds the
+//! frame that a position was rounded from: it keeps Prim's last frames, each with the buffer that T3I got of it, and
+//! searches the one whose buffer gives the words on the line. If there is none (a point that was scaled back, a
+//! position from a report), only the words are used.
 
 use geometry::{
     frame::{Frame, Vector},
@@ -13,7 +13,7 @@ use geometry::{
 
 use crate::Plate;
 
-/// Frames that are kept: the queue of T3I, one on its way to it, and one that is on the line.
+/// Number of frames kept: the queue of T3I, one on its way to it, and one on the line.
 const MOST_FRAMES: usize = 8;
 
 /// A frame of Prim.
@@ -21,9 +21,9 @@ const MOST_FRAMES: usize = 8;
 struct Kept {
     /// As T3I got it.
     wire: WireFrame,
-    /// As Prim meant it.
+    /// Unrounded, from Prim.
     exact: Frame,
-    /// It was found for words already.
+    /// It was returned already.
     used: bool,
 }
 
@@ -41,8 +41,8 @@ impl Default for ExactFrames {
 }
 
 impl ExactFrames {
-    /// Prim has commanded the tool frame `exact` (inches, world), which T3I got as `wire`. What is not rounded
-    /// from one another is not kept.
+    /// Prim has commanded the tool frame `exact` (inches, world), which T3I got as `wire`. It is not kept if `wire` is
+    /// not rounded from `exact`.
     pub fn offer(&mut self, wire: &WireFrame, exact: &Frame) {
         let newest = self.frames.iter().flatten().next();
         let known = newest.is_some_and(|newest| newest.wire == *wire && newest.exact == *exact);
@@ -54,9 +54,9 @@ impl ExactFrames {
         }
     }
 
-    /// The end-plate frame (inches, world) behind the words of a position, and the words' own frame if none
-    /// is kept. Positions come in the order of the frames: what was before the one that is found is forgotten,
-    /// and the same words again are the next frame, if that gives them too.
+    /// The unrounded end-plate frame (inches, world) of a position; the frame of the words if none is kept. Positions
+    /// come in the order of the frames: older frames than the one found are dropped, and the same words again give the
+    /// next frame, if it has the same words.
     pub fn plate_frame(&mut self, words: &Plate, arm: &Arm) -> Frame {
         let gives = |wire: &WireFrame| {
             let tool = wire.to_frame().ok();

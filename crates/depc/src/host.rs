@@ -1,18 +1,18 @@
 //! The host's end of the link: what the T3 Interface process uses to talk to the robot controller (A 2.3, VI.1).
 //!
-//! Each tick has two halves: [`Host::receive`] takes in what arrived and moves the state, [`Host::transmit`]
-//! sends at most one frame. One frame is outstanding at a time. An answer bears no number, so a frame that
-//! got none is never sent again: it may have been executed. The host then sends a restart, discards
-//! everything until a report with a right checksum comes, and goes on from there. Only a NAK, which says that
-//! nothing was executed, is answered with the same bytes.
+//! Each tick has two halves: [`Host::receive`] takes the received bytes and changes the state, [`Host::transmit`] sends
+//! at most one frame. One frame is outstanding at a time. An answer has no number, so a frame without an answer is
+//! never sent again: it may have been executed. The host then sends a restart, discards everything until a report with
+//! a correct checksum comes, and continues from there. Only after a NAK, which means that nothing was executed, it
+//! sends the same bytes again.
 //!
-//! A controller whose DTR is on and that does not answer may be in Hold, show a warning D1 to D6, have a dead
-//! receiver, or the wire may be cut: this end cannot tell. It sends a restart a second, and calls the link
-//! failed after [`Host::set_patience`].
+//! A controller whose DTR is on and that does not answer may be in Hold, show a warning D1 to D6, have a dead receiver,
+//! or the wire may be cut: the host cannot tell which. It sends a restart once a second, and the link counts as failed
+//! after the time of [`Host::set_patience`].
 //!
-//! A report bears no number either. On a slow line several may be on their way, and the robot may have moved
-//! since the first: if more than one has been asked for, the last is believed, and only when none has
-//! followed for longer than the time for an answer.
+//! A report has no number either. On a slow line several may be on their way, and the robot may have moved since the
+//! first: if more than one was requested, the last counts, and only when none has followed for longer than the time for
+//! an answer.
 
 mod start;
 
@@ -29,7 +29,7 @@ use crate::{
 /// (docs/design/link.md "Time-out"). Hold on the controller's panel only delays, and
 /// looks the same.
 pub const ANSWER_TICKS: u16 = 3;
-/// Bytes of a tick in which an answer is believed; the rest may be noise.
+/// Most bytes of a tick in which an answer counts; with more bytes it may be noise.
 const ANSWER_BYTES: usize = 4;
 /// Repetitions of one data command after NAKs; then the link is restarted.
 pub const MOST_RETRIES: u8 = 3;
@@ -82,7 +82,7 @@ pub enum HostEvent {
     Lost,
 }
 
-/// What the user of the link wants to send in this tick.
+/// Request of the user of the link for this tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Intent {
     /// Nothing.
@@ -100,7 +100,7 @@ pub enum Intent {
 pub struct Host {
     state: HostState,
     receiver: ReplyReceiver,
-    /// Where the robot was last known to be commanded: reported or acknowledged.
+    /// The position last reported or acknowledged.
     position: Plate,
     /// The outstanding data command, for a NAK.
     frame: [u8; FRAME_BYTES],
@@ -117,12 +117,11 @@ pub struct Host {
     silent: bool,
     /// A restart was sent, and its report has not come.
     restarted: bool,
-    /// What was wrong with the last attempt of this start; none if nothing came.
+    /// Fault of the last attempt of this start; none if nothing came.
     attempt: LinkFault,
     retries: u8,
     attempts: u8,
-    /// Reports that are on their way, as far as this end can know: restarts sent since the last start, and a
-    /// report that comes unasked.
+    /// Reports that may be on their way: restarts sent since the last start, and a report that comes unasked.
     asked: u8,
     /// A report that may not be the last: more than one was asked for.
     candidate: Plate,
@@ -215,9 +214,9 @@ impl Host {
         count(&mut self.counters.limited);
     }
 
-    /// Before the first half of a tick: the port has not taken all bytes of the last one (`status-arg-out` 4,
-    /// VI.1.2). What was on the line was torn, so that it counts as lost; the port may have been stuck for
-    /// longer than the controller waits.
+    /// Before the first half of a tick: the port has not taken all bytes of the last one (`status-arg-out` 4, VI.1.2).
+    /// The frame on the line was cut, so it counts as lost; the port may have been stuck for longer than the controller
+    /// waits.
     pub fn unsent(&mut self) -> HostEvent {
         match self.state {
             HostState::Waiting => self.lost(LinkFault::NotTransmitted),
@@ -267,7 +266,7 @@ impl Host {
         if self.waited >= self.answer_ticks { event.max(self.without_answer()) } else { event }
     }
 
-    /// Second half of a tick: send what is due, or what is wanted. True if `intent` was sent.
+    /// Second half of a tick: send a due frame, or `intent`. True if `intent` was sent.
     pub fn transmit(&mut self, intent: &Intent, tx: &mut LinkBytes) -> bool {
         match intent {
             // The answer to a restart that is under way answers this one too.
@@ -327,13 +326,12 @@ impl Host {
         sent
     }
 
-    /// What one reply means in the present state. What has no meaning is noise, and ignored: if it took the place of
-    /// an answer, no answer comes.
+    /// Process one reply in the present state. A reply without meaning is noise and ignored: if it replaced an answer,
+    /// no answer comes.
     ///
-    /// A report is believed only if it is the `last` of its tick: nothing is sent behind it, and the checksum
-    /// does not tell a report that has lost an FF in it from one that is closed by the first FF of the next.
-    /// An answer is believed only in a tick of few bytes: it has no checksum at all, and may be a byte of a
-    /// broken report.
+    /// A report counts only if it is the `last` reply of its tick: nothing is sent after it, and the checksum cannot
+    /// distinguish a report that has lost an FF from one that is completed by the first FF of the next. An answer
+    /// counts only in a tick of few bytes: it has no checksum, and may be a byte of a damaged report.
     fn take(&mut self, reply: Reply, last: bool) -> HostEvent {
         if reply == Reply::BadChecksum {
             count(&mut self.counters.checksum_errors);

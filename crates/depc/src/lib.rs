@@ -11,12 +11,12 @@
 //! ```
 //!
 //! * [`link`]: the bytes of a tick, faults and counters;
-//! * [`plate`]: the six words of a position, the one place that knows their coding;
+//! * [`plate`]: the six words of a position, the only place with their coding;
 //! * [`wire`]: one file a frame, every byte shown;
 //! * [`receive`]: byte-by-byte receivers of both ends;
 //! * [`limit`], [`step`]: the velocity limits, and steps that respect them;
-//! * [`host`], [`controller`]: the two ends; [`warning`]: what the controller complains of;
-//! * [`exact`]: the frames behind the words, for a robot that can use more than 0.01 in;
+//! * [`host`], [`controller`]: the two ends; [`warning`]: the warnings of the controller;
+//! * [`exact`]: the unrounded frames, for a robot with a resolution finer than 0.01 in;
 //! * [`fault`]: faults on the line between them, by plan and seed.
 //!
 //! All that the appendix leaves open is marked ASSUMED where it is decided.

@@ -1,8 +1,9 @@
 //! The velocity limits of the controller (A 2.3): 14 in/s and 1.0 rad/s.
 //!
-//! The controller sees only the words on the line, so the limits are those of a step from one set of words to the next:
-//! the distance that the end plate moves, and each of D, E and R by itself (ASSUMED; the appendix says "the commanded
-//! change in translation or orientation"). Both ends use the same integers, so that what one lets pass the other accepts.
+//! The controller gets only the words on the line, so the limits apply to a step from one set of words to the next: the
+//! distance that the end plate moves, and each of D, E and R by itself (ASSUMED; the appendix says "the commanded
+//! change in translation or orientation"). Both ends use the same integers, so that a step permitted by one end is
+//! accepted by the other.
 
 use core::fmt;
 
@@ -75,7 +76,7 @@ impl Limits {
         u16::try_from(self.period_us.div_ceil(1000)).unwrap_or(u16::MAX)
     }
 
-    /// The longest way of the end plate in a period, squared, in (0.01 in)².
+    /// The longest step of the end plate in a period, squared, in (0.01 in)².
     #[must_use]
     pub fn translation_squared(&self) -> u64 {
         let way = TRANSLATION_PER_US.saturating_mul(u64::from(self.period_us));

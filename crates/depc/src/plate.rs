@@ -1,4 +1,4 @@
-//! The coding of a position on the line, in this one place.
+//! The coding of a position on the line.
 //!
 //! Appendix A gives "12 bytes of world coordinates" and no more; VI.1 says that they are those of the end plate, in
 //! Cartesian and Euler form. ASSUMED (SPECNOTES): six signed words X, Y, Z in 0.01 in and D, E, R in 0.01 degree, where
@@ -9,10 +9,11 @@
 //!                                        R: roll about the gripper axis
 //! ```
 //!
-//! so that a vertical gripper is the pole of the angles, which is what the manual warns of.
+//! so that a vertical gripper is the pole of the angles, of which the manual warns.
 //!
 //! E stays within 0 to 180 degrees. D and R run on from one position to the next without jumps of 360 degrees; where a
-//! word would overflow it goes back by 360, and both ends compare modulo 360. At the pole D says nothing, and stays.
+//! word would overflow it goes back by 360, and both ends compare modulo 360. At the pole D has no meaning, and keeps
+//! its value.
 
 use core::f64::consts::PI;
 
@@ -31,7 +32,7 @@ const TURN: i32 = 36_000;
 /// Half a turn, 0.01 degree; also E of a gripper that points straight down.
 pub const HALF_TURN: i32 = 18_000;
 
-/// A position of the end plate as it stands on the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree (ASSUMED coding).
+/// A position of the end plate on the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree (ASSUMED coding).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Plate {
     /// X, Y, Z, D, E, R.
@@ -93,7 +94,7 @@ impl Plate {
         Ok(Self { words: [x, y, z, d, i16::try_from(e).unwrap_or_default(), r] })
     }
 
-    /// The words of a tool frame: the end plate of `arm` stands one tool length behind the tool point.
+    /// The words of a tool frame: the end plate of `arm` is one tool length behind the tool point.
     ///
     /// # Errors
     /// As [`Plate::from_frame`].

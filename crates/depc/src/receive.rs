@@ -1,8 +1,8 @@
 //! The receivers of both ends: bytes in, frames out.
 //!
-//! A byte may be changed, lost, doubled or late. Each receiver holds a bounded number of bytes, finds the next frame after
-//! any garbage, and never waits for the end of a frame that does not come: a tick in which nothing arrives ends whatever
-//! was begun (a frame takes 17 ms, a tick 40 ms).
+//! A byte may be changed, lost, doubled or late. Each receiver holds a bounded number of bytes, finds the next frame
+//! after any garbage, and never waits for the end of an incomplete frame: a tick without bytes ends it (a frame takes
+//! 17 ms, a tick 40 ms).
 
 use rcs_core::Plain;
 
@@ -19,21 +19,21 @@ const GARBLED_TICKS: u8 = 3;
 /// Ticks over which the bytes of one frame may be spread; later ones may be another command that makes up for a lost byte.
 const FRAME_TICKS: u8 = 2;
 
-/// What the controller has received.
+/// A command received by the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// A data command with a right checksum.
     Data(DataCommand),
     /// Cancel or restart.
     Control(Control),
-    /// Bytes that are no command: to be answered with a NAK. The buffer is empty.
+    /// Bytes that are not a command: they are answered with a NAK. The buffer is empty.
     Undecipherable,
 }
 
 /// The receiver of the controller, with its buffer (A 2.3 "the buffer on the RS232 board").
 ///
-/// What follows a bad byte must not be read as commands: a data frame that has lost its first byte may hold a cancel.
-/// So everything is discarded until the line is quiet, and only then comes the NAK.
+/// Bytes after a bad byte must not be read as commands: a data frame that has lost its first byte may hold a cancel. So
+/// everything is discarded until the line is quiet, and only then comes the NAK.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct CommandReceiver {
     bytes: [u8; BOARD_BYTES],
@@ -47,7 +47,7 @@ pub struct CommandReceiver {
 }
 
 impl CommandReceiver {
-    /// Take in the bytes of a tick; call it once a tick, also when there are none. Bytes that find no room are a fault.
+    /// Add the bytes of a tick; call it once a tick, also without bytes. Bytes that do not fit are a fault.
     pub fn accept(&mut self, rx: &LinkBytes) {
         let bytes = rx.as_slice();
         self.quiet = bytes.is_empty();
@@ -145,7 +145,7 @@ impl CommandReceiver {
     }
 }
 
-/// What the host has received.
+/// A reply received by the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reply {
     /// ACK or NAK.
@@ -166,7 +166,7 @@ pub struct ReplyReceiver {
 }
 
 impl ReplyReceiver {
-    /// Take in one byte.
+    /// Add one byte.
     pub fn push(&mut self, byte: u8) -> Option<Reply> {
         if self.length == 0
             && let Some(response) = Response::from_byte(byte)
@@ -203,7 +203,7 @@ impl ReplyReceiver {
         }
     }
 
-    /// A tick without bytes: what was begun does not go on. True if something was.
+    /// A tick without bytes: drop an incomplete frame. True if there was one.
     pub fn idle(&mut self) -> bool {
         let begun = self.length > 0;
         self.clear();

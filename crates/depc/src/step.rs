@@ -1,13 +1,13 @@
 //! One period towards a goal: as far as the velocity limits let the end plate go, along the straight line of the tool.
 //!
 //! VI.1.1 POINT: "if the limit is exceeded, the motion is scaled back". The tool frame is taken along the straight line
-//! (position linearly, rotation about one axis) from where the last step put it; the fraction of the way is found by a
-//! fixed number of bisections, each judged by the *rounded* words, since those are what the controller checks. The
-//! unrounded frame is carried on beside the words, so that rounding does not bend the line.
+//! (position linearly, rotation about one axis) from the end of the last step; the fraction of the line is found by a
+//! fixed number of bisections, each checked with the *rounded* words, because the controller checks those. The
+//! unrounded frame is kept beside the words, so that rounding does not bend the line.
 //!
-//! At the pole (gripper straight up or down) D and R lose their meaning apart from each other: a line that leaves the pole
-//! in another direction than it came would need a jump of D. There D and R are turned together, at the limit and with the
-//! tool still, until D shows the way out; so no goal is waited for in vain.
+//! At the pole (gripper straight up or down) only the sum or difference of D and R has a meaning: a line that leaves
+//! the pole in another direction than it came would need a jump of D. There D and R are turned together, at the limit
+//! and with the tool at rest, until D has the direction of the line; so every goal is reached.
 
 use geometry::{
     frame::{Frame, Vector, rotation_by, rotation_vector},
@@ -29,7 +29,7 @@ const POLE: i32 = 2;
 /// A position commanded to the controller: its words, and the tool frame that was rounded to them.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Position {
-    /// What stands on the line.
+    /// The words on the line.
     pub plate: Plate,
     /// Tool point, inches, world.
     point: [f64; 3],
@@ -55,7 +55,7 @@ impl Position {
     }
 }
 
-/// What to command for the next period.
+/// The command for the next period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
     /// The position to command.

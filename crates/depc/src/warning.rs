@@ -1,4 +1,4 @@
-//! What the controller complains of: the codes of its screen, and the joints behind some of them (A 2.3).
+//! The warnings of the controller: the codes on its screen, and joint problems that cause some of them (A 2.3).
 
 use geometry::kinematics::{Arm, Joints, ReachError};
 use rcs_core::Plain;
@@ -19,7 +19,7 @@ pub enum JointProblem {
     WristSingularity,
 }
 
-/// Why a robot does not take a position.
+/// Why a robot refuses a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// The joints cannot.
@@ -37,7 +37,7 @@ impl From<JointProblem> for Refusal {
 /// The joint angles (radians) for a position of the end plate, within the limits of `arm`.
 ///
 /// # Errors
-/// [`JointProblem`] as the controller would name it.
+/// [`JointProblem`] with the controller's name.
 pub fn joints_for(arm: &Arm, goal: &Plate, near: &Joints) -> Result<Joints, JointProblem> {
     let joints = arm.inverse(&goal.to_tool(arm), near).map_err(|error| match error {
         ReachError::WristSingularity => JointProblem::WristSingularity,
@@ -101,8 +101,9 @@ pub enum Warning {
 }
 
 impl Warning {
-    /// True if a restart command of the host clears it. The appendix recommends that for D6, and the other joint problems
-    /// are of its kind; what an operator or the wiring has caused, and a broken velocity limit, take an ENTER (ASSUMED).
+    /// True if a restart command of the host clears it. The appendix recommends that for D6, and the other joint
+    /// problems are similar; warnings that an operator, the wiring or an exceeded velocity limit has caused need an
+    /// ENTER (ASSUMED).
     #[must_use]
     pub const fn host_can_restart(self) -> bool {
         matches!(self, Self::JointLimit | Self::ShoulderUp | Self::OtherJoint | Self::Wrist | Self::OffPath)

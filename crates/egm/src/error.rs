@@ -1,9 +1,8 @@
-//! Why a datagram is refused, or a target cannot be given: small, `Copy`, with what was expected and what
-//! was found.
+//! Errors of datagrams and targets: small, `Copy`, with what was expected and what was found.
 
 use core::fmt;
 
-/// What is wrong with a datagram, or with a point.
+/// An error of a datagram or a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Error {
     /// The datagram ends within a field.
@@ -15,7 +14,7 @@ pub enum Error {
         /// Field number found.
         number: u64,
     },
-    /// A field has another wire type than `egm.proto` gives it, or one that is not used any more.
+    /// A field has another wire type than in `egm.proto`, or an obsolete one.
     BadWireType {
         /// Field number.
         field: u32,
@@ -39,7 +38,7 @@ pub enum Error {
         /// `mtype` found.
         found: u32,
     },
-    /// A number is infinite, not a number, or the quaternion is no rotation.
+    /// A number is infinite, not a number, or the quaternion is not a rotation.
     NotAPose,
     /// The buffer is too small for the message.
     NoRoom,
@@ -59,7 +58,7 @@ pub enum Error {
     },
     /// There is no room for a further point.
     Full,
-    /// The robot does not follow, or no path was begun.
+    /// The robot does not follow, or no path has begun.
     NotReady,
 }
 

@@ -7,27 +7,27 @@ use crate::{
     session::{Arrival, Session},
 };
 
-/// How the host behaves.
+/// Settings of the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// What targets are checked against.
+    /// Limits of the targets.
     pub limits: Limits,
     /// Times of the path.
     pub times: Times,
-    /// Without a message for so long the robot is lost, ns.
+    /// Time without a message after which the robot is lost, ns.
     pub silence: u64,
-    /// After a gap of so long between two messages the path goes on only if the robot has kept up with it, ns.
+    /// Gap between two messages after which the path continues only if the robot has kept up with it, ns.
     pub gap: u64,
-    /// Give the speed of the target with it.
+    /// Send the speed of the target, too.
     pub speed_ref: bool,
-    /// A robot that is farther than so many mm from where it is to rest takes no path.
+    /// A path can begin only if the robot is within this distance of its rest position, mm.
     pub tolerance: f64,
     /// The same for its rotation, rad.
     pub turn_tolerance: f64,
 }
 
 impl Settings {
-    /// The usual ones: 120 ms of silence, gaps of 60 ms, 5 mm and 0.02 rad, speeds given.
+    /// Default settings: 120 ms of silence, gaps of 60 ms, 5 mm and 0.02 rad, speeds given.
     #[must_use]
     pub fn new(limits: Limits) -> Self {
         Self {
@@ -42,7 +42,7 @@ impl Settings {
     }
 }
 
-/// What was counted.
+/// Counters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// New messages of the robot.
@@ -61,14 +61,14 @@ pub struct Counters {
     pub beyond: u64,
 }
 
-/// What is known after a message, or after a time without one.
+/// State after a message, or after a time without one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
     /// When the last message came, ns.
     pub heard: u64,
     /// State of the link.
     pub link: LinkState,
-    /// Where the robot is.
+    /// Pose of the robot.
     pub feedback: Pose,
     /// The last target.
     pub target: Pose,
@@ -76,10 +76,10 @@ pub struct Sample {
     pub speed: Twist,
     /// Points are taken: a path was begun and is not interrupted.
     pub is_moving: bool,
-    /// Where a path may begin; `None` while the robot does not follow, has not come to rest, or is not where
-    /// it was sent.
+    /// Pose at which a path may begin; `None` while the robot does not follow, has not come to rest, or is not at its
+    /// target.
     pub start: Option<Pose>,
-    /// Percent of its ability that the motion takes of the robot, if it says so.
+    /// Utilization of the robot by the motion, percent, if it sends it.
     pub utilization: Option<f64>,
     /// Counters.
     pub counters: Counters,
@@ -129,11 +129,11 @@ impl Host {
         }
     }
 
-    /// A datagram has come at `now`. What comes back, at the end of `buffer`, is to be sent at once to where
-    /// it came from; nothing is, if the message was old: the robot reads one answer a cycle.
+    /// A datagram has come at `now`. Send the returned answer, at the end of `buffer`, at once to the sender; an old
+    /// message gets none, because the robot reads one answer a cycle.
     ///
     /// # Errors
-    /// [`Error`] if it is no message of a robot; then nothing has changed but a counter.
+    /// [`Error`] if it is not a message of a robot; then only a counter has changed.
     pub fn receive<'a>(
         &mut self,
         now: u64,
@@ -177,7 +177,7 @@ impl Host {
         }
     }
 
-    /// Begin a path at rest at `from`, which is where the last [`Sample`] had its start.
+    /// Begin a path at rest at `from`, the start of the last [`Sample`].
     ///
     /// # Errors
     /// [`Error::NotReady`] if a path cannot begin there now.
@@ -192,7 +192,7 @@ impl Host {
         Ok(())
     }
 
-    /// The next point, which came at `at`. What is refused ends the path.
+    /// The next point, which came at `at`. A refused point ends the path.
     ///
     /// # Errors
     /// [`Error`] if the point cannot be taken.
@@ -217,7 +217,7 @@ impl Host {
         }
     }
 
-    /// What is known.
+    /// The present state.
     #[must_use]
     pub fn sample(&self) -> Sample {
         let (target, speed) =
@@ -263,8 +263,8 @@ impl Host {
         Sent { at, pose, speed, lag: pose.distance(&self.feedback) }
     }
 
-    /// After a gap: without messages a robot goes on with its last speed reference. The next target may be no
-    /// farther from it than it was behind before, and what the limits allow in the longest gap that does not count.
+    /// After a gap: without messages a robot goes on with its last speed reference. The distance of the next target
+    /// from it may be at most its earlier lag plus the distance that the limits allow in the longest permitted gap.
     fn has_kept_up(&self, sent: &Sent, target: &Pose) -> bool {
         let (way, turn) = target.distance(&self.feedback);
         let (Limits { speed, turn: rate, .. }, gap) = (self.settings.limits, seconds(self.settings.gap));
@@ -280,7 +280,7 @@ impl Host {
         self.counters.interrupted = self.counters.interrupted.saturating_add(1);
     }
 
-    /// Where a path may begin, or goes on: at its last point, or where the target stands if the robot does.
+    /// Pose at which a path may begin or continue: its last point, or the target at rest if the robot is there.
     fn start(&self) -> Option<Pose> {
         match self.path.motion() {
             Motion::Moving => Some(self.path.last_point()),

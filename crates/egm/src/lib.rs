@@ -1,8 +1,8 @@
 //! ABB Externally Guided Motion (EGM) in pose mode: the host's side of the UDP link over which an ABB robot
 //! controller asks for a Cartesian target every 4 ms.
 //!
-//! Nothing here does I/O, reads a clock or allocates. Who owns a socket gives each datagram to
-//! [`Host::receive`] together with the time, and sends back the datagram that comes out:
+//! This crate does no I/O, reads no clock and does not allocate. The owner of a socket passes each datagram to
+//! [`Host::receive`] with the time, and sends the returned datagram back:
 //!
 //! ```text
 //!   points, one every 40 ms ──► Host ──► Sample: state, feedback, target
@@ -12,15 +12,15 @@
 //! ```
 //!
 //! * [`message`]: the messages of `egm.proto`, one a file; decoding checks what the schema requires;
-//! * [`wire`]: the protocol-buffer encoding under them;
-//! * [`pose`]: positions in mm, unit quaternions, and what is computed with them;
-//! * [`session`]: is the robot there, does it follow, which messages are new;
+//! * [`wire`]: their protocol-buffer encoding;
+//! * [`pose`]: positions in mm, unit quaternions, and computations with them;
+//! * [`session`]: whether the robot is connected and follows, and which messages are new;
 //! * [`spline`], [`path`]: from points to a target at any time, smooth to the second derivative;
-//! * [`limits`]: what every target is checked against;
-//! * [`host`]: all of it together.
+//! * [`limits`]: limits of every target;
+//! * [`host`]: the host made of these.
 //!
-//! Times are nanoseconds of one monotonic clock, positions millimetres, speeds mm/s and rad/s; degrees stand
-//! in messages only.
+//! Times are nanoseconds of one monotonic clock, positions millimetres, speeds mm/s and rad/s; only messages have
+//! degrees.
 
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]

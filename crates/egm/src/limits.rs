@@ -5,7 +5,7 @@ use crate::{Error, Pose, pose::norm};
 /// Part by which rounding may exceed a limit.
 const ROUNDING: f64 = 1e-6;
 
-/// What the robot may be asked for.
+/// Limits of targets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Greatest speed of the tool, mm/s.
@@ -23,7 +23,7 @@ impl Limits {
         Self { speed, turn, space: [[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]] }
     }
 
-    /// May the tool be at `to`, so many seconds after it was at `from`?
+    /// Check that the tool may move from `from` to `to` in so many seconds.
     ///
     /// # Errors
     /// [`Error::TooFast`], [`Error::Outside`].

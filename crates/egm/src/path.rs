@@ -1,9 +1,8 @@
 //! The target at any time: points come one a period, targets are asked for every 4 ms.
 //!
-//! Targets are a function of *time*, not of how many were asked for: there are 9.92 cycles of the robot in a
-//! period of 40 ms. The segment on which the target is needs the newest point, so that the target is one
-//! period behind a robot that would be at a point one period after it came, and `slack` more, by which points
-//! may come late.
+//! Targets are a function of *time*, not of the number of requests: there are 9.92 cycles of the robot in a period of
+//! 40 ms. The segment on which the target is needs the newest point, so the target lags one period behind a robot that
+//! reaches a point one period after the point came, plus `slack`, the time by which points may be late.
 //!
 //! ```text
 //!            begin                   no point in time, or stop
@@ -12,8 +11,8 @@
 //!     └───────────────────────────────────────────────────────────────┘ after `stop`
 //! ```
 //!
-//! Without a point in time the segment is finished; then the speed goes to zero along the tangent, within a
-//! fixed time, with an acceleration that begins and ends at zero. What comes after that begins at rest.
+//! Without a point in time the segment is finished; then the speed goes to zero along the tangent, within a fixed time,
+//! with an acceleration that begins and ends at zero. A later motion begins at rest.
 
 use crate::{
     Error, Limits,
@@ -29,9 +28,9 @@ const MOST_WAITING: usize = 4;
 pub struct Times {
     /// Between two points.
     pub period: u64,
-    /// By which a point may come late.
+    /// Time by which a point may be late.
     pub slack: u64,
-    /// In which the speed goes to zero if no point comes.
+    /// Time in which the speed goes to zero if no point comes.
     pub stop: u64,
 }
 
@@ -42,25 +41,25 @@ impl Default for Times {
     }
 }
 
-/// What the path does.
+/// State of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
-    /// The target stands.
+    /// The target is at rest.
     Still(Pose),
     /// Points come.
     Moving,
     /// The speed goes to zero along the tangent.
     Stopping {
-        /// Where that began.
+        /// Pose at the start of the stop.
         from: Pose,
-        /// With which speed.
+        /// Speed at its start.
         speed: Twist,
-        /// When.
+        /// Its start, ns.
         since: u64,
     },
 }
 
-/// A path that is being made.
+/// A path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Path {
     times: Times,
@@ -73,7 +72,7 @@ pub struct Path {
     begun: u64,
     /// Points since.
     count: u64,
-    /// Points of the segments to come; the first `waiting` count.
+    /// Points of later segments; the first `waiting` are valid.
     queue: [Pose; MOST_WAITING],
     waiting: usize,
 }
@@ -83,14 +82,14 @@ fn seconds(nanoseconds: u64) -> f64 {
 }
 
 impl Path {
-    /// A path that stands.
+    /// A path at rest.
     #[must_use]
     pub const fn new(times: Times, at: Pose) -> Self {
         let motion = Motion::Still(at);
         Self { times, motion, window: [at; 4], segment: 0, begun: 0, count: 0, queue: [at; 4], waiting: 0 }
     }
 
-    /// What the path does.
+    /// State of the path.
     #[must_use]
     pub const fn motion(&self) -> Motion {
         self.motion
@@ -103,7 +102,7 @@ impl Path {
         self.waiting.checked_sub(1).and_then(|at| self.queue.get(at)).copied().unwrap_or(last)
     }
 
-    /// Stand at `at`, at once.
+    /// Rest at `at`, at once.
     pub const fn hold(&mut self, at: Pose) {
         *self = Self::new(self.times, at);
     }
@@ -135,7 +134,7 @@ impl Path {
         Ok(())
     }
 
-    /// Target and speed at `now`; times may not go back.
+    /// Target and speed at `now`; `now` must not decrease.
     pub fn target(&mut self, now: u64) -> (Pose, Twist) {
         while self.motion == Motion::Moving && now >= self.segment.saturating_add(self.times.period) {
             self.segment = self.segment.saturating_add(self.times.period);

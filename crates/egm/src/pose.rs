@@ -1,4 +1,4 @@
-//! Poses: a position in mm and a unit quaternion (w, x, y, z), as EGM has them, and what is computed with them.
+//! Poses: a position in mm and a unit quaternion (w, x, y, z), as in EGM, and computations with them.
 
 use crate::Error;
 
@@ -7,7 +7,7 @@ pub type Vector = [f64; 3];
 /// A unit quaternion: w, x, y, z.
 pub type Quaternion = [f64; 4];
 
-/// Quaternions of other lengths than 1 by more than this are no rotations.
+/// Greatest deviation of the length of a quaternion from 1.
 const UNIT_TOLERANCE: f64 = 0.01;
 
 /// Position and orientation of one frame in another.
@@ -38,7 +38,7 @@ impl Pose {
     /// No displacement.
     pub const IDENTITY: Self = Self { position: [0.0; 3], orientation: [1.0, 0.0, 0.0, 0.0] };
 
-    /// A pose whose quaternion is made one of length 1.
+    /// A pose; its quaternion is normalized.
     ///
     /// # Errors
     /// [`Error::NotAPose`] if a number is not finite or the quaternion's length is not 1 within a hundredth.
@@ -51,7 +51,7 @@ impl Pose {
         Ok(Self { position, orientation: orientation.map(|v| v / length) })
     }
 
-    /// `inner`, given in this frame, in the coordinates that this frame is given in.
+    /// `inner`, given in this frame, in the coordinates of this frame's parent.
     #[must_use]
     pub fn compose(&self, inner: &Self) -> Self {
         Self {
@@ -60,21 +60,21 @@ impl Pose {
         }
     }
 
-    /// The pose that undoes this one.
+    /// The inverse pose.
     #[must_use]
     pub fn inverse(&self) -> Self {
         let orientation = conjugate(&self.orientation);
         Self { position: rotate(&orientation, &scaled(&self.position, -1.0)), orientation }
     }
 
-    /// The way from this pose to another: mm, and radians about one axis, the short way round.
+    /// The displacement from this pose to another: mm, and radians about one axis, the shorter rotation.
     #[must_use]
     pub fn way_to(&self, other: &Self) -> Twist {
         let turn = product(&other.orientation, &conjugate(&self.orientation));
         Twist { linear: subtract(&other.position, &self.position), angular: rotation_vector(&turn) }
     }
 
-    /// The pose after a way: the position moved, the orientation turned in the outer axes.
+    /// The pose after a displacement: position moved, orientation turned in the outer axes.
     #[must_use]
     pub fn moved(&self, way: &Twist) -> Self {
         Self {
@@ -137,7 +137,7 @@ pub fn product(a: &Quaternion, b: &Quaternion) -> Quaternion {
     ]
 }
 
-/// The rotation back.
+/// The inverse rotation.
 #[must_use]
 pub fn conjugate(q: &Quaternion) -> Quaternion {
     let [w, x, y, z] = *q;
@@ -152,7 +152,7 @@ pub fn rotate(q: &Quaternion, v: &Vector) -> Vector {
     [x, y, z]
 }
 
-/// Axis times angle in radians of a rotation, the short way round.
+/// Axis times angle in radians of the shorter rotation.
 #[must_use]
 pub fn rotation_vector(q: &Quaternion) -> Vector {
     let [w, x, y, z] = if q.first().is_some_and(|w| *w < 0.0) { q.map(|v| -v) } else { *q };

@@ -1,11 +1,12 @@
-//! Is the robot there, does it follow, and which of its messages are new?
+//! The session: whether the robot is connected and follows, and which of its messages are new.
 //!
-//! EGM knows no connection: the robot begins to send, and ends. It supervises no lost messages. So the state
-//! follows from what has come, and when.
+//! EGM has no connection: the robot starts and stops sending, and lost messages are not detected. So the state follows
+//! from the received messages and their times.
 
 use crate::message::{MciState, MotorState, RapidState, Robot};
 
-/// A number that is smaller by at most this is an old message; by more, the robot counts anew.
+/// A sequence number smaller by at most this is an old message; a still smaller one means that the robot has restarted
+/// its count.
 const WINDOW: u32 = 250;
 
 /// State of the link.
@@ -41,12 +42,12 @@ pub enum Hindrance {
     RapidStopped,
     /// No EGM instruction runs.
     MciStopped,
-    /// The controller does not say what it does.
+    /// The controller does not send its state.
     Unknown,
 }
 
 impl Hindrance {
-    /// In words.
+    /// As text.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -59,12 +60,12 @@ impl Hindrance {
     }
 }
 
-/// What a message is worth.
+/// Age of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
     /// New.
     New,
-    /// Doubled, or overtaken by a newer one: it is not answered.
+    /// A duplicate, or older than the last one: it is not answered.
     Old,
 }
 
@@ -110,7 +111,7 @@ impl Session {
     }
 }
 
-/// Why a robot does not follow that sends these states; the gravest reason comes first.
+/// Why a robot with these states does not follow; the most serious reason comes first.
 fn hindrance(message: &Robot) -> Option<Hindrance> {
     let (motors, mci, rapid) = (message.motor_state, message.mci_state, message.rapid_state);
     match (motors, mci, rapid) {

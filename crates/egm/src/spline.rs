@@ -1,10 +1,9 @@
-//! A uniform cubic B-spline through the air: four points, one a period, make the segment between the middle
-//! two.
+//! A uniform cubic B-spline of poses: four points, one a period, define the segment between the middle two.
 //!
-//! It is continuous to the second derivative and stays in the hull of its points. It does not pass through
-//! them, except where points repeat: after three equal points it stands there exactly. In its cumulative form
-//! each basis function weighs a step from one point to the next, so that orientations can be treated the same
-//! way: each factor is a slerp by that part of the step.
+//! It is continuous to the second derivative and stays in the hull of its points. It does not pass through them, except
+//! where points repeat: after three equal points it rests exactly there. In its cumulative form each basis function
+//! weighs a step from one point to the next, so that orientations can be treated the same way: each factor is a slerp
+//! by that part of the step.
 
 use crate::pose::{Pose, Twist, add, from_rotation_vector, product, rotate, scaled};
 

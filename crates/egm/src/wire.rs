@@ -1,8 +1,8 @@
-//! Protocol-buffer encoding, as far as `egm.proto` needs it: a reader and a writer over byte slices.
+//! The part of protocol-buffer encoding that `egm.proto` needs: a reader and a writer over byte slices.
 //!
-//! The writer works from the end of its buffer to the front. A message that contains a message needs the
-//! length of the inner one first; written backwards the inner one is there already, so that no length is
-//! computed twice. A message therefore writes its fields in reverse order, and they stand in ascending order.
+//! The writer works from the end of its buffer to the front. A message that contains a message needs the length of the
+//! inner one first; when written backwards, the inner one is written already, so no length is computed twice. So a
+//! message writes its fields in reverse order, and they end up in ascending order.
 
 use crate::Error;
 
@@ -17,7 +17,7 @@ pub const FIXED32: u8 = 5;
 /// Greatest field number.
 const MOST_FIELDS: u64 = (1 << 29) - 1;
 
-/// A value as it stands on the wire.
+/// A value on the wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value<'a> {
     /// An integer, a flag or an enum.
@@ -26,7 +26,7 @@ pub enum Value<'a> {
     Fixed64(u64),
     /// A message, or packed values.
     Bytes(&'a [u8]),
-    /// Four bytes; nothing in `egm.proto` is one.
+    /// Four bytes; `egm.proto` has no such field.
     Fixed32(u32),
 }
 
@@ -92,7 +92,7 @@ impl<'a> Field<'a> {
     }
 }
 
-/// The fields of a message, in the order in which they stand there.
+/// The fields of a message, in their order.
 #[derive(Clone, Debug)]
 pub struct Reader<'a> {
     rest: &'a [u8],
@@ -114,7 +114,7 @@ impl<'a> Reader<'a> {
     /// The next field; `None` at the end.
     ///
     /// # Errors
-    /// [`Error`] if the bytes are no field.
+    /// [`Error`] if the bytes are not a field.
     pub fn next_field(&mut self) -> Result<Option<Field<'a>>, Error> {
         if self.is_at_end() {
             return Ok(None);

@@ -1,7 +1,7 @@
-//! The injector: what arrives of what was sent.
+//! The injector: applies a plan to the bytes that are sent.
 //!
-//! Each direction has its own numbers and its own line, so that what happens in one does not depend on the traffic of the
-//! other. A line holds bytes with the tick in which they are due; they leave it in order, and as many a tick as
+//! Each direction has its own random numbers and its own line, so that faults in one do not depend on the traffic of
+//! the other. A line holds bytes with the tick in which they are due; they leave it in order, and as many a tick as
 //! [`LinkBytes`] holds.
 
 use rcs_core::{Plain, tick::Tick};
@@ -12,7 +12,7 @@ use crate::link::LinkBytes;
 /// Bytes that a line holds while it is late or stalls; further ones are lost.
 pub const LINE_BYTES: usize = 256;
 
-/// What was done to one direction, or to both.
+/// Counts of one direction, or of both.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Counts {
     /// Bytes sent.
@@ -80,7 +80,7 @@ pub struct Injector {
 }
 
 impl Injector {
-    /// A line on which nothing has happened yet.
+    /// A line without faults so far.
     #[must_use]
     pub fn new(plan: &Plan) -> Self {
         let line = |direction: Direction| OneWay {
@@ -90,7 +90,7 @@ impl Injector {
         Self { plan: *plan, to_controller: line(Direction::ToController), to_host: line(Direction::ToHost) }
     }
 
-    /// Carry what one end sends in `tick`, and the level of its DTR: what arrives at the other end.
+    /// Carry the bytes that one end sends in `tick`, and the level of its DTR; returns what arrives at the other end.
     pub fn carry(
         &mut self,
         direction: Direction,
@@ -108,7 +108,7 @@ impl Injector {
         (work.arrive(), ready && !work.is_low())
     }
 
-    /// What was done to one direction.
+    /// Counts of one direction.
     #[must_use]
     pub const fn counts(&self, direction: Direction) -> &Counts {
         match direction {
@@ -117,7 +117,7 @@ impl Injector {
         }
     }
 
-    /// What was done to both.
+    /// Counts of both directions.
     #[must_use]
     pub fn total(&self) -> Counts {
         self.to_controller.counts.plus(&self.to_host.counts)
@@ -137,7 +137,7 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// The rule of a kind that strikes now, if one does. Every rule draws, whatever the others have drawn.
+    /// The rule of a kind that strikes now, if one does. Every rule draws its own number, independent of the others.
     fn strike(&mut self, kind: FaultKind) -> Option<Rule> {
         let mut struck = None;
         for rule in self.rules {

@@ -1,4 +1,4 @@
-//! Faults on the line, between the two ends: part of the product, so that a host can be tried against a bad line.
+//! Faults on the line, between the two ends: part of the product, so that a host can be tested with a bad line.
 //!
 //! A [`Plan`] is a seed and some [`Rule`]s; an [`Injector`] applies it, tick by tick and direction by direction, to the
 //! bytes and the modem signal that pass. It is plain data without a clock: the same plan and the same traffic give the
@@ -34,12 +34,12 @@ pub use numbers::Numbers;
 pub const RULES: usize = 16;
 /// Kinds of fault.
 pub const KINDS: usize = FaultKind::ALL.len();
-/// Rate of what always happens: rates are in millionths.
+/// Rate of a fault that always happens: rates are in millionths.
 pub const ALWAYS: u32 = 1_000_000;
 /// The longest delay, stall or loss of the signal that one event causes, ticks.
 pub const MOST_TICKS: u16 = 1000;
 
-/// What can happen on a line.
+/// Kinds of faults on a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum FaultKind {
     /// A byte is lost.
@@ -88,22 +88,22 @@ impl FaultKind {
     }
 }
 
-/// One kind of fault: where, when, how often. Zero stands for what was not said.
+/// One kind of fault: where, when, how often. Zero means not given.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Rule {
-    /// What happens.
+    /// The kind.
     pub kind: FaultKind,
-    /// It happens to what the host sends.
+    /// It acts on bytes of the host.
     pub to_controller: bool,
-    /// It happens to what the controller sends.
+    /// It acts on bytes of the controller.
     pub to_host: bool,
-    /// Chance of each byte or tick, millionths; 0: not said.
+    /// Chance of each byte or tick, millionths; 0: not given.
     pub rate: u32,
     /// First tick of the window.
     pub from: u64,
-    /// Tick behind the window; 0: not said, then there is no window.
+    /// First tick after the window; 0: not given, then there is no window.
     pub until: u64,
-    /// Length of a delay, a stall or a loss of the signal; 0: not said, then it is one tick.
+    /// Length of a delay, a stall or a loss of the signal; 0: not given, then it is one tick.
     pub ticks: u16,
     /// `insert`: always `byte`, otherwise any.
     pub fixed: bool,
@@ -112,7 +112,7 @@ pub struct Rule {
 }
 
 impl Rule {
-    /// A rule for both directions that does not say yet when and how often.
+    /// A rule for both directions, without time and rate.
     #[must_use]
     pub fn new(kind: FaultKind) -> Self {
         Self { kind, to_controller: true, to_host: true, ..Self::default() }
@@ -177,17 +177,17 @@ impl Rule {
         !self.has_window() || self.from <= tick && tick < self.until
     }
 
-    /// The chance, with what was not said filled in.
+    /// The chance, or its default.
     const fn chance(&self) -> u32 {
         if self.rate == 0 { ALWAYS } else { self.rate }
     }
 
-    /// The length, with what was not said filled in.
+    /// The length, or its default.
     fn length(&self) -> u64 {
         u64::from(self.ticks.max(1))
     }
 
-    /// Everything that `other` could act on is lost through this rule.
+    /// This rule drops everything on which `other` could act.
     fn hides(&self, other: &Self) -> bool {
         let directions = (!other.to_controller || self.to_controller) && (!other.to_host || self.to_host);
         let ticks =
@@ -199,7 +199,7 @@ impl Rule {
             && ticks
     }
 
-    /// What is wrong with the rule by itself.
+    /// Check of the rule by itself.
     fn check(&self) -> Result<(), Refusal> {
         let kind = self.kind;
         if !self.to_controller && !self.to_host {
@@ -248,15 +248,15 @@ impl Plan {
         Self { seed, ..Self::default() }
     }
 
-    /// The plan with at most `most` faults in a tick and direction (at least 1). With one, no frame is hit
-    /// twice in a tick, and the checksum sees every fault.
+    /// The plan with at most `most` faults in a tick and direction (at least 1). With one, no frame is hit twice in a
+    /// tick, and the checksum detects every fault.
     #[must_use]
     pub const fn most_per_tick(mut self, most: u8) -> Self {
         self.most_per_tick = if most == 0 { 1 } else { most };
         self
     }
 
-    /// What the numbers of the injector depend on.
+    /// Seed of the random numbers.
     #[must_use]
     pub const fn seed(&self) -> u64 {
         self.seed
@@ -305,7 +305,7 @@ pub enum Refusal {
     EmptyWindow {
         /// Its first tick.
         from: u64,
-        /// The tick behind it.
+        /// First tick after it.
         until: u64,
     },
     /// `ticks` for a fault that has no length.

@@ -1,4 +1,4 @@
-//! What begins and ends the data phase of the host: reports, refusals, silence, DTR, restarts.
+//! Start and end of the data phase of the host: reports, refusals, silence, DTR, restarts.
 
 use super::{Host, HostEvent, HostState, MOST_RETRIES, RESTART_TICKS, START_ATTEMPTS, count};
 use crate::link::LinkFault;
@@ -17,8 +17,8 @@ impl Host {
         HostEvent::Started
     }
 
-    /// A NAK. One that comes later than in the next tick may be the answer to noise behind a command whose
-    /// ACK was lost: to repeat the position does no harm then, to repeat a function would.
+    /// A NAK. A later one than in the next tick may be the answer to noise after a command whose ACK was lost: then the
+    /// position may be repeated, but not a function.
     pub(super) fn refused(&mut self) -> HostEvent {
         let ambiguous = self.waited > 1 && self.function() != NO_FUNCTION;
         if self.retries >= MOST_RETRIES || ambiguous {
@@ -115,7 +115,7 @@ impl Host {
         }
     }
 
-    /// DTR is on, or the link was lost. A DTR that comes and goes does not begin the patience anew.
+    /// DTR is on, or the link was lost. An intermittent DTR does not restart the time limit.
     pub(super) fn begin_start(&mut self) {
         if self.is_running() {
             (self.starting, self.attempt) = (0, LinkFault::None);

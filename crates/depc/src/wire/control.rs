@@ -30,7 +30,7 @@ impl Control {
     }
 }
 
-/// The controller's answer to a command; it bears no number.
+/// The controller's answer to a command; it has no number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Response {
     /// The command is understood.

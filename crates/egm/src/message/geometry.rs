@@ -12,7 +12,7 @@ pub type Orientation = Numbers<4>;
 /// `EgmEuler`: rotations about x, y, z, degrees.
 pub type Euler = Numbers<3>;
 
-/// A message of `N` required doubles, fields 1 to `N`. Those that have not come yet are `None`.
+/// A message of `N` required doubles, fields 1 to `N`. Missing ones are `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Numbers<const N: usize>([Option<f64>; N]);
 
@@ -23,7 +23,7 @@ impl<const N: usize> Default for Numbers<N> {
 }
 
 impl<const N: usize> Numbers<N> {
-    /// All of them.
+    /// A message with all numbers.
     #[must_use]
     pub fn new(values: [f64; N]) -> Self {
         Self(values.map(Some))
@@ -79,7 +79,7 @@ impl WirePose {
         Self { pos: Some(pos), orient: Some(orient), euler: None }
     }
 
-    /// The pose, if position and orientation are there and finite.
+    /// The pose, if position and orientation are present and finite.
     ///
     /// # Errors
     /// [`Error::Missing`], [`Error::NotAPose`].

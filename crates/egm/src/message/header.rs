@@ -12,14 +12,14 @@ pub struct Header {
     pub seqno: Option<u32>,
     /// Time stamp of the sender, ms.
     pub tm: Option<u32>,
-    /// What the message is.
+    /// Type of the message.
     pub mtype: Option<MessageType>,
 }
 
 /// `EgmHeader.MessageType`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MessageType {
-    /// Undefined, or none that the schema knows.
+    /// Undefined, or not in the schema.
     #[default]
     Undefined,
     /// For future use.

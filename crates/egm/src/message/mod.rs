@@ -1,9 +1,8 @@
 //! The messages of `egm.proto` (package `abb.egm`, proto2), one a file.
 //!
-//! Each message knows three things: how its fields are taken over one by one (`merge`: as protocol buffers
-//! have it, a message that comes twice is merged, and of a value that comes twice the last counts), what is
-//! missing when all have come (`check`), and how it is written (`write`). Fields that a newer schema adds are
-//! skipped. An enum value that the schema does not know counts as undefined.
+//! Each message has three functions: `merge` takes one field (as in protocol buffers, a message that comes twice is
+//! merged, and the last of repeated values counts), `check` finds missing fields at the end, and `write` encodes it.
+//! Unknown fields of a newer schema are skipped. An unknown enum value counts as undefined.
 
 mod geometry;
 mod header;

@@ -1,4 +1,4 @@
-//! `EgmFeedBack` and `EgmPlanned`: where the robot is, and where it is to be. Both have the same fields.
+//! `EgmFeedBack` and `EgmPlanned`: present and planned position of the robot. Both have the same fields.
 
 use super::{Values, WirePose};
 use crate::{
@@ -30,7 +30,7 @@ pub struct Clock {
     pub usec: Option<u64>,
 }
 
-/// `EgmTimestamp`: time since 1970, as PTP has it.
+/// `EgmTimestamp`: time since 1970, as in PTP.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timestamp {
     /// Seconds.

@@ -1,4 +1,4 @@
-//! `EgmRobot`: what the robot controller sends every cycle.
+//! `EgmRobot`: the message of the robot controller in every cycle.
 
 use super::{Header, MessageType, Motion, Values};
 use crate::{
@@ -11,11 +11,11 @@ use crate::{
 pub struct Robot {
     /// Number, time, type.
     pub header: Option<Header>,
-    /// Where the robot is.
+    /// Present position of the robot.
     pub feedback: Option<Motion>,
-    /// Where the controller plans it to be.
+    /// Position planned by the controller.
     pub planned: Option<Motion>,
-    /// Do the motors have power?
+    /// Power of the motors.
     pub motor_state: Option<MotorState>,
     /// State of the motion correction.
     pub mci_state: Option<MciState>,
@@ -23,13 +23,13 @@ pub struct Robot {
     pub mci_convergence_met: Option<bool>,
     /// Test signals.
     pub test_signals: Option<Values>,
-    /// Does the RAPID program run?
+    /// State of the RAPID program.
     pub rapid_state: Option<RapidState>,
     /// `measuredForce.fcActive`: force control is active.
     pub force_active: Option<bool>,
     /// Forces, N, and torques, Nm.
     pub measured_force: Option<Values>,
-    /// Percent of the robot's ability that the motion takes; above 100 the motion is partial.
+    /// Utilization of the robot by the motion, percent; above 100 the motion is only partly executed.
     pub utilization_rate: Option<f64>,
     /// Number of the move instruction.
     pub move_index: Option<u32>,
@@ -41,7 +41,7 @@ macro_rules! state {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub enum $name {
-            /// Undefined, or none that the schema knows.
+            /// Undefined, or not in the schema.
             #[default]
             Undefined,
             $($(#[$variant_doc])* $variant,)*
@@ -82,7 +82,7 @@ state! {
     MotorState {
         /// The motors have power.
         On = 1,
-        /// They have none.
+        /// The motors have no power.
         Off = 2,
     }
 }
@@ -113,8 +113,8 @@ impl Robot {
     /// Read a datagram.
     ///
     /// # Errors
-    /// [`Error`] if it is no message, if a field that the schema requires is missing, if it is a message of
-    /// another type, or if it has no sequence number.
+    /// [`Error`] if it is not a message, if a field that the schema requires is missing, if it is a message of another
+    /// type, or if it has no sequence number.
     pub fn decode(datagram: &[u8]) -> Result<Self, Error> {
         let mut message = Self::default();
         let mut fields = Reader::new(datagram);
@@ -199,11 +199,10 @@ impl Robot {
         self.header.as_ref().map_or(Ok(()), |header| writer.message(1, |writer| header.write(writer)))
     }
 
-    /// What the host needs of it: its sequence number and the pose of the tool in the work object.
+    /// The fields for the host: sequence number, and pose of the tool in the work object.
     ///
     /// # Errors
-    /// [`Error::Missing`] if one is not there, [`Error::BadType`] if it is no message of a robot,
-    /// [`Error::NotAPose`].
+    /// [`Error::Missing`] if one is missing, [`Error::BadType`] if it is not a message of a robot, [`Error::NotAPose`].
     pub fn essentials(&self) -> Result<(u32, Pose), Error> {
         let header = self.header.ok_or(Error::Missing { field: "header" })?;
         let seqno = header.seqno.ok_or(Error::Missing { field: "header.seqno" })?;

@@ -1,4 +1,4 @@
-//! `EgmSensor`: what the host answers.
+//! `EgmSensor`: the answer of the host.
 
 use super::{Header, MessageType, Motion, Values, WirePose};
 use crate::{
@@ -11,9 +11,9 @@ use crate::{
 pub struct Sensor {
     /// Number, time, type.
     pub header: Option<Header>,
-    /// Where the robot is to be.
+    /// Target position of the robot.
     pub planned: Option<Motion>,
-    /// How fast it is to move there.
+    /// Speed of the target.
     pub speed_ref: Option<SpeedRef>,
 }
 
@@ -68,7 +68,7 @@ impl SpeedRef {
 }
 
 impl Sensor {
-    /// A target for the tool, with its speed if it is to be given.
+    /// A target for the tool, optionally with its speed.
     #[must_use]
     pub fn target(seqno: u32, tm: u32, pose: &Pose, speed: Option<&Twist>) -> Self {
         Self {
@@ -81,7 +81,7 @@ impl Sensor {
     /// Read a datagram.
     ///
     /// # Errors
-    /// [`Error`] if it is no message, or if a field is missing that the schema requires.
+    /// [`Error`] if it is not a message, or if a required field is missing.
     pub fn decode(datagram: &[u8]) -> Result<Self, Error> {
         let mut message = Self::default();
         let mut fields = Reader::new(datagram);

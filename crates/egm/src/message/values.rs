@@ -38,7 +38,7 @@ impl Values {
         Ok(())
     }
 
-    /// Take over a field that holds one value, or packed ones.
+    /// Add the values of a field: one value, or packed ones.
     pub(super) fn take(&mut self, field: &Field<'_>) -> Result<(), Error> {
         if let Value::Bytes(packed) = field.value {
             let mut packed = Reader::new(packed);
@@ -50,7 +50,7 @@ impl Values {
         self.push(field.double()?)
     }
 
-    /// Take over a message whose field `number` holds the values.
+    /// Add the values of a message, which are in its field `number`.
     pub(super) fn merge(&mut self, number: u32, mut fields: Reader<'_>) -> Result<(), Error> {
         while let Some(field) = fields.next_field()? {
             if field.number == number {
