@@ -1,4 +1,4 @@
-//! Task and the Data System (IV.4.2, IX.2): what is asked of it, apart from how it travels.
+//! Task and the Data System (IV.4.2, IX.2): requests and answers, independent of the transport.
 
 use rcs_core::{
     Plain,

@@ -1,5 +1,4 @@
-//! What the buffers say about a failure beside its reason: names and distances (docs/design/failures.md
-//! "Detail").
+//! Details of a failure beside its reason: names and distances (docs/design/failures.md "Detail").
 
 use core::fmt;
 
@@ -7,7 +6,7 @@ use rcs_core::name::{Name10, Name16};
 
 use crate::{CommonMemory, Fault, HwsCommand, ProcessId, Reason, StatusReport, emove::NearPlace};
 
-/// What goes with a reason.
+/// Details of a reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Detail {
     /// Nothing.
@@ -19,8 +18,8 @@ pub enum Detail {
 }
 
 impl Detail {
-    /// What goes with the fault that a process reports. `memory` is common memory after the tick in which it
-    /// began to report it, `hws` the command of the workstation controller.
+    /// Details of the fault that a process reports. `memory` is common memory after the tick in which it began to
+    /// report it, `hws` the command of the workstation controller.
     #[must_use]
     pub fn of(process: ProcessId, fault: Fault, hws: &HwsCommand, memory: &CommonMemory) -> Self {
         match (process, fault) {
@@ -43,8 +42,8 @@ impl Detail {
         }
     }
 
-    /// What goes with the reason of Task's status, which may come from a process below it. `memory` is common
-    /// memory after the tick, `hws` the command of the workstation controller.
+    /// Details of the reason of Task's status, which may come from a process below it. `memory` is common memory after
+    /// the tick, `hws` the command of the workstation controller.
     #[must_use]
     pub fn of_command(reason: Reason, hws: &HwsCommand, memory: &CommonMemory) -> Self {
         let emove = &memory.emove.status;

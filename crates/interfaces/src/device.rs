@@ -1,6 +1,6 @@
-//! Device words: what the boards read from and write to the hardware each tick (chapter III, VI.1 to VI.3).
+//! Device words: the words that the boards read from and write to the hardware each tick (chapter III, VI.1 to VI.3).
 //!
-//! Raw words only: counts, bits and bytes. Scaling is the business of the process that owns the device.
+//! Raw words only: counts, bits and bytes. The process that owns the device scales them.
 
 use rcs_core::Plain;
 

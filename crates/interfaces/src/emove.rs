@@ -96,7 +96,7 @@ pub struct ObjectGrip {
     pub grip: i32,
 }
 
-/// What the attached gripper holds, by its sensors (docs/design/recovery.md "Held"; extension).
+/// The content of the attached gripper, by its sensors (docs/design/recovery.md "Held"; extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub enum Holding {
     /// Nothing.
@@ -244,7 +244,7 @@ pub enum Direction {
     Back,
 }
 
-/// The way that the robot is on: published so that an interrupted move can go on (docs/design/recovery.md).
+/// The path that the robot is on: published so that an interrupted move can go on (docs/design/recovery.md).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Way {
     /// The place left.
@@ -259,11 +259,11 @@ pub struct Way {
     pub straight: bool,
     /// Which way the robot went last.
     pub direction: Direction,
-    /// Where the robot was commanded to be last.
+    /// The last commanded pose of the robot.
     pub rest: Pose,
     /// The joystick box has moved the robot since.
     pub by_hand: bool,
-    /// The link has failed since: the robot has stopped short of where it was commanded to be.
+    /// The link has failed since: the robot has stopped before its commanded position.
     pub cut_off: bool,
 }
 
@@ -306,17 +306,17 @@ pub struct Exchange {
     pub place: RobotPlace,
 }
 
-/// What E-move believes of the world and cannot read from a sensor alone. It is an output, so that E-move has
-/// it again after a restart; each belief counts only as long as the sensors do not contradict it.
+/// State of the world that E-move cannot read from a sensor alone. It is an output, so that E-move has it again after a
+/// restart; each belief counts only as long as no sensor contradicts it.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Beliefs {
     /// Where the robot stands.
     pub place: Option<RobotPlace>,
-    /// The way that it is on.
+    /// The path that it is on.
     pub way: Option<Way>,
     /// What the gripper holds.
     pub held: Option<Grasped>,
-    /// What it was told last to grasp.
+    /// The object that it was last commanded to grasp.
     pub grasping: Option<Grasped>,
     /// The fingers were empty, and have not been told to close since.
     pub empty: bool,

@@ -70,8 +70,8 @@ impl GripReport {
     }
 }
 
-/// What a gripper has between its fingers, as its sensors tell it, whatever was commanded
-/// (docs/design/ownership.md "Felt"; extension).
+/// What a gripper has between its fingers, by its sensors, independent of the command (docs/design/ownership.md "Felt";
+/// extension).
 ///
 /// While a process is dormant it stays what it was, and the header says that the outputs were republished: it
 /// counts only for the gripper that is on the robot.

@@ -11,7 +11,7 @@ use crate::{
     subtask::{SubtaskCommand, SubtaskVerb},
 };
 
-/// Command from the HWSC to Task. Words are text, since they come from outside; Task checks them.
+/// Command from the HWSC to Task. Words are text, because they come from outside; Task checks them.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct HwsCommand {
     /// `command-#-in`; 0 before the first command.
@@ -75,9 +75,9 @@ pub struct HwsStatus {
 pub struct Ledger {
     /// The command, without its number.
     pub command: HwsCommand,
-    /// What it ordered of Subtask last, pauses apart.
+    /// Its last command to Subtask, except PAUSE.
     pub last: SubtaskVerb,
-    /// The Data System has been told of its move, or is not to be told of it.
+    /// The Data System has got the update for its move, or needs none.
     pub told: bool,
 }
 
@@ -97,7 +97,7 @@ pub struct TaskOutputs {
     pub data_base: DataBaseCommand,
     /// Is the Data System told of moves (extension)?
     pub connection: Connection,
-    /// What Task believes of the Data System (extension).
+    /// Task's beliefs about the Data System (extension).
     pub beliefs: DataBaseBeliefs,
     /// The last command about an object or a tool that is not finished (extension).
     pub ledger: Option<Ledger>,

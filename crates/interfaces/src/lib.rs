@@ -1,9 +1,9 @@
 //! The buffers between processes, and between the controller and its devices: chapters V and VI.
 //!
-//! Each process owns one record of output buffers; together they are [`CommonMemory`]. Every buffer record
-//! starts with a [`Header`] and is written only by its owner. Variables have the manual's names in Rust's
-//! spelling: `command-#-in` is `number`, its echo is `echo`, `^-pose` is `pose` and holds a record number. What
-//! the manual does not have is marked *extension*.
+//! Each process owns one record of output buffers; together they are [`CommonMemory`]. Every buffer record starts with
+//! a [`Header`] and is written only by its owner. Variables have the manual's names in Rust's spelling: `command-#-in`
+//! is `number`, its echo is `echo`, `^-pose` is `pose` and holds a record number. Variables that the manual does not
+//! have are marked *extension*.
 
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
@@ -310,7 +310,7 @@ impl CommonMemory {
         records.iter().find(|record| record.number == Some(number)).map(|record| &record.pose)
     }
 
-    /// What the controller writes to its devices, gathered from the processes that own them.
+    /// The outputs of the controller to its devices, collected from the processes that own them.
     #[must_use]
     pub fn device_outputs(&self) -> DeviceOutputs {
         DeviceOutputs {
@@ -339,7 +339,7 @@ pub struct ExternalInputs {
     /// Generation of the task data that the tick uses: 0 as loaded before the first tick, one more after each
     /// reload.
     pub generation: u32,
-    /// From an Active Pedestal that is a system of its own.
+    /// From an Active Pedestal that is a separate system.
     pub pedestal: OutsidePedestal,
     /// From the terminals of the boards.
     pub operator: OperatorInputs,

@@ -1,5 +1,5 @@
-//! What a person does at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3), and no device carries: boards
-//! are stopped and started, a level is executed once, the link is initialized.
+//! Inputs of a person at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3) that come from no device: boards are
+//! stopped and started, a level is executed once, the link is initialized.
 //!
 //! | at a terminal | here |
 //! |---|---|
@@ -15,10 +15,10 @@ use crate::ProcessId;
 /// Numbers of the boards on which something runs (IV.2.2), in the order of their bits.
 pub const BOARDS: [u8; 5] = [0, 2, 4, 6, 8];
 
-/// What a person does at the terminals of the boards.
+/// Inputs of a person at the terminals of the boards.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct OperatorInputs {
-    /// Boards that are stopped: a bit each, in the order of [`BOARDS`].
+    /// Stopped boards: one bit each, in the order of [`BOARDS`].
     pub stopped: u8,
     /// Processes that are stepped in this tick although their board is stopped or their switch holds them: a
     /// bit each, in the order of [`ProcessId::ALL`].
@@ -27,7 +27,7 @@ pub struct OperatorInputs {
     pub robot_init: u32,
 }
 
-/// The bit of a board; 0 for a number that no board has.
+/// The bit of a board; 0 for a number without a board.
 #[must_use]
 pub const fn board_bit(board: u8) -> u8 {
     match board {

@@ -1,8 +1,7 @@
 //! Subtask and the Active Pedestal (VI.7.2), and the pedestal's own hand and table processes.
 //!
-//! The Active Pedestal is a small RCS of its own. The manual gives the interface of its upper process; those
-//! of hand and table are ours. The hand is nearly identical to the parts gripper (III.9.2) and has the
-//! buffers of Grip.
+//! The Active Pedestal is a small RCS itself. The manual gives the interface of its upper process; those of hand and
+//! table are of this project. The hand is nearly identical to the parts gripper (III.9.2) and has the buffers of Grip.
 
 use core::fmt;
 
@@ -134,7 +133,7 @@ pub struct TableCommand {
 pub struct TableStatus {
     /// Echo of the command number.
     pub echo: u32,
-    /// How it stands.
+    /// Its report.
     pub report: PedestalReport,
     /// Why it failed.
     pub reason: Reason,
@@ -172,14 +171,14 @@ pub struct TableOutputs {
     pub motor: MotorCommand,
 }
 
-/// What an Active Pedestal that is a system of its own has sent over the network (II.2, IX.3). Its three
-/// processes run there, and what they wrote is adopted into common memory here.
+/// Data from an Active Pedestal that is a separate system, received over the network (II.2, IX.3). Its three processes
+/// run there, and their outputs are copied into common memory here.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct OutsidePedestal {
     /// It is another system: the processes of the pedestal are not stepped here.
     pub elsewhere: bool,
-    /// It answers. While it does not, its buffers keep what it wrote last and the stamp of that tick, by
-    /// which their readers know it for lost.
+    /// It answers. While it does not, its buffers keep their last values and the stamp of that tick, by which readers
+    /// treat it as lost.
     pub answers: bool,
     /// Output buffers of its pedestal process; the stamp does not count.
     pub pedestal: PedestalOutputs,

@@ -1,18 +1,18 @@
-//! A control process (II.2.2): once a tick it reads common memory as the tick before left it, decides, and
-//! writes its own output buffers.
+//! A control process (II.2.2): once a tick it reads common memory of the tick before, decides, and writes its own
+//! output buffers.
 
 use rcs_core::{Plain, table::Table, tick::Tick};
 
 use crate::{CommonMemory, ExternalInputs};
 
-/// What a process reads in a tick. `Data` is the task data, which rcs-core does not know.
+/// Inputs of a process in a tick. `Data` is the task data, on which this crate does not depend.
 #[derive(Debug)]
 pub struct Inputs<'a, Data: ?Sized> {
     /// This tick.
     pub tick: Tick,
     /// All output buffers as written in the tick before.
     pub memory: &'a CommonMemory,
-    /// What came from outside for this tick.
+    /// External inputs of this tick.
     pub external: &'a ExternalInputs,
     /// Task data.
     pub data: &'a Data,
@@ -20,17 +20,17 @@ pub struct Inputs<'a, Data: ?Sized> {
 
 /// A control process: a pure state machine without clock, I/O or heap.
 ///
-/// [`Process::step`] is the generic process of II.2.2. *preprocess* reads the inputs and sets the state
-/// variables, *decide* looks them up in decision tables, *postprocess* fills the outputs. The same state and
-/// inputs give the same outputs, to the bit.
+/// [`Process::step`] is the generic process of II.2.2. *preprocess* reads the inputs and sets the state variables,
+/// *decide* looks them up in decision tables, *postprocess* fills the outputs. The same state and inputs give the same
+/// outputs, bit for bit.
 pub trait Process<Data: ?Sized> {
-    /// Everything the process remembers: plain data, logged, restorable.
+    /// The whole state of the process: plain data, logged, restorable.
     type State: Plain;
     /// Its output buffers.
     type Outputs: Plain;
-    /// The state variables of a tick, and what else preprocess has found.
+    /// The state variables of a tick, and other results of preprocess.
     type Seen;
-    /// What the tables can ask for.
+    /// Actions of the tables.
     type Action;
 
     /// The manual's name.
@@ -53,7 +53,7 @@ pub trait Process<Data: ?Sized> {
         outputs: &mut Self::Outputs,
     );
 
-    /// What the process remembers.
+    /// The state of the process.
     fn state(&self) -> &Self::State;
 
     /// The same, to go on from another state.
@@ -67,7 +67,7 @@ pub trait Process<Data: ?Sized> {
         self.postprocess(action, &seen, inputs, outputs);
     }
 
-    /// Go on from a remembered state.
+    /// Continue from a saved state.
     fn restore(&mut self, state: Self::State) {
         *self.state_mut() = state;
     }

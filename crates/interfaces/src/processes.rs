@@ -1,8 +1,8 @@
 //! The control processes, each registered once.
 //!
-//! [`for_each_process!`](crate::for_each_process!) is the one list. From it follow [`ProcessId`],
-//! [`CommonMemory`] and the order of the digest, the ladder, the boards and what they exchange, shared
-//! memory, and the chains that explain a failure.
+//! [`for_each_process!`](crate::for_each_process!) is the one list. From it follow [`ProcessId`], [`CommonMemory`] and
+//! the order of the digest, the ladder, the boards and their data exchange, shared memory, and the chains that explain
+//! a failure.
 
 use rcs_core::{Plain, handshake::Lower};
 
@@ -15,7 +15,7 @@ use crate::{Header, Reason, t3i::LinkFault};
 /// * `failure`: the field of its status that says why it failed;
 /// * `board`: the number of the board on which it runs (IV.2.2);
 /// * `commander`: the process above it and the buffer with its command, nothing for Task;
-/// * `reads`: the inputs from outside that it looks at, by the beginnings of their names in `ExternalInputs`.
+/// * `reads`: the external inputs that it reads, by the beginnings of their names in `ExternalInputs`.
 #[macro_export]
 macro_rules! for_each_process {
     ($with:ident) => {
@@ -167,7 +167,7 @@ macro_rules! register {
                 match self { $( Self::$id => only([$( Self::$commander )?]), )+ }
             }
 
-            /// Inputs from outside that it looks at: beginnings of their names in `ExternalInputs`.
+            /// External inputs that it reads: beginnings of their names in `ExternalInputs`.
             #[must_use]
             pub const fn reads(self) -> &'static [&'static str] {
                 match self { $( Self::$id => &$reads, )+ }
@@ -191,7 +191,7 @@ macro_rules! register {
                 match process { $( ProcessId::$id => &self.$field.header, )+ }
             }
 
-            /// What the status of a process says.
+            /// The status of a process.
             #[must_use]
             pub fn said(&self, process: ProcessId) -> Said {
                 match process { $( ProcessId::$id => {
@@ -210,8 +210,7 @@ macro_rules! register {
                 match process { $( ProcessId::$id => [ $( self.$above.$command.number )? ].first().copied(), )+ }
             }
 
-            /// Give the command that a process has from the one above it, as one says it, to `show`; not for
-            /// Task.
+            /// Pass the command of a process, as text, to `show`; not for Task.
             pub fn show_command<T>(
                 &self,
                 process: ProcessId,
@@ -235,7 +234,7 @@ macro_rules! register {
 }
 for_each_process!(register);
 
-/// What the status of a process says, whatever its type.
+/// The status of a process, independent of its type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Said {
     /// The word of its report.
@@ -249,9 +248,9 @@ pub struct Said {
 /// Why a process failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// As most of them say it.
+    /// A reason of most processes.
     Reason(Reason),
-    /// As T3 Interface says it.
+    /// A fault of T3 Interface.
     Link(LinkFault),
 }
 

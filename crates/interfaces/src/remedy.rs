@@ -1,4 +1,4 @@
-//! What a failure asks for: the same command again after a PAUSE, or a person first (docs/reasons.md).
+//! The remedy of a failure: the same command again after a PAUSE, or an action of a person first (docs/reasons.md).
 
 use super::Reason;
 
@@ -6,9 +6,8 @@ impl Reason {
     /// What a person has to do before the same command can succeed; `None` if PAUSE and the same command may
     /// be enough.
     ///
-    /// A person is needed where the job or the task data are wrong, where something lies or stands where the
-    /// controller does not know it, and where a device or a program has to be switched on (extension: the
-    /// manual has no reasons).
+    /// A person is needed where the job or the task data are wrong, where something is at a place that the controller
+    /// does not know, and where a device or a program has to be switched on (extension: the manual has no reasons).
     #[must_use]
     pub const fn remedy(self) -> Option<&'static str> {
         Some(match self {

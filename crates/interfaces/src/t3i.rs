@@ -64,8 +64,7 @@ pub enum ReportCheck {
     Elsewhere,
 }
 
-/// The positions that were sent last, in the words of the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree
-/// (extension).
+/// The last two positions sent, in words of the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct SentWords {
     /// The last one.
@@ -107,7 +106,7 @@ pub struct T3iStatus {
     pub silent: bool,
     /// Is the robot where it was sent (extension)?
     pub check: ReportCheck,
-    /// The positions that were sent last, for a T3I that is restarted (extension).
+    /// The last two positions sent, for a T3I that is restarted (extension).
     pub sent: Option<SentWords>,
     /// Counters (extension).
     pub counters: LinkCounters,
@@ -125,7 +124,7 @@ pub struct T3iOutputs {
 }
 
 impl T3iStatus {
-    /// What a line that carries no answers may mean, in words; `None` if nothing is to be said.
+    /// Possible causes of a line without answers, as text; `None` if there is no trouble.
     #[must_use]
     pub const fn trouble(&self) -> Option<&'static str> {
         if self.silent {

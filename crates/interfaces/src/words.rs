@@ -1,10 +1,10 @@
-//! Commands and quantities as one says them.
+//! Commands and quantities as text.
 
 use core::fmt;
 
 use rcs_core::name::Name;
 
-/// The object or the sensor of a command behind its verb, if it has one.
+/// The object or the sensor of a command after its verb, if it has one.
 pub(super) fn name<const N: usize>(f: &mut fmt::Formatter<'_>, name: Option<&Name<N>>) -> fmt::Result {
     name.map_or(Ok(()), |name| write!(f, " {name}"))
 }

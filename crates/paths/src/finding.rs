@@ -1,31 +1,31 @@
-//! What a flight has come to: its segments, and what is wrong with it.
+//! Results of a flight: its segments and its findings.
 
 use serde::Serialize;
 
 use crate::{plan::Phase, survey::Passing};
 
-/// Something that is wrong with a way.
+/// A problem of a path.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
     /// `path.joint`, `path.contact`, `path.link`, `path.grip`, `path.place` or `path.margin`.
     pub code: &'static str,
-    /// It fails, or runs into something; else it is only near to that.
+    /// An error: the motion fails or collides; otherwise a warning that it comes near to that.
     pub error: bool,
     /// Line of the job, from 1.
     pub line: u32,
-    /// What, where, and by how much.
+    /// The problem, where, and by how much.
     pub message: String,
     /// What to do.
     pub help: Option<String>,
-    /// What makes it the same finding in another walk.
+    /// Key of equal findings in other walks.
     #[serde(skip)]
     pub key: String,
-    /// Of two that are the same the deeper one counts.
+    /// Of two equal findings the deeper one is kept.
     #[serde(skip)]
     pub depth: f64,
 }
 
-/// The way to a point, flown.
+/// A flown segment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Segment {
     /// The point before.
@@ -38,12 +38,12 @@ pub struct Segment {
     pub joint: &'static str,
     /// How near, degrees.
     pub margin_deg: f64,
-    /// What is passed most closely.
+    /// The closest passing.
     pub nearest: Option<Passing>,
 }
 
 impl Segment {
-    /// Take over what is nearer on another flight.
+    /// Keep the smaller margins and clearances of this and another flight.
     pub fn merge(&mut self, other: &Self) {
         if other.margin_deg < self.margin_deg {
             (self.joint, self.margin_deg) = (other.joint, other.margin_deg);
@@ -55,7 +55,7 @@ impl Segment {
     }
 }
 
-/// A phase, flown.
+/// A flown phase.
 #[derive(Clone, Debug, Serialize)]
 pub struct Walked {
     /// The phase.

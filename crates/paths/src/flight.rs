@@ -1,5 +1,5 @@
-//! Points as the robot flies them: Prim's motion at full speed, the limits of the link (A 2.3), the T3's
-//! joints with the roll that it has accumulated, and its servos with their lag.
+//! Simulated motion through points: Prim's motion at full speed, the limits of the link (A 2.3), the T3's joints with
+//! accumulated roll, and its servos with their lag.
 
 use depc::{
     Limits as LinkLimits, Plate,
@@ -16,48 +16,47 @@ use plant::{arm::Arm, description::Actuators};
 use rcs_core::tick::TICK_S;
 use taskdata::files::TrajPara;
 
-/// From the tick in which a through point is passed to the one in which Prim has the next goal
-/// (docs/design/motion.md "Flying on").
+/// Ticks from passing a through point until Prim has the next goal (docs/design/motion.md "Flying on").
 const FLIES_ON: u32 = 2;
 /// Ticks for which Prim wants to see the robot at rest (docs/design/motion.md "Rest").
 const SETTLES: u32 = 3;
-/// A motion that takes longer is given up, ticks: ten minutes.
+/// Longest motion, ticks: ten minutes.
 const LONGEST: u32 = 15_000;
-/// The servos have come to rest after so many ticks, or never.
+/// Most ticks until the servos come to rest.
 const LAG: u32 = 100;
 
 /// Why a flight ends before its goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Trouble {
-    /// The joints cannot take the position.
+    /// The joints cannot reach the position.
     Joints {
-        /// As the robot controller names it.
+        /// The problem, with the robot controller's name.
         problem: JointProblem,
         /// The joint from 0 and how far it would be beyond its limit, degrees; `None` if the position is out of reach.
         joint: Option<(usize, f64)>,
         /// The tool point, world, inches.
         at: [f64; 3],
     },
-    /// The position has no words on the link.
+    /// The position cannot be coded on the link.
     Words,
-    /// A count of the parameters is not positive: the motion would never end.
+    /// A parameter of the motion is not positive: the motion would never end.
     Parameters,
     /// The motion takes longer than ten minutes.
     Endless,
 }
 
-/// What the robot does on the way to a point.
+/// Motion of the robot to a point.
 #[derive(Clone, Debug)]
 pub struct Flown {
     /// Ticks from the point before.
     pub ticks: u32,
-    /// Of these, ticks in which the link has held the robot back.
+    /// Of these, ticks in which the limits of the link have slowed the robot.
     pub held_back: u32,
     /// The joint that comes nearest to a limit.
     pub margin: Margin,
 }
 
-/// The robot: what its controller was sent last, and where its arm has come to.
+/// The robot: the last position sent to its controller, and the joint angles of its arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robot {
     position: Position,
@@ -66,7 +65,7 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// A robot at rest at joint angles in radians. `None` if the link has no words for where it stands.
+    /// A robot at rest at joint angles in radians. `None` if its position cannot be coded on the link.
     #[must_use]
     pub fn standing(actuators: &Actuators, joints: &Joints) -> Option<Self> {
         let plate = Plate::from_frame(&T3.forward_plate(joints), &Plate::default()).ok()?;
@@ -74,7 +73,7 @@ impl Robot {
         Some(Self { position, joints: *joints, arm: Arm::new(actuators, *joints) })
     }
 
-    /// Where the arm is, joint angles in radians.
+    /// Joint angles of the arm, radians.
     #[must_use]
     pub fn joints(&self) -> &Joints {
         self.arm.joints()
@@ -86,13 +85,13 @@ impl Robot {
         self.position.tool()
     }
 
-    /// Let a tick pass.
+    /// Simulate a tick.
     fn tick(&mut self, look: &mut impl FnMut(&Joints)) {
         self.arm.advance(TICK_S, false, &[]);
         look(self.arm.joints());
     }
 
-    /// Go to a point of Prim as T3 Interface does: as fast as the link allows. Returns the ticks that it takes.
+    /// Move to a point of Prim as T3 Interface does: as fast as the link allows. Returns the ticks needed.
     fn command(&mut self, point: &Frame, look: &mut impl FnMut(&Joints)) -> Result<u32, Trouble> {
         for ticks in 1..LONGEST {
             let next = step(&self.position, point, &T3, &LinkLimits::NBS).map_err(|_| Trouble::Words)?;
@@ -112,8 +111,8 @@ impl Robot {
         Err(Trouble::Endless)
     }
 
-    /// Fly through points to the last one and come to rest. `look` is called each tick with the number of the
-    /// point and the joint angles of the arm.
+    /// Move through points to the last one and come to rest. `look` is called each tick with the number of the point
+    /// and the joint angles of the arm.
     pub fn fly(
         &mut self,
         points: &[(Frame, TrajPara)],
@@ -164,14 +163,14 @@ impl Robot {
     }
 }
 
-/// The joint that is farthest beyond a limit at a position that cannot be taken, and by how much, degrees.
+/// The joint that is farthest beyond a limit at an unreachable position, and by how much, degrees.
 fn beyond(plate: &Plate, near: &Joints) -> Option<(usize, f64)> {
     let joints = T3.inverse(&plate.to_tool(&T3), near).ok()?;
     let margin = T3.margin(&joints);
     (margin.radians < 0.0).then(|| (margin.joint, -margin.radians.to_degrees()))
 }
 
-/// Ticks that Prim's motion takes from rest at a frame to each of some points, without link and arm.
+/// Ticks of Prim's motion from rest at a frame to each of some points, without link and arm.
 #[must_use]
 pub fn time(start: &Frame, points: &[(Frame, TrajPara)]) -> Vec<u32> {
     let mut motion = Motion::at_rest(start);

@@ -1,5 +1,5 @@
-//! The lines of a job in their order: every way is flown, with what stands where and what the robot holds
-//! carried along.
+//! The lines of a job in their order: every path is flown, and the state of the cell and the held part are updated
+//! after each.
 
 use geometry::kinematics::T3;
 use interfaces::HwsCommand;
@@ -28,7 +28,7 @@ use crate::{
     walk::Walk,
 };
 
-/// What no walk can know.
+/// What a walk cannot check.
 pub const NOT_CHECKED: [&str; 6] = [
     "where a guarded move ends: its joints are checked over its whole length, its clearance is not",
     "slip of a part in the fingers, and how a part comes to lie that is dropped or pushed",
@@ -37,10 +37,10 @@ pub const NOT_CHECKED: [&str; 6] = [
     "faults of sensors, valves and the link",
     "the lag of the resolvers; that of the servos is walked with",
 ];
-/// A robot this near to a location point at the start stands there, in.
+/// Distance within which the robot counts as being at a location point at the start, in.
 const STANDS: f64 = 0.5;
-/// Where in its sector a part is tried that is delivered at random: x and y in shares of the greatest offset,
-/// and the angle in degrees. Half a turn changes nothing for two fingers.
+/// Positions in its sector that are tried for a part delivered at random: x and y in shares of the greatest offset, and
+/// the angle in degrees. Half a turn makes no difference for two fingers.
 const TRIED: [[f64; 3]; 12] = [
     [0.0, 0.0, 22.5],
     [0.0, 0.0, 45.0],
@@ -56,7 +56,7 @@ const TRIED: [[f64; 3]; 12] = [
     [1.0, 1.0, 95.0],
 ];
 
-/// A line of a job, walked.
+/// A walked line of a job.
 #[derive(Clone, Debug, Serialize)]
 pub struct JobLine {
     /// Line of the file from 1.
@@ -65,9 +65,9 @@ pub struct JobLine {
     pub text: String,
     /// Its phases.
     pub phases: Vec<Walked>,
-    /// What the robot holds after it.
+    /// The part that the robot holds after it.
     pub holds: Option<String>,
-    /// In how many places and attitudes of a part it was tried.
+    /// Number of positions and attitudes of a part that were tried.
     pub tried: usize,
 }
 
@@ -79,21 +79,21 @@ impl JobLine {
     }
 }
 
-/// A job, walked.
+/// A walked job.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct WalkedJob {
     /// Name of the job.
     pub job: String,
     /// Its lines with commands.
     pub lines: Vec<JobLine>,
-    /// What is wrong.
+    /// Its findings.
     pub findings: Vec<Finding>,
-    /// What was not walked, and why.
+    /// Parts that were not walked, and why.
     pub not_checked: Vec<String>,
 }
 
 impl WalkedJob {
-    /// The least clearance on the way.
+    /// The least clearance of the job.
     #[must_use]
     pub fn nearest(&self) -> Option<&Passing> {
         let segments = self.lines.iter().flat_map(|line| &line.phases).flat_map(|phase| &phase.segments);
@@ -155,7 +155,7 @@ pub fn walk_job(job: &Job, store: &Store, room: &Room, known: &Known) -> WalkedJ
     walked
 }
 
-/// The robot as a run begins, at the location point where it stands.
+/// The robot at the start of a run, at its location point.
 fn start<'a>(store: &'a Store, room: &'a Room, known: &'a Known) -> Option<State<'a>> {
     let joints = room.cell().robot.start_joints();
     let tool = T3.forward(&joints);
@@ -170,7 +170,7 @@ fn start<'a>(store: &'a Store, room: &'a Room, known: &'a Known) -> Option<State
     Some(State::new(room, known, Walk::new(store, &location), robot))
 }
 
-/// Walk a command; where a part lies at random in its sector, over the range of places and attitudes.
+/// Walk a command; if a part lies at random in its sector, for a range of positions and attitudes.
 fn command_line(
     state: &mut State<'_>,
     command: &HwsCommand,
@@ -241,7 +241,7 @@ fn command_line(
 }
 
 impl JobLine {
-    /// Take over what is nearer on another walk of the same command.
+    /// Keep the smaller margins and clearances of other walks of the same command.
     fn merge(&mut self, others: &[Walked]) {
         for (phase, other) in self.phases.iter_mut().zip(others) {
             for (segment, other) in phase.segments.iter_mut().zip(&other.segments) {
@@ -251,7 +251,7 @@ impl JobLine {
     }
 }
 
-/// Carry a command out: its phases, and what is wrong with them.
+/// Walk a command: its phases and their findings.
 fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding>) {
     let data = *state.walk.data();
     let grips = command.object.and_then(|object| data.obj_grips(&object));
@@ -284,7 +284,7 @@ fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding
     (phases, findings)
 }
 
-/// What the workstation does. False if the position of the robot is not known afterwards.
+/// Apply an action of the workstation. False if the position of the robot is not known afterwards.
 fn act(state: &mut State<'_>, action: &Workstation) -> bool {
     match action {
         Workstation::Tray { location, object, offset } => {

@@ -1,5 +1,5 @@
-//! A phase flown as it is planned, and back as an interruption would have it (docs/design/recovery.md "On the
-//! way"): what is wrong with it, in words.
+//! A phase is flown as planned, and back as after an interruption (docs/design/recovery.md "On the way"); problems
+//! become findings.
 
 use std::sync::Arc;
 
@@ -21,15 +21,16 @@ use crate::{
     steps::Step,
 };
 
-/// A joint that comes nearer to a limit than this is warned of, degrees.
+/// Margin of a joint below which there is a warning, degrees.
 pub const LEAST_MARGIN: f64 = 0.5;
 
-/// The middle of the fingers may be so far beside that of a part that the closed jaws of the vise hold, in
-/// (ASSUMED): the part cannot be drawn to it, and slips when the jaws open.
+/// Greatest distance of the middle of the fingers from that of a part held by the closed jaws of the vise, in
+/// (ASSUMED): the fingers cannot draw the part to their middle, and it slips when the jaws open.
 const BESIDE: f64 = 0.015;
 
 impl State<'_> {
-    /// Fly a phase under these commands of E-move and Subtask; `clear` says whether what it touches can be known.
+    /// Fly a phase under these commands of E-move and Subtask; `clear`: the positions of other bodies are known, so
+    /// contacts can be checked.
     pub fn fly(&mut self, phase: Phase, commands: [&'static str; 2], clear: bool) -> (Walked, Vec<Finding>) {
         if phase.legs.is_empty() || phase.missing.is_some() {
             return (Walked::of(phase), Vec::new());
@@ -60,7 +61,7 @@ impl State<'_> {
         (Walked { plan: phase, segments }, findings)
     }
 
-    /// What is wrong with a grasp of a part that the vise holds.
+    /// Findings of a grasp of a part that the vise holds.
     pub(crate) fn beside(&self, step: &Step, phase: &Phase) -> Option<Finding> {
         let Step::Fingers { verb: EmoveVerb::GraspObj, object: Some(object), .. } = step else { return None };
         let tool = self.robot.tool();
@@ -164,7 +165,7 @@ impl State<'_> {
         findings
     }
 
-    /// The via point of the stored trajectories that would help, if there is one.
+    /// The via point of the stored trajectories that would make the path free, if there is one.
     fn help(&self, phase: &Phase, failed: &Outcome, clear: bool) -> String {
         let worst = failed.seen.iter().position(|seen| seen.touched.is_some());
         let at = worst.unwrap_or(failed.flown.len().saturating_sub(1));
@@ -192,7 +193,7 @@ impl State<'_> {
     }
 }
 
-/// The poses that trajectories lead through.
+/// The via poses of all trajectories.
 fn vias<'a>(data: &TaskData<'a>) -> impl Iterator<Item = (Name10, Frame)> + use<'a> {
     let data = *data;
     let points = data.trajectories.iter().flat_map(move |record| data.path(record.path));
@@ -244,7 +245,7 @@ fn backwards(phase: &Phase, departs: usize) -> (Points, Vec<(String, String, Opt
     (Points { list, opens: 0 }, names)
 }
 
-/// Why a flight cannot go on: in words, what makes it the same, and how bad it is.
+/// Text, key and depth of the finding for a flight that cannot go on.
 pub(crate) fn in_words(trouble: Trouble) -> (String, String, f64) {
     match trouble {
         Trouble::Joints { problem, joint, at: [x, y, z] } => {

@@ -1,5 +1,5 @@
-//! Flights that were looked at: one that comes again with the same things near it, in another job or with a part
-//! in another place, is not flown again.
+//! Cache of checked flights: a flight with the same bodies near it, in another job or with a part elsewhere, is not
+//! flown again.
 
 use std::{
     collections::HashMap,
@@ -20,14 +20,14 @@ use crate::{
     survey::{SIGHT, Seen, Survey},
 };
 
-/// Points, and from which of them on the fingers are as open as at the goal.
+/// Points, and the index from which the fingers are as open as at the goal.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Points {
     pub list: Vec<(Frame, TrajPara)>,
     pub opens: usize,
 }
 
-/// What a flight depends on, but for what stands near it.
+/// Inputs of a flight, except the bodies near it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Asked {
     pub robot: Robot,
@@ -38,16 +38,16 @@ pub(crate) struct Asked {
     pub openings: [f64; 2],
     /// Commands of E-move and Subtask.
     pub commands: [&'static str; 2],
-    /// Those under which the robot has come to its start.
+    /// Commands with which the robot has come to its start.
     pub before: Vec<[&'static str; 2]>,
-    /// Clearances are looked at.
+    /// Clearances are checked.
     pub clear: bool,
-    /// After the first contact nothing is looked at any more.
+    /// The check ends at the first contact.
     pub tries: bool,
 }
 
 impl Asked {
-    /// A number that is the same for all that are the same.
+    /// A hash: equal inputs give equal numbers.
     fn number(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         let tool = self.robot.tool().position;
@@ -60,7 +60,7 @@ impl Asked {
     }
 }
 
-/// A flight and what was seen on it.
+/// A flight and its clearances.
 #[derive(Debug)]
 pub(crate) struct Outcome {
     pub robot: Robot,
@@ -75,7 +75,7 @@ impl Outcome {
     }
 }
 
-/// Fly, and look at the robot among the devices of a layout.
+/// Fly, and check the robot against the bodies of a layout.
 fn fly(asked: &Asked, room: &Room, layout: &Layout, devices: &[Body]) -> (Outcome, Swept) {
     let Asked { points, openings: [opening, at_goal], .. } = asked;
     let mut robot = asked.robot.clone();
@@ -102,18 +102,18 @@ fn fly(asked: &Asked, room: &Room, layout: &Layout, devices: &[Body]) -> (Outcom
     (Outcome { robot, flown, seen, trouble }, survey.into_swept())
 }
 
-/// A flight that was looked at.
+/// A checked flight.
 #[derive(Debug)]
 struct Flight {
     asked: Asked,
     swept: Swept,
-    /// What it may have come near.
+    /// Bodies near it.
     near: Vec<Body>,
     outcome: Arc<Outcome>,
 }
 
 impl Flight {
-    /// The same flight with the same things near it.
+    /// True for the same flight with the same bodies near it.
     fn answers(&self, asked: &Asked, devices: &[Body]) -> bool {
         let mut near = devices.iter().filter(|body| self.swept.passes(body, SIGHT));
         self.asked == *asked
@@ -129,7 +129,8 @@ pub struct Known {
 }
 
 impl Known {
-    /// What comes of a flight in a layout of the cell. A flight that another thread is about to look at is waited for.
+    /// The outcome of a flight in a layout of the cell. If another thread is checking the same flight, this waits for
+    /// it.
     pub(crate) fn outcome(&self, asked: Asked, room: &Room, layout: &Layout) -> Arc<Outcome> {
         let devices = room.devices(layout);
         let alike = Arc::clone(locked(&self.flights).entry(asked.number()).or_default());
@@ -145,7 +146,7 @@ impl Known {
     }
 }
 
-/// A thread that panicked has left no flight half noted.
+/// Lock the cache, also after a panic in another thread: entries are always complete.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

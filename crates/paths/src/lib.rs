@@ -1,4 +1,5 @@
-//! The way of the robot before it moves: what a command, a job or a stored route makes it fly, and whether it can.
+//! Check of the robot's paths before it moves: the path of a command, a job or a stored route, and whether the robot
+//! can follow it.
 //!
 //! ```text
 //!   steps     what Task and Subtask make of a command (V.3, V.4)
@@ -13,8 +14,8 @@
 //!   stored    each segment of the stored trajectories
 //! ```
 //!
-//! Nothing here starts a program, reads a clock or simulates forces. What no walk can know stands in
-//! [`job::NOT_CHECKED`].
+//! This crate starts no program, reads no clock and simulates no forces. [`job::NOT_CHECKED`] lists what a walk cannot
+//! check.
 
 #![forbid(unsafe_code)]
 

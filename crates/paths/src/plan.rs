@@ -1,11 +1,11 @@
-//! What a command is made of: phases, and the points that each is flown through.
+//! The plan of a command: phases, and the points of each.
 
 use geometry::frame::Frame;
 use interfaces::emove::EmoveCommand;
 use serde::Serialize;
 use taskdata::files::{Location, TrajPara};
 
-/// Where something was entered.
+/// Where an entry of the task data is.
 #[derive(Clone, Debug, Serialize)]
 pub struct Entry {
     /// What it is.
@@ -14,7 +14,7 @@ pub struct Entry {
     pub at: String,
 }
 
-/// One point on the way.
+/// One point of a path.
 #[derive(Clone, Debug, Serialize)]
 pub struct Leg {
     /// depart, trajectory, approach or goal.
@@ -35,7 +35,7 @@ pub struct Leg {
     pub brk_dst: i32,
     /// Ticks from the point before to this one.
     pub ticks: u32,
-    /// The joint that is nearest to a limit there; `None` if the arm cannot take the pose.
+    /// The joint that is nearest to a limit there; `None` if the arm cannot reach the pose.
     pub joint: Option<&'static str>,
     /// How near, degrees; negative beyond the limit.
     pub margin_deg: Option<f64>,
@@ -57,15 +57,15 @@ impl Leg {
 /// One command of E-move, or of a neighbour.
 #[derive(Clone, Debug, Serialize)]
 pub struct Phase {
-    /// The command in words.
+    /// The command as text.
     pub what: String,
-    /// Opening that is commanded on the way, inches.
+    /// Opening commanded during the motion, inches.
     pub opening_in: Option<f64>,
     /// The entries that it was made of.
     pub entries: Vec<Entry>,
-    /// The points of its way; empty if the robot stands.
+    /// The points of its path; empty if the robot does not move.
     pub legs: Vec<Leg>,
-    /// Why it cannot be done.
+    /// Why it cannot be planned.
     pub missing: Option<String>,
     /// The point from which it starts.
     #[serde(skip)]
@@ -73,7 +73,7 @@ pub struct Phase {
     /// Where that is: tool frame, world, inches.
     #[serde(skip)]
     pub from: Frame,
-    /// A sensor ends it, at a place that is not known beforehand.
+    /// A sensor ends it, at a position that is not known beforehand.
     #[serde(skip)]
     pub guarded: bool,
 }
@@ -101,7 +101,7 @@ impl Phase {
     }
 }
 
-/// A command in words.
+/// A command as text.
 pub(crate) fn described(command: &EmoveCommand, location: &Location) -> String {
     let sector = location.sector.map_or(String::new(), |sector| format!(" sector {sector}"));
     let verb = command.command.text();

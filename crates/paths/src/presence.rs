@@ -1,5 +1,5 @@
-//! What has to be where before the robot makes a step: a part for the fingers, jaws and drum open for what it
-//! carries away, a place for what it lets go.
+//! Conditions on the cell before a step: a part for the fingers, jaws and drum open for a part that is carried away, a
+//! place for a part that is released.
 
 use interfaces::emove::EmoveVerb;
 use plant::{
@@ -9,12 +9,11 @@ use plant::{
 
 use crate::{finding::Finding, state::State, steps::Step};
 
-/// A part that is let go falls no farther than this, in (ASSUMED; depart and release points of the shipped data leave
-/// 0.15 at most).
+/// Greatest fall of a released part, in (ASSUMED; depart and release points of the shipped data leave 0.15 at most).
 const DROP: f64 = 0.5;
 
 impl State<'_> {
-    /// What keeps a step from being made although its way is free.
+    /// What prevents a step although its path is free.
     pub(crate) fn hindrance(&self, step: &Step) -> Option<Finding> {
         match *step {
             Step::Go { .. } => self.in_jaws(),
@@ -41,13 +40,13 @@ impl State<'_> {
         }
     }
 
-    /// What the robot carries, in the world.
+    /// The carried part, in world coordinates.
     fn carried(&self) -> Option<Placed> {
         let held = self.layout.held.as_ref()?;
         Some(Placed { frame: self.robot.tool().compose(&held.frame), ..held.clone() })
     }
 
-    /// It carries away what the closed jaws of the vise hold.
+    /// The robot would carry away a part that the closed jaws of the vise hold.
     fn in_jaws(&self) -> Option<Finding> {
         let part = self.carried()?;
         let (_, closed) = self.room.vise_seat(self.layout.program, &part)?;
@@ -61,7 +60,7 @@ impl State<'_> {
         })
     }
 
-    /// It pulls a tool that the drum grips.
+    /// The robot would pull a tool that the drum grips.
     fn in_drum(&self) -> Option<Finding> {
         self.drum_grips.then(|| {
             finding(
@@ -71,7 +70,7 @@ impl State<'_> {
         })
     }
 
-    /// It lets go of a part that nothing is under or around.
+    /// The robot would release a part with nothing under or around it.
     fn in_the_air(&self) -> Option<Finding> {
         let part = self.carried().filter(|part| self.room.nest_seat(part).is_none())?;
         let mut movers = self.room.movers(&self.layout, self.robot.joints());

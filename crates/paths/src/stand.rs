@@ -1,5 +1,5 @@
-//! Whether the robot can stand in a pose: the joints, the joint that is nearest to a limit, and what is nearest to the
-//! robot as the cell is at the start of a run.
+//! Check of a pose: the joints, the joint that is nearest to a limit, and the obstacle nearest to the robot in the cell
+//! at the start of a run.
 
 use std::fmt;
 
@@ -17,33 +17,33 @@ use plant::{
 use serde::Serialize;
 use taskdata::files::TaskData;
 
-/// How far around the arm is looked for obstacles, inches.
+/// Distance from the arm within which obstacles are reported, inches.
 const NEAR: f64 = 12.0;
-/// So many named poses are shown.
+/// Most named poses that are shown.
 const NAMED: usize = 3;
 
-/// A pose, and what the arm makes of it. Angles are in degrees, lengths in inches.
+/// A pose, and the check of it. Angles are in degrees, lengths in inches.
 #[derive(Clone, Debug, Serialize)]
 pub struct Standing {
     /// Wrist, tool and finger point, 0.01 in.
     pub points: [[i32; 3]; 3],
-    /// Of the six joints; missing if the arm cannot reach it.
+    /// Angles of the six joints; missing if the arm cannot reach it.
     pub joints: Option<[f64; 6]>,
     /// Why not.
     pub unreachable: Option<String>,
     /// The joint nearest to a limit, and how far it is from it; negative beyond it.
     pub margin: Option<(&'static str, f64)>,
-    /// What is nearest to the robot as it stands at the start of a run, and how near.
+    /// The obstacle nearest to the robot in the cell at the start of a run, and its distance.
     pub clearance: Option<(String, String, f64)>,
     /// The nearest poses with a name, and how far their tool points are.
     pub named: Vec<(String, f64)>,
 }
 
 impl Standing {
-    /// What the arm makes of a pose.
+    /// Check a pose.
     ///
     /// # Errors
-    /// A sentence, if the nine numbers are no pose.
+    /// A sentence, if the nine numbers are not a pose.
     pub fn of(pose: &Pose, data: &TaskData<'_>, room: &Room) -> Result<Self, String> {
         let frame = pose.to_frame().map_err(|error| error.to_string())?;
         let (joints, unreachable) = match T3.inverse(&frame, &HOME_JOINTS) {
@@ -78,7 +78,7 @@ impl Standing {
         })
     }
 
-    /// Whether a robot can stand there.
+    /// Whether the robot can be in this pose.
     #[must_use]
     pub fn is_usable(&self) -> bool {
         let touches = |(_, _, inches): &(String, String, f64)| *inches < 0.0;

@@ -1,4 +1,4 @@
-//! Where everything is in the course of a job, and what a step changes.
+//! The state of the cell during a job, and its change by a step.
 
 use geometry::frame::{Frame, Vector, rotation_by};
 use interfaces::emove::EmoveVerb;
@@ -21,31 +21,31 @@ use crate::{
     walk::Walk,
 };
 
-/// A part that is farther than this from where the robot expects it is not there, in.
+/// Greatest distance of a part from its expected position, in.
 const THERE: f64 = 8.0;
 
-/// What a job has come to.
+/// The state during a job.
 #[derive(Clone, Debug)]
 pub struct State<'a> {
     /// The cell.
     pub room: &'a Room,
-    /// Flights that were looked at.
+    /// Cache of checked flights.
     pub known: &'a Known,
-    /// Where the robot is by the task data.
+    /// Position of the robot in the task data.
     pub walk: Walk<'a>,
-    /// Where it is.
+    /// Position of the arm.
     pub robot: Robot,
-    /// Where everything else is.
+    /// Positions of everything else.
     pub layout: Layout,
-    /// What it holds, with which grip.
+    /// The held object, and its grip.
     pub held: Option<(Name16, i32)>,
-    /// Parts that lie anywhere in their sectors.
+    /// Parts that were delivered at random positions of their sectors.
     pub random: Vec<Random>,
-    /// A flight that fails is tried with more via points.
+    /// A failed flight is tried with further via points.
     pub advises: bool,
-    /// It cannot go on: its controller has stopped.
+    /// The robot cannot go on: its controller has stopped.
     pub stranded: bool,
-    /// Commands under which the robot has come to stand as it does.
+    /// Commands with which the robot has come to its position.
     pub before: Vec<[&'static str; 2]>,
     /// The object that the pedestal has, or is about to have.
     regrip: Option<Name16>,
@@ -53,7 +53,7 @@ pub struct State<'a> {
     last: Option<(Name16, Location)>,
     /// The drum has closed its fingers on a tool.
     pub(crate) drum_grips: bool,
-    /// Parts that were not where they should be, which is told once, and what they were to become.
+    /// Parts that were not at their places, which is reported once, and the parts machined from them.
     pub(crate) lacking: Vec<Name16>,
 }
 
@@ -81,8 +81,8 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Put a part into a sector, or another place of it there if it is there already. False if the cell has
-    /// no such place.
+    /// Put a part into a sector, or in another position there if it is there already. False if the cell has no such
+    /// place.
     pub fn deliver(&mut self, object: &Name16, at: &Location, aside: [f64; 3], again: bool) -> bool {
         let cell = self.room.cell();
         let Some(kind) = cell.part(object.as_str()) else { return false };
@@ -123,7 +123,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// The jaws close on what is between them; what nothing else has comes to lie at its seat.
+    /// The jaws close on the part between them; a part that nothing else holds moves to its seat.
     fn clamp(&mut self) {
         let opened = Layout { jaws: self.room.jaws(self.layout.program, Jaws::Open), ..self.layout.clone() };
         if let Some(index) = self.room.in_vise(&opened)
@@ -221,7 +221,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// What changes while the robot stands.
+    /// Changes without motion of the robot.
     fn stand(&mut self, step: &Step) {
         match *step {
             Step::Fingers { verb: EmoveVerb::GraspObj, object, grip } => {
@@ -286,7 +286,7 @@ impl<'a> State<'a> {
         self.layout.held = Some(Placed { frame, ..part });
     }
 
-    /// Let go of what is held, and open to so many inches; all the way if that is not said.
+    /// Release the held part, and open to so many inches, or fully if no opening is given.
     fn release(&mut self, opening: Option<f64>) {
         self.held = None;
         if let Some(held) = self.layout.held.take() {
@@ -357,9 +357,9 @@ impl<'a> State<'a> {
     }
 }
 
-/// The part frame that vision answers with (V.2.1 LOCATE-OBJ): in the plane of the place, at the middle of
-/// the part, turned by no more than a quarter turn so that tool Y lies across its wider side for grip 1, else
-/// across the narrower (VII.7.6).
+/// The part frame of vision's answer (V.2.1 LOCATE-OBJ): in the plane of the place, at the middle of the part, turned
+/// by no more than a quarter turn so that tool Y lies across its wider side for grip 1, else across the narrower
+/// (VII.7.6).
 fn found(place: &Frame, part: &Placed, grip: i32) -> Frame {
     let aside = part.frame.position - place.position;
     let at = Vector::new(0.0, aside.dot(&place.y()), aside.dot(&place.z()));

@@ -1,7 +1,7 @@
-//! What Task and Subtask make of a command: the commands of E-move, one after the other (V.3.1, V.4.1).
+//! The steps of a command: the commands of E-move that Task and Subtask give, in their order (V.3.1, V.4.1).
 //!
-//! It is the way without accidents: the right gripper is attached, nothing is held before that the command
-//! does not expect, vision finds the object where it is meant to be.
+//! It is the normal case: the right gripper is attached, no unexpected object is held, and vision finds the object at
+//! its place.
 
 use interfaces::{HwsCommand, emove::EmoveVerb};
 use rcs_core::name::Name16;
@@ -17,7 +17,7 @@ const TOOL_TRANSFER: &str = "TOOL-TRNS";
 /// One command of E-move, or of a neighbour while the robot stands.
 #[derive(Clone, Copy, Debug)]
 pub enum Step {
-    /// The robot goes somewhere.
+    /// The robot moves to a location.
     Go {
         /// The command.
         verb: EmoveVerb,
@@ -58,11 +58,11 @@ pub enum Step {
     LetGoTool,
     /// The tool gripper closes on a tool in the drum.
     GraspTool,
-    /// Something else happens while the robot stands.
+    /// Another step without motion of the robot.
     Other(&'static str),
 }
 
-/// What Subtask has the pedestal do (V.3.1 FIX-GRIP).
+/// Commands of Subtask to the pedestal (V.3.1 FIX-GRIP).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PedestalVerb {
     /// It opens its hand and turns its table to receive the object.
@@ -76,7 +76,7 @@ pub enum PedestalVerb {
 }
 
 impl PedestalVerb {
-    /// In words.
+    /// As text.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -91,7 +91,7 @@ impl PedestalVerb {
 /// The steps of a command; `held` is the object that the robot has, with its grip, if that is known.
 ///
 /// # Errors
-/// The location that is not known, with what is known instead.
+/// The unknown location, with the known ones.
 pub fn steps(
     command: &HwsCommand,
     held: Option<(Name16, i32)>,
@@ -161,7 +161,7 @@ impl Maker<'_> {
         self.data.resolve_location(&name, sector, self.command.object.as_ref())
     }
 
-    /// What the robot holds, if it is the object of the command.
+    /// The held object, if it is that of the command.
     fn held_object(&self) -> Option<(Name16, i32)> {
         self.held.filter(|(object, _)| Some(*object) == self.command.object)
     }
@@ -257,8 +257,8 @@ impl Maker<'_> {
     }
 }
 
-/// GET-ENDEFF (V.3.1): the gripper that is on is left in its holster, and the wanted one is taken from its
-/// own. End effector ids; none for a bare robot.
+/// GET-ENDEFF (V.3.1): the attached gripper is left in its holster, and the wanted one is taken from its own. End
+/// effector ids; none for a bare robot.
 ///
 /// # Errors
 /// A holster that the task data do not have.
@@ -277,8 +277,8 @@ pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<
     Ok(steps)
 }
 
-/// The way to the holster of a gripper, with grip 1 for one that is on and 2 for a bare robot, and where that
-/// is (VII.7.3).
+/// The motion to the holster of a gripper, with grip 1 for an attached gripper and 2 for a bare robot, and its location
+/// (VII.7.3).
 fn to_holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<(Step, Location), LookupError> {
     let object = Name16::clipped(&format!("GRIPPER-{id}"));
     let unknown = LookupError::UnknownObject { name: object };

@@ -24,25 +24,25 @@ use crate::{
     known::{Asked, Known, Points},
 };
 
-/// What is wrong with a segment.
+/// A finding of a segment.
 #[derive(Clone, Debug)]
 pub struct StoredFinding {
     /// Where its end is entered.
     pub at: At,
-    /// What, where, and by how much.
+    /// The problem, where, and by how much.
     pub message: String,
 }
 
-/// What came of the stored routes.
+/// Result of the stored routes.
 #[derive(Clone, Debug, Default)]
 pub struct Stored {
     /// Segments that were walked, each forth and back.
     pub segments: usize,
-    /// What is wrong with them.
+    /// Their findings.
     pub findings: Vec<StoredFinding>,
 }
 
-/// A point that does not depend on what is gone to.
+/// A point that does not depend on the destination.
 struct Fixed {
     name: String,
     frame: Frame,
@@ -116,7 +116,7 @@ fn fixed(data: &TaskData<'_>, point: &PathPoint, at: At) -> Option<Fixed> {
     Some(Fixed { name: name.to_string(), frame, parameters, at })
 }
 
-/// What is wrong with a straight segment, if anything.
+/// The finding of a straight segment, if any.
 fn segment(room: &Room, known: &Known, from: &Frame, to: &Frame, parameters: TrajPara) -> Option<String> {
     let joints = T3.within_limits(&T3.inverse(from, &HOME_JOINTS).ok()?);
     let robot = Robot::standing(&Actuators::from(&room.cell().robot), &joints)?;

@@ -1,5 +1,5 @@
-//! What arm, gripper and held part touch or pass on a flight, judged by the permits of the cell description
-//! as in a run.
+//! Contacts and clearances of arm, gripper and held part on a flight, checked by the permits of the cell description as
+//! in a run.
 
 use std::{collections::BTreeMap, fmt};
 
@@ -12,17 +12,16 @@ use plant::{
 };
 use serde::Serialize;
 
-/// Distances greater than this are not told, in.
+/// Greatest distance that is reported, in.
 pub const MARGIN: f64 = 2.0;
-/// How far is looked, in: the farther, the more ticks can be skipped, and the longer each look takes.
+/// Distance within which pairs are checked, in: a greater one lets more ticks be skipped, but each check takes longer.
 pub(crate) const SIGHT: f64 = 4.0;
-/// What was permitted to touch and is this far apart has come free, in.
+/// A permitted contact has ended at this distance, in.
 const FREE: f64 = 0.05;
-/// How deep a held part may be in what it is put into or taken out of, in (ASSUMED): how it lies in the
-/// fingers depends on vision.
+/// Permitted depth of a held part in the nest or vise that it is put into or taken out of, in (ASSUMED): its position
+/// in the fingers depends on vision.
 pub const FIT: f64 = 0.02;
-/// How deep the fingers may be in a part that they push, beside what is permitted, in (ASSUMED): it lies as
-/// it was dropped.
+/// Further depth of the fingers in a part that they push, in (ASSUMED): the part lies as it was dropped.
 const PUSH_FIT: f64 = 0.05;
 /// How far a point of the robot moves at the most when a joint turns by a radian, in: base to roll.
 const LEVERS: Joints = [105.0, 105.0, 65.0, 30.0, 27.0, 12.0];
@@ -32,7 +31,7 @@ const LEVERS: Joints = [105.0, 105.0, 65.0, 30.0, 27.0, 12.0];
 pub struct Passing {
     /// What of the robot, or the part that it carries.
     pub mover: String,
-    /// What it passes.
+    /// The obstacle.
     pub obstacle: String,
     /// How far apart, inches; negative if they touch.
     pub clearance_in: f64,
@@ -66,10 +65,10 @@ impl fmt::Display for Passing {
     }
 }
 
-/// The least clearance of a leg, and what it runs into.
+/// The least clearance and the deepest contact of a leg.
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
-    /// The nearest of what is nearer than [`MARGIN`].
+    /// The closest passing within [`MARGIN`].
     pub nearest: Option<Passing>,
     /// The deepest contact that is not permitted.
     pub touched: Option<Passing>,
@@ -81,23 +80,23 @@ pub struct Survey<'a> {
     room: &'a Room,
     layout: Layout,
     devices: &'a [Body],
-    /// Where the robot was looked at.
+    /// Where the robot was checked.
     swept: Swept,
     /// Commands of E-move and Subtask.
     commands: [&'static str; 2],
-    /// How deep pairs were while that was permitted.
+    /// Depths of permitted contacts by pair.
     allowed: BTreeMap<(String, String), f64>,
-    /// Where the robot was looked at last.
+    /// Joint angles of the last check.
     at: Joints,
-    /// How far the robot may move from there before it has to be looked at again, in.
+    /// How far the robot may move from there before the next check, in.
     free: f64,
     leg: Option<usize>,
     seen: Seen,
 }
 
 impl<'a> Survey<'a> {
-    /// A survey among the devices of a layout. It begins at joint angles (radians) at which what touches may
-    /// do so under other commands, those under which the robot has come there.
+    /// A survey among the devices of a layout. It begins at joint angles (radians) at which contacts may be permitted
+    /// by the earlier commands with which the robot has come there.
     #[must_use]
     pub fn new(
         room: &'a Room,
@@ -132,19 +131,19 @@ impl<'a> Survey<'a> {
         survey
     }
 
-    /// What was seen on the way to a point, which is then forgotten.
+    /// Result of the motion to a point, which is then reset.
     pub fn take(&mut self) -> Seen {
         (self.leg, self.free) = (None, 0.0);
         std::mem::take(&mut self.seen)
     }
 
-    /// Something was touched on this leg that may not be.
+    /// A contact on this leg is not permitted.
     #[must_use]
     pub const fn touches(&self) -> bool {
         self.seen.touched.is_some()
     }
 
-    /// Where the robot was looked at.
+    /// Where the robot was checked.
     #[must_use]
     pub fn into_swept(self) -> Swept {
         self.swept
@@ -157,7 +156,7 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// Look at the robot on its way to a point, unless it cannot have come nearer to anything than before.
+    /// Check the robot on its way to a point, unless it cannot have come nearer to anything than before.
     pub fn look(&mut self, leg: usize, joints: &Joints) {
         let begins = self.leg != Some(leg);
         let moved: f64 = joints
@@ -189,7 +188,7 @@ impl<'a> Survey<'a> {
         (self.at, self.free) = (*joints, least - known.max(0.0));
     }
 
-    /// It may touch, or has touched where it might and has not come free.
+    /// The contact is permitted, or was permitted and has not ended.
     fn permitted(&mut self, contact: &Contact) -> bool {
         let permits = &self.room.cell().contact;
         let most = permits.during(contact.mover(), contact.obstacle(), self.commands);

@@ -1,5 +1,5 @@
-//! The way of the robot through the steps of a command: each goal and each point on the way to it, planned by
-//! E-move's own route, timed by Prim's own motion.
+//! The path of the robot through the steps of a command: each goal and each via point, planned with E-move's routes and
+//! timed with Prim's motion.
 
 use geometry::{
     frame::Frame,
@@ -37,19 +37,19 @@ use crate::{
     steps::Step,
 };
 
-/// LOCATE-OBJ where nothing says where the object lies.
+/// LOCATE-OBJ if the position of the object is not known.
 const LOCATE: &str = "LOCATE-OBJ: taken to be found in the middle of its place";
-/// Stand for the changing records of E-move in a route: where it departs from, and its goal.
+/// Numbers for the changing records of E-move in a route: its start and its goal.
 const DEPARTURE: u32 = u32::MAX - 1;
 const GOAL: u32 = u32::MAX;
 
-/// The robot on its way.
+/// State of a walk.
 #[derive(Clone, Debug)]
 pub struct Walk<'a> {
     store: &'a Store,
     data: TaskData<'a>,
     place: RobotPlace,
-    /// Where the camera has found the object that is gone to next.
+    /// Where the camera has found the object of the next motion.
     found: Option<Frame>,
 }
 
@@ -61,7 +61,7 @@ impl<'a> Walk<'a> {
         Self { store, data: store.view(), place, found: None }
     }
 
-    /// Other task data are in force from now on.
+    /// Use other task data from now on.
     pub fn load(&mut self, store: &'a Store) {
         (self.store, self.data) = (store, store.view());
     }
@@ -97,8 +97,8 @@ impl<'a> Walk<'a> {
         phase
     }
 
-    /// Make a step; what it consists of, or why it cannot be made. A step that cannot be made ends at its
-    /// location all the same, so that what follows can be explained.
+    /// Make a step; returns its phases, or why it cannot be made. A step that cannot be made also ends at its location,
+    /// so that later steps can be explained.
     pub fn step(&mut self, step: &Step) -> Phase {
         match *step {
             Step::Go { verb, object, grip, location } => self.go(verb, object, grip, &location),
@@ -166,7 +166,7 @@ impl<'a> Walk<'a> {
         Some(self.data.path(self.data.view_approach(&object, grip, &place)?).last()?.para)
     }
 
-    /// A phase that starts where the robot is.
+    /// A phase that starts at the robot's position.
     fn moving(&self, what: String) -> Phase {
         let from = self.place.pose.to_frame().unwrap_or_else(|_| Frame::identity());
         Phase { start: self.place.location.to_string(), from, ..Phase::standing(what) }
@@ -364,7 +364,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The reason with which E-move refuses a command whose way cannot be planned.
+/// The reason with which E-move refuses a command whose path cannot be planned.
 fn refusal(verb: EmoveVerb, route: Planning) -> Reason {
     match accept((), &Request { asked: Asked::Now, verb, route, ..Request::default() }) {
         Verdict::Decided(Decision { action: Action::Refuse(reason), .. }) => reason,

@@ -1,13 +1,13 @@
 //! The fingerprint of a run: 64 bits over the byte images of all output buffers of all ticks in process
 //! order.
 //!
-//! Eight bytes are mixed in one step, as a little-endian word: exclusive or, multiplication, and the upper
-//! half folded into the lower. Each step is a bijection of the hash, so that no later step can hide a
-//! difference, and the fold lets the upper bytes of a word reach the lower ones, which a multiplication alone
-//! does not. It is a checksum against accidents, not against people.
+//! Eight bytes are mixed in one step, as a little-endian word: exclusive or, multiplication, and the upper half folded
+//! into the lower. Each step is a bijection of the hash, so that no later step can hide a difference, and the fold lets
+//! the upper bytes of a word reach the lower ones, which a multiplication alone does not. It detects accidental
+//! differences; it does not protect against manipulation.
 //!
-//! It holds nothing that depends on time spent or on how processes are spread over boards, so equal runs have
-//! equal digests wherever and however they ran.
+//! It does not depend on computing time or on the distribution of processes over boards, so equal runs have equal
+//! digests on every machine.
 
 use crate::{Plain, plain::Writer};
 

@@ -1,9 +1,8 @@
 //! Command numbers and echoes between two processes (docs/design/handshake.md).
 //!
-//! A commander counts its commands; a receiver echoes the number with the status of *that* command. So a
-//! status is believed only if it answers the last command, a repeated text is a new command only if its
-//! number is new, and a process that starts in the middle of things neither executes an old command nor
-//! believes an old status.
+//! A commander counts its commands; a receiver echoes the number with the status of *that* command. So a status counts
+//! only if it answers the last command, a repeated text is a new command only if its number is new, and a process that
+//! is restarted during a run neither executes an old command nor uses an old status.
 //!
 //! | tick | commander                     | receiver                                  |
 //! |------|-------------------------------|-------------------------------------------|
@@ -29,7 +28,7 @@ pub const fn successor(number: u32) -> u32 {
     }
 }
 
-/// What a commander makes of the status of the process below it.
+/// The status of the process below, as its commander reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Lower {
     /// The last command is not echoed yet: neither done nor an error.
@@ -91,8 +90,7 @@ impl Commander {
         self.number
     }
 
-    /// What the status of the process below means now: `report` counts only if `echo` is the last number
-    /// sent.
+    /// Read the status of the process below: `report` counts only if `echo` is the last number sent.
     #[must_use]
     pub fn read(&self, tick: Tick, below: &Header, echo: u32, report: Lower) -> Lower {
         if below.stamp != tick.previous() {

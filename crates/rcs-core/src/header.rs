@@ -14,7 +14,7 @@ pub struct Header {
     pub republished: bool,
     /// The row that decided last, if any has.
     pub decided: Option<Decided>,
-    /// When that row fired, and what its table was consulted with. None for a row of another system, whose
+    /// When that row fired, and the values with which its table was consulted. None for a row of another system, whose
     /// mailbox does not say it.
     pub basis: Option<Basis>,
     /// Rows of other tables that fired when the process was stepped last: in the tick of the stamp, unless the
@@ -33,7 +33,7 @@ pub struct Decided {
     pub row: u8,
 }
 
-/// When a row fired, and what its table was consulted with.
+/// When a row fired, and the values with which its table was consulted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Basis {
     /// The tick.
@@ -42,7 +42,7 @@ pub struct Basis {
     pub values: Values,
 }
 
-/// A row that fired, and what its table was consulted with.
+/// A row that fired, and the values with which its table was consulted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Consulted {
     /// The row.

@@ -1,7 +1,7 @@
 //! The framework of the RCS-II/T3 controller (NBSIR 88-3692).
 //!
-//! This crate knows neither robot nor cell, and does no I/O. It defines what a tick, a name, a record, a
-//! handshake and a decision table *are*, so that all processes agree to the bit:
+//! This crate does not depend on robot or cell, and does no I/O. It defines tick, name, record, handshake and decision
+//! table, so that all processes use the same bits:
 //!
 //! * [`tick`], [`name`]: time and names;
 //! * [`plain`]: one definition of a record gives its structure, its byte image and its description;

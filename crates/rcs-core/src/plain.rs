@@ -1,5 +1,4 @@
-//! Plain data: the fixed-size values that processes exchange and remember, with one definition for everything
-//! that is done with them.
+//! Plain data: the fixed-size values that processes exchange and remember, with one definition for all their uses.
 //!
 //! A type is written once, with `#[derive(Plain)]`, and the same definition gives the Rust type, its byte
 //! image (field by field, little-endian, without padding), the checked way back from bytes, and a [`Schema`]
@@ -245,7 +244,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Bytes that found no room.
+    /// Bytes that did not fit.
     #[must_use]
     #[inline]
     pub const fn missing(&self) -> usize {
@@ -277,7 +276,7 @@ impl<'a> Reader<'a> {
         Ok(*here)
     }
 
-    /// Pass over so many zeros.
+    /// Skip so many zeros.
     ///
     /// # Errors
     /// [`DecodeError::BadFill`] if one of them is not zero, [`DecodeError::TooShort`] if fewer are left.

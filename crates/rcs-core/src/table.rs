@@ -80,10 +80,10 @@
 //!
 //! # Tables above
 //!
-//! What several tables have in common stands in a table of its own, which is consulted first. Its head says
-//! `-> Action or Type`. A row with `consult(Value)` does not decide: it passes a value of that type to the
-//! table below. The type is narrower than the variable that was asked for, so that the table below needs no
-//! rows for what was decided above. `-> Action or ()` and `consult` pass nothing.
+//! Common rows of several tables are in a table of their own, which is consulted first. Its head says `-> Action or
+//! Type`. A row with `consult(Value)` does not decide: it passes a value of that type to the table below. The type is
+//! narrower than the variable that was asked for, so that the table below needs no rows for what was decided above. `->
+//! Action or ()` and `consult` pass nothing.
 //!
 //! # Looking back
 //!
@@ -104,7 +104,7 @@ use crate::plain::EnumSchema;
 
 pub use values::{NearMiss, Values};
 
-/// A decision table as text: what people read in logs, in `rcs-run tables` and in failure reports.
+/// A decision table as text, for logs, `rcs-run tables` and failure reports.
 #[derive(Debug)]
 pub struct Table {
     /// The command that it serves, as the manual writes it: `GET-OBJECT`.
@@ -171,7 +171,7 @@ pub struct Row {
     pub next: Option<&'static str>,
 }
 
-/// What a row asks of a variable.
+/// The condition of a row on a variable.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Condition {
     /// The variable.
@@ -189,7 +189,7 @@ pub struct Decision<Action, Step> {
     pub action: Action,
     /// The reference action from now on.
     pub next: Step,
-    /// What the table was consulted with.
+    /// The values with which the table was consulted.
     pub values: Values,
 }
 
@@ -213,7 +213,7 @@ pub struct Choice<Action, Step> {
     pub action: Action,
     /// The step from now on.
     pub next: Step,
-    /// What the table was consulted with.
+    /// The values with which the table was consulted.
     pub values: Values,
 }
 
@@ -258,7 +258,7 @@ impl Table {
 }
 
 impl Row {
-    /// The step and the conditions as one says them: `Closing, door Stuck`, or `always`.
+    /// The step and the conditions as text: `Closing, door Stuck`, or `always`.
     pub fn conditions(&self) -> impl fmt::Display {
         fmt::from_fn(move |f| {
             if self.steps.is_empty() && self.when.is_empty() {
@@ -302,7 +302,7 @@ impl fmt::Display for Condition {
     }
 }
 
-/// The row as one says it: `Closing, door Stuck => Fail(DoorStuck)`.
+/// The row as text: `Closing, door Stuck => Fail(DoorStuck)`.
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} => {}", self.conditions(), self.call())?;

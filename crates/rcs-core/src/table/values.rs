@@ -1,4 +1,4 @@
-//! What a table was consulted with, looked at afterwards: for logs, screens and explanations.
+//! The values with which a table was consulted, for logs, screens and explanations.
 //!
 //! The values of all state variables are one number ([`Variables::code`](super::Variables::code)), so that a
 //! process can note them in its header. Here the number becomes names again, and the rows are read a second
@@ -29,7 +29,7 @@ pub struct NearMiss {
 }
 
 impl Variable {
-    /// How many combinations of values the variables have; `None` if it is no `u64`.
+    /// How many combinations of values the variables have; `None` if it does not fit a `u64`.
     #[must_use]
     pub const fn combinations(mut variables: &[Self]) -> Option<u64> {
         let mut product = 1_u64;
@@ -57,8 +57,8 @@ impl Table {
         self.steps?.variants.iter().find(|step| step.code == values.step)
     }
 
-    /// The state variables with their values, in the order of the table. Numbers that are no values of this
-    /// table give nothing.
+    /// The state variables with their values, in the order of the table. Numbers that are not values of this table give
+    /// an empty result.
     pub fn values(
         &self,
         values: Values,
@@ -70,7 +70,7 @@ impl Table {
             .filter_map(move |(at, variable)| Some((variable, self.value(at, values)?)))
     }
 
-    /// The row that fires with these values; `None` for numbers that are no values of this table.
+    /// The row that fires with these values; `None` for numbers that are not values of this table.
     #[must_use]
     pub fn consult(&self, values: Values) -> Option<&'static Row> {
         if !self.is_known(values) {
@@ -104,7 +104,7 @@ impl Table {
         step && Variable::combinations(self.variables).is_some_and(|all| values.variables < all)
     }
 
-    /// What a step of the digit of a variable counts in the number: the combinations of those behind it.
+    /// Weight of the digit of a variable in the number: the combinations of the variables after it.
     fn weight(&self, at: usize) -> Option<u64> {
         Variable::combinations(self.variables.get(at.checked_add(1)?..)?)
     }
