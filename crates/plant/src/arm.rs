@@ -1,9 +1,9 @@
 //! The hydraulic arm: servos that follow a command under pressure, joints that sag without.
 //!
-//! Under pressure the joints follow a command that runs to its goal at an even rate, with a first-order lag
-//! and no faster than their greatest speed. The lag is integrated exactly, so that an arm that is left alone
-//! comes to rest at its command to the last bit that a resolver can tell. What the load does to the powered
-//! arm is not here but in the spring between hand and fingers ([`crate::gripper`]).
+//! Under pressure the joints follow a command that runs to its goal at an even rate, with a first-order lag and no
+//! faster than their greatest speed. The lag is integrated exactly, so that an arm at rest is at its command within the
+//! resolution of the resolvers. The deflection of the powered arm under load is modelled by the springs between hand
+//! and fingers ([`crate::gripper`]), not here.
 //!
 //! Without pressure (III.6) each joint is a damper that gives way to the weight of the links, to what hangs
 //! on them, and to what they run into:
@@ -12,10 +12,10 @@
 //!   damping x rate = torque of the weights + torque of the contacts
 //! ```
 //!
-//! There is no inertia in it: at three degrees a second it is of no account. The equation is solved
-//! implicitly in the stiffness of the contacts, which is large, so that an arm that comes to lie on something
-//! lies still. The shot pin stops the shoulder, the joints' limits stop the others. Meanwhile the servos keep
-//! their command, as far as their following error allows, and jump back to it when the pressure returns.
+//! Inertia is neglected: at three degrees a second it has no effect. The equation is solved implicitly in the stiffness
+//! of the contacts, which is large, so that an arm that lies on something is at rest. The shot pin stops the shoulder,
+//! the joints' limits stop the others. Meanwhile the servos keep their command, as far as their following error allows,
+//! and jump back to it when the pressure returns.
 
 use geometry::{
     frame::{Frame, Vector},
@@ -46,17 +46,18 @@ const WRIST_CENTRE: f64 = 1.5;
 /// the fingertips).
 pub const TOOL_CENTRE: f64 = T3.yaw_to_plate + T3.plate_to_tool / 2.0;
 
-/// An arm without pressure none of whose joints is faster has come to rest, rad/s: the last degrees of a limb
-/// that swings down against a damper take for ever.
+/// An arm without pressure is at rest if no joint is faster than this, rad/s: a limb on a damper never reaches its end
+/// position exactly.
 const AT_REST: f64 = 0.2 * (core::f64::consts::PI / 180.0);
-/// Friction is full at this speed and less below, in/s: what sticks creeps by less than an arm that has come to rest.
+/// Full friction from this speed on, in/s; below it is proportional to speed, so that a sticking contact creeps more
+/// slowly than an arm that counts as at rest.
 const STICKING: f64 = 0.1;
 /// Longest step of the servo equation, s.
 const STEP_S: f64 = 0.0025;
 /// Joints nearer than this to their command have settled, rad.
 const SETTLED: f64 = 0.005 * (core::f64::consts::PI / 180.0);
 
-/// A command that runs evenly from one set of joint angles to another.
+/// A command that moves at constant speed from one set of joint angles to another.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 struct Ramp {
     from: Joints,
@@ -116,7 +117,7 @@ impl Arm {
         }
     }
 
-    /// An arm that was left without pressure at `joints`, with a gripper on, long enough to have come to rest.
+    /// An arm with a gripper that has sagged from `joints` without pressure and come to rest.
     #[must_use]
     pub fn sunk_from(actuators: &Actuators, joints: Joints) -> Self {
         const NIGHT_S: u32 = 600;
@@ -135,8 +136,7 @@ impl Arm {
         Load::weight(END_PLATE, chain.along(END_PLATE, TOOL_CENTRE), self.actuators.hydraulics.tool_weight)
     }
 
-    /// Turn the pressure on or off. Off ends the motion, the command stays where it has come to, and the shot
-    /// pin comes out.
+    /// Turn the pressure on or off. Off ends the motion, the command keeps its present value, and the shot pin extends.
     pub fn set_pressure(&mut self, on: bool) {
         if self.pressure && !on {
             self.stop();
@@ -154,18 +154,18 @@ impl Arm {
         self.pressure
     }
 
-    /// Run the command evenly to `goal` within `seconds`.
+    /// Move the command at constant speed to `goal` within `seconds`.
     pub fn reach(&mut self, goal: Joints, seconds: f64) {
         self.command = Ramp { from: self.command.present(), goal, elapsed: 0.0, duration: seconds.max(0.0) };
     }
 
-    /// End the motion: the command stays where it has come to.
+    /// End the motion: the command keeps its present value.
     pub fn stop(&mut self) {
         self.command = Ramp::at(self.command.present());
     }
 
-    /// Let `seconds` pass. While `held` the command stands still. `loads` are the forces on the arm beside
-    /// the weight of its links; they move it only without pressure.
+    /// Advance by `seconds`. While `held` the command does not move. `loads` are the forces on the arm beside the
+    /// weight of its links; they move it only without pressure.
     pub fn advance(&mut self, seconds: f64, held: bool, loads: &[Load]) {
         let mut left = seconds;
         while left > 0.0 {
@@ -225,8 +225,8 @@ impl Arm {
         self.command = Ramp::at(command);
     }
 
-    /// The rates of the joints: those that would go beyond a stop within the step get as far as to it, and the others
-    /// then move as if they were fixed.
+    /// The rates of the joints: joints that would pass a stop within the step end at it, and the others move as if
+    /// those were fixed.
     fn give_way(&self, dt: f64, mut damping: Matrix6<f64>, mut torque: Vector6<f64>) -> [f64; 6] {
         let mut stopped = [None; 6];
         loop {
@@ -267,7 +267,7 @@ impl Arm {
         &self.joints
     }
 
-    /// Where the servos' command is, radians.
+    /// Command of the servos, radians.
     #[must_use]
     pub fn command(&self) -> Joints {
         self.command.present()
@@ -280,7 +280,7 @@ impl Arm {
         self.pressure && self.command.is_over() && self.joints.iter().zip(&self.command.goal).all(near)
     }
 
-    /// Put joints that have [`settled`](Self::settled) exactly to where they were led.
+    /// Set joints that have [`settled`](Self::settled) exactly to their command.
     pub fn settle(&mut self) {
         if self.settled() {
             self.joints = self.command.goal;
@@ -288,7 +288,7 @@ impl Arm {
         }
     }
 
-    /// Without pressure: the arm has sagged as far as it will. False before the first step without pressure.
+    /// Without pressure: the arm has finished sagging. False before the first step without pressure.
     #[must_use]
     pub fn has_sagged(&self) -> bool {
         !self.pressure && self.sinking > 0.0 && self.rates.iter().all(|rate| rate.abs() < AT_REST)
@@ -322,8 +322,8 @@ fn weights(chain: &Chain, hydraulics: &Hydraulics) -> [Load; 3] {
     ]
 }
 
-/// Dampers that give way at the droop rate to what the joints carry at HOME; the base, which carries nothing,
-/// has that of the shoulder, yaw and roll have that of the pitch.
+/// Damping of the joints: the load at HOME gives the droop rate. The base, which carries no load, has the damping of
+/// the shoulder; yaw and roll have that of the pitch.
 fn dampers(hydraulics: &Hydraulics) -> [f64; 6] {
     let chain = Chain::new(&HOME_JOINTS);
     let tool = Load::weight(END_PLATE, chain.along(END_PLATE, TOOL_CENTRE), hydraulics.tool_weight);

@@ -1,8 +1,7 @@
-//! The shapes with which robot and devices collide, from the description of the cell and from where they are.
+//! Collision shapes of robot and devices, from the cell description and their positions.
 //!
-//! Links of the arm are capsules, hands and furniture boxes, plates and round parts cylinders. The simulated
-//! cell and the check of paths ([`crate::room`]) both make their bodies here, so that what one lets pass the
-//! other does too.
+//! Links of the arm are capsules, hands and furniture boxes, plates and round parts cylinders. The simulated cell and
+//! the check of paths ([`crate::room`]) both make their bodies here, so that both use the same shapes.
 
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
@@ -35,7 +34,7 @@ mod chain {
     pub const HAND: u8 = 5;
 }
 
-/// Everything that stands still: the furniture, and the turret, which is round.
+/// Fixed bodies: the furniture, and the turret, which is round.
 #[must_use]
 pub fn standing(cell: &CellDescription, furniture: &[Block]) -> Vec<Body> {
     let (radius, half_height) = turret(cell);
@@ -115,9 +114,8 @@ pub fn palm(gripper: &Gripper) -> (Frame, Inches) {
     (Frame { position: middle, rotation: Rotation::identity() }, Inches::from(gripper.body))
 }
 
-/// The gripper that the robot wears: its body, and its fingers where the air wants them with this opening
-/// (in), not where their springs have given way to: how deep the arm has led them into something is what
-/// counts.
+/// The gripper on the robot: its body, and its fingers at the opening of the air (in), without the deflection of their
+/// springs, because the collision check needs the depth to which the arm has moved them.
 #[must_use]
 pub fn worn(cell: &CellDescription, gripper: &Gripper, tool: &Frame, opening: f64) -> Vec<Body> {
     let tool = to_pose(tool);
@@ -138,7 +136,7 @@ pub fn part(kind: &PartType, pose: &Pose) -> Body {
     Body::new(kind.name.clone(), Kind::Part, *pose * turn, shape)
 }
 
-/// A part that the robot has, at a pose in metres.
+/// A part that the robot holds, at a pose in metres.
 #[must_use]
 pub fn held(kind: &PartType, pose: &Pose) -> Body {
     Body { kind: Kind::HeldPart, ..part(kind, pose) }.at(chain::HAND)
@@ -150,7 +148,7 @@ pub fn movable_jaw(cell: &CellDescription, jaw: &Frame) -> Vec<Body> {
     jaw_blocks(&cell.vise).iter().map(|block| Body::from(&block.moved(jaw))).collect()
 }
 
-/// A gripper that the robot does not wear, by its name and the pose of its tool frame in metres.
+/// A gripper that is not on the robot, by its name and the pose of its tool frame in metres.
 #[must_use]
 pub fn stored(cell: &CellDescription, gripper: &Gripper, name: &'static str, at: &Pose) -> Vec<Body> {
     let change = &cell.quick_change;
@@ -165,8 +163,7 @@ pub fn stored(cell: &CellDescription, gripper: &Gripper, name: &'static str, at:
         .collect()
 }
 
-/// Palm and fingers of the pedestal's hand at its frame with an opening in inches: the robot's fingers come
-/// near them, and what it carries is put between them.
+/// Palm and fingers of the pedestal's hand at its frame with an opening in inches.
 #[must_use]
 pub fn pedestal(cell: &CellDescription, hand: &Frame, opening: f64) -> [Body; 3] {
     let description = &cell.pedestal.hand;

@@ -1,11 +1,10 @@
 //! Collisions of the robot: each tick arm, gripper, and what the gripper carries, against everything else in
 //! the cell, and against the arm itself.
 //!
-//! The arm is led on its path whatever it meets, as a hydraulic arm would be; so a collision must be seen,
-//! not felt. What may touch is a list of the cell description ([`crate::description::Permits`]). Of the pairs
-//! that are not on it for all times the check keeps, each tick, those that touch or are nearer than a margin,
-//! with their depth and direction: the caller that has the present command judges them, and the caller that
-//! moves the arm sees what it is led into.
+//! The simulated arm follows its path even through contact, as a hydraulic arm would, so collisions must be computed
+//! from geometry. The cell description lists permitted contacts ([`crate::description::Permits`]). Of the pairs that
+//! are not always permitted, the check keeps, each tick, those that touch or are nearer than a margin, with their depth
+//! and direction. The caller that has the present command decides which are permitted.
 
 use std::{borrow::Cow, collections::BTreeSet};
 
@@ -18,10 +17,10 @@ use crate::{
     description::{Kind, Permits},
 };
 
-/// Contacts that are less deep are none: parts rest on things, in.
+/// Least depth of a contact, in: resting parts are less deep.
 pub const LEAST_DEPTH: f64 = 0.001;
 
-/// Something that can collide, metres.
+/// A body that can collide, metres.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Its name.
@@ -71,11 +70,11 @@ impl Body {
 /// Two things that touch or are near each other.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Contact {
-    /// What moves with the arm.
+    /// The moving body.
     pub mover: String,
     /// What kind of thing it is.
     pub mover_kind: Kind,
-    /// What it has met.
+    /// The obstacle.
     pub obstacle: String,
     /// What kind of thing that is.
     pub obstacle_kind: Kind,
@@ -83,7 +82,7 @@ pub struct Contact {
     pub depth: f64,
     /// Where, world, in.
     pub at: [f64; 3],
-    /// Unit vector, world: that way the mover is free, or the mover lies from the obstacle.
+    /// Unit vector, world: direction from the obstacle to the mover.
     pub away: [f64; 3],
 }
 
@@ -117,23 +116,23 @@ impl Contact {
     }
 }
 
-/// The contacts of the present, and which of them have begun before.
+/// The present contacts, and which of them began earlier.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Clearance {
-    /// How near is near, m.
+    /// Distance within which pairs are reported, m.
     margin: Real,
     contacts: Vec<Contact>,
     touching: BTreeSet<(String, String)>,
 }
 
 impl Clearance {
-    /// Look out for what is nearer than `margin` inches; without this only for what touches.
+    /// Report pairs nearer than `margin` inches; without this only contacts.
     pub fn watch(&mut self, margin: f64) {
         self.margin = metres(margin.max(0.0));
     }
 
-    /// Everything that touched or was near in the last check, each pair of names once, where it is deepest;
-    /// without what may always touch.
+    /// Contacts and near pairs of the last check, each pair of names once, at its deepest point; without pairs that may
+    /// always touch.
     #[must_use]
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts
@@ -145,8 +144,7 @@ impl Clearance {
         self.contacts
     }
 
-    /// Look at all pairs. Returns those that touch deeper than they may whatever the robot does, and have
-    /// just begun to.
+    /// Check all pairs. Returns those that have just become deeper than any command permits.
     pub fn check<'a>(
         &mut self,
         permits: &Permits,
@@ -172,7 +170,7 @@ impl Clearance {
         begun
     }
 
-    /// Note how a mover and an obstacle stand to each other, if they are near.
+    /// Record a mover and an obstacle if they are near each other.
     fn look(&mut self, mover: &Body, obstacle: &Body) {
         let met = query::contact(&obstacle.pose, &*obstacle.shape, &mover.pose, &*mover.shape, self.margin);
         let Ok(Some(met)) = met else { return };

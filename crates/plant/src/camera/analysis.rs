@@ -1,15 +1,13 @@
-//! What vision makes of a picture (V.2.1 LOCATE-OBJ): centroid, and with the second picture angle and recognition.
+//! Analysis of a picture (V.2.1 LOCATE-OBJ): centroid, and with the second picture angle and recognition.
 //!
-//! It works on what is seen of each part ([`Subject`]), and on nothing else of the cell: so it can be done in
-//! the cell or in another process, with the same bits. From the points that are seen it takes centroid and
-//! lengths, so that a part which is cut by the edge of the picture, or half hidden, is found beside its
-//! middle and is not recognised; parts that touch in the picture are one blob.
+//! It uses only the visible points of each part ([`Subject`]), so it gives the same bits in the cell and in another
+//! process. It computes centroid and lengths from the visible points: a part that is cut by the edge of the picture, or
+//! half hidden, is found beside its middle and is not recognised. Parts that touch in the picture are one blob.
 //!
-//! Positions are what a pinhole camera makes of them: a part that is nearer than the expected range looks
-//! larger and farther from the axis. The second picture also measures the outline, and by that recognises the
-//! part. `variation` chooses the exposure: a part that throws back too little light for it is not in the
-//! picture at all, one that throws back too much blooms, and its outline grows. LOCATE-OBJ tries one after
-//! the other.
+//! Positions are those of a pinhole camera: a part that is nearer than the expected range looks larger and farther from
+//! the axis. The second picture also measures the outline, and by that recognises the part. `variation` chooses the
+//! exposure: a part that reflects too little light for it is not in the picture, one that reflects too much blooms, and
+//! its outline grows. LOCATE-OBJ tries the variations one after the other.
 
 use geometry::{
     frame::Vector,
@@ -27,12 +25,12 @@ use crate::{
     noise::{Noise, Stream},
 };
 
-/// An answer that is being worked out.
+/// An answer that is not due yet.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 struct Pending {
     #[serde(with = "crate::image::record")]
     answer: VisionResponse,
-    /// Until it is there.
+    /// Ticks until the answer.
     ticks: u32,
 }
 
@@ -48,7 +46,7 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// One that was not asked anything, in a run with a seed.
+    /// An analysis without requests so far, for the seed of a run.
     #[must_use]
     pub fn new(description: &Description, seed: u64) -> Self {
         Self {
@@ -60,13 +58,13 @@ impl Analysis {
         }
     }
 
-    /// From now on the noise is that of another seed.
+    /// Use the noise of another seed from now on.
     pub(crate) fn reseed(&mut self, seed: u64) {
         self.noise = Noise::new(seed, Stream::Camera);
     }
 
-    /// What of a cell the answers depend on, besides seed and pictures: camera and parts that vision knows.
-    /// Two analyses of equal fingerprint answer the same.
+    /// Fingerprint of the entries of a cell on which the answers depend, besides seed and pictures: camera, and parts
+    /// with a vision id. Two analyses of equal fingerprint answer the same.
     ///
     /// # Panics
     /// If a description refuses to be serialised, which is a fault of this crate.
@@ -88,7 +86,7 @@ impl Analysis {
         request.number != 0 && request.number != self.last && request.picture != Picture::None
     }
 
-    /// Begin with the picture of a new request; `subjects` are the parts of which something is seen.
+    /// Begin with the picture of a new request; `subjects` are the visible parts.
     pub fn expose(&mut self, request: &VisionRequest, subjects: &[Subject], expected: Option<&PartType>) {
         self.last = request.number;
         let answer = self.analyse(request, subjects, expected);
@@ -101,7 +99,7 @@ impl Analysis {
             VisionResponse { echo: request.number, status: VisionStatus::Busy, ..VisionResponse::default() };
     }
 
-    /// The answer as it stands at the end of a tick.
+    /// The answer at the end of a tick.
     pub fn answer(&mut self) -> VisionResponse {
         match &mut self.pending {
             Some(Pending { answer, ticks }) if *ticks <= 1 => {
@@ -144,7 +142,7 @@ impl Analysis {
         answer
     }
 
-    /// What a second picture says beyond the centroid: angle, and whether it is the part.
+    /// Result of a second picture besides the centroid: angle, and whether it is the part.
     fn recognise(
         &mut self,
         blob: &[&Subject],
@@ -168,19 +166,19 @@ impl Analysis {
         }
     }
 
-    /// The analysis fails although all is well; a number is drawn only where that can be.
+    /// Random failure of the analysis; a number is drawn only if such failures are configured.
     fn fails(&mut self) -> bool {
         let chance = self.description.failure;
         chance > 0.0 && (self.noise.within(1.0) + 1.0) / 2.0 < chance
     }
 
-    /// Least and greatest reflectance that a variation shows as it should; after the last one it begins again.
+    /// Least and greatest reflectance that a variation exposes correctly; after the last variation the first follows.
     fn exposure(&self, variation: u8) -> [f64; 2] {
         let exposures = &self.description.exposures;
         exposures.get(usize::from(variation) % exposures.len().max(1)).copied().unwrap_or([0.0, 1.0])
     }
 
-    /// What is seen nearest to the optical axis, and what it is one blob with.
+    /// The subject nearest to the optical axis, and those in one blob with it.
     fn nearest<'s>(&self, subjects: &[&'s Subject]) -> Option<Vec<&'s Subject>> {
         let away = |subject: &Subject| {
             let centre = subject.centroid();

@@ -1,4 +1,4 @@
-//! Where the camera looks, and how far.
+//! Position and field of view of the camera.
 
 use geometry::frame::{Frame, Rotation, Vector};
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ pub struct Optics {
 }
 
 impl Optics {
-    /// Those of a description.
+    /// The camera of a description.
     #[must_use]
     pub fn new(description: &Description) -> Self {
         Self { description: description.clone() }

@@ -1,4 +1,4 @@
-//! What stands before the camera: of each part the face that looks at it, as a raster of points that are seen or not.
+//! Parts before the camera: for each part the face towards the camera, as a raster of visible and hidden points.
 
 use geometry::frame::{Frame, Vector};
 
@@ -9,13 +9,13 @@ pub const RASTER: usize = 9;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subject {
     face: Face,
-    /// Share of the light that it throws back.
+    /// Share of the light that it reflects.
     reflectance: f64,
     /// Which points of the raster are seen, row by row.
     seen: Vec<bool>,
 }
 
-/// The face of a part that looks at the camera.
+/// The face of a part towards the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
     /// Its middle.
@@ -74,7 +74,7 @@ impl Subject {
         &self.face
     }
 
-    /// Share of the light that it throws back.
+    /// Share of the light that it reflects.
     #[must_use]
     pub const fn reflectance(&self) -> f64 {
         self.reflectance
@@ -97,7 +97,7 @@ impl Subject {
         self.seen_points().flat_map(move |point| [a + b, a - b, b - a, -a - b].map(|corner| point + corner))
     }
 
-    /// The middle of what is seen: that of the face if all of it is.
+    /// The centroid of the visible points.
     #[must_use]
     pub fn centroid(&self) -> Vector {
         let count = self.seen.iter().filter(|seen| **seen).count();
@@ -107,7 +107,7 @@ impl Subject {
         self.seen_points().sum::<Vector>() / count as f64
     }
 
-    /// Lengths of what is seen along the two edges.
+    /// Lengths of the visible area along the two edges.
     #[must_use]
     pub fn lengths(&self) -> [f64; 2] {
         let along = |index: fn(usize) -> usize| {
@@ -121,8 +121,7 @@ impl Subject {
         [long * along(|at| at / RASTER), wide * along(|at| at % RASTER)]
     }
 
-    /// True if a point lies on what is seen of this face, or beside it by no more than `gap`, as the camera sees it: along
-    /// the rays.
+    /// True if, along the rays of the camera, a point is on the visible area of this face or within `gap` of it.
     fn covers(&self, point: &Vector, gap: f64) -> bool {
         let on_face = *point * (self.face.centre.x / point.x);
         self.seen_points().any(|field| {
@@ -132,7 +131,7 @@ impl Subject {
         })
     }
 
-    /// True if this and another are one blob in the picture: nothing but `gap` is between what is seen of both.
+    /// True if this and another are one blob in the picture: their visible areas are within `gap` of each other.
     #[must_use]
     pub fn touches(&self, other: &Self, gap: f64) -> bool {
         self.seen_corners().any(|point| other.covers(&point, gap))

@@ -1,10 +1,9 @@
-//! Which gripper is where: on the robot, in a holster, on the floor; and how it changes.
+//! Positions of the grippers, on the robot, in a holster or on the floor, and their changes.
 //!
-//! The ring decides, not the controller ([`crate::quick_change`]). A gripper that the ring has is led by the
-//! arm. One that it lets go lands on the holster under it, or falls. On its holster it is led by that, and
-//! slides with an A plate whose elements are in its own. A gripper is *mated* while its pins touch, locked or
-//! not: only then it has air and its sensors are connected. The bodies of one that hangs still in its holster
-//! take no part in the simulation.
+//! The state of the ring decides, not the command of the controller ([`crate::quick_change`]). A gripper that the ring
+//! holds moves with the arm. A released gripper lands on the holster under it, or falls. On its holster it rests, and
+//! slides with an A plate that engages it. A gripper is *mated* while its pins touch, locked or not: only then it has
+//! air and its sensors are connected. The bodies of a gripper at rest in its holster are not simulated.
 
 use geometry::frame::Frame;
 use interfaces::device::{HolsterSensors, QuickChangeSensors, QuickChangeValves};
@@ -19,17 +18,17 @@ use crate::{
     sensor::Switch,
 };
 
-/// The hands that the robot can wear, in the order of their end effector ids.
+/// The grippers of the robot, in the order of their end effector ids.
 pub(super) const ROBOT_HANDS: [Hand; 3] = [Hand::Parts, Hand::V, Hand::Tool];
 
-/// Where a gripper is.
+/// Place of a gripper.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub(super) enum GripperPlace {
-    /// The ring of the quick change has it.
+    /// The ring of the quick change holds it.
     Robot,
     /// On a holster, right, left, centre.
     Holster(usize, Perch),
-    /// It was let go over nothing.
+    /// It was released where there is no holster.
     Fallen,
 }
 
@@ -43,7 +42,7 @@ pub(super) struct Changer {
     places: [GripperPlace; 3],
     /// The one whose pins touch.
     mated: Option<Hand>,
-    /// The holster whose lips are over the ears of the gripper that the ring has.
+    /// The holster whose lips are over the ears of the gripper in the ring.
     under_lips: Option<usize>,
     /// The four sensors of each holster.
     eyes: [[Switch; 4]; 3],
@@ -83,7 +82,7 @@ impl Changer {
         self.mated
     }
 
-    /// The gripper that the ring has.
+    /// The gripper that the ring holds.
     pub(super) fn carried(&self) -> Option<Hand> {
         ROBOT_HANDS.into_iter().find(|hand| self.place(*hand) == Some(GripperPlace::Robot))
     }
@@ -93,7 +92,7 @@ impl Changer {
         hand.slot().map(|slot| self.places[slot])
     }
 
-    /// Tool frame of a gripper that is led, by the robot at `robot` or by a holster.
+    /// Tool frame of a gripper on the robot, at `robot`, or on a holster.
     fn frame(&self, hand: Hand, robot: &Frame) -> Option<Frame> {
         match self.place(hand)? {
             GripperPlace::Robot => Some(*robot),
@@ -102,7 +101,7 @@ impl Changer {
         }
     }
 
-    /// It needs bodies: it moves, or can be moved, or can move something.
+    /// It must be simulated: it moves, or can be moved, or can move something.
     fn is_present(&self, hand: Hand) -> bool {
         match self.place(hand) {
             Some(GripperPlace::Holster(_, perch)) => self.mated == Some(hand) || !perch.rests(),
@@ -114,7 +113,7 @@ impl Changer {
         !self.places.iter().any(|place| matches!(place, GripperPlace::Holster(which, _) if *which == holster))
     }
 
-    /// Where a gripper lands that the ring lets go at `robot`.
+    /// Where a gripper lands that the ring releases at `robot`.
     fn land(&self, robot: &Frame) -> GripperPlace {
         let caught = self.holsters.iter().enumerate().find_map(|(which, holster)| {
             let perch = holster.catch(&holster.offset(robot)).filter(|_| self.is_empty(which))?;
@@ -181,7 +180,7 @@ impl Changer {
     }
 }
 
-/// What a step of the simulation brings to the grippers.
+/// Inputs of the grippers in a step of the simulation.
 struct Step {
     dt: f64,
     robot: Frame,
@@ -190,7 +189,7 @@ struct Step {
 }
 
 impl Cell {
-    /// Let the ring move, and with it what it catches and lets go; then say where every gripper is.
+    /// Move the ring, catch or release grippers, and update their places.
     pub(super) fn change_grippers(&mut self, dt: f64, valves: &QuickChangeValves) {
         let robot = self.t3.arm().tool();
         let was_locked = self.changer.ring.locked();
@@ -224,7 +223,7 @@ impl Cell {
         }
     }
 
-    /// What becomes of the gripper that the ring has, if it does not stay there.
+    /// Where the gripper in the ring goes, if the ring does not keep it.
     fn keep_or_lose(&mut self, hand: Hand, robot: &Frame) -> Option<GripperPlace> {
         if self.changer.ring.unlocked() {
             self.changer.under_lips = None;
@@ -242,7 +241,7 @@ impl Cell {
         Some(place)
     }
 
-    /// Pins that part cut the air of a gripper.
+    /// A gripper loses its air when its pins disconnect.
     fn mate(&mut self, robot: &Frame) {
         let mated = self.changer.find_mated(robot);
         if mated == self.changer.mated {
@@ -258,7 +257,7 @@ impl Cell {
         }
     }
 
-    /// Lead the bodies of the grippers to where robot and holsters have them.
+    /// Move the bodies of the grippers to their places on robot and holsters.
     fn lead_grippers(&mut self, robot: &Frame) {
         for (slot, hand) in ROBOT_HANDS.into_iter().enumerate() {
             let present = self.changer.is_present(hand);
@@ -274,7 +273,7 @@ impl Cell {
         }
     }
 
-    /// What the proximity sensors of the holsters see.
+    /// Readings of the proximity sensors of the holsters.
     pub(super) fn holster_sensors(&mut self) -> HolsterSensors {
         let nearest = |holster: &Holster| {
             ROBOT_HANDS.into_iter().enumerate().fold([f64::INFINITY; 4], |nearest, (slot, hand)| {
@@ -297,7 +296,7 @@ impl Cell {
         HolsterSensors { right, left, centre }
     }
 
-    /// What a gripper of the robot is like.
+    /// The description of a gripper of the robot.
     pub(super) fn gripper_description(&self, hand: Hand) -> &crate::description::Gripper {
         let grippers = &self.description.gripper;
         match hand {
@@ -308,8 +307,8 @@ impl Cell {
         }
     }
 
-    /// End effector id of the gripper that the ring of the quick change has, if it has one. The truth behind the pins,
-    /// which also read a gripper that is mated and not locked.
+    /// End effector id of the gripper that the ring of the quick change holds, if any. The id pins also read a gripper
+    /// that is mated and not locked.
     #[must_use]
     pub fn gripper(&self) -> Option<u8> {
         self.changer.carried().and_then(Hand::end_effector_id)

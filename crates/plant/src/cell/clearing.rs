@@ -1,7 +1,6 @@
-//! What the clearance check looks at: everything of the robot that moves, and everything that it can run into
-//! ([`crate::bodies`]).
+//! Bodies of the clearance check: the moving parts of the robot, and the obstacles ([`crate::bodies`]).
 //!
-//! A part that the robot has stands where it is, not where the fingers want it: it gives way by itself, in the fingers.
+//! A held part counts at its true position: it can move in the fingers.
 
 use super::{
     Cell, CellEvent,
@@ -14,7 +13,7 @@ use crate::{
 };
 
 impl Cell {
-    /// Once a tick: see what has been run into.
+    /// Once a tick: find new contacts.
     pub(super) fn check_clearance(&mut self) {
         let mut obstacles = self.devices();
         obstacles.extend(self.part_bodies());
@@ -33,7 +32,7 @@ impl Cell {
         movers
     }
 
-    /// What moves or is moved, but for arm and parts: jaw, grippers in their holsters, the pedestal's hand.
+    /// Movable bodies except arm and parts: jaw, grippers in their holsters, the pedestal's hand.
     pub(super) fn devices(&self) -> Vec<Body> {
         let mut devices = self.jaw_bodies();
         devices.extend(self.stored_gripper_bodies());
@@ -41,15 +40,15 @@ impl Cell {
         devices
     }
 
-    /// What of the robot touches what at the end of the last tick, and what is nearer to it than
-    /// [`Cell::watch_clearance`] asks for: each pair of names once, where it is deepest, but for pairs that
-    /// may always touch. The truth: a T3 has no sensor for it.
+    /// Contacts of the robot at the end of the last tick, and pairs nearer than the margin of
+    /// [`Cell::watch_clearance`]: each pair of names once, at its deepest point, except pairs that may always touch.
+    /// The controller does not get them: a T3 has no sensor for contacts.
     #[must_use]
     pub fn contacts(&self) -> &[Contact] {
         self.clearance.contacts()
     }
 
-    /// From now on [`Cell::contacts`] has what is nearer than `margin` inches too.
+    /// From now on [`Cell::contacts`] also has pairs nearer than `margin` inches.
     pub fn watch_clearance(&mut self, margin: f64) {
         self.clearance.watch(margin);
     }
@@ -59,7 +58,7 @@ impl Cell {
         bodies::arm(&self.description, &self.joints())
     }
 
-    /// A plate, camera, and the gripper that the robot wears.
+    /// A plate, camera, and the gripper on the robot.
     fn worn_bodies(&self) -> Vec<Body> {
         let tool = self.t3.arm().tool();
         let mut worn = Vec::from(bodies::quick_change(&self.description, &tool));
@@ -70,14 +69,14 @@ impl Cell {
         worn
     }
 
-    /// The part that the robot has.
+    /// The part that the robot holds.
     fn held_body(&self) -> Option<Body> {
         let (index, _) = self.hand(self.changer.carried()?).hold.as_ref()?;
         let part = &self.parts[*index];
         Some(bodies::held(&part.kind, &part.pose(&self.world)))
     }
 
-    /// The parts that the robot does not have.
+    /// The parts that the robot does not hold.
     fn part_bodies(&self) -> impl Iterator<Item = Body> {
         let others = (0..self.parts.len()).filter(|index| !self.is_held(*index));
         others.map(|index| bodies::part(&self.parts[index].kind, &self.parts[index].pose(&self.world)))
@@ -89,7 +88,7 @@ impl Cell {
         bodies::movable_jaw(&self.description, &jaw)
     }
 
-    /// The grippers that the robot does not wear and is not mated with, wherever they are.
+    /// The grippers that are neither on the robot nor mated with it.
     fn stored_gripper_bodies(&self) -> impl Iterator<Item = Body> {
         let apart = ROBOT_HANDS.into_iter().filter(|hand| {
             self.changer.mated() != Some(*hand) && self.changer.place(*hand) != Some(GripperPlace::Robot)

@@ -1,7 +1,7 @@
-//! The tool drum at work: what goes into it, what it keeps, what it gives back.
+//! The tool drum and the tool in it.
 //!
-//! A tool in the drum is led by it while the drum's fingers have it, or while nothing has it but the detents. While the robot
-//! has it and the fingers are open, it is the robot's: only the force along the drum's axis acts on it ([`crate::drum`]).
+//! The drum fixes a tool while the drum's fingers grip it, or while only the detents hold it. While the robot holds it
+//! and the fingers are open, only the force along the drum's axis acts on it ([`crate::drum`]).
 
 use rapier3d_f64::prelude::*;
 
@@ -12,11 +12,11 @@ use crate::{
     drum::{Entering, Pocketed},
 };
 
-/// Tools farther than this from the drum are not looked at, in.
+/// Tools farther than this from the drum are ignored, in.
 const NEAR: f64 = 4.0;
 
 impl Cell {
-    /// Before a step of `dt` seconds: let the drum act on the tool that it has to do with.
+    /// Before a step of `dt` seconds: let the drum act on its tool.
     pub(super) fn work_drum(&mut self, dt: f64) {
         let Some((pocketed, entering)) = self.tool_at_drum() else {
             if let Some(left) = self.drum.tool.take() {
@@ -43,7 +43,7 @@ impl Cell {
         }
     }
 
-    /// The tool that the drum has to do with, and how it stands; a tool that comes before it is admitted.
+    /// The tool in or before the drum, and its position; a new tool is admitted.
     fn tool_at_drum(&mut self) -> Option<(Pocketed, Entering)> {
         if let Some(pocketed) = self.drum.tool {
             let frame = self.parts[pocketed.part].frame(&self.world);
@@ -58,7 +58,7 @@ impl Cell {
         self.drum.tool.map(|pocketed| (pocketed, entering))
     }
 
-    /// From now on a tool is led by the drum, or not.
+    /// Fix a tool in the drum, or release it.
     fn lead_by_drum(&mut self, pocketed: &Pocketed, fast: bool) {
         if pocketed.fast == fast {
             return;
@@ -75,7 +75,7 @@ impl Cell {
         }
     }
 
-    /// True if the drum leads part `index`.
+    /// True if part `index` is fixed in the drum.
     pub(super) fn is_in_drum(&self, index: usize) -> bool {
         self.drum.tool.is_some_and(|pocketed| pocketed.part == index && pocketed.fast)
     }

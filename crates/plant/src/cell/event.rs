@@ -1,4 +1,4 @@
-//! What is said of a cell: why it cannot be built, and what happens in it.
+//! Errors and events of a cell.
 
 use std::fmt;
 
@@ -27,15 +27,15 @@ pub enum CellError {
     Blocked(CellEvent),
 }
 
-/// Something that should not happen, or that a person wants to know.
+/// An event of the cell: an error, or something of interest to a person.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum CellEvent {
-    /// The robot, or what it carries, has begun to touch something that it may never touch, or deeper than it
-    /// ever may. What it may touch during some commands is judged where they are known:
+    /// The robot, or what it carries, has begun to touch something that it may never touch, or deeper than it ever may.
+    /// Contacts that are permitted during some commands are checked where the commands are known:
     /// [`Cell::contacts`](super::Cell::contacts).
     Contact(Contact),
-    /// A part slides in a hand: more was asked of it than its force and friction give.
+    /// A part slides in a hand: the load exceeds its force and friction.
     Slipped {
         /// The part.
         part: String,
@@ -44,7 +44,7 @@ pub enum CellEvent {
         /// How far it has slid since it was gripped, in.
         distance: f64,
     },
-    /// A hand has lost a part that it had.
+    /// A hand has lost the part that it held.
     Dropped {
         /// The part.
         part: String,
@@ -56,7 +56,7 @@ pub enum CellEvent {
         /// The part.
         part: String,
     },
-    /// The quick change has let go of a gripper that was not over an empty holster.
+    /// The quick change has released a gripper that was not over an empty holster.
     GripperFell {
         /// Its link.
         gripper: String,
@@ -77,32 +77,32 @@ pub enum CellEvent {
     Sagged(Droop),
     /// The lamps of the T3 controller have changed.
     Lamps(Lamps),
-    /// What a person would see of the robot.
+    /// A visible event of the robot.
     Robot(RobotEvent),
-    /// The simulated arm cannot take a position that the robot it follows has taken, and stays behind.
+    /// The simulated arm cannot reach a position of the robot that it follows, and stays behind.
     CannotFollow(JointProblem),
-    /// A body has left the realm of numbers and was taken out of the simulation.
+    /// The position of a body was not finite; the body was removed from the simulation.
     Quarantined,
-    /// The jaw of the vise does not get on.
+    /// The jaw of the vise does not move.
     ViseStuck,
     /// A fault of the plan begins.
     FaultBegins {
         /// Which one of its file, from 1.
         number: usize,
-        /// In words.
+        /// As text.
         text: String,
     },
     /// A fault of the plan is over.
     FaultEnds {
         /// Which one of its file, from 1.
         number: usize,
-        /// In words.
+        /// As text.
         text: String,
     },
 }
 
 impl CellEvent {
-    /// Something was let go, lost or damaged.
+    /// Something was dropped, lost or damaged.
     #[must_use]
     pub const fn is_harm(&self) -> bool {
         matches!(

@@ -1,13 +1,13 @@
-//! What hands and the vise do to parts: stop at them, take hold, slip, let go.
+//! Parts in hands and vise: stop, grip, slip, release.
 //!
-//! The robot's gripper and the pedestal's hand are the same machine, and a part can be in both at once while it changes
-//! hands, or in a hand and in the vise. Which of them gives way:
+//! The robot's gripper and the pedestal's hand are of the same kind, and a part can be in both at once while it is
+//! handed over, or in a hand and in the vise. These rules decide which of them gives way:
 //!
-//! * a hand that closes on a part which something else has stops where its nearer finger touches, and takes the part as it
-//!   lies; it draws it to its middle when the other lets go;
-//! * the vise is stronger than a hand: the hand's springs rest where the vise has the part;
-//! * two hands both hold by their springs, and each slides beyond its friction: a robot that moves on with a part that the
-//!   pedestal has too draws it out of the weaker of the two.
+//! * a hand that closes on a part held by something else stops where its nearer finger touches, and grips the part as
+//!   it lies; it draws the part to its middle when the other releases it;
+//! * the vise is stronger than a hand: the hand's springs rest at the position of the part in the vise;
+//! * two hands both hold by their springs, and each slides beyond its friction: a robot that moves with a part that the
+//!   pedestal also holds draws it out of the weaker of the two.
 
 use rapier3d_f64::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -26,20 +26,20 @@ use crate::{
 
 /// Below this force of a finger, lb, nothing is held.
 const LEAST_FORCE: f64 = 0.25;
-/// A slide in the fingers that is worth a word, in.
+/// Slide in the fingers that is reported, in.
 const SLIP: f64 = 0.02;
-/// How far pads may be from a face that they count as touching, m.
+/// Greatest distance of a pad that counts as touching a face, m.
 const TOUCHING: Real = 1e-4;
-/// Ticks after which the controller of the vise gives up a jaw that does not get on (2 s).
+/// Ticks after which the controller of the vise gives up a jaw that does not move (2 s).
 const JAW_PATIENCE: u32 = 50;
-/// A part may stand this far in a clamping face and is still between the jaws, m.
+/// A part this far inside of a clamping face still counts as between the jaws, m.
 const OUTSIDE: Real = 2e-3;
-/// A part that covers this share of what it covers at most stands in a step, too.
+/// A part also stands in a step if it covers this share of the largest area it covers in any step.
 const WELL: Real = 0.25;
 /// Fingers and part: stiff enough that a bar sags by 0.01 mm, soft enough that friction is not a jolt.
 const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
 
-/// What has fingers.
+/// A device with fingers.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub(super) enum Hand {
     /// The parts gripper, end effector 1.
@@ -71,7 +71,7 @@ impl Hand {
         }
     }
 
-    /// `endeff-id#`, if the robot can wear it.
+    /// `endeff-id#`, if it is a gripper of the robot.
     pub(super) const fn end_effector_id(self) -> Option<u8> {
         match self {
             Self::Parts => Some(1),
@@ -108,7 +108,7 @@ impl Cell {
         hand.slot().map_or(&self.pedestal.hand, |slot| &self.grippers[slot])
     }
 
-    /// The gripper of a hand, and the world that it works in.
+    /// The gripper of a hand, and the physics world.
     pub(super) fn hand_at_work(&mut self, hand: Hand) -> (&mut Gripper, &mut PhysicsWorld) {
         let gripper = match hand.slot() {
             Some(slot) => &mut self.grippers[slot],
@@ -117,7 +117,7 @@ impl Cell {
         (gripper, &mut self.world)
     }
 
-    /// Let the air move the fingers of a hand, and take or give up what is between them.
+    /// Move the fingers of a hand by the air, and grip or release the part between them.
     pub(super) fn drive_fingers(&mut self, dt: f64, hand: Hand, supply: Supply) {
         let between = match &self.hand(hand).hold {
             Some((index, _)) => self.between_fingers(hand, *index).map(|squeeze| (*index, squeeze)),
@@ -140,7 +140,7 @@ impl Cell {
         self.update_grip(hand, between);
     }
 
-    /// What part `index` offers to the fingers of a hand.
+    /// Width and faces of part `index` between the fingers of a hand.
     fn between_fingers(&self, hand: Hand, index: usize) -> Option<Squeeze> {
         let part = self.parts.get(index)?;
         let gripper = self.hand(hand);
@@ -164,8 +164,8 @@ impl Cell {
             .max_by(|(_, a), (_, b)| a.width.total_cmp(&b.width))
     }
 
-    /// Opening at which a part stops the fingers, in. A part that can give way is drawn to the middle; one that is held
-    /// elsewhere stops the nearer finger, and the fingers are coupled.
+    /// Opening at which a part stops the fingers, in. A free part is drawn to the middle; a part held elsewhere stops
+    /// the nearer finger, and with it the other, because the fingers are coupled.
     fn finger_stop(&self, hand: Hand, index: usize, squeeze: &Squeeze) -> f64 {
         let fast = self.hand(hand).hold.is_some() || self.is_held_elsewhere(hand, index);
         let aside = if fast { 2.0 * squeeze.centre.abs() } else { 0.0 };
@@ -176,31 +176,31 @@ impl Cell {
         self.vise.clamped.is_some_and(|clamped| clamped.part == index)
     }
 
-    /// True if `hand` has part `index`.
+    /// True if `hand` holds part `index`.
     pub(super) fn is_held_by(&self, hand: Hand, index: usize) -> bool {
         self.hand(hand).hold.as_ref().is_some_and(|(held, _)| *held == index)
     }
 
-    /// True if the robot has part `index`.
+    /// True if the robot holds part `index`.
     pub(super) fn is_held(&self, index: usize) -> bool {
         ROBOT_HANDS.into_iter().any(|hand| self.is_held_by(hand, index))
     }
 
-    /// True if something else than `hand` has part `index`.
+    /// True if something other than `hand` holds part `index`.
     fn is_held_elsewhere(&self, hand: Hand, index: usize) -> bool {
         self.is_clamped(index)
             || self.is_in_drum(index)
             || hand.others().any(|other| self.is_held_by(other, index))
     }
 
-    /// True if a hand or the vise has part `index`.
+    /// True if a hand or the vise holds part `index`.
     pub(super) fn is_had(&self, index: usize) -> bool {
         self.is_clamped(index)
             || self.is_in_drum(index)
             || HANDS.iter().any(|hand| self.is_held_by(*hand, index))
     }
 
-    /// What has a part knows it by its place in the list: give it the place that it has now.
+    /// Holders store the index of their part: update it after a change of the list.
     pub(super) fn renumber(&mut self, place: impl Fn(usize) -> usize) {
         for hand in HANDS {
             if let (Gripper { hold: Some((held, _)), .. }, _) = self.hand_at_work(hand) {
@@ -215,7 +215,7 @@ impl Cell {
         }
     }
 
-    /// What holds a part does not also collide with it.
+    /// Disable collisions between a part and its holders.
     pub(super) fn note_holders(&mut self, index: usize) {
         let mut holders = Group::empty();
         holders.set(FINGER, self.is_held(index));
@@ -224,7 +224,7 @@ impl Cell {
         self.parts[index].set_holders(&mut self.world, holders);
     }
 
-    /// Take hold, tighten, loosen or let go, as force and geometry have it.
+    /// Grip, tighten, loosen or release, according to force and geometry.
     fn update_grip(&mut self, hand: Hand, between: Option<(usize, Squeeze)>) {
         let gripper = self.hand(hand);
         let (force, opening) = (gripper.air.force(), gripper.air.opening());
@@ -266,7 +266,7 @@ impl Cell {
         self.note_holders(index);
     }
 
-    /// Let go of what a hand holds; `lost` if it was not the fingers that opened.
+    /// Release the part of a hand; `lost` if the fingers did not open.
     pub(super) fn let_go(&mut self, hand: Hand, lost: bool) {
         let (gripper, world) = self.hand_at_work(hand);
         let Some((index, hold)) = gripper.hold.take() else { return };
@@ -281,7 +281,7 @@ impl Cell {
         }
     }
 
-    /// What else had part `index` is gone: a hand that has it draws it to its middle.
+    /// The other holder has released part `index`: a hand that holds it draws it to its middle.
     pub(super) fn recover(&mut self, hand: Hand, index: usize) {
         let (gripper, world) = self.hand_at_work(hand);
         if let Some((_, hold)) = gripper.hold.as_mut().filter(|(held, _)| *held == index) {
@@ -289,7 +289,7 @@ impl Cell {
         }
     }
 
-    /// Move the jaw of the vise; it takes along what it reaches, and stops when that lies against the fixed face.
+    /// Move the jaw of the vise; it pushes a part along, and stops when the part lies against the fixed face.
     pub(super) fn drive_jaw(&mut self, dt: f64) {
         if !self.vise.moving() {
             return;
@@ -308,9 +308,9 @@ impl Cell {
         }
     }
 
-    /// The part between the clamping faces that stops the jaw first, and the step that it stands in: the
-    /// shallowest of those whose faces it covers well, since that stops the jaw. A bar that is pressed into the
-    /// back of its step is not in the next one.
+    /// The part between the clamping faces that stops the jaw first, and its step: the shallowest of those whose faces
+    /// it covers well, because that one stops the jaw. A bar that is pressed into the back of its step is not in the
+    /// next one.
     fn between_jaws(&self) -> Option<(usize, usize, Squeeze)> {
         let standing = (0..self.parts.len()).filter_map(|index| {
             let offers: Vec<_> = self
@@ -331,7 +331,7 @@ impl Cell {
         standing.max_by(|a, b| stop(a).total_cmp(&stop(b)))
     }
 
-    /// Take a part between the jaws, or lead it on: flush with the faces, its middle at `middle` (m) across them.
+    /// Clamp a part between the jaws, or move it on: flush with the faces, its middle at `middle` (m) across them.
     pub(super) fn clamp(&mut self, index: usize, step: usize, squeeze: &Squeeze, middle: Real) {
         let mut rest = squeeze.flush;
         rest.translation.y = middle;
@@ -348,7 +348,7 @@ impl Cell {
         body.set_next_kinematic_position(next);
     }
 
-    /// Let go of what the vise has.
+    /// Release the part in the vise.
     pub(super) fn unclamp(&mut self) {
         let Some(Clamped { part, .. }) = self.vise.clamped.take() else { return };
         for hand in HANDS {
@@ -379,14 +379,14 @@ impl Cell {
         }
     }
 
-    /// What part `index` offers to the jaws in a step.
+    /// Width and faces of part `index` between the jaws in a step.
     pub(super) fn between_jaws_of(&self, index: usize, step: usize) -> Option<Squeeze> {
         let part = self.parts.get(index)?;
         let base = to_pose(self.vise.frame());
         squeeze(&base.inv_mul(&part.pose(&self.world)), &part.solid(), &self.vise.pads(step))
     }
 
-    /// Before a step: friction on what slides in a hand.
+    /// Before a step: friction on parts that slide in a hand.
     pub(super) fn rub_holds(&mut self, dt: f64) {
         for hand in HANDS {
             let (gripper, world) = self.hand_at_work(hand);
@@ -396,7 +396,7 @@ impl Cell {
         }
     }
 
-    /// After a step: holds that are asked for more than friction gives slide.
+    /// After a step: holds whose load exceeds friction slide.
     pub(super) fn let_holds_give_way(&mut self) {
         self.resist_in_vise();
         for hand in HANDS {
@@ -440,7 +440,7 @@ impl Cell {
         broken.enumerate().fold(0, |bits, (beam, is_broken)| bits | (u8::from(is_broken) << beam))
     }
 
-    /// Report a jaw that does not get on.
+    /// Report a jaw that does not move.
     pub(super) fn note_jaw(&mut self) {
         let stands = self.vise.moving() && self.faults.jaw_stuck();
         self.jaw_waits = if stands { self.jaw_waits + 1 } else { 0 };

@@ -1,4 +1,4 @@
-//! Machining: a part that is where it belongs, clamped in the vise or standing in a nest, becomes the next one.
+//! Machining: a part at its place, clamped in the vise or standing in a nest, becomes the next one.
 
 use geometry::frame::{Frame, Vector as Inches, rotation_vector};
 
@@ -14,10 +14,10 @@ const SEATED: Tolerance = Tolerance { inches: 0.03, degrees: 1.0 };
 const IN_NEST: f64 = 1.0;
 
 impl Cell {
-    /// Machine what is at `location`.
+    /// Machine the part at `location`.
     ///
     /// # Errors
-    /// [`WorkstationError`] if it is not what it should be, or not where it should be.
+    /// [`WorkstationError`] if it is another part, or not at its seat.
     pub(super) fn machine(&mut self, from: &str, to: &str, location: &str) -> Result<(), WorkstationError> {
         let next = self.description.kind(to)?.clone();
         let nest = match self.description.machine_at(location, from)? {
@@ -55,7 +55,7 @@ impl Cell {
         Ok(())
     }
 
-    /// In a nest the machine holds the part by itself, and lets it stand again afterwards.
+    /// In a nest the machine holds the part itself, and releases it afterwards.
     fn machine_in_nest(
         &mut self,
         from: &str,
@@ -89,7 +89,7 @@ impl Cell {
     }
 }
 
-/// A part is what it must be, and the next one fits into it.
+/// Check that a part is the expected one, and that the next one fits into it.
 fn check_part(from: &str, part: &Part, next: &PartType) -> Result<(), WorkstationError> {
     if part.kind.name != from {
         return Err(WorkstationError::WrongPart { expected: from.into(), found: part.kind.name.clone() });
@@ -97,7 +97,7 @@ fn check_part(from: &str, part: &Part, next: &PartType) -> Result<(), Workstatio
     next.is_made_of(&part.kind)
 }
 
-/// Inches and radians from the seat are within the tolerance.
+/// Check that the distance from the seat, inches and radians, is within the tolerance.
 fn check_seat(
     part: &Part,
     (distance, angle): (f64, f64),
@@ -110,8 +110,8 @@ fn check_seat(
     Err(WorkstationError::NotSeated { part: part.kind.name.clone(), distance, degrees, allowed })
 }
 
-/// By how much a part is turned from the nearest of the attitudes that are as good as its seat's, radians: a
-/// box has its faces, a cylinder its axis.
+/// Angle of a part from the nearest attitude that is equivalent to that of its seat, radians: by its faces for a box,
+/// by its axis for a cylinder.
 fn askew(here: &Frame, shape: Shape) -> f64 {
     let off = |axis: Inches, own: Inches| libm::acos(axis.dot(&own).abs().min(1.0));
     match shape {

@@ -1,4 +1,4 @@
-//! The cell as a whole: one tick of it is one call.
+//! The whole cell; one call advances it by one tick.
 
 mod changing;
 mod clearing;
@@ -75,7 +75,7 @@ pub struct Cell {
     joystick: Joystick,
     parts: Vec<Part>,
     next_part: u32,
-    /// What stands still: built anew from the description when a cell is restored, as are the obstacles.
+    /// Fixed blocks: made again from the description when a cell is restored, like the obstacles.
     #[serde(skip)]
     furniture: Vec<Block>,
     #[serde(skip)]
@@ -91,7 +91,7 @@ pub struct Cell {
     /// Ticks in which the jaw of the vise should have moved and has not.
     jaw_waits: u32,
     events: Vec<CellEvent>,
-    /// The arm cannot follow the robot; said once.
+    /// The arm cannot follow the robot; reported once.
     stays_behind: bool,
     droop: Option<Droop>,
     #[serde(with = "crate::image::record")]
@@ -107,7 +107,7 @@ impl Cell {
         Self::with_faults(description, seed, &FaultPlan::default())
     }
 
-    /// Like [`Cell::new`], with faults that will begin when their plan says.
+    /// Like [`Cell::new`], with the faults of a plan.
     ///
     /// # Errors
     /// [`CellError`] if the description cannot be used.
@@ -178,19 +178,19 @@ impl Cell {
         Ok(cell)
     }
 
-    /// What it was built from, as the faults of the plan have displaced it.
+    /// The description of the cell, with the displacements of the fault plan.
     #[must_use]
     pub const fn description(&self) -> &CellDescription {
         &self.description
     }
 
-    /// What the devices show: before the first tick as the cell was built, then as the last tick left it.
+    /// The sensor words after the last tick; before the first tick, those of the cell as built.
     #[must_use]
     pub fn inputs(&self) -> DeviceInputs {
         self.inputs
     }
 
-    /// Advance the cell by exactly one tick of 40 ms with what the controller wrote in the last one.
+    /// Advance the cell by exactly one tick of 40 ms with the controller's outputs of the last one.
     pub fn step(&mut self, outputs: &DeviceOutputs) -> DeviceInputs {
         let outputs = &self.begin_tick(outputs);
         let StepOutputs { tx, dtr, .. } =
@@ -216,13 +216,13 @@ impl Cell {
         inputs
     }
 
-    /// Like [`Cell::step`], while a robot elsewhere is commanded: the simulated arm, and with it all else in
-    /// the cell, follows `position`, the one that the robot has acknowledged; `None` while none is known. The
-    /// simulated T3 controller is not asked: `outputs.link_tx` goes to the robot, and what it answers is the
-    /// caller's to fill in (`link_rx` and `link_ready` are returned empty).
+    /// Like [`Cell::step`], for a robot outside of the simulation: the simulated arm, and with it the rest of the cell,
+    /// follows `position`, which the robot has acknowledged; `None` if none is known. The simulated T3 controller is
+    /// not used: the caller sends `outputs.link_tx` to the robot and fills in its answer (`link_rx` and `link_ready`
+    /// are returned empty).
     ///
-    /// The arm comes from where it is as fast as its servos can, so a first position far away is a motion,
-    /// not a jump. A position that it cannot take leaves it where it is and is a [`CellEvent::CannotFollow`].
+    /// The arm moves as fast as its servos can, so that a distant first position causes a motion and not a jump. An
+    /// unreachable position leaves it where it is and gives a [`CellEvent::CannotFollow`].
     pub fn step_following(&mut self, position: Option<&Plate>, outputs: &DeviceOutputs) -> DeviceInputs {
         let outputs = &self.begin_tick(outputs);
         let followed = position.map_or(Ok(()), |plate| self.t3.follow(plate));
@@ -237,8 +237,7 @@ impl Cell {
         self.inputs
     }
 
-    /// A tick begins, and with it the faults that do: what the controller's commands have become by the time
-    /// they arrive.
+    /// Begin a tick and its faults; returns the controller's commands as changed by them.
     fn begin_tick(&mut self, outputs: &DeviceOutputs) -> DeviceOutputs {
         let before = self.faults.hydraulics_lost();
         let changes = self.faults.next();
@@ -251,7 +250,7 @@ impl Cell {
         self.faults.outputs(outputs)
     }
 
-    /// Say which faults begin and end.
+    /// Report faults that begin and end.
     pub(super) fn tell(&mut self, changes: Vec<Change>) {
         self.events.extend(changes.into_iter().map(|Change { number, text, begins }| {
             if begins {
@@ -264,7 +263,7 @@ impl Cell {
 
     /// Faults that begin in ticks to come, beside those of the plan that the cell was built with.
     ///
-    /// A fault that displaces something is not admitted: the cell stands as it was built.
+    /// A fault that displaces something is refused: the cell is already built.
     pub fn add_faults(&mut self, faults: &FaultPlan, seed: u64) {
         self.faults.add(faults, seed);
     }
@@ -275,7 +274,7 @@ impl Cell {
         self.faults.struck()
     }
 
-    /// One tick of all that moves.
+    /// One tick of all moving bodies.
     fn advance(&mut self, outputs: &DeviceOutputs) {
         self.pedestal.table.order(&outputs.pedestal_table);
         let near = self.near_arm();
@@ -287,7 +286,7 @@ impl Cell {
         self.look(outputs);
     }
 
-    /// One step of the simulation; `near` is what an arm without pressure may come to lie on.
+    /// One step of the simulation; `near` are the bodies that an arm without pressure may touch.
     fn substep(&mut self, outputs: &DeviceOutputs, near: &[Body]) {
         let dt = self.world.integration_parameters.dt;
         self.t3.advance(dt, &self.loads(near));
@@ -304,7 +303,7 @@ impl Cell {
         self.let_holds_give_way();
     }
 
-    /// What the valves let flow to a gripper of the robot.
+    /// Air supply of a gripper of the robot.
     fn supply(&self, hand: Hand, outputs: &DeviceOutputs) -> Supply {
         let speed = self.description.gripper.jaw_speed;
         match hand {
@@ -314,7 +313,7 @@ impl Cell {
         }
     }
 
-    /// Once a tick: what has been run into, what has fallen.
+    /// Once a tick: new contacts, fallen parts.
     fn after_tick(&mut self) {
         self.check_clearance();
         if !self.world.quarantine().is_empty() {
@@ -330,8 +329,8 @@ impl Cell {
         *self.t3.arm().joints()
     }
 
-    /// The tool frame as the loaded arm and the fingers have it, inches: the middle between the fingertips;
-    /// of a bare robot where they would be.
+    /// The tool frame with the deflection of arm and fingers, inches: the middle between the fingertips; for a bare
+    /// robot the place where they would be.
     #[must_use]
     pub fn tool(&self) -> Frame {
         match self.changer.carried() {
@@ -340,8 +339,8 @@ impl Cell {
         }
     }
 
-    /// Finger opening, in, and force of a finger, lb, of the gripper that is mated: the truth behind the
-    /// sensors. Zeros of a bare robot.
+    /// Finger opening, in, and force of a finger, lb, of the gripper that is mated: true values, not those of the
+    /// sensors. Zeros for a bare robot.
     #[must_use]
     pub fn fingers(&self) -> (f64, f64) {
         let gripper = self.changer.mated().map(|hand| self.hand(hand));
@@ -354,7 +353,7 @@ impl Cell {
         self.pedestal.frame()
     }
 
-    /// Finger opening, in, and force of a finger, lb, of the pedestal's hand: the truth behind the sensors.
+    /// Finger opening, in, and force of a finger, lb, of the pedestal's hand: true values, not those of the sensors.
     #[must_use]
     pub fn pedestal_fingers(&self) -> (f64, f64) {
         (self.pedestal.hand.air.opening(), self.pedestal.hand.air.force())
@@ -378,12 +377,12 @@ impl Cell {
         self.parts.iter().find(|part| part.id == id).map(|part| part.frame(&self.world))
     }
 
-    /// What has happened since this was last asked.
+    /// Events since the last call.
     pub fn events(&mut self) -> Vec<CellEvent> {
         std::mem::take(&mut self.events)
     }
 
-    /// Do something at the T3 controller's console, its teach pendant, or an emergency stop.
+    /// Press a key of the T3 controller's console, its teach pendant, or an emergency stop.
     ///
     /// # Errors
     /// [`Refusal`]: what must be done first; then nothing has changed.
@@ -399,7 +398,7 @@ impl Cell {
         &self.t3
     }
 
-    /// What the controller shows and the robot does becomes an event, unless it belongs to the day's work.
+    /// Messages of the controller and motions of the robot become events, except those of normal work.
     fn hear_t3(&mut self) {
         for message in self.t3.messages() {
             match message {
@@ -423,11 +422,11 @@ impl Cell {
         self.t3.depc().state()
     }
 
-    /// Lead the arm to an end-plate frame (inches) by the end of the next tick, as the teach pendant does:
-    /// past the line.
+    /// Move the arm to an end-plate frame (inches) by the end of the next tick, as the teach pendant does, without the
+    /// line.
     ///
     /// # Errors
-    /// [`DriveError`] if the arm cannot take the position; then it stays.
+    /// [`DriveError`] if the arm cannot reach the position; then it stays.
     pub fn drive(&mut self, plate: &Frame) -> Result<(), DriveError> {
         self.t3.drive(plate)
     }

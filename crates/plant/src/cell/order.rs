@@ -1,6 +1,6 @@
-//! What of an order to the workstation the description alone can judge: whether the names in it are those of the cell.
+//! Checks of a workstation action that need only the description: whether the cell has the names in it.
 //!
-//! The cell asks this before it does anything; a reader of jobs can ask it before the first tick.
+//! The cell checks this before it acts; a reader of jobs can check it before the first tick.
 
 use diagnostics::nearest;
 use geometry::frame::Frame;
@@ -25,10 +25,10 @@ pub(super) enum Machine<'c> {
 }
 
 impl CellDescription {
-    /// An action of the workstation names only what this cell has.
+    /// Check that the cell has everything that an action of the workstation names.
     ///
     /// # Errors
-    /// [`WorkstationError`], of which [`WorkstationError::blames`] gives the word that is to blame.
+    /// [`WorkstationError`], of which [`WorkstationError::blames`] gives the wrong word.
     pub fn admits(&self, action: &WorkstationAction) -> Result<(), WorkstationError> {
         match action {
             WorkstationAction::Place { part, unit, sector, .. } => {
@@ -139,7 +139,7 @@ impl PartType {
 }
 
 impl WorkstationError {
-    /// The word of an order that is to blame, and the one that may have been meant; `None` if not one word is.
+    /// The wrong word of an action, and the one that may have been meant; `None` if the error is not in one word.
     #[must_use]
     pub fn blames(&self) -> Option<(String, Option<&str>)> {
         let near = |word: &String, known: &'_ [String]| -> Option<usize> {

@@ -1,4 +1,4 @@
-//! The grippers as the picture sees them: worn, and in their holsters; and the boxes of which they consist.
+//! The grippers in the picture, on the robot and in their holsters, and their boxes.
 
 use geometry::{
     frame::{Frame, Rotation, Vector as Inches},

@@ -1,7 +1,7 @@
-//! The cell as viewers see it: links with poses, and a URDF made of boxes and cylinders.
+//! The cell for viewers: links with poses, and a URDF of boxes and cylinders.
 //!
-//! Every link hangs in the URDF by the same parent that its pose is given in, so that a stream of transforms,
-//! a stream of joint angles and the URDF agree.
+//! The pose of every link is given relative to its parent in the URDF, so that a stream of transforms, a stream of
+//! joint angles and the URDF agree.
 
 use std::fmt::Write as _;
 
@@ -55,7 +55,7 @@ pub(super) enum Outline {
 }
 
 impl Cell {
-    /// Names and poses of all moving bodies and of what they hang on; a parent stands before its children.
+    /// Names and poses of all moving bodies and their parents; a parent comes before its children.
     #[must_use]
     pub fn links(&self) -> Vec<Link> {
         let mut links = Vec::with_capacity(11 + self.parts.len());
@@ -76,7 +76,7 @@ impl Cell {
         links
     }
 
-    /// Names and poses of what stands in the cell for ever: the links of the URDF that [`Cell::links`] does not have.
+    /// Names and poses of the fixed links of the URDF, which [`Cell::links`] does not have.
     #[must_use]
     pub fn fixed_links(&self) -> Vec<Link> {
         let standing = self.furniture.iter().filter(|block| !VISE_BLOCKS.contains(&block.name.as_str()));
@@ -99,9 +99,9 @@ impl Cell {
         self.urdf_with(&[])
     }
 
-    /// A URDF of the whole cell with the parts that will be put down later, by their names in the description
-    /// and in the order in which that will happen: a log is told of geometry before its first tick. Names
-    /// that the description does not have are left out.
+    /// A URDF of the whole cell with the parts that will be put down later, by their names in the description and in
+    /// that order: a log gets the geometry before its first tick. Names that the description does not have are left
+    /// out.
     #[must_use]
     pub fn urdf_with(&self, coming: &[&str]) -> String {
         let mut urdf = Urdf::new(&self.description.name);
@@ -140,7 +140,7 @@ impl Cell {
         urdf.finish()
     }
 
-    /// Links and kinds of the parts that are there, and of those that will be put down: see [`Cell::urdf_with`].
+    /// Links and kinds of the present parts, and of those that will be put down: see [`Cell::urdf_with`].
     #[must_use]
     pub fn part_kinds(&self, coming: &[&str]) -> Vec<(String, &PartType)> {
         let present = self.parts.iter().map(|part| (part.id, &part.kind));
@@ -280,7 +280,7 @@ pub(super) struct Motion {
     pub range: (f64, f64),
     /// Greatest speed, a second.
     pub speed: f64,
-    /// Greatest force, N, or moment, N·m; 0 where the description says nothing of it.
+    /// Greatest force, N, or moment, N·m; 0 where the description does not give it.
     pub effort: f64,
 }
 

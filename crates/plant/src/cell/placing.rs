@@ -1,4 +1,4 @@
-//! Where parts are: where they are put down, and what is said of where they lie.
+//! Placing of parts, and their reported positions.
 
 use geometry::frame::{Frame, Vector as Inches, rotation_by};
 use rapier3d_f64::{parry::query, prelude::*};
@@ -15,7 +15,7 @@ use crate::{
 const OVERLAP: Real = 1e-4;
 /// Bodies whose middles are nearer than this to each other overlap, m.
 const SAME_PLACE: Real = 1e-3;
-/// What stands or is stacked this high above a tray's floor is in the tray, in (ASSUMED: tall tools).
+/// A part up to this height above a tray's floor counts as in the tray, in (ASSUMED: tall tools).
 const IN_TRAY: f64 = 10.0;
 /// A part whose middle is nearer than this to that of the seat of a nest is in the nest, in.
 const IN_NEST: f64 = 1.0;
@@ -65,7 +65,7 @@ impl Cell {
         self.description.delivered(kind, unit, sector, aside)
     }
 
-    /// Put a part into a sector, unless a fault of the plan has it otherwise.
+    /// Put a part into a sector, with the changes of the fault plan.
     pub(super) fn deliver(
         &mut self,
         part: &str,
@@ -97,7 +97,7 @@ impl Cell {
         Ok(())
     }
 
-    /// What a part at `frame` would overlap.
+    /// A body that a part at `frame` would overlap.
     fn in_the_way(&self, kind: &PartType, frame: &Frame) -> Option<String> {
         let pose = to_pose(frame);
         let (shape, turn) = Solid::of(kind).shape();

@@ -1,9 +1,9 @@
-//! The arm without pressure: what weighs on it, what it comes to lie on, and what is said of it.
+//! The arm without pressure: its loads, its contacts, and their report.
 //!
-//! A powered arm is led on its path whatever it meets; one that sags is not. What its rigid parts run into
-//! pushes back with the stiffness of the arm, and so do the springs on which fingers and held part hang:
-//! those know from the simulation what they touch. The depths that are reported are those by which the arm
-//! leads its outline into things: with 2000 lb/in a tenth of an inch is two hundred pounds.
+//! A powered arm follows its path even through contact; a sagging arm does not. Obstacles push its rigid parts back
+//! with the stiffness of the arm, and the springs of fingers and held part push back by the contacts of the simulation.
+//! Reported depths are those of the arm's outline in the obstacle: with 2000 lb/in a tenth of an inch is two hundred
+//! pounds.
 
 use geometry::frame::Vector as Inches;
 use rapier3d_f64::{parry::query, prelude::*};
@@ -21,30 +21,30 @@ use crate::{
 
 /// Coefficient of friction of the robot's outline on what it lies on (ASSUMED: steel and paint).
 const FRICTION: f64 = 0.30;
-/// What is nearer than this at the beginning of a tick may be touched in it, in.
+/// Bodies within this distance at the beginning of a tick may be touched in it, in.
 const NEAR: f64 = 0.5;
-/// Contacts that have grown by less are none, in.
+/// Least growth of a contact that counts, in.
 const LEAST_DEPTH: f64 = 0.001;
 
-/// What has become of the arm since it lost its pressure.
+/// The droop of the arm since it lost its pressure.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Droop {
     /// Why there is no pressure.
     pub cause: Cut,
     /// Where the tool point was when the pressure went, in.
     pub position: [f64; 3],
-    /// What the robot has run into since, each with its greatest depth; the deepest first.
+    /// Contacts since then, each with its greatest depth; the deepest first.
     pub touched: Vec<Contact>,
-    /// The arm has sagged as far as it will.
+    /// The arm has finished sagging.
     pub at_rest: bool,
     /// The shoulder lies on the shot pin.
     pub on_shot_pin: bool,
-    /// What was touched when the pressure went.
+    /// Contacts when the pressure was lost.
     before: Vec<Contact>,
 }
 
 impl Droop {
-    /// How it has ended so far, behind "the arm".
+    /// Its state so far, as a text after "the arm".
     #[must_use]
     pub fn end(&self) -> String {
         let pin = if self.on_shot_pin { ", its shoulder on the shot pin" } else { "" };
@@ -59,7 +59,7 @@ impl Droop {
         }
     }
 
-    /// Take in what is touched now.
+    /// Add the present contacts.
     fn note(&mut self, touching: Vec<Contact>) {
         let same = |a: &Contact, b: &Contact| (&a.mover, &a.obstacle) == (&b.mover, &b.obstacle);
         for contact in touching {
@@ -77,7 +77,7 @@ impl Droop {
 }
 
 impl Cell {
-    /// What has become of the arm since it lost its pressure; `None` while it has it.
+    /// The droop since the loss of pressure; `None` while there is pressure.
     #[must_use]
     pub fn droop(&self) -> Option<&Droop> {
         self.droop.as_ref()
@@ -94,7 +94,7 @@ impl Cell {
         self.t3.repair_hydraulics();
     }
 
-    /// Begin or end the account of a droop.
+    /// Begin or end the record of a droop.
     pub(super) fn watch_pressure(&mut self) {
         match (self.t3.cut(), &self.droop) {
             (None, Some(_)) => self.droop = None,
@@ -112,7 +112,7 @@ impl Cell {
         }
     }
 
-    /// Once a tick: what the sagging arm has met, and whether it has come to rest.
+    /// Once a tick: contacts of the sagging arm, and whether it is at rest.
     pub(super) fn watch_droop(&mut self) {
         let Some(mut droop) = self.droop.take() else { return };
         droop.note(touching(&self.movers(), &self.all_obstacles()));
@@ -124,14 +124,14 @@ impl Cell {
         self.droop = Some(droop);
     }
 
-    /// Everything that the robot can run into, where it is now.
+    /// All obstacles at their present positions.
     fn all_obstacles(&self) -> Vec<Body> {
         let mut all = self.obstacles.clone();
         all.extend(self.devices());
         all
     }
 
-    /// What an arm without pressure may come to lie on in the coming tick; nothing under pressure.
+    /// Bodies that an arm without pressure may touch in the next tick; none under pressure.
     pub(super) fn near_arm(&self) -> Vec<Body> {
         if self.t3.arm().has_pressure() {
             return Vec::new();
@@ -147,7 +147,7 @@ impl Cell {
         all
     }
 
-    /// The forces on an arm without pressure; `near` is what it may lie on.
+    /// The forces on an arm without pressure; `near` are the bodies that it may touch.
     pub(super) fn loads(&self, near: &[Body]) -> Vec<Load> {
         if self.t3.arm().has_pressure() {
             return Vec::new();
@@ -179,7 +179,7 @@ impl Cell {
         loads
     }
 
-    /// What an obstacle does to a rigid part of the robot that it meets.
+    /// The force of an obstacle on a rigid part of the robot.
     fn push(&self, mover: &Body, obstacle: &Body) -> Option<Load> {
         let contact = meet(mover, obstacle)?;
         let stiffness = self.description.robot.stiffness;
@@ -199,7 +199,7 @@ impl Cell {
     }
 }
 
-/// Part of the robot's own outline: fingers and held parts give way on their springs.
+/// Part of the robot's own outline: fingers and held parts are on springs.
 fn is_rigid(mover: &Body) -> bool {
     matches!(mover.kind, Kind::Arm | Kind::Gripper)
 }

@@ -1,9 +1,8 @@
 //! A cell as bytes, and its fingerprint.
 //!
-//! What is saved is everything that the next tick depends on: all bodies, joints and contacts with what the solver
-//! remembers of them, all devices, the noise of the sensors, and the events that were not taken yet. A cell that was
-//! restored goes on bit for bit as the one that was saved would have. What stands still is built anew from the
-//! description, which must be the same.
+//! Saved is everything on which the next tick depends: all bodies, joints and contacts with the state of the solver,
+//! all devices, the noise of the sensors, and events that were not read yet. A restored cell continues bit for bit like
+//! the saved one. Fixed bodies are made again from the description, which must be the same.
 //!
 //! ```text
 //! RCSCELL\0   version u32   length u64   digest u64   the state, in postcard
@@ -15,7 +14,7 @@ use rcs_core::digest::Digest;
 use super::Cell;
 use crate::{description::CellDescription, fingerprint, scene::furniture};
 
-/// What every saved cell begins with.
+/// First bytes of every saved cell.
 const MAGIC: [u8; 8] = *b"RCSCELL\0";
 /// Version of the saved state: to be raised with every change of what a cell consists of.
 const VERSION: u32 = 4;
@@ -55,7 +54,7 @@ pub enum RestoreError {
         /// That of the bytes.
         found: u64,
     },
-    /// They are undamaged and still no state of a cell: written by a program that should have raised the version.
+    /// They are undamaged but cannot be decoded: the version of the writing program should have been raised.
     #[error("the saved cell cannot be read: {0}")]
     Unreadable(#[from] postcard::Error),
     /// The cell that was saved was built from another description.
@@ -96,8 +95,8 @@ impl Cell {
         Ok(cell)
     }
 
-    /// Fingerprint of where everything in the cell is, how it moves, and what all devices are at: the same in
-    /// two runs as long as they are the same.
+    /// Fingerprint of all positions, velocities and device states of the cell: the same in two runs as long as they are
+    /// the same.
     ///
     /// # Panics
     /// If a device refuses to be serialised, which is a fault of this crate.

@@ -1,4 +1,4 @@
-//! What the sensors of the cell show: the camera's pictures, and once a tick everything else.
+//! The sensors of the cell: pictures of the camera on request, everything else once a tick.
 
 use geometry::frame::{Frame, Vector as Inches};
 use interfaces::device::{
@@ -16,12 +16,12 @@ use crate::{
     sensor::resolver,
 };
 
-/// What of the arm can come between the camera on its wrist and a part.
+/// Links of the arm that can come between the camera on its wrist and a part.
 const ARM_IN_VIEW: [&str; 2] = ["upper_arm", "forearm"];
 
 impl Cell {
-    /// From now on another process analyses the camera's pictures: the caller asks for them ([`Cell::picture`]), and says what has
-    /// come of them ([`Cell::hear_vision`]).
+    /// From now on another process analyses the camera's pictures: the caller gets them by [`Cell::picture`], and
+    /// passes the answers to [`Cell::hear_vision`].
     #[must_use]
     pub fn with_vision_elsewhere(mut self) -> Self {
         self.vision_elsewhere = true;
@@ -48,7 +48,7 @@ impl Cell {
         self.analysis.expose(&outputs.vision, &seen, expected);
     }
 
-    /// What the camera sees now: the parts of which it sees anything.
+    /// The parts that the camera sees now.
     #[must_use]
     pub fn picture(&self) -> Vec<Subject> {
         if self.faults.camera_blind() {
@@ -58,14 +58,14 @@ impl Cell {
         self.subjects(&frame).into_iter().filter(|subject| subject.raster() != 0).collect()
     }
 
-    /// What a vision system in another process answers, if the cable to it is on.
+    /// Pass the answer of a vision system in another process, if its cable is connected.
     pub fn hear_vision(&mut self, response: &VisionResponse) {
         self.inputs.vision = *response;
         self.faults.vision(&mut self.inputs);
     }
 
-    /// What a camera at a frame (world, in) has before it: of each part what is in the field of view, and what nothing
-    /// hides.
+    /// The visible points of each part for a camera at a frame (world, in): those in the field of view that are not
+    /// hidden.
     fn subjects(&self, camera: &Frame) -> Vec<Subject> {
         let lens = to_pose(camera).translation;
         let arm: Vec<_> =

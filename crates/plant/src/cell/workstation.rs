@@ -1,4 +1,4 @@
-//! What the workstation does beside the robot: parts are put down and taken away, the vise is worked, parts are machined.
+//! Actions of the workstation besides the robot: put down and remove parts, operate the vise, machine parts.
 
 use geometry::frame::Frame;
 
@@ -22,11 +22,11 @@ pub enum Placement {
         /// Right-hand roll about the tool's X (down), degrees; at 0 the part's Z is the tool's Z.
         angle: f64,
     },
-    /// Anywhere within the tray's random offset, at any angle, as the seed has it.
+    /// At random within the tray's random offset, at any angle, from the seed.
     Random,
 }
 
-/// What the workstation can be told to do.
+/// An action of the workstation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WorkstationAction {
     /// Put a part into a sector of a tray.
@@ -87,7 +87,7 @@ pub enum WorkstationAction {
     T3(Key),
 }
 
-/// Why the workstation cannot do that.
+/// Why the workstation refuses an action.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WorkstationError {
     /// No part of that name in the description.
@@ -261,7 +261,7 @@ pub enum WorkstationError {
 }
 
 impl Cell {
-    /// Do something beside the robot. The jaw of the vise then moves with the ticks; see [`Cell::workstation_busy`].
+    /// Begin an action. The jaw of the vise then moves with the ticks; see [`Cell::workstation_busy`].
     ///
     /// # Errors
     /// [`WorkstationError`]; then nothing has changed.
