@@ -1,9 +1,9 @@
-//! The cell description: one TOML file that says where things stand, how large and how strong they are.
+//! The cell description: one TOML file with positions, sizes and forces of everything in the cell.
 //!
-//! Everything in the file is in inches, degrees, pounds and seconds, in world coordinates. Reading finds all
-//! mistakes at once: what is no TOML, keys that are missing, unknown or misspelt, values of another kind, and
-//! numbers and names that [`CellDescription::validate`] does not accept. Each has its entry, its place in the
-//! text, what was expected and what was found.
+//! Everything in the file is in inches, degrees, pounds and seconds, in world coordinates. Reading finds all mistakes
+//! at once: invalid TOML, keys that are missing, unknown or misspelt, values of another kind, and numbers and names
+//! that [`CellDescription::validate`] does not accept. Each has its entry, its place in the text, what was expected and
+//! what was found.
 
 mod check;
 mod contact;
@@ -71,7 +71,7 @@ pub enum DescriptionError {
 pub struct CellDescription {
     /// A name for people.
     pub name: String,
-    /// A part that a command has put down lies within this distance of where it should be, in.
+    /// Greatest distance of a part from its place after a command has put it down, in.
     #[serde(default = "placing_tolerance")]
     pub placing_tolerance: f64,
     /// Steps and stiffness of the simulation.
@@ -88,7 +88,7 @@ pub struct CellDescription {
     pub drum: Drum,
     /// The Active Pedestal.
     pub pedestal: Pedestal,
-    /// What kinds of sensors have in common.
+    /// Common values of kinds of sensors.
     pub sensors: SensorModels,
     /// The camera on the wrist.
     pub camera: Camera,
@@ -96,15 +96,15 @@ pub struct CellDescription {
     pub vise: Vise,
     /// The trays.
     pub tray: Vec<Tray>,
-    /// What all trays have in common.
+    /// Common values of all trays.
     pub tray_shape: TrayShape,
-    /// Boxes that stand still.
+    /// Fixed boxes.
     #[serde(default)]
     pub fixture: Vec<Fixture>,
     /// Places where parts stay because of their shape.
     #[serde(default)]
     pub nest: Vec<Nest>,
-    /// What may touch what.
+    /// Permitted contacts.
     #[serde(default)]
     pub contact: Permits,
     /// Parts that can be in the cell.
@@ -143,7 +143,7 @@ pub struct Robot {
     pub forearm_radius: f64,
     /// Radius of the wrist, in.
     pub wrist_radius: f64,
-    /// What happens without pressure.
+    /// Behaviour without pressure.
     #[serde(default)]
     pub hydraulics: Hydraulics,
 }
@@ -166,7 +166,7 @@ pub struct Grippers {
     pub force: ForceGages,
 }
 
-/// A gripper of two fingers that air moves: the robot's, and the hand of the Active Pedestal (III.9.2).
+/// A gripper with two fingers, driven by air: the robot's, and the hand of the Active Pedestal (III.9.2).
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Gripper {
@@ -222,7 +222,7 @@ pub struct Pedestal {
     pub position: [f64; 3],
     /// Direction of the radial line from the robot, about +Z from +X, degrees.
     pub azimuth: f64,
-    /// Name of the fixture that is its stand: not bolted to the floor, and so in danger of being moved (II.1.2.3).
+    /// Name of the fixture that is its stand: it is not bolted to the floor and can be moved (II.1.2.3).
     pub stand: String,
     /// Stiffness of stand, hand and fingers together at the fingertips, lb/in.
     pub stiffness: f64,
@@ -282,11 +282,11 @@ pub struct Camera {
     pub least_share: f64,
     /// Parts with no more than this between them are one blob in the picture, in.
     pub resolution: f64,
-    /// Exposures in the order of the variations: least and greatest reflectance that each shows as it should.
+    /// Exposures in the order of the variations: least and greatest reflectance that each exposes correctly.
     pub exposures: Vec<[f64; 2]>,
-    /// What brighter parts look longer by, in.
+    /// Apparent increase of the length of brighter parts, in.
     pub bloom: f64,
-    /// Chance that a part is not recognised though all is well.
+    /// Chance that a visible part is not recognised.
     pub failure: f64,
     /// Ticks until the answer to a fast flood.
     pub flood_ticks: u32,
@@ -328,7 +328,7 @@ pub struct ViseProgram {
     pub name: String,
     /// Back of the step, from the front plane of the jaws, in.
     pub back: f64,
-    /// How far its clamping faces stand back from the inner faces of the jaws, in.
+    /// Distance of its clamping faces behind the inner faces of the jaws, in.
     pub depth: f64,
     /// Floor of the step, from the top of the jaws, in; negative.
     pub ledge: f64,
@@ -338,7 +338,7 @@ pub struct ViseProgram {
     pub opening_partial: f64,
 }
 
-/// A place where parts stay because of its shape: a cradle, a pot, a pocket. What it is made of are fixtures.
+/// A place that keeps parts by its shape: a cradle, a pot, a pocket. It is made of fixtures.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Nest {
@@ -379,7 +379,7 @@ pub struct Tray {
     pub sectors: Vec<[f64; 2]>,
 }
 
-/// What all trays have in common.
+/// Common values of all trays.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrayShape {
@@ -395,7 +395,7 @@ pub struct TrayShape {
     pub random_offset: f64,
 }
 
-/// A box that stands still.
+/// A fixed box.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fixture {
@@ -442,7 +442,7 @@ pub struct PartType {
     /// Vision id (VII.7.6); 0 for none.
     #[serde(default)]
     pub vision_id: u16,
-    /// Share of the light that it throws back.
+    /// Share of the light that it reflects.
     #[serde(default = "half")]
     pub reflectance: f64,
     /// It is a tool of the machine: it fits into the drum, its X along the drum's.
@@ -514,8 +514,8 @@ impl CellDescription {
         })
     }
 
-    /// Where an entry stands in the text of a description, by the way to it: `gripper.parts.body[0]`; if it
-    /// is not there, the nearest table around it.
+    /// The place of an entry in the text of a description, by its path: `gripper.parts.body[0]`; if it is missing, the
+    /// nearest table around it.
     #[must_use]
     pub fn place(text: &Source, entry: &str) -> At {
         Document::parse(text, KIND).0.place(entry)
@@ -537,7 +537,7 @@ impl CellDescription {
         self.part.iter().find(|part| part.name == name)
     }
 
-    /// The part that vision knows by an id (VII.7.6).
+    /// The part with a vision id (VII.7.6).
     #[must_use]
     pub fn seen_as(&self, vision_id: u16) -> Option<&PartType> {
         self.part.iter().find(|part| part.vision_id == vision_id && vision_id != 0)

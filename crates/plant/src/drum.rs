@@ -1,16 +1,16 @@
 //! The tool drum of the machine tool at its transfer position: a place for a tool, fingers that grip it, and a strike plate.
 //!
-//! The drum's frame is the tool frame of the location TOOL-TRNS: X into the drum. A tool goes in along X; over the last of
-//! its way detents resist with a force that rises like a spring's, and keep it then with a lighter one. Fingers that are
-//! closed already stand in its way, as does a tool that is there: what is pushed against them meets a hundred pounds. The
-//! fingers centre what they close on, and hold it whatever the robot does; its hold slides sooner.
+//! The drum's frame is the tool frame of the location TOOL-TRNS: X into the drum. A tool goes in along X; near the end
+//! detents resist with a force that rises like that of a spring, and then keep it with a smaller one. Closed fingers,
+//! or another tool, stop it with a hundred pounds. The fingers centre a tool when they close and hold it more strongly
+//! than the robot: the robot's hold slides first.
 //!
-//! Detents and obstacles are one spring along X whose far end, the anchor, slides along when the force reaches its limit; so a
-//! tool at rest is at rest, and a force sensor reads a steady value.
+//! Detents and obstacles are one spring along X whose far end, the anchor, slides along when the force reaches its
+//! limit; so a tool comes to rest completely, and a force sensor reads a steady value.
 //!
-//! The strike plate stands beside the tool. Its front stops the fingertips of an open gripper; its shoulders stop open fingers
-//! that slide to the right (tool -Z) or come from there and stand over the tool. They are bodies as everything else, and the
-//! fingers give way to them by their springs.
+//! The strike plate stands beside the tool. Its front stops the fingertips of an open gripper; its shoulders stop open
+//! fingers that slide to the right (tool -Z) or come from there and stand over the tool. They are ordinary bodies, and
+//! the fingers deflect on their springs.
 
 use geometry::frame::{Frame, Rotation, Vector};
 use rapier3d_f64::math::Real;
@@ -26,13 +26,13 @@ use crate::{
 const STIFFNESS: Real = 1.0e5;
 /// Their damping, N·s/m: about critical for a tool of 6 lb.
 const DAMPING: Real = 1.0e3;
-/// What is farther aside than this is not before the drum, in.
+/// Greatest distance from the axis of a tool before the drum, in.
 const BESIDE: f64 = 2.0;
 
 /// A tool before the drum or in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entering {
-    /// Way to its place, in.
+    /// Distance to its place, in.
     pub left: f64,
     /// Off the axis, in.
     pub aside: f64,
@@ -40,16 +40,16 @@ pub struct Entering {
     pub angle: f64,
 }
 
-/// The tool that the drum has to do with.
+/// The tool in or before the drum.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Pocketed {
     /// Index of the part.
     pub part: usize,
     /// Where the spring along X is anchored, m.
     anchor: Real,
-    /// It came while the fingers were closed.
+    /// It arrived while the fingers were closed.
     barred: bool,
-    /// The drum leads it: its fingers have it, or nothing but the detents does.
+    /// The drum fixes it: its fingers hold it, or only the detents do.
     pub fast: bool,
 }
 
@@ -113,7 +113,7 @@ impl Drum {
         Frame { rotation, ..self.seat() }
     }
 
-    /// How a tool stands to its place; `None` if it is not before the drum.
+    /// Position of a tool relative to its place; `None` if it is not before the drum.
     #[must_use]
     pub fn entering(&self, tool: &Frame) -> Option<Entering> {
         let here = self.frame.inverse().compose(tool);
@@ -124,7 +124,7 @@ impl Drum {
         before.then_some(Entering { left, aside, angle })
     }
 
-    /// A tool comes to the fingers.
+    /// Admit a tool that arrives at the fingers.
     pub fn admit(&mut self, part: usize, entering: &Entering) {
         self.tool = Some(Pocketed { part, anchor: metres(-entering.left), barred: self.closed, fast: false });
     }
@@ -138,13 +138,13 @@ impl Drum {
             && entering.angle <= seated_degrees.to_radians()
     }
 
-    /// The fingers have the tool.
+    /// The fingers hold the tool.
     #[must_use]
     pub fn grips(&self, pocketed: &Pocketed) -> bool {
         self.closed && !pocketed.barred
     }
 
-    /// The detents keep a tool there that nothing else has.
+    /// The detents keep a tool that nothing else holds.
     #[must_use]
     pub fn keeps(&self, pocketed: &Pocketed, entering: &Entering) -> bool {
         !pocketed.barred
@@ -174,7 +174,7 @@ impl Drum {
         (spring - DAMPING * speed).clamp(-inward, outward)
     }
 
-    /// From now on the drum leads the tool, or something else does; the spring along X rests where the tool is.
+    /// Fix the tool in the drum, or release it; the spring along X then rests at the tool's position.
     pub fn lead(&mut self, fast: bool, entering: &Entering) {
         if let Some(pocketed) = &mut self.tool {
             pocketed.fast = fast;

@@ -1,14 +1,14 @@
-//! The bytes of a value for a fingerprint: everything that can change in it, and nothing that only says how it is built.
+//! The bytes of a value for a fingerprint: everything that can change in it, without its description.
 //!
-//! A fingerprint of the cell is taken in every tick, so it must be cheap. Every device carries its part of the cell
-//! description with it, which is most of what it consists of and never changes: fields of the name `description` are left
-//! out. Numbers are little-endian in their own width; sequences and texts have their length before them, enums their variant.
+//! A fingerprint of the cell is taken in every tick, so it must be cheap. Every device contains its part of the cell
+//! description, which is most of its data and never changes: fields of the name `description` are left out. Numbers are
+//! little-endian in their own width; sequences and texts have their length before them, enums their variant.
 
 use core::fmt;
 
 use serde::{Serialize, Serializer, ser};
 
-/// Fields of this name never change while a cell lives.
+/// Fields of this name never change.
 const CONSTANT: &str = "description";
 
 /// Append the bytes of a value.

@@ -1,8 +1,8 @@
-//! The force sensor of the tool gripper (III.3.8): what pushes its fingers and the tool in them, and what they weigh.
+//! The force sensor of the tool gripper (III.3.8): forces on its fingers and the tool in them, and their weight.
 //!
-//! The load is what the springs carry by which fingers and tool hang on the hand; so it is there in every contact and lags
-//! nothing. To it come the weight of what hangs on the sensor, which turns with the robot, an offset of the bridges, and
-//! noise: CAL-SENSOR has to find out what no contact reads (V.1.1). Only four of the six axes are connected.
+//! The load is the force of the springs between the hand and fingers and tool, so it has every contact without lag.
+//! Added are the weight on the sensor, whose direction turns with the robot, an offset of the bridges, and noise:
+//! CAL-SENSOR has to find the reading without contact (V.1.1). Only four of the six axes are connected.
 
 use geometry::frame::Vector;
 use interfaces::device::{FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, MOMENT_COUNTS_PER_IN_LB};
@@ -38,7 +38,7 @@ impl Wrench {
     }
 }
 
-/// What the sensor shows under a load on the fingers; `down` is the direction of gravity in the axes of the tool.
+/// Reading of the sensor under a load on the fingers; `down` is the direction of gravity in the axes of the tool.
 pub fn read(gages: &ForceGages, load: &Wrench, down: &Vector, noise: &mut Noise) -> ForceSensor {
     let middle = Vector::new(-gages.behind_tool, 0.0, 0.0);
     let weight = down * gages.weight;

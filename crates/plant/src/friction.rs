@@ -1,8 +1,8 @@
-//! Friction of a flat pad on a face: how much of a sliding and turning motion a step of time takes away.
+//! Friction of a flat pad on a face: its reduction of a sliding and turning motion in a time step.
 //!
-//! Force and moment of friction share one limit, an ellipse with the friction force and its moment on the touched area as
-//! axes, and act against the motion that is left at the end of the step. That makes an equation for one number, the impulse
-//! for each unit of speed that is left; it rises monotonically and is bisected.
+//! Force and moment of friction share one limit, an ellipse with the friction force and its moment on the touched area
+//! as axes, and act against the motion at the end of the step. This gives an equation for one number, the impulse per
+//! unit of remaining speed; it is monotonic and solved by bisection.
 
 use rapier3d_f64::math::Real;
 
@@ -20,7 +20,7 @@ pub struct Motion {
     pub turn: Real,
 }
 
-/// A body that is rubbed.
+/// A body under friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rubbed {
     /// kg.
@@ -64,7 +64,7 @@ impl Rubbed {
         libm::hypot(point, motion.turn * self.arm)
     }
 
-    /// The motion that is left if friction gives `impulse` for each unit of the speed that is left.
+    /// The remaining motion if friction gives `impulse` per unit of remaining speed.
     fn damped(&self, motion: &Motion, impulse: Real) -> Motion {
         let (by_mass, by_inertia) = (impulse / self.mass, impulse / self.inertia);
         let (a, b) = (1.0 + by_mass, by_mass * self.reach);

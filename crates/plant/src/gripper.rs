@@ -1,12 +1,10 @@
-//! A gripper: two fingers that move oppositely, driven by air, and what they hold. The robot has three, the
-//! pedestal one.
+//! A gripper: two coupled fingers, driven by air, and the part that they hold. The robot has three, the pedestal one.
 //!
-//! [`Air`] turns what the valves let flow ([`Supply`]) into an opening and a force: free fingers move by the
-//! flow, blocked fingers gain force instead, and without flow both stay. The fingers are two bodies that hang
-//! on the hand by springs: the stiffness of arm, wrist and fingers together. So whatever the gripper runs
-//! into meets a finite force, and an arm that over-travels by 0.015 in against the vise presses with 30 lb
-//! and not with the world's weight. Fingers are blocked when the geometry says so ([`crate::squeeze`]); what
-//! they hold then is a [`Hold`].
+//! [`Air`] turns the flow of the valves ([`Supply`]) into an opening and a force: free fingers move by the flow,
+//! blocked fingers gain force instead, and without flow both stay. The fingers are two bodies that hang on the hand by
+//! springs: the stiffness of arm, wrist and fingers together. So contacts of the gripper have finite forces: an arm
+//! that over-travels by 0.015 in against the vise presses with 30 lb. Geometry decides when fingers are blocked
+//! ([`crate::squeeze`]); the held part is then a [`Hold`].
 
 use geometry::frame::Vector as Inches;
 use interfaces::device::GripSensors;
@@ -25,12 +23,13 @@ use crate::{
     squeeze::Pads,
 };
 
-/// Fingers farther than this from what would block them are free, in.
+/// Fingers are free at more than this distance from a blocking part, in.
 const FREE_GAP: f64 = 0.001;
-/// How long the seals hold free fingers before trapped air drives them on, s; a part that slides out is clear by then.
+/// Time for which the seals hold free fingers before trapped air moves them, s; a part that slides out is clear by
+/// then.
 const BREAKAWAY_TIME: f64 = 0.25;
-/// Fingers that can sleep do so when no point of them has moved faster than this for half a second, m/s
-/// (rad/s): what is left of their way then is less than 1e-11 m.
+/// Fingers can sleep when none of their points has moved faster than this for half a second, m/s (rad/s): their
+/// remaining motion is then less than 1e-11 m.
 const STILL: Real = 1e-9;
 /// Speed of fingers that trapped air drives, in/s: that of the coarse flow, which the same ports limit.
 pub const EXPANSION_SPEED: f64 = 4.0;
@@ -78,7 +77,7 @@ impl Air {
         self.force
     }
 
-    /// True if the force was taken back in the last step: what slides then is being let go.
+    /// True if the force was reduced in the last step: a part that slides then is being released.
     #[must_use]
     pub fn relieved(&self) -> bool {
         self.relieved
@@ -115,8 +114,8 @@ impl Air {
         self.relieved = self.force < force;
     }
 
-    /// Air that is pressed in behind fingers which nothing blocks any more drives them on: a part that was
-    /// torn out of the fingers leaves them more closed than it was wide.
+    /// Trapped air moves fingers that are no longer blocked: after a part was torn out, the fingers are closer than its
+    /// width.
     fn expand(&mut self, dt: f64, stop: f64) {
         let gap = self.opening - stop;
         if self.force <= 0.0 || gap <= FREE_GAP {
@@ -132,7 +131,7 @@ impl Air {
         self.force -= travel * self.compressibility;
     }
 
-    /// The ports are open: the force is gone, and the fingers stay where they are.
+    /// The ports are open: the force is zero, and the fingers stay where they are.
     pub fn cut(&mut self) {
         (self.force, self.speed, self.relieved) = (0.0, 0.0, false);
     }
@@ -149,9 +148,9 @@ pub struct Gripper {
     description: Description,
     /// Opening and force.
     pub air: Air,
-    /// What is held, by the index of the part.
+    /// The held part, by its index.
     pub hold: Option<(usize, Hold)>,
-    /// That it slides in this hold was said.
+    /// Its slide in this hold was reported.
     pub slip_reported: bool,
     hand: RigidBodyHandle,
     fingers: [Finger; 2],
@@ -193,7 +192,7 @@ impl Gripper {
         Self { description: description.clone(), air, hold: None, slip_reported: false, hand, fingers, shown }
     }
 
-    /// The body that the fingers hang on; its pose is the tool frame without load.
+    /// The body to which the fingers are attached; its pose is the tool frame without load.
     #[must_use]
     pub fn hand(&self) -> RigidBodyHandle {
         self.hand
@@ -211,7 +210,7 @@ impl Gripper {
         self.fingers.map(|finger| finger.collider)
     }
 
-    /// Where the air and the arm want the middles of the left and the right finger, tool frame, m.
+    /// Rest positions of the middles of the left and the right finger by arm and air, tool frame, m.
     #[must_use]
     pub fn finger_rests(&self) -> [Pose; 2] {
         self.fingers.map(|finger| finger_rest(&self.description, finger.side, self.air.opening()))
@@ -225,9 +224,8 @@ impl Gripper {
         Pads { x: [-length, 0.0], z: [-width / 2.0, width / 2.0], groove }
     }
 
-    /// From now on the fingers sleep while nothing moves them: it is not computed how springs hold what does not
-    /// move. They wake when the air moves them, when something touches them, and when the hand is led. See
-    /// [`Gripper::stand`].
+    /// From now on the fingers sleep while nothing moves them: then their springs are not computed. They wake when the
+    /// air moves them, when something touches them, and when the hand moves. See [`Gripper::stand`].
     pub fn let_fingers_sleep(&self, world: &mut PhysicsWorld) {
         for finger in &self.fingers {
             let activation = world.bodies[finger.body].activation_mut();
@@ -237,15 +235,15 @@ impl Gripper {
         }
     }
 
-    /// The hand stands where it is. A body that is led never sleeps, and keeps awake what hangs on it: that
-    /// is wanted only for a part, which may slide under the least change of its load.
+    /// Stop the hand. A moving kinematic body never sleeps and keeps attached bodies awake: this is needed only for a
+    /// held part, which may slide at a small change of its load.
     pub fn stand(&self, world: &mut PhysicsWorld) {
         let led = self.hold.is_some();
         let kind = if led { RigidBodyType::KinematicPositionBased } else { RigidBodyType::Fixed };
         self.become_type(world, kind);
     }
 
-    /// The hand is led to a pose, metres, by the end of the next step.
+    /// Move the hand to a pose, metres, by the end of the next step.
     pub fn lead(&self, world: &mut PhysicsWorld, tool: &Pose) {
         self.become_type(world, RigidBodyType::KinematicPositionBased);
         self.wake_fingers(world);
@@ -267,8 +265,8 @@ impl Gripper {
         }
     }
 
-    /// Lead the fingers with the hand while they hold nothing and nothing is near them: springs without a load are not
-    /// computed. Otherwise they hang on their springs.
+    /// Move the fingers with the hand while they hold nothing and nothing is near them: springs without a load are not
+    /// computed. Otherwise the fingers are on their springs.
     pub fn carry_fingers(&self, world: &mut PhysicsWorld) {
         let groups = |collider: ColliderHandle| world.colliders[collider].collision_groups();
         // The pair of a part that is held stays in the list, but is not looked at any more.
@@ -289,12 +287,12 @@ impl Gripper {
         }
     }
 
-    /// From now on the fingers hang on their springs.
+    /// From now on the fingers are on their springs.
     pub fn hang_fingers(&self, world: &mut PhysicsWorld) {
         self.become_fingers(world, RigidBodyType::Dynamic);
     }
 
-    /// The joints of fingers that are led would be solved for nothing.
+    /// Switch the joints of the fingers: without springs they need not be solved.
     fn become_fingers(&self, world: &mut PhysicsWorld, kind: RigidBodyType) {
         for finger in &self.fingers {
             let body = &mut world.bodies[finger.body];
@@ -308,7 +306,7 @@ impl Gripper {
         }
     }
 
-    /// Let the springs of the fingers rest where the air wants the fingers.
+    /// Set the rest positions of the finger springs by the air.
     pub fn move_fingers(&mut self, world: &mut PhysicsWorld) {
         let now = (self.air.opening(), self.air.speed());
         if now == self.shown {
@@ -336,14 +334,14 @@ impl Gripper {
         }
     }
 
-    /// Take the bodies into the simulation or out of it. A gripper that hangs still in its holster needs none.
+    /// Take the bodies into the simulation or out of it. A gripper at rest in its holster needs none.
     pub fn set_present(&self, world: &mut PhysicsWorld, present: bool) {
         for body in [self.hand, self.fingers[0].body, self.fingers[1].body] {
             world.bodies[body].set_enabled(present);
         }
     }
 
-    /// Nothing carries it any more: let it fall, a body of `weight` lb with the fingers that hang on it.
+    /// Let it fall, as a body of `weight` lb with its fingers.
     pub fn fall(&self, world: &mut PhysicsWorld, weight: f64) {
         let fingers = 2.0 * self.description.finger_weight;
         let own = (weight - fingers).max(0.1 * weight) * KILOGRAMS_PER_POUND;
@@ -356,7 +354,7 @@ impl Gripper {
         }
     }
 
-    /// What pushes on the fingers and on what they hold, weight included, at the tool point in the axes of the tool.
+    /// Load on the fingers and the held part, weight included, at the tool point in the axes of the tool.
     #[must_use]
     pub fn load(&self, world: &PhysicsWorld) -> Wrench {
         let hand = world.bodies[self.hand].position();
@@ -442,7 +440,7 @@ pub(crate) fn finger_rest(description: &Description, side: Real, opening: f64) -
     ))
 }
 
-/// What the fingers hang on.
+/// The mount of the fingers.
 struct Mount<'a> {
     hand: RigidBodyHandle,
     tool: &'a Pose,
@@ -494,7 +492,7 @@ impl Finger {
     }
 }
 
-/// Opening of the fingers as their bodies stand, in: differs from the air's by what the springs give way.
+/// Opening of the finger bodies, in: differs from that of the air by the deflection of the springs.
 #[must_use]
 pub fn body_opening(world: &PhysicsWorld, gripper: &Gripper) -> f64 {
     let [left, right] = gripper.finger_bodies().map(|body| *world.bodies[body].position());

@@ -1,16 +1,16 @@
-//! A hold: a part between two pads, as strong as the pads' force and friction allow, and no stronger.
+//! A hold: a part between two pads, limited by the pads' force and friction.
 //!
-//! Contacts between a squeezed light part and two heavy pads creep, and a rigid weld never lets go. A hold is between the
-//! two: springs between the pads' body and the part, and limits to what they may carry.
+//! Simulated contacts between a squeezed light part and two heavy pads creep, and a rigid joint never slides. A hold is
+//! between the two: springs between the pads' body and the part, with limits of their forces.
 //!
-//! * Along the pads (X, Z, and the turn about Y) the limit is friction, for force and moment together: an ellipse with the
-//!   friction force and its moment on the touched area as axes. Below it the part *sticks* to its springs and nothing creeps;
-//!   beyond it the part *slides* without them, against friction along its sliding, until it stands still and sticks again.
-//! * Across the pads (Y, and the tilts about X and Z) the limit is the pads' force. The part is pushed aside against it, and
-//!   the pads bring it back to their middle, flush, as soon as they are the stronger.
+//! * Along the pads (X, Z, and the turn about Y) the limit is friction, for force and moment together: an ellipse with
+//!   the friction force and its moment on the touched area as axes. Below it the part *sticks* to its springs and
+//!   nothing creeps; beyond it the part *slides* without them, against friction, until it is at rest and sticks again.
+//! * Across the pads (Y, and the tilts about X and Z) the limit is the pads' force. The part is pushed aside against
+//!   it, and the pads bring it back to their middle, flush, as soon as they are stronger.
 //!
-//! The springs act at the middle of the part, where the six axes do not disturb each other, so that the solver has them
-//! exact at once; the limits hold where the pads touch, and a bar that is gripped at its end droops about that point.
+//! The springs act at the middle of the part, where the six axes do not disturb each other, so that the solver is exact
+//! at once; the limits hold where the pads touch, and a bar that is gripped at its end droops about that point.
 
 use rapier3d_f64::math::Vector;
 use rapier3d_f64::prelude::*;
@@ -44,7 +44,7 @@ pub struct Clamp {
     pub friction: Real,
 }
 
-/// What is held: it sets the damping of the springs.
+/// Mass and inertia of the held part, for the damping of the springs.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Load {
     /// kg.
@@ -53,7 +53,7 @@ pub struct Load {
     pub inertia: Real,
 }
 
-/// What the pads can bear where they touch, and where that is.
+/// Greatest forces of the pads at the touched area, and its position.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 struct Limits {
     /// Along the pads, N.
@@ -72,7 +72,7 @@ pub struct Hold {
     joint: ImpulseJointHandle,
     pads: RigidBodyHandle,
     part: RigidBodyHandle,
-    /// Where the part would be without any load, as far as friction remembers: its middle, and its turn from flush.
+    /// Position of the part without load, changed by slides: its middle, and its rotation from flush.
     nominal: Pose,
     /// Where the springs rest: nominal, pushed aside.
     rest: Pose,
@@ -89,8 +89,8 @@ pub struct Hold {
     rubbed: Vector,
 }
 
-/// Whether friction holds the part along the pads: it slides when more is asked for than friction bears, and sticks again
-/// when friction stops it.
+/// Whether friction holds the part along the pads: it slides when the load exceeds friction, and sticks again when
+/// friction stops it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 enum Grip {
     /// The springs hold.
@@ -100,7 +100,7 @@ enum Grip {
 }
 
 impl Hold {
-    /// Take hold of a part: `flush` is where the part shall lie in the axes of the pads' body.
+    /// Grip a part: `flush` is its flush position in the axes of the pads' body.
     pub fn new(
         world: &mut PhysicsWorld,
         pads: RigidBodyHandle,
@@ -148,8 +148,8 @@ impl Hold {
         self.slipped
     }
 
-    /// What pushes on the part, weight included, as the pads' body feels it: where the part's middle is (m), force (N) and
-    /// moment about it (N·m), in the axes of the pads' body.
+    /// Load of the part on the pads' body, weight included: position of the part's middle (m), force (N) and moment
+    /// about it (N·m), in the axes of the pads' body.
     #[must_use]
     pub fn carries(&self, world: &PhysicsWorld) -> (Vector, Vector, Vector) {
         let present = self.present(world);
@@ -162,7 +162,7 @@ impl Hold {
         (present.translation, force, moment)
     }
 
-    /// Set the limits from force, friction and what is touched.
+    /// Set the limits from force, friction and touched area.
     pub fn set_clamp(&mut self, world: &mut PhysicsWorld, clamp: Clamp, squeeze: &Squeeze) {
         let normal = 2.0 * clamp.force;
         let friction = normal * clamp.friction;
@@ -234,8 +234,7 @@ impl Hold {
         if self.limits.friction > 0.0 { self.limits.moments[1] / self.limits.friction } else { 0.0 }
     }
 
-    /// After a step: break away if more is asked for than friction bears, and be pushed aside where it is more than the
-    /// pads' force.
+    /// After a step: start to slide if the load exceeds friction, and be pushed aside if it exceeds the pads' force.
     pub fn give_way(&mut self, world: &mut PhysicsWorld) {
         let Stiffness { linear, angular } = self.stiffness;
         let present = self.present(world);
@@ -274,7 +273,7 @@ impl Hold {
         self.set_rest(world, rest);
     }
 
-    /// Let all springs rest where the part is now: another, stronger grip has it.
+    /// Set the rest of all springs to the present position: a stronger grip holds the part.
     pub fn relax(&mut self, world: &mut PhysicsWorld) {
         self.nominal = normalised(self.present(world));
         if self.grip != Grip::Sticks {
@@ -283,7 +282,7 @@ impl Hold {
         self.set_rest(world, self.nominal);
     }
 
-    /// The stronger grip is gone: draw the part back to the middle of the pads, flush; along the pads it stays.
+    /// The stronger grip has released it: draw the part back to the middle of the pads, flush; along the pads it stays.
     pub fn recover(&mut self, world: &mut PhysicsWorld) {
         self.nominal.translation.y = 0.0;
         let twist = Rotation::from_xyzw(0.0, self.nominal.rotation.y, 0.0, self.nominal.rotation.w);
@@ -292,7 +291,7 @@ impl Hold {
         self.set_rest(world, self.nominal);
     }
 
-    /// The part has slid without springs: it would now stick where it is.
+    /// The part has slid without springs: set the rest position to where it is.
     fn follow(&mut self, present: &Pose) {
         let touched = self.nominal.inverse_transform_point(self.limits.point);
         self.nominal.translation.x = present.translation.x;
@@ -318,7 +317,7 @@ impl Hold {
         }
     }
 
-    /// Let go.
+    /// Release the part.
     pub fn release(self, world: &mut PhysicsWorld) {
         world.remove_impulse_joint(self.joint);
     }
@@ -336,7 +335,7 @@ fn set_springs(joint: &mut GenericJoint, stiffness: Stiffness, damping: [Real; 2
     }
 }
 
-/// The turn about Y that is in a rotation.
+/// The part of a rotation about Y.
 fn about_y(rotation: Rotation) -> Rotation {
     let twist = Rotation::from_xyzw(0.0, rotation.y, 0.0, rotation.w);
     if twist.length_squared() > 0.0 { twist.normalize() } else { Rotation::IDENTITY }
@@ -356,7 +355,7 @@ fn about(point: Vector, turn: Vector, pose: Pose) -> Pose {
     normalised(Pose::from_parts(point + turn * (pose.translation - point), turn * pose.rotation))
 }
 
-/// Products of many rotations do not keep their length by themselves.
+/// Normalize the rotation: rounding changes the length of products of many rotations.
 fn normalised(pose: Pose) -> Pose {
     Pose::from_parts(pose.translation, pose.rotation.normalize())
 }

@@ -1,12 +1,12 @@
-//! Holsters: where a gripper hangs by its ears while the robot wears another one.
+//! Holsters: a gripper hangs in one by its ears while it is not on the robot.
 //!
-//! A gripper that is let go over a holster drops until its ears lie on the cheeks, and can then be slid forward (tool +Z) to
-//! the seat, where lips over the ears keep it from being lifted and a detent keeps it from wandering. Four proximity
-//! sensors look at the ears (III.3.4): two large ones from the side, two small ones at the seat.
+//! A gripper released over a holster drops until its ears lie on the cheeks, and can then be slid forward (tool +Z) to
+//! the seat, where lips over the ears prevent lifting and a detent keeps it in place. Four proximity sensors look at
+//! the ears (III.3.4): two large ones from the side, two small ones at the seat.
 //!
-//! All is said in the frame of the holster: the tool frame of a gripper that rests on it, not yet slid forward. Its X points
-//! down, along the gripper. All grippers have the same ears, so any of them fits; which one belongs where is the
-//! controller's affair.
+//! All coordinates are in the frame of the holster: the tool frame of a gripper that rests on it, not yet slid forward.
+//! Its X points down, along the gripper. All grippers have the same ears, so any of them fits; the controller decides
+//! which one belongs where.
 
 use geometry::frame::{Frame, Rotation, Vector, rotation_vector};
 use serde::{Deserialize, Serialize};
@@ -26,13 +26,13 @@ const GAP: f64 = 0.25;
 const THICK: f64 = 1.0;
 /// A lip begins this far before the seat's ears end, in: a gripper slid back by more than half the way is free of it.
 const LIP: f64 = 0.75;
-/// A gripper that was let go this far askew does not find the cheeks, radians (3 degrees).
+/// Greatest tilt of a released gripper that still lands on the cheeks, radians (3 degrees).
 const ASKEW: f64 = 0.052_36;
-/// A gripper may be this far under its rest, in: pressed down by the robot.
+/// Greatest depth under its rest of a gripper pressed down by the robot, in.
 const PRESSED: f64 = 0.10;
-/// What is farther than this from the rest has nothing to do with the holster, in.
+/// Distance from the rest beyond which a gripper is not at this holster, in.
 const NEAR: f64 = 6.0;
-/// A gripper that is lifted by this much under the lips is stopped by them, in.
+/// Play of a gripper under the lips before they stop it, in.
 const LIP_PLAY: f64 = 0.15;
 
 /// A holster.
@@ -44,7 +44,7 @@ pub struct Holster {
     description: Holsters,
 }
 
-/// Where a gripper is, seen from its rest on a holster.
+/// Position of a gripper relative to its rest on a holster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
     /// Above the rest, in.
@@ -92,7 +92,7 @@ impl Holster {
         Self { name: name.into(), frame, description: description.clone() }
     }
 
-    /// A gripper there may have to do with this holster.
+    /// True if a gripper is near this holster.
     #[must_use]
     pub fn is_near(&self, gripper: &Frame) -> bool {
         (gripper.position - self.frame.position).norm() < NEAR
@@ -122,7 +122,7 @@ impl Holster {
         Perch { up: 0.0, speed: 0.0, forward: self.description.seat }
     }
 
-    /// Where a gripper that is let go lands; `None` if it misses the cheeks.
+    /// Where a released gripper lands; `None` if it misses the cheeks.
     #[must_use]
     pub fn catch(&self, offset: &Offset) -> Option<Perch> {
         let Holsters { catch_height, catch_aside, seat, .. } = self.description;
@@ -133,7 +133,7 @@ impl Holster {
         over.then(|| Perch { up: offset.up.max(0.0), speed: 0.0, forward: self.slide(offset.forward) })
     }
 
-    /// Where a gripper comes to lie that is drawn to `forward`: not beyond the seat, and into its detent.
+    /// Position of a gripper moved to `forward`: not beyond the seat, and into its detent.
     #[must_use]
     pub fn slide(&self, forward: f64) -> f64 {
         let Holsters { seat, detent, .. } = self.description;

@@ -1,4 +1,4 @@
-//! How what the cell borrows from other crates stands in its saved state: fields of types that do not know serde.
+//! Serde support for fields of the saved state whose types, from other crates, do not implement serde.
 //!
 //! Use with `#[serde(with = "crate::image::record")]` and `#[serde(with = "crate::image::frame")]`. Both keep every bit.
 

@@ -1,4 +1,4 @@
-//! Air to a gripper: what the valves let flow.
+//! Air to a gripper: the flow through its valves.
 //!
 //! The parts gripper and the hand of the pedestal have eight valves, whose flows add up (III.3.6); the
 //! v-gripper and the tool gripper have two, and open or close at one speed (VI.4, VI.5). Both drive the same
@@ -17,12 +17,12 @@ const FLOWS: [(u8, f64); 6] = [
     (valve::CLOSE_COARSE, -4.0),
 ];
 
-/// What the valves of a gripper let through.
+/// Flow through the valves of a gripper.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Supply {
     /// Speed of free fingers, in/s, opening positive.
     pub flow: f64,
-    /// Both sides are vented: the force goes.
+    /// Both sides are vented: the force vanishes.
     pub vent: bool,
 }
 

@@ -1,12 +1,12 @@
-//! The joystick box (III.3.3) and the hand that works it.
+//! The joystick box (III.3.3) and the actions of its operator.
 //!
-//! Switches and knob stay as they were set; stick and buttons go back by themselves when the hand has held them for as long
-//! as it was told. One hand: what is told while it still holds something begins at once and is held beside it.
+//! Switches and knob stay as set; stick and buttons return when their time has passed. An action that begins while
+//! another is held is executed beside it.
 
 use interfaces::device::{JoystickBox, KNOB_FULL};
 use serde::{Deserialize, Serialize};
 
-/// Ticks that a short press takes: long enough to be seen, whatever runs when.
+/// Ticks of a short press: long enough to be read by every process.
 const PRESS: u32 = 2;
 /// Ticks between two short presses of the same button.
 const PAUSE: u32 = 2;
@@ -28,7 +28,7 @@ pub enum BoxButton {
     Close,
 }
 
-/// What is done at the box.
+/// An action at the box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoxAction {
     /// Set the coordinate switches: bits of [`interfaces::device::joystick_frame`].
@@ -50,9 +50,9 @@ pub enum BoxAction {
     Record,
     /// Enter the carriage return.
     Resume,
-    /// Throw the switches that suspend processes: bits of [`interfaces::device::single_step`].
+    /// Set the switches that suspend processes: bits of [`interfaces::device::single_step`].
     Hold(u8),
-    /// Throw them back.
+    /// Reset them.
     Free(u8),
     /// Press the button that steps a process, so often.
     Step(u8, u32),
@@ -75,7 +75,7 @@ pub struct Joystick {
     frame: u8,
     hold: u8,
     held: Vec<(Held, u32)>,
-    /// Presses of a step button that are still to come, and the ticks until the next.
+    /// Remaining presses of a step button, and the ticks until the next.
     steps: Vec<(u8, u32, u32)>,
 }
 
@@ -86,7 +86,7 @@ impl Default for Joystick {
 }
 
 impl Joystick {
-    /// Begin to do something.
+    /// Begin an action.
     pub fn act(&mut self, action: BoxAction) {
         match action {
             BoxAction::Frame(frame) => self.frame = frame,
@@ -113,7 +113,7 @@ impl Joystick {
         !self.held.is_empty() || !self.steps.is_empty()
     }
 
-    /// Let go of stick and buttons; switches and knob stay.
+    /// Release stick and buttons; switches and knob stay.
     pub fn let_go(&mut self) {
         self.held.clear();
         self.steps.clear();

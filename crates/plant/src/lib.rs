@@ -1,17 +1,16 @@
 //! The simulated cell: robot controller, arm, gripper, trays, vise, camera and parts, in rapier.
 //!
-//! [`Cell::step`] takes what the controller wrote to its devices in a tick and gives what it will read from
-//! them in the next; between the two the cell advances by exactly 40 ms. What a person, a job file or a test
-//! does beside the robot goes through [`Cell::workstation`]; what happens that should not comes out of
-//! [`Cell::events`].
+//! [`Cell::step`] takes the controller's outputs of a tick and returns its inputs of the next; between the two the cell
+//! advances by exactly 40 ms. Other actions of a person, a job or a test go through [`Cell::workstation`]; errors and
+//! events come out of [`Cell::events`].
 //!
 //! # How the arm and the grip are modelled, and why
 //!
-//! The linkbar job lives on gaps of 0.04 to 0.08 in. At rest the arm must be within 0.01 in, contacts may
-//! sink by 0.1 mm, a grip may creep by 0.1 mm and must yet give way at friction, and the linkbar is to run at
-//! 50 times real time with one core for physics, better at 200 times.
+//! The linkbar job has gaps of 0.04 to 0.08 in. At rest the arm must be within 0.01 in, contacts may sink by 0.1 mm, a
+//! grip may creep by 0.1 mm but must slide at the limit of friction, and the linkbar should run at 50, better 200,
+//! times real time with one core for physics.
 //!
-//! | | multibody arm, motors | chosen: led arm, sprung fingers |
+//! | | multibody arm, motors | chosen: kinematic arm, sprung fingers |
 //! |---|---|---|
 //! | arm at rest, from its command | 0.35 mrad at 1.6e5/s², 0.05 at 1e6/s² | 0 (servo lag in closed form) |
 //! | arm while moving | 5.6 to 7.3 mrad beside the path | on the path, 80 ms behind |
@@ -22,23 +21,23 @@
 //! (Left: measured with rapier 0.36 at 16 sub-steps, a six-joint arm and a gripped part of 8 kg; right: `--example
 //! figures`, 16 sub-steps.) So:
 //!
-//! * joints follow their servos exactly ([`arm`]); the T3 controller stands before them: start-up, emergency stops, inverse
+//! * joints follow their servos exactly ([`arm`]); the T3 controller commands them: start-up, emergency stops, inverse
 //!   kinematics, limits and the link ([`t3`]);
 //! * without hydraulic pressure each joint is a damper that gives way to the weights of links, gripper and part
-//!   ([`linkage`]) and to what the arm comes to lie on; the shot pin stops the shoulder, and the arm jumps back when the
-//!   pressure returns. What the sagging arm has run into is said when it lies still ([`cell::Droop`]);
-//! * the hand is a kinematic body at the tool frame, the fingers hang on it by springs that stand for the stiffness of arm,
-//!   wrist and fingers ([`gripper`]): everything that the robot touches meets a finite force;
-//! * what is between two pads is held by springs with limits ([`hold`]): below friction nothing creeps, beyond it the part
-//!   slides ([`friction`]), under no force it falls;
-//! * a clamped part is led by the vise ([`vise`]), and forced out of it by a crash;
-//! * a gripper is led by the robot or by its holster ([`holster`]); the locking ring decides which, or lets it fall
+//!   ([`linkage`]) and to contacts; the shot pin stops the shoulder, and the arm jumps back when the pressure returns.
+//!   Contacts of the sagging arm are reported when it is at rest ([`cell::Droop`]);
+//! * the hand is a kinematic body at the tool frame, the fingers are attached by springs with the stiffness of arm,
+//!   wrist and fingers ([`gripper`]): every contact of the robot has a finite force;
+//! * a part between two pads is held by springs with limits ([`hold`]): below friction nothing creeps, beyond it the
+//!   part slides ([`friction`]), under no force it falls;
+//! * a clamped part moves with the jaws of the vise ([`vise`]), and a crash forces it out;
+//! * a gripper is on the robot or in its holster ([`holster`]); the locking ring decides which, or drops it
 //!   ([`quick_change`]);
-//! * the force sensor reads what the springs of fingers and hold carry ([`force`]); the tool drum pushes back along its axis
-//!   and holds a tool as the vise does a part ([`drum`]);
-//! * parts on trays, ledge and floor are rapier's, with contacts made stiff enough for gaps of a millimetre.
+//! * the force sensor reads the forces of the springs of fingers and hold ([`force`]); the tool drum pushes back along
+//!   its axis and holds a tool as the vise does a part ([`drum`]);
+//! * parts on trays, ledge and floor are rigid bodies of rapier, with contacts stiff enough for gaps of a millimetre.
 //!
-//! What can go wrong beside is in [`fault`]: it changes what passes between the cell and the controller.
+//! [`fault`] injects faults into the data between the cell and the controller.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

@@ -1,4 +1,4 @@
-//! The arm as a chain of links: where they are, and what forces on them do at the joints.
+//! The arm as a chain of links: their frames, and the joint torques of forces on them.
 //!
 //! Lengths are those of [`geometry::kinematics::T3`]. Inches, pounds and radians: a torque is in lb·in.
 
@@ -19,7 +19,7 @@ pub const STARTS: [f64; 6] = [0.0, 0.0, T3.upper_arm, T3.forearm, T3.pitch_to_ya
 pub const UPPER_ARM: usize = 1;
 /// The forearm among the links.
 pub const FOREARM: usize = 2;
-/// The end plate among the links: what the quick change, the grippers and the parts in them hang on.
+/// The end plate among the links: it carries the quick change, the grippers and the parts in them.
 pub const END_PLATE: usize = 5;
 
 /// A force on a link of the arm.
@@ -33,7 +33,7 @@ pub struct Load {
     pub force: Vector,
     /// A moment beside it, world, lb·in.
     pub moment: Vector,
-    /// By how much the force loses when the point gives way to it, lb/in: 0 for a weight.
+    /// Decrease of the force when the point moves with it, lb/in: 0 for a weight.
     pub stiffness: f64,
     /// Coefficient of friction across the force: 0 for a weight.
     pub friction: f64,
@@ -98,7 +98,7 @@ impl Chain {
         })
     }
 
-    /// What a load does at the joints, lb·in.
+    /// Joint torques of a load, lb·in.
     #[must_use]
     pub fn torque(&self, load: &Load) -> Vector6<f64> {
         let joints = self.frames.iter().zip(AXES).take(load.link + 1).enumerate();

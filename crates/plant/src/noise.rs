@@ -1,4 +1,4 @@
-//! Seeded noise: one stream of numbers a device, so that a device that is used more often does not shift the others'.
+//! Seeded noise: one stream of numbers per device, so that the numbers of a device do not depend on the use of others.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -19,7 +19,7 @@ pub enum Stream {
     Pedestal = 4,
     /// The joint resolvers.
     Resolvers = 6,
-    /// How well a person brings the robot's axes to their arrows.
+    /// Errors of a person who aligns the robot's axes to their arrows.
     Alignment = 20,
 }
 

@@ -1,4 +1,4 @@
-//! Parts: boxes and cylinders that move, and what is said of them.
+//! Parts: movable boxes and cylinders, and their reports.
 
 use geometry::frame::{Frame, Vector as Inches, rotation_from_x_y};
 use rapier3d_f64::prelude::*;
@@ -14,13 +14,13 @@ use crate::{
 
 /// Coefficient of friction of a part's surface.
 const FRICTION: Real = 0.30;
-/// Angular damping of a part that can roll, 1/s: what a floor and a tray that are not quite hard and even do to it.
+/// Angular damping of a part that can roll, 1/s: the effect of a floor and a tray that are not quite hard and even.
 const ROLLING: Real = 2.0;
 
 /// A part in the cell.
 #[derive(Debug, Deserialize, Serialize)]
 pub struct Part {
-    /// What it is at present.
+    /// Its present kind.
     pub kind: PartType,
     /// Its number in this cell, from 1; it stays the same when the part is machined.
     pub id: u32,
@@ -85,7 +85,7 @@ impl Part {
         Load { mass, inertia: mass * self.solid().inertia() }
     }
 
-    /// What holds it does not also collide with it: the collision groups of its holders.
+    /// Set the collision groups of its holders, with which it does not collide.
     pub fn set_holders(&self, world: &mut PhysicsWorld, holders: Group) {
         if let Some(collider) = world.colliders.get_mut(self.collider) {
             collider.set_collision_groups(groups(PART, Group::ALL & !holders));
@@ -110,7 +110,7 @@ fn collider(kind: &PartType) -> ColliderBuilder {
     Solid::of(kind).collider().mass(mass(kind)).friction(FRICTION).collision_groups(groups(PART, Group::ALL))
 }
 
-/// What is reported of a part.
+/// Report of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartState {
     /// Its number in this cell, from 1.

@@ -4,11 +4,12 @@
 //! Three angles, all in degrees and positive to the left seen from above (ASSUMED):
 //!
 //! * the *counter* of the motor's controller: steps from wherever it was last set to a value. The only angle that the
-//!   controller of the pedestal has; it means nothing before the motor was run to the + limit and the counter set;
-//! * the *motor angle*: what the counter shows after a calibration as IV.1 step 3 has it. The switches stand at fixed motor
-//!   angles. The motor stops dead at a switch and runs away from it;
-//! * the *table angle*: where the hand is. VII.7.4 lets a motor angle of 183.5 flip a part by 180, so that the gear is not
-//!   quite one to one (ASSUMED); the two agree where the fingers move across the radial line from the robot.
+//!   controller of the pedestal has; it is not valid before the motor has moved to the + limit and the counter was set;
+//! * the *motor angle*: the value of the counter after a calibration by IV.1 step 3. The switches stand at fixed motor
+//!   angles. The motor stops at once at a switch and can move away from it;
+//! * the *table angle*: the angle of the hand. VII.7.4 lets a motor angle of 183.5 flip a part by 180, so the gear
+//!   ratio is not exactly one (ASSUMED); the two are equal where the fingers move across the radial line from the
+//!   robot.
 
 use geometry::frame::{Frame, Vector as Inches, rotation_from_x_y};
 use interfaces::device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH};
@@ -26,7 +27,7 @@ use crate::{
 
 /// Steps of the motor for a degree.
 const STEPS_PER_DEGREE: f64 = TABLE_STEPS_PER_TENTH as f64 * 10.0;
-/// Nearer than this to its goal, in steps, the motor stands there.
+/// Distance within which the motor is at its goal, steps.
 const ON_STEP: f64 = 1e-6;
 
 /// The rotary table: motor, controller, switches, potentiometer.
@@ -45,7 +46,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table that was left at the start position of its description, the counter at 0.
+    /// A table at the start position of its description, with the counter at 0.
     #[must_use]
     pub fn new(description: &RotaryTable) -> Self {
         let position = libm::round(description.start * STEPS_PER_DEGREE);

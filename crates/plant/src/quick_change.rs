@@ -1,11 +1,12 @@
-//! The quick change: the A plate on the wrist with its locking ring, and how it meets the B plate of a gripper.
+//! The quick change: the A plate on the wrist with its locking ring, and its position relative to the B plate of a
+//! gripper.
 //!
-//! Air turns the ring between its two ends as long as the control port is enabled; two reflectance sensors see the ends and
-//! nothing between (VI.2). The ring catches a B plate only if it is locked while the plates lie together, and lets go of it
-//! at its unlocked end. The id pins are longer than the play of the plates: they read the gripper that lies under the A
-//! plate whether it is locked or not, also after it has dropped onto its holster (V.2.1 QC-DETACH).
+//! Air turns the ring between its two ends as long as the control port is enabled; two reflectance sensors detect only
+//! the ends (VI.2). The ring catches a B plate only if it is locked while the plates lie together, and releases it at
+//! its unlocked end. The id pins are longer than the play of the plates: they read the gripper under the A plate,
+//! locked or not, also after it has dropped onto its holster (V.2.1 QC-DETACH).
 //!
-//! What carries a gripper, and what happens to it when nothing does, is in [`crate::cell`].
+//! [`crate::cell`] decides what carries a gripper, and when it falls.
 
 use geometry::frame::{Frame, rotation_vector};
 use interfaces::device::QuickChangeValves;
@@ -13,9 +14,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::description::QuickChange as Description;
 
-/// The ring is seen in an end position within this share of its way.
+/// Share of the ring's travel at an end within which its sensor detects it.
 const SEEN: f64 = 0.02;
-/// Plates that are pressed together this far, in, are still on their pins; beyond it something has been run into.
+/// Plates that are pressed together this far, in, are still on their pins; beyond it there is a collision.
 const PRESSED: f64 = 0.30;
 /// Pins meet their pads within this angle, radians (3 degrees).
 const PINS_ANGLE: f64 = 0.052_36;
@@ -66,7 +67,7 @@ impl Ring {
     }
 }
 
-/// How the A plate stands over a B plate.
+/// Position of the A plate relative to a B plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
     /// Distance of the plates, in; negative if they are pressed together.
@@ -86,7 +87,7 @@ impl Gap {
         Self { apart: at.x, aside: libm::hypot(at.y, at.z), angle: rotation_vector(&gripper.rotation).norm() }
     }
 
-    /// The mating elements are in each other: the id pins touch, and the plates take each other along sideways.
+    /// The mating elements are in each other: the id pins touch, and the plates move together sideways.
     #[must_use]
     pub fn engaged(&self, description: &Description) -> bool {
         (-PRESSED..=description.pins_reach).contains(&self.apart)

@@ -1,9 +1,7 @@
-//! The cell as the check of paths sees it: what stands where, and what the robot carries, without physics and
-//! without time.
+//! The cell for the check of paths: positions of everything, and the carried part, without physics and time.
 //!
-//! A [`Layout`] says where everything is that a job moves. [`Room::look`] puts the robot to joint angles and
-//! says what it touches and what it is near, with the bodies ([`crate::bodies`]) and the clearance check of a
-//! run.
+//! A [`Layout`] has the positions of everything that a job moves. [`Room::look`] sets the robot to joint angles and
+//! returns its contacts and near bodies, with the bodies ([`crate::bodies`]) and the clearance check of a run.
 
 use geometry::{
     frame::{Frame, Vector as Inches},
@@ -26,30 +24,30 @@ use crate::{
 const GRIPPERS: [&str; 3] = ["parts_gripper", "v_gripper", "tool_gripper"];
 /// A part whose middle is nearer than this to that of the seat of a nest is in the nest, in.
 const IN_NEST: f64 = 1.0;
-/// A part is let down in such steps, in, and so often half of one.
+/// Step in which a part is lowered, in, and number of halvings of the last one.
 const STEP: f64 = 0.02;
 const HALVES: u32 = 8;
 
-/// A part, and where it is.
+/// A part and its position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
     /// What it is.
     pub kind: PartType,
-    /// Where: in the world, or in the tool frame if the robot has it; in.
+    /// Frame: in the world, or in the tool frame if the robot holds it; in.
     pub frame: Frame,
 }
 
-/// What a job moves. Openings in inches, the table angle in degrees.
+/// Everything that a job moves. Openings in inches, the table angle in degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    /// End effector id of the gripper that the robot wears, if it wears one.
+    /// End effector id of the gripper on the robot, if any.
     pub gripper: Option<u8>,
-    /// End effector id of a gripper in its holster that the robot is engaged with, if there is one: it is no
-    /// obstacle then.
+    /// End effector id of a gripper in its holster that the robot is engaged with, if there is one: then it is not an
+    /// obstacle.
     pub engaged: Option<u8>,
     /// Of its fingers.
     pub opening: f64,
-    /// What it carries.
+    /// The carried part.
     pub held: Option<Placed>,
     /// The other parts.
     pub parts: Vec<Placed>,
@@ -111,7 +109,7 @@ impl Room {
         }
     }
 
-    /// The gripper that the robot wears, if it wears one.
+    /// The gripper on the robot, if any.
     #[must_use]
     pub fn worn(&self, layout: &Layout) -> Option<&Gripper> {
         self.gripper(layout.gripper?)
@@ -162,8 +160,8 @@ impl Room {
         nests.into_iter().find(|seat| (seat.position - part.frame.position).norm() < IN_NEST)
     }
 
-    /// Where a part stands that is let down from `above` along the unit vector `down`, among what never moves.
-    /// `None` if it touches something at once, or nothing within `deepest` inches.
+    /// Final position of a part lowered from `above` along the unit vector `down`, among the fixed bodies. `None` if it
+    /// touches something at once, or nothing within `deepest` inches.
     #[must_use]
     pub fn let_down(&self, kind: &PartType, above: &Frame, down: &Inches, deepest: f64) -> Option<Frame> {
         let at = |deep: f64| Frame { position: above.position + down * deep, ..*above };
@@ -188,7 +186,7 @@ impl Room {
         after.compose(&before.inverse().compose(frame))
     }
 
-    /// What the robot can run into beside itself and what never moves.
+    /// Obstacles of the robot except itself and fixed bodies.
     #[must_use]
     pub fn devices(&self, layout: &Layout) -> Vec<Body> {
         let jaw = vise_frame(&self.cell.vise).shifted(Inches::new(0.0, layout.jaws, 0.0));
@@ -204,7 +202,7 @@ impl Room {
         devices
     }
 
-    /// The robot at joint angles in radians, what it wears, and what it carries.
+    /// Bodies of the robot at joint angles in radians, its gripper, and the carried part.
     #[must_use]
     pub fn movers(&self, layout: &Layout, joints: &Joints) -> Vec<Body> {
         let tool = T3.forward(joints);
@@ -219,8 +217,8 @@ impl Room {
         movers
     }
 
-    /// What the robot touches, and what is nearer to it than `margin` inches: as [`crate::Cell::contacts`].
-    /// `movers` are the robot's and `devices` those of a layout.
+    /// Contacts of the robot, and bodies nearer than `margin` inches: as [`crate::Cell::contacts`]. `movers` are the
+    /// robot's and `devices` those of a layout.
     #[must_use]
     pub fn look(&self, movers: &[Body], devices: &[Body], margin: f64) -> Vec<Contact> {
         let arm = movers.iter().filter(|body| body.kind.is_obstacle());

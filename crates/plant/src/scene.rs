@@ -1,6 +1,6 @@
-//! What stands still, as boxes: the furniture of the description, the trays, the vise.
+//! Fixed bodies as boxes: the furniture of the description, the trays, the vise.
 //!
-//! One list of [`Block`]s feeds the simulation, the clearance check and the picture, so that the three cannot differ.
+//! Simulation, clearance check and picture use the same list of [`Block`]s.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -15,7 +15,7 @@ use crate::{
     holster::holsters,
 };
 
-/// Collision group of what stands still.
+/// Collision group of fixed bodies.
 pub const WORLD: Group = Group::GROUP_1;
 /// Collision group of the jaws of the vise.
 pub const JAW: Group = Group::GROUP_4;
@@ -25,11 +25,11 @@ pub const FINGER: Group = Group::GROUP_2;
 pub const HAND: Group = Group::GROUP_5;
 /// Collision group of parts.
 pub const PART: Group = Group::GROUP_3;
-/// Collision group of the palms of hands: what the fingers hold still rests on the palm.
+/// Collision group of the palms of hands: a held part still rests on the palm.
 pub const PALM: Group = Group::GROUP_6;
 
-/// The backs of the movable jaw stand this far behind those of the fixed one, in: where a part comes to lie is the fixed
-/// jaw's affair, and the other must not drag it along when it closes.
+/// Distance of the backs of the movable jaw behind those of the fixed one, in: the fixed jaw determines the position of
+/// a part, and the other must not drag it along when it closes.
 const RELIEF: f64 = 0.02;
 
 /// Coefficient of friction of steel on trays, vise and floor.
@@ -92,7 +92,7 @@ impl Block {
     }
 }
 
-/// All that never moves.
+/// All fixed blocks.
 #[must_use]
 pub fn furniture(cell: &CellDescription) -> Vec<Block> {
     let mut blocks: Vec<Block> = cell.fixture.iter().map(fixture).collect();
@@ -172,8 +172,9 @@ pub fn jaw_blocks(vise: &Vise) -> Vec<Block> {
     pieces.collect()
 }
 
-/// What the steps of all programs leave of a jaw: boxes from and to in depth into the vise, in depth behind the inner face,
-/// and in height. A step is cut from the front to its back, down to its ledge, and as deep as its clamping face.
+/// The blocks of a jaw without the steps of all programs: boxes from and to in depth into the vise, in depth behind the
+/// inner face, and in height. A step is cut from the front to its back, down to its ledge, and as deep as its clamping
+/// face.
 fn jaw_pieces(vise: &Vise) -> Vec<[[f64; 2]; 3]> {
     let [into, thickness, height] = vise.jaw;
     let mut depths: Vec<f64> = vise.program.iter().map(|program| program.depth).collect();

@@ -100,7 +100,7 @@ pub fn along(kind: &PartType) -> Option<(Frame, f64, f64)> {
     Some((Frame { position: Inches::zeros(), rotation: turn }, diameter / 2.0, length))
 }
 
-/// What a part looks like from afar: pictures give each family a colour.
+/// The family of a part: pictures give each family a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
     /// A tool in its holder.

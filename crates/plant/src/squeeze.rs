@@ -1,12 +1,12 @@
-//! What two parallel faces hold when they close on a part: fingers, vise jaws.
+//! Geometry of a part between two closing parallel faces: fingers, vise jaws.
 //!
 //! Both grips are the same geometry: two rectangular pads face each other along Y. The box turns the face that is most
 //! nearly parallel to the pads towards them; that face, clipped to the pad, gives the width at which the pads are stopped,
 //! the point and area where friction acts, and the position in which the box lies flush.
 //!
 //! A cylinder that lies between the pads touches each with a line, which counts as a narrow strip. Pads with V-grooves
-//! (the v-gripper) touch it with two, and lay its axis into that of the grooves. A cylinder that stands between the pads is
-//! taken as the box around it.
+//! (the v-gripper) touch it with two, and align its axis with that of the grooves. A cylinder that stands between the
+//! pads counts as the box around it.
 
 use rapier3d_f64::math::{Pose, Real, Rotation, Vector};
 
@@ -60,7 +60,7 @@ impl Squeeze {
     }
 }
 
-/// What the pads hold of a part at `pose` (in the axes of the grip); `None` if nothing.
+/// The squeeze of a part at `pose` (in the axes of the grip); `None` if nothing.
 #[must_use]
 pub fn squeeze(pose: &Pose, solid: &Solid, pads: &Pads) -> Option<Squeeze> {
     match solid.cylinder() {

@@ -1,4 +1,4 @@
-//! Where bodies have come by.
+//! The space swept by moving bodies.
 
 use rapier3d_f64::prelude::{Aabb, BoundingVolume};
 
@@ -14,7 +14,7 @@ impl Swept {
         self.0.extend(bodies.iter().map(|body| body.aabb));
     }
 
-    /// The same bodies have come on.
+    /// Add the next positions of the same bodies.
     pub fn add(&mut self, bodies: &[Body]) {
         let first = self.0.len().saturating_sub(bodies.len());
         for (swept, body) in self.0.iter_mut().skip(first).zip(bodies) {

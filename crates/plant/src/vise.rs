@@ -1,14 +1,13 @@
-//! The programmable vise: a fixed jaw, a movable jaw, and what is clamped between them.
+//! The programmable vise: a fixed jaw, a movable jaw, and the clamped part.
 //!
-//! Both jaws have steps, one for each family of parts. A program of the vise is such a step with its
-//! openings. Openings are counted between the clamping faces of the step of the program that is on, as its
-//! user counts them; what the jaw moves by is the distance of the inner faces. A part stops the jaw in
-//! whatever step it stands.
+//! Both jaws have steps, one for each family of parts. A program of the vise is such a step with its openings. Openings
+//! are counted between the clamping faces of the step of the program that is on, as its user counts them; internally
+//! the jaw position is the distance of the inner faces. A part stops the jaw in any step.
 //!
-//! The jaw moves at its speed to an opening. When it reaches a part on its way it takes the part along, flush
-//! with its face, and is stopped when the part lies against the fixed face; from then on the closing force
-//! and friction hold it. The gripper does not resist that: 500 lb against at most twice the finger force. A
-//! part that is still between the fingers is pushed aside in them.
+//! The jaw moves at its speed to an opening. When it reaches a part it pushes the part along, flush with its face, and
+//! stops when the part lies against the fixed face; from then on the closing force and friction hold it. The gripper
+//! cannot resist: 500 lb against at most twice the finger force. A part that is still in the fingers is pushed aside in
+//! them.
 
 use geometry::frame::{Frame, Vector as Inches};
 use rapier3d_f64::prelude::*;
@@ -28,7 +27,7 @@ pub enum Jaws {
     Open,
     /// Partially closed: wide enough to let a blank in.
     Partial,
-    /// Closed on what is there.
+    /// Closed, on a part if there is one.
     Closed,
 }
 
@@ -67,17 +66,16 @@ pub struct Vise {
     target: f64,
     jaw: RigidBodyHandle,
     stopped: bool,
-    /// What the jaws have.
+    /// The clamped part.
     pub clamped: Option<Clamped>,
 }
 
-/// A part between the jaws: nothing in the cell but a crash is stronger than the vise, so it is led and does
-/// not give way.
+/// A part between the jaws: only a crash is stronger than the vise, so the part moves with the jaws.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Clamped {
     /// Index of the part.
     pub part: usize,
-    /// Which program's step has it.
+    /// The step in which it is clamped.
     pub step: usize,
     /// Where it is in the frame of the vise, m.
     pub rest: Pose,
@@ -177,8 +175,7 @@ impl Vise {
         self.moving() && self.target < self.gap
     }
 
-    /// Command an opening of the program that is on. Who commands one that is wider must first let go of what
-    /// is clamped.
+    /// Command an opening of the program that is on. Before a wider opening the caller must release the clamped part.
     pub fn command(&mut self, jaws: Jaws) {
         self.target = jaws.gap(self.step(self.program));
         self.stopped &= self.target < self.gap;
@@ -204,7 +201,7 @@ impl Vise {
         world.bodies[self.jaw].set_next_kinematic_position(self.jaw_pose());
     }
 
-    /// Close the jaw at once by what machining has taken off a clamped part.
+    /// Close the jaw at once after machining has made a clamped part smaller.
     pub fn follow(&mut self, world: &mut PhysicsWorld, gap: f64) {
         self.gap = gap.min(self.gap);
         world.bodies[self.jaw].set_position(self.jaw_pose(), true);
@@ -214,8 +211,8 @@ impl Vise {
         to_pose(&self.frame.shifted(Inches::new(0.0, self.gap, 0.0)))
     }
 
-    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for where the fixed one is. Deeper steps
-    /// have cut pieces out of them: of what is left beside and below each, the larger rectangle counts.
+    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for where the fixed one is. Deeper steps have cut
+    /// pieces out of them: of the areas left beside and below each piece, the larger rectangle counts.
     #[must_use]
     pub fn pads(&self, step: usize) -> Pads {
         let step = self.step(step);

@@ -1,6 +1,7 @@
-//! What the numbers and names of a cell description must fulfil.
+//! Checks of the numbers and names of a cell description.
 //!
-//! Every check names its entry by the way to it (`gripper.parts.body[0]`), so that it can be found and underlined in the text.
+//! Every check names its entry by its path (`gripper.parts.body[0]`), so that it can be found and underlined in the
+//! text.
 
 mod collector;
 mod parts;

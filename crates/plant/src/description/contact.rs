@@ -1,8 +1,8 @@
-//! What may touch what, and while the robot does which command: the entries `[[contact]]` of a cell description.
+//! Permitted contacts, and the commands during which they are permitted: the entries `[[contact]]` of a cell
+//! description.
 //!
-//! Whatever can collide has a name and a [`Kind`]. An entry names movers and obstacles by names, by the
-//! groups of their kinds, or by patterns with one `*`; `*` alone is anything. What no entry permits is a
-//! collision.
+//! Everything that can collide has a name and a [`Kind`]. An entry names movers and obstacles by names, by the groups
+//! of their kinds, or by patterns with one `*`; `*` alone is anything. A contact that no entry permits is a collision.
 
 use std::fmt;
 
@@ -92,7 +92,7 @@ impl Kind {
         !matches!(self, Self::Gripper | Self::Finger | Self::HeldPart)
     }
 
-    /// It is a thing of metal that does not give way, and not a part.
+    /// It is rigid metal, and not a part.
     #[must_use]
     pub const fn is_robot(self) -> bool {
         matches!(self, Self::Arm | Self::Gripper | Self::Finger)
@@ -105,13 +105,13 @@ impl Kind {
 pub struct Pattern(pub String);
 
 impl Pattern {
-    /// It means a thing of this name and kind.
+    /// It matches a body of this name and kind.
     #[must_use]
     pub fn matches(&self, name: &str, kind: Kind) -> bool {
         self.means_kind(kind) || self.means_name(name)
     }
 
-    /// It means everything of a kind.
+    /// It matches everything of a kind.
     #[must_use]
     pub fn means_kind(&self, kind: Kind) -> bool {
         self.0 == "*" || kind.groups().contains(&self.0.as_str())
@@ -134,13 +134,13 @@ impl fmt::Display for Pattern {
     }
 }
 
-/// Things that may touch.
+/// A permitted contact.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Permit {
-    /// What moves with the arm.
+    /// The moving bodies.
     pub mover: Vec<Pattern>,
-    /// What it may touch.
+    /// What they may touch.
     pub obstacle: Vec<Pattern>,
     /// While E-move or Subtask has one of these commands; always if there are none.
     #[serde(default)]
@@ -152,7 +152,7 @@ pub struct Permit {
 }
 
 impl Permit {
-    /// The depth, in, to which it lets two things touch at any time; 0 if it does not.
+    /// The permitted depth of two bodies at any time, in; 0 if none.
     fn always(&self, mover: (&str, Kind), obstacle: (&str, Kind)) -> f64 {
         if self.during.is_empty() && self.covers(mover, obstacle) { self.limit() } else { 0.0 }
     }
@@ -173,14 +173,13 @@ impl Permit {
 pub struct Permits(pub Vec<Permit>);
 
 impl Permits {
-    /// How deep, in, a mover may be in an obstacle whatever the robot does; 0 if they may not touch.
+    /// Permitted depth of a mover in an obstacle during every command, in; 0 if none.
     #[must_use]
     pub fn always(&self, mover: (&str, Kind), obstacle: (&str, Kind)) -> f64 {
         self.0.iter().map(|permit| permit.always(mover, obstacle)).fold(0.0, f64::max)
     }
 
-    /// How deep, in, a mover may be in an obstacle while E-move and Subtask have these commands; 0 if they
-    /// may not touch.
+    /// Permitted depth of a mover in an obstacle while E-move and Subtask have these commands, in; 0 if none.
     #[must_use]
     pub fn during(&self, mover: (&str, Kind), obstacle: (&str, Kind), commands: [&str; 2]) -> f64 {
         let now = self.0.iter().filter(|permit| {
@@ -189,15 +188,14 @@ impl Permits {
         now.filter(|permit| permit.covers(mover, obstacle)).map(Permit::limit).fold(0.0, f64::max)
     }
 
-    /// How deep, in, a mover may be in an obstacle at the most, while the robot does what is best for that; 0
-    /// if they may never touch.
+    /// Greatest permitted depth of a mover in an obstacle over all commands, in; 0 if none.
     #[must_use]
     pub fn at_most(&self, mover: (&str, Kind), obstacle: (&str, Kind)) -> f64 {
         let covering = self.0.iter().filter(|permit| permit.covers(mover, obstacle));
         covering.map(Permit::limit).fold(0.0, f64::max)
     }
 
-    /// True if all of one kind may touch all of another at any time and as deep as it likes: they need no check.
+    /// True if all of one kind may touch all of another at any time to any depth: they need no check.
     #[must_use]
     pub fn ignores(&self, mover: Kind, obstacle: Kind) -> bool {
         self.0.iter().any(|permit| {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Robot;
 
-/// What moves the joints: servos while there is pressure, the arm's own weight without.
+/// Drives of the joints: servos with pressure, the weight of the arm without.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Actuators {
     /// First-order lag of the joint servos, s.
@@ -15,18 +15,19 @@ pub struct Actuators {
     pub hydraulics: Hydraulics,
 }
 
-/// The hydraulics, and the weights that they carry. All of it is ASSUMED; III.6 and IV.3.3 say what it must come to.
+/// The hydraulics, and the weights that they carry. All values are ASSUMED, such that the arm behaves as III.6 and
+/// IV.3.3 describe.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Hydraulics {
     /// From MANUAL ON to the pressure, s: the short delay of IV.3.3 step 8.
     pub pump_delay_s: f64,
-    /// Speed at which a joint without pressure gives way to the weight that it has at HOME, degrees/s.
+    /// Speed at which a joint without pressure sinks under its load at HOME, degrees/s.
     pub droop_rate: f64,
-    /// The shot pin stops the shoulder so far below where the pressure left it, degrees.
+    /// Angle by which the shoulder sinks until the shot pin stops it, degrees.
     pub shot_pin: f64,
-    /// A servo's command is never farther than this from its joint, degrees: a joint that sags takes it along, and
-    /// jumps back by so much at most when the pressure returns.
+    /// A servo's command is never farther than this from its joint, degrees: the command follows a sagging joint, which
+    /// jumps back by at most this angle when the pressure returns.
     pub following_error: f64,
     /// Weight of the upper arm, lb.
     pub upper_arm_weight: f64,
@@ -54,7 +55,7 @@ impl Default for Hydraulics {
 }
 
 impl Default for Actuators {
-    /// Those of the T3 (ASSUMED).
+    /// Values of the T3 (ASSUMED).
     fn default() -> Self {
         Self { lag_s: 0.080, speeds: [30.0, 30.0, 30.0, 90.0, 90.0, 90.0], hydraulics: Hydraulics::default() }
     }

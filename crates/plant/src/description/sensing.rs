@@ -1,8 +1,8 @@
-//! What kinds of sensors have in common; scales and offsets stand with their devices.
+//! Common values of kinds of sensors; scales and offsets are with their devices.
 
 use serde::{Deserialize, Serialize};
 
-/// What lies between the truth and the words of the sensors. Delays are in ticks of 40 ms.
+/// Errors and delays of the sensors. Delays are in ticks of 40 ms.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensorModels {
@@ -16,7 +16,8 @@ pub struct SensorModels {
     pub force_delay: u16,
     /// Dead time of proximity sensors, light beams and limit switches, ticks.
     pub switch_delay: u16,
-    /// A proximity sensor sees an ear until it is so much farther away than where it was seen first, in.
+    /// Hysteresis of a proximity sensor: an ear is seen until it is this much farther away than where it was first
+    /// seen, in.
     pub proximity_hysteresis: f64,
     /// The same of the ring's reflectance sensors, as a share of its way.
     pub ring_hysteresis: f64,

@@ -1,9 +1,9 @@
-//! What the robot changes and where it keeps it: quick change, holsters, tool drum.
+//! Tool changing: quick change, holsters, tool drum.
 
 use geometry::{frame::Frame, pose::Pose};
 use serde::{Deserialize, Serialize};
 
-/// A place as a pose form gives it: three points, 0.01 in (VII.1).
+/// A pose as in a pose form: three points, 0.01 in (VII.1).
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Points {
@@ -70,15 +70,15 @@ pub struct Holsters {
     pub left: Points,
     /// Of the tool gripper, freestanding in front.
     pub centre: Points,
-    /// The seat is this far forward, along tool +Z, in.
+    /// Distance of the seat, forward along tool +Z, in.
     pub seat: f64,
-    /// A gripper within this of the seat is drawn to it by the detent, in.
+    /// Distance from the seat within which the detent draws a gripper to it, in.
     pub detent: f64,
     /// Ears of a gripper: along tool X, Y and Z, in; on either side of its body, 1 in under its B plate.
     pub ears: [f64; 3],
-    /// How far a gripper may be above its rest when it is let go and still lands on the holster, in.
+    /// Greatest height above its rest at which a released gripper still lands on the holster, in.
     pub catch_height: f64,
-    /// How far it may be beside the holster's middle, in, and still lands on it.
+    /// Greatest distance from the holster's middle at which it still lands on it, in.
     pub catch_aside: f64,
     /// Height up to which the large sensors see ears, in.
     pub large_range: f64,
@@ -96,15 +96,15 @@ pub struct Drum {
     pub pose: Points,
     /// Middle of a tool in its place, along X, in.
     pub middle: f64,
-    /// Closed fingers stand in the way of a tool this far before its place, in.
+    /// Distance before its place at which closed fingers stop a tool, in.
     pub finger_reach: f64,
-    /// Last part of the way in, which the detents resist, in.
+    /// Length of the last part of the insertion, against the force of the detents, in.
     pub detent_length: f64,
-    /// Their force at the end of the way in, lb.
+    /// Their force at the end of the insertion, lb.
     pub insertion_force: f64,
-    /// Their force at the beginning of the way out, lb.
+    /// Their force at the beginning of the extraction, lb.
     pub extraction_force: f64,
-    /// Force of what stands in the way, lb.
+    /// Force of an obstacle in the drum, lb.
     pub stop_force: f64,
     /// How far a tool may be from its place for the fingers to close on it, in.
     pub seated: f64,

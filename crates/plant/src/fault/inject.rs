@@ -1,7 +1,7 @@
-//! The injector: begins and ends the faults of a plan, and changes what passes between cell and controller.
+//! The injector: begins and ends the faults of a plan, and changes the data between cell and controller.
 //!
-//! Each fault has its own stream of numbers, so that what happens to one device does not depend on the others. All of it is
-//! plain data: a saved cell goes on with its faults where they were.
+//! Each fault has its own stream of random numbers, so that the faults of one device do not depend on the others. Its
+//! state is plain data: a restored cell continues with its faults.
 
 use interfaces::device::{DeviceInputs, DeviceOutputs};
 use rcs_core::tick::TICK_S;
@@ -29,7 +29,7 @@ pub struct Injector {
     faults: Vec<Running>,
 }
 
-/// A fault, and how far it has come.
+/// A fault and its state.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 struct Running {
     fault: Fault,
@@ -39,7 +39,7 @@ struct Running {
     began: u64,
     /// The tick behind its end, if it has a rate.
     until: u64,
-    /// The word at which a stuck sensor was caught.
+    /// The value at which a sensor is stuck.
     caught: Option<i64>,
     /// Words on their way through a slow sensor.
     late: DelayLine,
@@ -53,22 +53,22 @@ struct Running {
 pub struct Struck {
     /// Which one of its file, from 1.
     pub number: usize,
-    /// In words.
+    /// As text.
     pub text: String,
     /// How often it has begun.
     pub times: u64,
     /// The tick in which it began first.
     pub first: u64,
-    /// The last tick in which it was there.
+    /// The last tick in which it was present.
     pub last: u64,
 }
 
-/// What becomes of a delivery.
+/// Faults of a delivery.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Delivery {
-    /// Nothing comes.
+    /// Nothing is delivered.
     pub missing: bool,
-    /// The part that comes instead.
+    /// The part that is delivered instead.
     pub instead: Option<String>,
     /// Beside its place along world X and Y, in.
     pub aside: [f64; 2],
@@ -93,7 +93,7 @@ impl Injector {
         injector
     }
 
-    /// Add the faults of another plan, those left out that displace something from the beginning.
+    /// Add the faults of another plan, except those that displace something from the beginning.
     pub(crate) fn add(&mut self, plan: &FaultPlan, seed: u64) {
         let stays = |fault: &&Fault| !matches!(fault.what, What::PedestalMoved { .. });
         self.push(plan.faults.iter().filter(stays), plan.seed, seed);
@@ -116,7 +116,7 @@ impl Injector {
         }));
     }
 
-    /// Begin and end what begins and ends with the present tick.
+    /// Begin and end the faults of the present tick.
     pub(crate) fn turn(&mut self) -> Vec<Change> {
         let tick = self.tick;
         self.faults.iter_mut().filter_map(|running| running.turn(tick)).collect()
@@ -132,7 +132,7 @@ impl Injector {
         self.faults.iter().filter(|running| running.active).map(|running| &running.fault.what)
     }
 
-    /// What arrives of what the controller commands.
+    /// The controller's commands, changed by faults of valves.
     #[must_use]
     pub fn outputs(&self, outputs: &DeviceOutputs) -> DeviceOutputs {
         let mut arrives = *outputs;
@@ -150,7 +150,7 @@ impl Injector {
         arrives
     }
 
-    /// Change what the sensors show.
+    /// Change the sensor words.
     pub fn inputs(&mut self, inputs: &mut DeviceInputs) {
         let tick = self.tick;
         for running in self.faults.iter_mut().filter(|running| running.active) {
@@ -160,7 +160,7 @@ impl Injector {
         }
     }
 
-    /// Change what the vision system shows, where it comes later than the sensors.
+    /// Change the answer of a vision system that comes later than the sensor words.
     pub(crate) fn vision(&mut self, inputs: &mut DeviceInputs) {
         let tick = self.tick;
         for running in self.faults.iter_mut().filter(|running| running.active) {
@@ -190,7 +190,7 @@ impl Injector {
         self.active().any(|what| *what == What::CameraBlind)
     }
 
-    /// What becomes of the delivery of a part, and which faults that is.
+    /// Faults of the delivery of a part, and their numbers.
     pub(crate) fn delivery(&mut self, part: &str) -> (Delivery, Vec<Change>) {
         let tick = self.tick;
         let mut delivery = Delivery::default();
@@ -218,7 +218,7 @@ impl Injector {
         (delivery, changes)
     }
 
-    /// A description with what faults have moved from the beginning.
+    /// A description with the displacements of the faults from the beginning.
     #[must_use]
     pub fn displaced(&self, description: &CellDescription) -> CellDescription {
         super::displaced(self.faults.iter().map(|running| &running.fault), description)
@@ -239,7 +239,7 @@ impl Injector {
     }
 }
 
-/// Whether something with a chance happens; a number is drawn only if there is one.
+/// Whether a fault with a rate happens; a number is drawn only if there is a rate.
 fn happens(rate: Option<f64>, noise: &mut Noise) -> bool {
     rate.is_none_or(|rate| (noise.within(1.0) + 1.0) / 2.0 < rate)
 }
@@ -282,7 +282,7 @@ impl Running {
         Change { number: self.fault.number, text: self.fault.what.to_string(), begins }
     }
 
-    /// Let a sensor show something else.
+    /// Change a sensor word by a fault.
     fn disturb(&mut self, sensor: Sensor, disorder: Disorder, tick: u64, inputs: &mut DeviceInputs) {
         let shown = sensor.read(inputs);
         let counts = |by: f64| libm::round(by) as i64;

@@ -1,11 +1,11 @@
-//! What can go wrong in the cell, by file: sensors, valves, air, parts that are not what or where they should be.
+//! Faults in the cell, described in a file: sensors, valves, air, wrong or misplaced parts.
 //!
-//! A [`FaultPlan`] is a seed and some [`Fault`]s; an [`Injector`] applies it tick by tick. A fault changes what passes
-//! between the cell and the controller (a sensor's word, a valve's command), or what the workstation delivers; nothing in the
-//! cell is told of it. So the cell behaves as it would, and the controller has to find out.
+//! A [`FaultPlan`] is a seed and some [`Fault`]s; an [`Injector`] applies it tick by tick. A fault changes data between
+//! the cell and the controller (a sensor's word, a valve's command), or the delivery of a part; the rest of the cell is
+//! not changed. So the cell behaves normally, and the controller has to detect the fault.
 //!
 //! Which kinds there are and how they are written is in [`text`]; faults of the line to the robot controller, which may
-//! stand in the same file, are [`depc::fault`]'s.
+//! be in the same file, are in [`depc::fault`].
 
 mod inject;
 pub mod text;
@@ -22,34 +22,34 @@ pub use valve::Valve;
 
 use crate::{description::CellDescription, sensor::Sensor};
 
-/// Faults, and what their numbers depend on.
+/// Faults and their seed.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct FaultPlan {
-    /// What the numbers depend on, beside the seed of the run.
+    /// Seed of the random numbers, combined with the seed of the run.
     pub seed: u64,
     /// The faults.
     pub faults: Vec<Fault>,
 }
 
-/// A fault: what, and when.
+/// A fault and its time.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Fault {
     /// Which one of its file, from 1.
     pub number: usize,
-    /// What happens.
+    /// Its effect.
     pub what: What,
-    /// When.
+    /// Its time.
     pub when: When,
 }
 
-/// The ticks in which a fault is there.
+/// The ticks in which a fault is present.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct When {
     /// First tick of the window; 0 is before the first tick of the run.
     pub from: u64,
-    /// The tick behind the window.
+    /// First tick after the window.
     pub until: u64,
-    /// Chance of beginning in each tick of the window, or in each delivery; `None`: always.
+    /// Chance to begin in each tick of the window, or in each delivery; `None`: always present.
     pub rate: Option<f64>,
     /// Ticks that it then lasts, if it has a rate.
     pub ticks: u64,
@@ -66,14 +66,14 @@ impl When {
     }
 }
 
-/// What can happen.
+/// The effect of a fault.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum What {
-    /// A sensor does not show what it should.
+    /// A sensor shows a wrong value.
     Sensor(Sensor, Disorder),
-    /// A valve stands open (true) or closed, whatever it is told.
+    /// A valve is stuck open (true) or closed.
     Valve(Valve, bool),
-    /// The supply of air is gone.
+    /// The air supply is lost.
     AirLost,
     /// The hydraulics of the robot have failed, and can be switched on again only when the fault is over (III.6).
     HydraulicsLost,
@@ -83,9 +83,9 @@ pub enum What {
     JawStuck,
     /// The camera sees nothing.
     CameraBlind,
-    /// What the workstation delivers to a tray; of all parts, or of one.
+    /// A delivery to a tray: of all parts, or of one.
     Delivery(Option<String>, Mishap),
-    /// The stand of the pedestal is not where it is marked on the floor (II.1.2.3): inches in x and y, degrees.
+    /// The stand of the pedestal is not on its mark on the floor (II.1.2.3): inches in x and y, degrees.
     PedestalMoved {
         /// Along world X, in.
         x: f64,
@@ -96,16 +96,16 @@ pub enum What {
     },
 }
 
-/// What a sensor shows instead of what it should; all in counts of its word.
+/// The error of a sensor; all in counts of its word.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Disorder {
     /// Nothing: 0, not seen, no power.
     Off,
-    /// The same all the time: a value, or the one at which it was caught.
+    /// Stuck: at a given value, or at the present one.
     Stuck(Option<i64>),
-    /// Up to so many counts more or less.
+    /// Noise of up to so many counts.
     Noisy(f64),
-    /// What it should have shown so many ticks ago.
+    /// The value of so many ticks ago.
     Slow(u16),
     /// So many counts more.
     Offset(f64),
@@ -113,10 +113,10 @@ pub enum Disorder {
     Drift(f64),
 }
 
-/// What can be wrong with a delivery.
+/// The error of a delivery.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Mishap {
-    /// Nothing comes.
+    /// Nothing is delivered.
     Missing,
     /// It lies beside its place: world X and Y, in.
     Misplaced {
@@ -127,12 +127,12 @@ pub enum Mishap {
     },
     /// It is turned: right-hand roll about the tool's X (down), degrees.
     Turned(f64),
-    /// Another part comes.
+    /// Another part is delivered.
     WrongPart(String),
 }
 
 impl What {
-    /// It happens to deliveries, and not for a time.
+    /// It acts on deliveries, and not for a time.
     #[must_use]
     pub const fn is_delivery(&self) -> bool {
         matches!(self, Self::Delivery(..))
@@ -140,14 +140,14 @@ impl What {
 }
 
 impl FaultPlan {
-    /// The cell as it stands from the beginning: with a pedestal that is not on its mark.
+    /// The description with the displacements of the plan, such as a moved pedestal.
     #[must_use]
     pub fn displaced(&self, description: &CellDescription) -> CellDescription {
         displaced(self.faults.iter(), description)
     }
 }
 
-/// The cell as it stands with some faults from the beginning.
+/// The description with the displacements of some faults.
 fn displaced<'f>(faults: impl Iterator<Item = &'f Fault>, description: &CellDescription) -> CellDescription {
     let mut cell = description.clone();
     for fault in faults {

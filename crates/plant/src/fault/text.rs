@@ -33,9 +33,10 @@
 //! rate = 0.001                    # chance of each byte (drop flip duplicate delay) or of each tick (the others)
 //! ```
 //!
-//! Of the line also `byte = 0x06` (insert) and, before the faults, `most_per_tick`: at most so many faults in a tick and
-//! direction. Others of the cell: `stuck` with `device = "lock-ring"` or `"vise-jaw"`, `air-lost`, `hydraulics-lost`,
-//! `camera-blind`, `pedestal-moved`. One that does not say when is there all the time; one of the line needs a rate, a tick or a range of ticks.
+//! Of the line also `byte = 0x06` (insert) and, before the faults, `most_per_tick`: at most so many faults in a tick
+//! and direction. Others of the cell: `stuck` with `device = "lock-ring"` or `"vise-jaw"`, `air-lost`,
+//! `hydraulics-lost`, `camera-blind`, `pedestal-moved`. A fault without a time is always present; a fault of the line
+//! needs a rate, a tick or a range of ticks.
 //!
 //! All mistakes of a file are found at once.
 
@@ -130,7 +131,7 @@ struct Form {
 }
 
 impl Form {
-    /// The keys beside `kind` that are there.
+    /// The keys present beside `kind`.
     fn keys(&self) -> impl Iterator<Item = &'static str> {
         let there = [
             ("direction", self.direction.is_some()),
@@ -156,7 +157,7 @@ impl Form {
     }
 }
 
-/// What something is stuck at.
+/// The value at which something is stuck.
 #[derive(Clone, Debug)]
 enum Value {
     Count(i64),
@@ -197,26 +198,26 @@ impl<'de> Deserialize<'de> for Value {
 /// A fault of a file.
 struct Entry<'f> {
     form: &'f Form,
-    /// The way to it: `fault[0]`.
+    /// Its path: `fault[0]`.
     path: String,
     /// Which one, from 1.
     number: usize,
 }
 
 impl Entry<'_> {
-    /// A value that is something else than expected.
+    /// An unexpected value.
     fn unlike(&self, key: &str, expected: impl fmt::Display, found: impl fmt::Display) -> Box<Problem> {
         Box::new(Problem::unlike(KIND.value, &join(&self.path, key), expected, found))
     }
 
-    /// A name that there is not.
+    /// An unknown name.
     fn unknown(&self, key: &str, found: &str, known: &[&str]) -> Box<Problem> {
         let expected = format!("one of {}", known.join(", "));
         let problem = Problem::unlike("fault.name", &join(&self.path, key), expected, format!("{found:?}"));
         Box::new(problem.near(found, known))
     }
 
-    /// What does not fit together.
+    /// Keys that contradict each other.
     fn says(&self, message: impl fmt::Display) -> Box<Problem> {
         let (path, kind) = (&self.path, &self.form.kind);
         Box::new(Problem::of_entry(KIND.value, path, format!("{path}: {kind} {message}")))
@@ -265,7 +266,7 @@ fn sheet(source: &Source, cell: Option<&CellDescription>) -> Result<FaultFile, D
     Ok(file)
 }
 
-/// Take an entry into the file, or say what is wrong with it.
+/// Add an entry to the file, or return its mistake.
 fn take(
     entry: &Entry<'_>,
     cell: Option<&CellDescription>,

@@ -1,4 +1,4 @@
-//! Air valves by name, and what becomes of a command that they do not follow.
+//! Air valves by name, and the outputs when they do not follow their commands.
 
 use interfaces::device::{DeviceOutputs, valve};
 use serde::{Deserialize, Serialize};
@@ -73,7 +73,7 @@ impl Valve {
         self.entry().0
     }
 
-    /// It stands open, or closed, whatever it is told.
+    /// The outputs with this valve stuck open or closed.
     pub const fn stick(self, outputs: &mut DeviceOutputs, open: bool) {
         match self.entry().1 {
             Output::Grip(mask) => bit_to(&mut outputs.grip.bits, mask, open),
@@ -93,8 +93,8 @@ const fn bit_to(bits: &mut u8, mask: u8, on: bool) {
     *bits = if on { *bits | mask } else { *bits & !mask };
 }
 
-/// The supply of air is gone: nothing flows in, and what is trapped behind the closed valves of a hand stays. The check
-/// valves of v-gripper and tool gripper, whose air stays on while they hold, keep theirs too (ASSUMED). Venting needs no
+/// The air supply is lost: nothing flows in, and air trapped behind the closed valves of a hand stays. The check valves
+/// of v-gripper and tool gripper, whose air stays on while they hold, keep their air too (ASSUMED). Venting needs no
 /// supply.
 pub const fn cut_air(outputs: &mut DeviceOutputs) {
     outputs.grip.bits &= valve::VENT;

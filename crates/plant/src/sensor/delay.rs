@@ -1,4 +1,4 @@
-//! Dead time: words that arrive some ticks after they were true.
+//! Dead time: words that arrive some ticks late.
 
 use std::collections::VecDeque;
 
@@ -22,7 +22,7 @@ impl DelayLine {
         self.0.front().copied().unwrap_or(word)
     }
 
-    /// Forget what is on its way.
+    /// Drop the delayed words.
     pub fn clear(&mut self) {
         self.0.clear();
     }
@@ -47,7 +47,7 @@ impl DeadTimes {
         Self(late.filter(|(_, ticks, _)| *ticks > 0).collect())
     }
 
-    /// Once a tick: hold back what the sensors show.
+    /// Once a tick: delay the sensor words.
     pub fn hold_back(&mut self, inputs: &mut DeviceInputs) {
         for (sensor, ticks, line) in &mut self.0 {
             let word = line.pass(sensor.read(inputs), *ticks);

@@ -1,13 +1,13 @@
-//! Sensors: what their words are called, and what lies between the truth and the word.
+//! Sensors: names of their words, and models from the true value to the word.
 //!
-//! A device says what is true (an opening, a force, a distance), and small models in a row make a word of it:
+//! A device gives the true value (an opening, a force, a distance), and a chain of small models makes a word of it:
 //!
 //! ```text
 //!   truth -- Analog (offset, scale, noise, converter) or resolver or Switch (hysteresis) --> word
 //!         -- DeadTimes --> late word -- crate::fault --> what the controller reads
 //! ```
 //!
-//! Scales and offsets stand with their devices in the cell description, what is common to kinds of sensors in `[sensors]`.
+//! Scales and offsets are with their devices in the cell description, common values of kinds of sensors in `[sensors]`.
 //! The camera has its own models ([`crate::camera`]).
 
 mod analog;

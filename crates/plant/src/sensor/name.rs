@@ -1,8 +1,8 @@
 //! Sensors by name: every word that the controller reads from its sensors can be read, and changed, as a number.
 //!
-//! A name stands for a *connection* at the controller's boards (chapter III): the three grippers have their potentiometer on
-//! the same one (III.3.7), so `grip.potentiometer` is that of the gripper that is on. What is wrong with a sensor, a cable or
-//! a converter shows in this word and nowhere else, so this is where faults act ([`crate::fault`]).
+//! A name stands for a *connection* at the controller's boards (chapter III): the three grippers have their
+//! potentiometer on the same one (III.3.7), so `grip.potentiometer` is that of the attached gripper. A fault of a
+//! sensor, a cable or a converter changes only this word, so faults act here ([`crate::fault`]).
 
 use core::ops::RangeInclusive;
 
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub struct Sensor(u8);
 
-/// What a name stands for.
+/// The word of a name.
 #[derive(Clone, Copy)]
 enum Word {
     /// Power of the resolver box.
@@ -102,7 +102,7 @@ const HOLSTER_BITS: u8 = 0x0F;
 /// The greatest `endeff-id#` that two id pins can show.
 const GREATEST_ID: i64 = 3;
 
-/// Kinds of sensors that have their electronics in common.
+/// Kinds of sensors with common electronics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
     /// Resolvers of the joints.
@@ -113,7 +113,7 @@ pub enum Group {
     Force,
     /// Proximity, reflectance, limit switches, light beams.
     Switch,
-    /// Supplies, the vision system, and what stands for several sensors.
+    /// Supplies, the vision system, and names for several sensors.
     Other,
 }
 
@@ -171,7 +171,7 @@ impl Sensor {
         matches!(self.entry().1, Word::Camera)
     }
 
-    /// What the word can be: counts of a converter, or 0 and 1.
+    /// Range of the word: counts of a converter, or 0 and 1.
     #[must_use]
     pub fn range(self) -> RangeInclusive<i64> {
         match self.entry().1 {
@@ -201,7 +201,7 @@ impl Sensor {
         }
     }
 
-    /// What it shows.
+    /// Its value.
     #[must_use]
     pub fn read(self, inputs: &DeviceInputs) -> i64 {
         match self.entry().1 {
@@ -231,7 +231,7 @@ impl Sensor {
         }
     }
 
-    /// Let it show a value, or the nearest that it can show. A resolver goes round.
+    /// Set it to a value, or the nearest possible one. A resolver wraps around.
     pub fn write(self, inputs: &mut DeviceInputs, value: i64) {
         let range = self.range();
         let value = match self.entry().1 {

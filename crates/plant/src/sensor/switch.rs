@@ -1,14 +1,14 @@
-//! A sensor that sees something or not: it begins to see at one distance and ends at a greater one.
+//! A switching sensor with hysteresis: it switches on at one distance and off at a greater one.
 
 use serde::{Deserialize, Serialize};
 
-/// A switching sensor, and what it sees at present.
+/// A switching sensor and its state.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Switch(bool);
 
 impl Switch {
-    /// What it shows of something that is `beyond` its range by so much, negative inside of it; `hysteresis` is how much
-    /// farther it must go before it is no longer seen.
+    /// Update with an object `beyond` its range by a distance, negative inside of it; `hysteresis` is how much farther
+    /// the object must be to be no longer detected.
     pub fn see(&mut self, beyond: f64, hysteresis: f64) -> bool {
         self.0 = beyond <= if self.0 { hysteresis } else { 0.0 };
         self.0

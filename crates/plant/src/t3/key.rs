@@ -1,4 +1,4 @@
-//! What a person can press and turn: at the controller's console, at the teach pendant, and the emergency stops.
+//! Keys and switches: of the controller's console, of the teach pendant, and the emergency stops.
 
 use std::fmt;
 
@@ -65,7 +65,7 @@ impl fmt::Display for EStop {
     }
 }
 
-/// What is done at the controller's console, keyboard and teach pendant, and at the emergency stops.
+/// An action at the controller's console, keyboard and teach pendant, or at the emergency stops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
     /// Control power (IV.3.3 step 4).
@@ -110,7 +110,7 @@ pub enum Key {
 }
 
 impl Key {
-    /// What is done, as a person would say it in a command.
+    /// The action as text of a command.
     #[must_use]
     pub fn text(self) -> String {
         let on = |on| if on { "on" } else { "off" };
@@ -155,7 +155,7 @@ pub enum Cut {
 }
 
 impl Cut {
-    /// It is no part of the work: an emergency stop, or a failure.
+    /// It is not part of normal work: an emergency stop, or a failure.
     #[must_use]
     pub const fn is_emergency(self) -> bool {
         matches!(self, Self::EStop(_) | Self::PressureLost)

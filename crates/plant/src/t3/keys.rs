@@ -1,4 +1,4 @@
-//! What the keys of the console do, and why not.
+//! Effects of the keys of the console, and refusals.
 
 use depc::controller::ControllerState;
 use geometry::kinematics::T3;
@@ -60,7 +60,7 @@ impl T3Controller {
         }
     }
 
-    /// The pump, or a line of the hydraulics, fails: the pressure is gone at once, and the controller shows a fault.
+    /// The pump, or a line of the hydraulics, fails: the pressure is lost at once, and the controller shows a fault.
     pub fn lose_pressure(&mut self) {
         self.pump = false;
         if self.stage.is_live() {
@@ -81,7 +81,7 @@ impl T3Controller {
         }
     }
 
-    /// Pressure goes, and with it whatever runs and what is known of the axes.
+    /// Lose the pressure: motions end, and the axes are no longer aligned.
     fn shut_off(&mut self, stage: Stage, cause: Cut) {
         if self.stage.is_live() {
             self.robot(RobotEvent::Sinks(cause));

@@ -1,7 +1,7 @@
-//! What the controller shows and what can be seen of the robot.
+//! Messages of the controller, and visible events of the robot.
 //!
-//! Lines of the controller's screen stand alone and are the manual's (IV.3.3, A 2.3, A 2.4); everything that a person
-//! would see or hear beside it has its source in brackets.
+//! Lines of the controller's screen stand alone and are the manual's (IV.3.3, A 2.3, A 2.4); other events have their
+//! source in brackets.
 
 use std::fmt;
 
@@ -26,7 +26,7 @@ pub enum Message {
     Warning(#[serde(with = "crate::image::record")] Warning),
     /// The lamps on the console or on the robot.
     Lamps(Lamps),
-    /// What the robot does.
+    /// An event of the robot.
     Robot(RobotEvent),
     /// The position, and how far it may be off HOME.
     Position(#[serde(with = "crate::image::record")] WireFrame),
@@ -55,19 +55,19 @@ pub enum Lamps {
     HydraulicsDisabled,
 }
 
-/// What a person sees of the robot.
+/// A visible event of the robot.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub enum RobotEvent {
     /// The actuators have lost their pressure.
     Sinks(Cut),
-    /// They get it.
+    /// The actuators get pressure.
     WillJump,
-    /// The arm has come to where the servos had their command.
+    /// The arm has jumped to the command of the servos.
     Jumped {
         /// How far the hand has moved, in.
         inches: f64,
     },
-    /// It rehearses its program (IV.3.3 step 12).
+    /// It makes the vertical motions of its program (IV.3.3 step 12).
     VerticalMotions,
     /// The program was interrupted.
     Interrupted,

@@ -11,10 +11,9 @@
 //! arm; the caller decides how finely. `rcs-cell` puts a pseudo-terminal and a console around it, the
 //! simulated cell ([`crate::cell`]) everything else.
 //!
-//! The DEPC function is a part of the program, and the program runs only under pressure: with it end the
-//! answers and the controller's DTR (A 2.3; ASSUMED: the manual does not say what the host sees of an
-//! emergency stop). It comes back as IV.3.3 has it: fault reset, hydraulics, manual, align, AUTO, cycle
-//! start.
+//! The DEPC function is a part of the program, and the program runs only under pressure: without pressure there are no
+//! answers, and the controller's DTR is off (A 2.3; ASSUMED: the manual does not say what the host sees of an emergency
+//! stop). It returns by the steps of IV.3.3: fault reset, hydraulics, manual, align, AUTO, cycle start.
 
 mod key;
 mod keys;
@@ -50,12 +49,12 @@ use crate::{
     noise::{Noise, Stream},
 };
 
-/// Where the last shift has left the arm: greatest distance of each joint from its arrow, degrees (ASSUMED).
+/// Greatest distance of each joint from its arrow before the start-up, degrees (ASSUMED).
 const LEFT_OFF: f64 = 2.0;
-/// How well a person brings a joint to its arrow: greatest error, degrees (ASSUMED).
+/// Greatest error of a person who aligns a joint to its arrow, degrees (ASSUMED).
 const BY_EYE: f64 = 0.5;
 
-/// What the screen shows while FAULT RESET is lit: after power-up (IV.1 step 2), and ASSUMED the same after an emergency
+/// Text of the screen while FAULT RESET is lit: after power-up (IV.1 step 2), and ASSUMED the same after an emergency
 /// stop, of which the manual says that an error code appears (IV.3.1).
 const FAULT: &str = "ERROR-E22";
 
@@ -63,7 +62,7 @@ const fn powered() -> bool {
     true
 }
 
-/// What comes from the line in a period.
+/// Inputs from the line in a period.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepInputs {
     /// Bytes of the host.
@@ -72,7 +71,7 @@ pub struct StepInputs {
     pub cts: bool,
 }
 
-/// What goes to the line.
+/// Outputs to the line.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepOutputs {
     /// Bytes to the host.
@@ -83,7 +82,7 @@ pub struct StepOutputs {
     pub busy: bool,
 }
 
-/// What was counted since the start.
+/// Counts since the start.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Counts {
     /// Data commands executed.
@@ -94,13 +93,13 @@ pub struct Counts {
     pub reports: u64,
 }
 
-/// Why the arm cannot be led to a position by hand.
+/// Why the arm cannot be moved to a position by hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DriveError {
     /// The position does not fit into the words of the controller.
     #[error("the position is beyond the controller's coordinates of 327.67 in")]
     OutOfRange,
-    /// The joints cannot take it.
+    /// The joints cannot reach it.
     #[error("the arm cannot take the position: {0:?}")]
     Joints(JointProblem),
     /// The arm has no pressure.
@@ -148,7 +147,7 @@ pub struct T3Controller {
     limits: Limits,
     arm: Arm,
     pump_delay: f64,
-    /// How well people align axes.
+    /// Random errors of the alignment.
     noise: Noise,
     aligned: [bool; 6],
     /// Axes on their way to the arrow.
@@ -171,8 +170,7 @@ pub struct T3Controller {
     transmitter: bool,
     /// The emergency stops that are in.
     estops: [bool; 5],
-    /// The Prim Interface Box has power. Only the console of `rcs-cell` takes it away, so that no cell that is saved is
-    /// without.
+    /// The Prim Interface Box has power. Only the console of `rcs-cell` takes it away, so it is on in every saved cell.
     #[serde(skip, default = "powered")]
     prim_box: bool,
     /// The pump and its lines are sound.
@@ -184,7 +182,7 @@ pub struct T3Controller {
 }
 
 impl T3Controller {
-    /// A controller without power whose arm was left near HOME and has sunk. `seed` says how far the joints are off.
+    /// A controller without power, with an arm near HOME that has sagged. `seed` determines the joint offsets.
     #[must_use]
     pub fn dark(limits: Limits, actuators: &Actuators, seed: u64) -> Self {
         let mut noise = Noise::new(seed, Stream::Alignment);
@@ -241,7 +239,7 @@ impl T3Controller {
         }
     }
 
-    /// How far the start-up has come.
+    /// Stage of the start-up.
     #[must_use]
     pub fn stage(&self) -> Stage {
         self.stage
@@ -289,13 +287,13 @@ impl T3Controller {
         self.cut
     }
 
-    /// The arm stands where it was sent to.
+    /// The arm is at rest at its commanded position.
     #[must_use]
     pub fn at_rest(&self) -> bool {
         self.arm.settled()
     }
 
-    /// The controller does something that a key has begun and that ends by itself: pressure comes, axes are
+    /// The controller executes an action that a key has begun and that ends by itself: pressure comes, axes are
     /// aligned, the arm moves to HOME, the program makes its two motions.
     #[must_use]
     pub fn busy(&self) -> bool {
@@ -346,8 +344,8 @@ impl T3Controller {
         StepOutputs::default()
     }
 
-    /// Lead the arm to an end-plate frame (inches, world) within a period as the teach pendant does: past the
-    /// line and its limits of speed.
+    /// Move the arm to an end-plate frame (inches, world) within a period as the teach pendant does, without the line
+    /// and its limits of speed.
     ///
     /// # Errors
     /// [`DriveError`]; the command stays as it was.
@@ -361,11 +359,10 @@ impl T3Controller {
         Ok(())
     }
 
-    /// Take over the position of another controller that has the robot, within a period. An arm without
-    /// pressure stays where it is.
+    /// Follow the position of another robot within a period. An arm without pressure stays where it is.
     ///
     /// # Errors
-    /// [`JointProblem`] if this arm cannot take the position; the command stays as it was.
+    /// [`JointProblem`] if this arm cannot reach the position; the command stays as it was.
     pub fn follow(&mut self, plate: &Plate) -> Result<(), JointProblem> {
         if self.arm.has_pressure() && *plate != self.set_point.plate {
             self.set_point.take(plate)?;

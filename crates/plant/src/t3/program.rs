@@ -1,4 +1,4 @@
-//! What the controller does by itself: pressure, axes, the way to HOME, and the program with its DEPC function.
+//! Automatic actions of the controller: pressure, axes, the motion to HOME, and the program with its DEPC function.
 
 use depc::{
     controller::{Controller, ControllerInputs, ControllerState, Warning},

@@ -1,4 +1,4 @@
-//! Why a key does nothing.
+//! Why a key has no effect.
 
 use super::EStop;
 

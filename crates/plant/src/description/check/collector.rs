@@ -1,4 +1,4 @@
-//! Compares values of a description with what is expected of them, and collects what does not fit.
+//! Compares values of a description with expected ones, and collects the problems.
 
 use std::collections::BTreeSet;
 
@@ -33,7 +33,7 @@ impl Check<'_> {
         self.that(inside, path, &format!("{low} to {high}"), || value.to_string());
     }
 
-    /// From 0 to what another entry says.
+    /// From 0 to the value of another entry.
     pub(super) fn up_to(&mut self, path: &str, value: f64, (other, greatest): (&str, f64)) {
         if self.trusts(other) {
             let expected = format!("0 to the {greatest} of {other}");
@@ -41,7 +41,7 @@ impl Check<'_> {
         }
     }
 
-    /// A 12-bit converter that has to read `counts` can.
+    /// Check that a 12-bit converter can read `counts`.
     pub(super) fn counts(&mut self, path: &str, expected: &str, counts: f64) {
         self.that((1.0..=4095.0).contains(&counts), path, expected, || format!("{counts:.0} counts"));
     }
@@ -76,7 +76,7 @@ impl Check<'_> {
         self.positive.insert(path);
     }
 
-    /// A name is one of those that are known. A known name that could not be read may be the one that is meant.
+    /// Check that a name is known. If a known name could not be read, it may be the meant one.
     pub(super) fn known(&mut self, path: &str, expected: &str, name: &str, known: &[&str]) {
         let names_are_read =
             !self.stand_ins.iter().any(|path| path.ends_with("name") || path.ends_with("unit"));

@@ -41,7 +41,7 @@ impl CellDescription {
         }
     }
 
-    /// Names are there, fit, and are given once.
+    /// Check that names are given, fit, and are unique.
     pub(super) fn check_names(&self, check: &mut Check<'_>) {
         let named = |list: &'static str, key: &'static str, names: Vec<&String>| {
             let paths = (0..names.len()).map(move |number| join(&element(list, number), key));

@@ -10,16 +10,16 @@ use crate::{
     sensor::Sensor,
 };
 
-/// A kind of fault, and the keys that it takes beside those that say when.
+/// A kind of fault, and its keys besides those for the time.
 pub(super) struct Kind {
     name: &'static str,
     keys: &'static [&'static str],
     when: &'static [&'static str],
 }
 
-/// Keys that say when, of a fault that lasts.
+/// Keys for the time of a fault that lasts.
 const LASTING: [&str; 6] = ["at", "from", "after", "until", "rate", "ticks"];
-/// Of a delivery, which is one moment.
+/// Keys for the time of a fault of a delivery.
 const DELIVERY: [&str; 5] = ["at", "from", "after", "until", "rate"];
 
 const fn lasting(name: &'static str, keys: &'static [&'static str]) -> Kind {
@@ -47,7 +47,7 @@ const KINDS: [Kind; 15] = [
     delivery("wrong-part", &["object", "part"]),
     Kind { name: "pedestal-moved", keys: &["x", "y", "angle"], when: &[] },
 ];
-/// Devices that can be stuck, beside sensors and valves.
+/// Devices that can be stuck, besides sensors and valves.
 const DEVICES: [&str; 2] = ["lock-ring", "vise-jaw"];
 /// The longest time of a fault with a rate, ticks.
 const MOST_TICKS: u32 = 100_000;
@@ -81,7 +81,7 @@ pub(super) fn fault(entry: &Entry<'_>, kind: &Kind, cell: &CellDescription) -> R
     Ok(Fault { number: entry.number, what, when: when(entry)? })
 }
 
-/// What happens.
+/// Its effect.
 fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, Box<Problem>> {
     let form = entry.form;
     let by = |expected: &str, range: core::ops::RangeInclusive<f64>| {
@@ -137,7 +137,7 @@ fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, B
 
 const ONE_OF: &str = "needs one of `sensor`, `valve` and `device`";
 
-/// What is stuck, if it is no sensor.
+/// The stuck device or valve, if it is not a sensor.
 fn stuck(entry: &Entry<'_>) -> Result<What, Box<Problem>> {
     let form = entry.form;
     match (&form.valve, &form.device) {
@@ -184,7 +184,7 @@ fn counts(entry: &Entry<'_>, value: &Value) -> Result<i64, Box<Problem>> {
     }
 }
 
-/// When it happens.
+/// Its time.
 fn when(entry: &Entry<'_>) -> Result<When, Box<Problem>> {
     let form = entry.form;
     let after = form.after.map(|after| entry.within("after", after, "seconds", 0.0..=1e5)).transpose()?;

@@ -63,7 +63,7 @@ pub(super) fn rule(entry: &Entry<'_>, kind: FaultKind) -> Result<Rule, Box<Probl
     Ok(form.byte.map_or(rule, |byte| rule.byte(byte)))
 }
 
-/// A chance that is one, in millionths.
+/// A chance in millionths.
 fn millionths(rate: f64) -> u32 {
     libm::round(rate * f64::from(ALWAYS)) as u32
 }
