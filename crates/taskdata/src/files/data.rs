@@ -66,7 +66,7 @@ pub struct TaskData<'a> {
     pub indexes: Indexes<'a>,
 }
 
-/// The index of each file: what its key is, and its answer where it has one.
+/// The index of each file, with its key, and its answer where it has one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Indexes<'a> {
     /// POSE by name.

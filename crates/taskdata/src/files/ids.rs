@@ -1,4 +1,4 @@
-//! Record numbers: what the manual's variables ending in `-^` hold (V.1.2 `traj-para-^`, V.2.2 `pose-^-in` …).
+//! Record numbers: the values of the manual's variables ending in `-^` (V.1.2 `traj-para-^`, V.2.2 `pose-^-in` …).
 
 use rcs_core::{
     Plain,
@@ -55,7 +55,7 @@ macro_rules! record_numbers {
                 usize::try_from(self.0.checked_sub(1)?).ok()
             }
 
-            /// The number of the record at a position from 0, null if a number cannot say it.
+            /// The number of the record at a position from 0, null if the number is too large.
             #[must_use]
             pub fn at(position: usize) -> Self {
                 Self(u32::try_from(position).ok().and_then(|p| p.checked_add(1)).unwrap_or(0))

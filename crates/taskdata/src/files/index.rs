@@ -1,17 +1,16 @@
 //! Indexes: every look-up that is not by record number reads one pilot and one slot, however many records there are.
 //!
-//! A key is three integers: most often a name, and a grip and a location packed side by side. The name of the
-//! object is part of the key of all that belongs to it, so nothing has to be looked up first. The index is a
-//! perfect hash table, made once by the loader: a hash puts the key into one of many small buckets, the
-//! *pilot* of the bucket, one byte, is mixed into the hash, and the result is the slot. The loader has chosen
-//! the pilots so that no two keys share a slot, so there is nothing to search: the pilots of 100,000 keys (33
-//! kB) stay in the processor's cache, and what is not in it is read once, half a cache line. A slot holds the
-//! record number and, where look-ups ask for just one thing of the record (the movetable of a grip, the path
-//! of an approach), that too, so that the record itself need not be read.
+//! A key is three integers: most often a name, and a grip and a location packed side by side. The name of the object is
+//! part of the key of all that belongs to it, so nothing has to be looked up first. The index is a perfect hash table,
+//! made once by the loader: a hash puts the key into one of many small buckets, the *pilot* of the bucket, one byte, is
+//! mixed into the hash, and the result is the slot. The loader has chosen the pilots so that no two keys share a slot,
+//! so there is nothing to search: the pilots of 100,000 keys (33 kB) stay in the processor's cache, and the rest needs
+//! one read of half a cache line. A slot holds the record number and, where look-ups need only one field of the record
+//! (the movetable of a grip, the path of an approach), also that field, so that the record itself need not be read.
 //!
-//! What is valid at a location is looked up at several in turn: the location point, the array on it, the
-//! owners, the wild card. Such entries stand together, those of one name and grip in one slot of a
-//! [`PlaceIndex`]: a cache line tells which of the locations there is an entry for.
+//! An entry valid at a location is looked up at several in turn: the location point, the array on it, the owners, the
+//! wild card. Such entries of one name and grip are together in one slot of a [`PlaceIndex`]: one cache line shows
+//! which of the locations have an entry.
 
 use rcs_core::name::Name;
 
@@ -21,17 +20,17 @@ use super::{
     reference::{RefType, Reference},
 };
 
-/// What records are looked up by.
+/// The key of a look-up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key {
     /// A name, or one or two references. Not one integer of 128 bits: that would be aligned to 16 bytes, and
     /// a [`Slot`] would be as long as two.
     pub(crate) main: [u64; 2],
-    /// What else there is: a grip, a location, a direction; 0 if nothing.
+    /// Grip, location or direction; 0 if there is none.
     pub(crate) rest: u64,
 }
 
-/// A key and what is known of it. Slots are 32 bytes, aligned so that none lies across two cache lines.
+/// A key and its answer. Slots are 32 bytes, aligned so that none lies across two cache lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(align(32))]
 pub struct Slot {
@@ -39,8 +38,8 @@ pub struct Slot {
     pub(crate) key: Key,
     /// Record number of the first record that has it; 0 for a slot without a key.
     pub(crate) number: u32,
-    /// What look-ups ask of that record; 0 if they take the record. Of a key that several records have: the
-    /// position from 1 in [`Index::numbers`].
+    /// The field of the record that look-ups need; 0 if they use the record. For a key of several records: the position
+    /// from 1 in [`Index::numbers`].
     pub(crate) answer: u32,
 }
 
@@ -97,7 +96,7 @@ pub(crate) fn slot_of(hash: u64, pilot: u8, slots: usize) -> usize {
     scaled(turned.wrapping_mul(0xE703_7ED1_A0B4_28DB), slots)
 }
 
-/// The slot in which a key can only be.
+/// The only slot in which a key can be.
 fn slot_at<'a, S>(pilots: &[u8], slots: &'a [S], seed: u64, key: Key) -> Option<&'a S> {
     let hash = hash_of(key, seed);
     let pilot = *pilots.get(bucket_of(hash, pilots.len()))?;
@@ -115,7 +114,7 @@ impl<'a> Index<'a> {
         self.slot(key).map(|slot| slot.number)
     }
 
-    /// What look-ups ask of the record of a key, in an index that has answers: see [`super::data::Indexes`].
+    /// The answer for a key, in an index that has answers: see [`super::data::Indexes`].
     #[must_use]
     pub fn answer(&self, key: Key) -> Option<u32> {
         self.slot(key).map(|slot| slot.answer)
@@ -147,7 +146,7 @@ impl<'a> Index<'a> {
 
 /// Entries that a [`Group`] has room for.
 pub(crate) const ENTRIES: usize = 3;
-/// In place of the number of entries: there is no room for them, and they stand in [`PlaceIndex::crowded`].
+/// Instead of the number of entries: they do not fit, and are in [`PlaceIndex::crowded`].
 pub(crate) const CROWDED: u32 = u32::MAX;
 
 /// An entry that is valid at a location.
@@ -157,7 +156,7 @@ pub struct EntryAt {
     pub(crate) at: u32,
     /// Record number.
     pub(crate) number: u32,
-    /// What look-ups ask of the record.
+    /// The field of the record that look-ups need.
     pub(crate) answer: u32,
 }
 
@@ -188,14 +187,14 @@ impl Group {
     }
 }
 
-/// A reference in 32 bits, never 0; `None` if it is none, or of a record beyond any that a file can have.
+/// A reference in 32 bits, never 0; `None` for no reference, or a record number above those of a file.
 pub(crate) fn packed(at: Reference) -> Option<u32> {
     let kind = u32::from(at.kind.code());
     let known = kind > 0 && kind < 16 && at.number < 1 << 28 && (at.number > 0 || at.kind == RefType::Any);
     known.then_some((kind << 28) | at.number)
 }
 
-/// What is valid at locations, by a key without the location. Built by the loader.
+/// Entries valid at locations, by a key without the location. Built by the loader.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlaceIndex<'a> {
     /// The pilot of each bucket.
@@ -302,7 +301,7 @@ pub fn name_key<const N: usize>(name: &Name<N>) -> Key {
     Key { main: name_bits(name), rest: 0 }
 }
 
-/// The key of a reference: members by what they are.
+/// The key of a reference: members by type and number.
 #[must_use]
 pub fn reference_key(reference: Reference) -> Key {
     Key { main: [0, reference_bits(reference)], rest: 0 }
@@ -352,7 +351,7 @@ pub fn approach_key<const N: usize>(
     Some(Key { rest: (from << 48) | key.rest, ..key })
 }
 
-/// The key of an approach to a location as such, or of a depart from it. It has no name, so it is no object's.
+/// The key of an approach to a location as such, or of a depart from it. It has no name of an object.
 #[must_use]
 pub fn plain_key(direction: Direction, at: Reference) -> Key {
     Key { main: [0; 2], rest: (u64::from(direction.code()) << 56) | reference_bits(at) }

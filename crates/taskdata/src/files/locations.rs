@@ -1,9 +1,9 @@
 //! From the location and the sector of a command to a frame (VII.3 to VII.5, V.4.2).
 //!
-//! A name can be a location point, an owner, an array, or a location point and an owner at once (UNIT_1: the
-//! corner of a tray, and the owner of the ways in which that tray is divided). Without a sector the location
-//! point is meant; a sector counts through the array that is assigned to the object at that owner, left to
-//! right and top to bottom as the robot sees it (VII.4).
+//! A name can be a location point, an owner, an array, or a location point and an owner at once (UNIT_1: the corner of
+//! a tray, and the owner of the arrays that divide that tray). Without a sector the name means the location point;
+//! sectors are counted in the array that is assigned to the object at that owner, left to right and top to bottom seen
+//! from the robot (VII.4).
 
 use core::fmt;
 
@@ -22,12 +22,12 @@ use super::{
     reference::{RefType, Reference},
 };
 
-/// What decides which grips, approaches and trajectories apply: the location point, and the array on it.
+/// The location point and the array on it, which select grips, approaches and trajectories.
 ///
 /// It fits into a buffer (`locpt-type-in`, `locpt-^-in`; V.2.2).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Place {
-    /// How the command's location was understood: a location point, a static array, or a sector at an owner.
+    /// Kind of the command's location: a location point, a static array, or a sector at an owner.
     pub kind: LocationKind,
     /// The location point; null for a static array.
     pub locpt: LocptId,
@@ -40,11 +40,11 @@ pub struct Place {
 pub struct Location {
     /// Name of the location point, or of the static array.
     pub name: Name10,
-    /// What grips and trajectories are looked up with.
+    /// Place for the look-up of grips and trajectories.
     pub place: Place,
     /// Sector from 1, if it is one.
     pub sector: Option<i32>,
-    /// Where it is. World, inches.
+    /// Its frame. World, inches.
     pub frame: Frame,
 }
 
@@ -93,7 +93,7 @@ pub enum LookupError {
         /// The last sector; the first is 1.
         last: i32,
     },
-    /// The owner groups locations, and none of them is meant (UNIT).
+    /// The owner only groups locations (UNIT).
     OwnerOnly {
         /// The owner.
         location: Name16,
@@ -151,7 +151,7 @@ impl<'a> TaskData<'a> {
     /// The frame and the place of a location of a command (`"src-loc-16"` with `src-sector#` and so on, V.4.2).
     ///
     /// # Errors
-    /// [`LookupError`] with what is missing, or with the sectors that there are.
+    /// [`LookupError`] with the missing name, or with the valid sectors.
     pub fn resolve_location<const N: usize, const M: usize>(
         &self,
         name: &Name<N>,
@@ -288,11 +288,11 @@ impl<'a> TaskData<'a> {
         Some(repeat(repeat(first, array.column_step, column), array.row_step, row))
     }
 
-    /// The place that a location and an object mean together, for a process that is told both but not the sector: below
-    /// Task the sector is only a goal pose (V.3.2, V.2.2).
+    /// The place of a location and an object, for a process that gets both but not the sector: below Task the sector is
+    /// only a goal pose (V.3.2, V.2.2).
     ///
-    /// An object that an object location form assigns to an array there brings the array in; any other is at
-    /// the location point. `None` if nothing has the name.
+    /// If an object location form assigns the object to an array there, the place has the array; otherwise it is the
+    /// location point. `None` if the name is unknown.
     #[must_use]
     pub fn place_named<const N: usize, const M: usize>(
         &self,
@@ -318,8 +318,8 @@ impl<'a> TaskData<'a> {
         Place { kind: LocationKind::Point, locpt, array: ArrayId::NULL }
     }
 
-    /// The names under which forms can mean a place, the most exact first: the location point, the array on it, and the
-    /// owners of either (VII.5, VII.7.5).
+    /// The references with which forms can name a place, the most exact first: the location point, the array on it, and
+    /// the owners of either (VII.5, VII.7.5).
     pub fn aliases(&self, place: &Place) -> impl Iterator<Item = Reference> + Clone + use<'a> {
         Self::exact(place).into_iter().filter(|r| r.number != 0).chain(self.owners(place))
     }

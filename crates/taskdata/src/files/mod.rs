@@ -1,9 +1,8 @@
-//! The files of chapter VII and how the control processes look into them.
+//! The files of chapter VII and the look-ups of the control processes.
 //!
-//! A file is a slice of records; a record number counts from 1, and 0 is the null pointer of the manual's
-//! `…-^` variables. Beside the files stand perfect hash tables ([`index::Index`], [`index::PlaceIndex`]), so
-//! that a look-up by name, or by object, grip and location, reads one or two cache lines, however many
-//! records there are.
+//! A file is a slice of records; a record number counts from 1, and 0 is the null pointer of the manual's `…-^`
+//! variables. The files have perfect hash tables ([`index::Index`], [`index::PlaceIndex`]), so that a look-up by name,
+//! or by object, grip and location, reads one or two cache lines, however many records there are.
 //!
 //! * [`ids`], [`records`], [`index`]: numbers, records, indexes;
 //! * [`data`]: [`TaskData`], by number and by name;

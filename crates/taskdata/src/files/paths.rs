@@ -1,8 +1,8 @@
 //! Grips, views, approaches, departs and trajectories at a place (VII.6, VII.7).
 //!
-//! One rule serves all: the entry for the exact location point wins, then the one for the array on it, then
-//! the one for an owner, then the wild card `$$$` (VII.7.5). A trajectory needs an entry for both of its ends
-//! and has no wild card; it is flown as it is written, from start to end.
+//! One rule holds for all: the entry for the exact location point wins, then the one for the array on it, then the one
+//! for an owner, then the wild card `$$$` (VII.7.5). A trajectory needs an entry for both of its ends and has no wild
+//! card; it is used only in its direction, from start to end.
 
 use geometry::frame::Frame;
 use rcs_core::name::{Name, Name16};
@@ -41,7 +41,7 @@ impl<'a> TaskData<'a> {
         self.at_place(&self.indexes.grip_locs, key, place).map(|entry| GripLocId::new(entry.number))
     }
 
-    /// Where the tool frame is when an object at a location is held with a grip.
+    /// The tool frame in which an object at a location is held with a grip.
     ///
     /// # Errors
     /// [`LookupError::NoGrip`] if no form has the grip there.
@@ -160,8 +160,8 @@ impl<'a> TaskData<'a> {
         self.aliases(from).find_map(|start| ends.clone().find_map(|end| find(pair_key(start, end))))
     }
 
-    /// Where a point of a path is, with the frame that its movetables refer to: the goal of an approach, the start of a
-    /// depart, the previous point of a trajectory. `None` if the point names a record that is not there.
+    /// The frame of a point of a path; `reference` is the frame of its movetables: the goal of an approach, the start
+    /// of a depart, the previous point of a trajectory. `None` if the point names a missing record.
     #[must_use]
     pub fn point_frame(&self, point: &PathPoint, reference: &Frame) -> Option<Frame> {
         match point.target {

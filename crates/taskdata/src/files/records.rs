@@ -77,7 +77,7 @@ impl Array {
     }
 }
 
-/// OWNER-ASCII-NAMES: an owner (VII.5). Its members stand one after the other in the file of members.
+/// OWNER-ASCII-NAMES: an owner (VII.5). Its members are consecutive in the file of members.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Owner {
     /// Name of the owner.
@@ -124,7 +124,7 @@ pub struct TrajPara {
     pub brk_dst: i32,
 }
 
-/// Where a point of a path is (VII.6, VII.7.7).
+/// The target of a point of a path (VII.6, VII.7.7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// A pose.
@@ -163,7 +163,7 @@ pub struct Object {
     pub name: Name16,
 }
 
-/// END-EFF-PARA: how a grip of an object is taken (VII.7.1).
+/// END-EFF-PARA: openings and force of a grip of an object (VII.7.1).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EndEffPara {
     /// The object.
@@ -176,7 +176,7 @@ pub struct EndEffPara {
     pub grasp_size: i32,
     /// Grasp force, lb.
     pub grasp_force: i32,
-    /// Opening when the object is let go and left, 0.01 in.
+    /// Opening after the release of the object, 0.01 in.
     pub depart_size: i32,
 }
 
@@ -200,12 +200,12 @@ pub struct ObjLoc {
     pub assigned: Reference,
 }
 
-/// PED-PARA: how the Active Pedestal takes an object (VII.7.4).
+/// PED-PARA: how the Active Pedestal grips an object (VII.7.4).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PedPara {
     /// `"p-object"`.
     pub object: ObjectId,
-    /// `ped-appr`: opening before the object comes, 0.01 in.
+    /// `ped-appr`: opening to receive the object, 0.01 in.
     pub appr: i32,
     /// `ped-grasp-size`, 0.01 in.
     pub grasp_size: i32,
@@ -325,11 +325,11 @@ pub struct SensorPara {
 /// manual keeps those of holsters and tool drum in code.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct RelativeMove {
-    /// What the motion is for: a name that a command of E-move looks for.
+    /// Name that a command of E-move looks up.
     pub name: Name10,
     /// Where it applies: location point, array, owner or `$$$`.
     pub at: Reference,
-    /// Where it leads, from the pose that the command names as the start.
+    /// The movetable of the motion, applied to the start pose of the command.
     pub movetable: MovtabId,
     /// Its parameters.
     pub para: TrajParaId,

@@ -1,11 +1,10 @@
-//! Objects that differ in nothing but the number by which the vision system knows them: likely one of them was
-//! copied and not finished.
+//! Objects that differ only in their vision ids: probably one of them was copied and not finished.
 
 use std::collections::HashMap;
 
 use crate::files::{ObjectId, Reference, TaskData};
 
-/// Everything that is said of an object, in an order of its own, but for its vision ids.
+/// All entries of an object in a fixed order, without its vision ids.
 #[derive(Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 struct Described {
     grips: Vec<[i32; 5]>,
@@ -19,7 +18,7 @@ const fn bits(reference: Reference) -> (u8, u32) {
     (reference.kind.code(), reference.number)
 }
 
-/// Each object that equals an earlier one but for its vision ids, behind that one.
+/// Each object that equals an earlier one except for its vision ids, after that one.
 #[must_use]
 pub fn alike(data: &TaskData<'_>) -> Vec<[ObjectId; 2]> {
     // Only what the camera looks for can differ in its ids; the others are not described at all.

@@ -1,8 +1,8 @@
 //! The entries of a load, form by form, in the order in which they were entered.
 //!
-//! The order decides the record numbers: each entry becomes the record whose number is its position here. So the next
-//! generation of the data is made by putting newer entries into the places of those that they replace and the others at
-//! the end (docs/design/ownership.md "Reload"): what existed keeps its number.
+//! The order decides the record numbers: each entry becomes the record whose number is its position here. So in the
+//! next generation of the data newer entries take the positions of those that they replace, and the others are appended
+//! (docs/design/ownership.md "Reload"): existing records keep their numbers.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -37,7 +37,7 @@ pub(super) struct Collected {
 }
 
 impl Collected {
-    /// Put an entry with its like.
+    /// Add an entry to those of its form.
     pub fn add(&mut self, entry: Entry) {
         match entry {
             Entry::File(e) => self.files.push(e),
@@ -61,8 +61,8 @@ impl Collected {
     }
 
     /// These entries with `newer` ones in the places of those with the same key, and the rest of the newer ones behind
-    /// them. Nothing is removed, but for the locations of an object: newer object location entries replace all that the
-    /// object had, as an object that has moved to other trays is in the old ones no more.
+    /// them. Nothing is removed, except locations of an object: newer object location entries replace all earlier ones
+    /// of the object, because an object that has moved to other trays is no longer in the old ones.
     ///
     /// A key that `newer` holds twice replaces an entry once; the second stays, so that linking finds the duplicate.
     pub fn with(&self, newer: Self) -> Self {

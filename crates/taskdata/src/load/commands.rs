@@ -39,9 +39,9 @@ pub enum LineLoadError {
         /// The blocks that there are.
         known: Vec<u32>,
     },
-    /// The lines are none of a block.
+    /// The block does not have these lines.
     Lines(usize, usize),
-    /// They hold no command, or more than one.
+    /// They contain no command, or more than one.
     Count {
         /// The block.
         number: u32,
@@ -50,7 +50,7 @@ pub enum LineLoadError {
         /// How many commands they hold.
         found: usize,
     },
-    /// The line is no command.
+    /// The line is not a command.
     Command(OwnLineError),
 }
 
@@ -104,7 +104,7 @@ impl Commands {
         Self(all)
     }
 
-    /// Each line must be a command that the task data know the names of, or a comment.
+    /// Check that each line is a command with names of the task data, or a comment.
     pub(super) fn check(&self, store: &Store, problems: &mut Problems) {
         for (at, text) in self.0.values().flat_map(|block| &block.lines) {
             let text = text.trim();

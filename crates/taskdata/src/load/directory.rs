@@ -1,4 +1,5 @@
-//! Which blocks are loaded: directory blocks, from the block with which the manual's boot begins (IV.2.10 steps 9 and 10).
+//! Selection of the blocks to load: directory blocks, from the block with which the manual's boot begins (IV.2.10 steps
+//! 9 and 10).
 //!
 //! The boot loads blocks 905 and 906 at offset 21000 (system data) and block 0 at offset 20000 (objects); these name
 //! further blocks with `n load` or `offset n OLOAD`, and so on. An area without such a root has no directory, and all its
@@ -30,7 +31,7 @@ const ROOTS: [BlockNumber; 3] = [
 /// Blocks that one processor reads at a time.
 const BLOCKS_AT_A_TIME: usize = 256;
 
-/// What the loaded blocks hold.
+/// Content of the loaded blocks.
 #[derive(Debug, Default)]
 pub(super) struct Read {
     /// Entries in the order in which they were loaded.
@@ -39,7 +40,7 @@ pub(super) struct Read {
     pub broken: HashSet<String>,
     /// Blocks that were loaded.
     pub blocks: BTreeSet<BlockNumber>,
-    /// Blocks that were not, and numbers that lead to none.
+    /// Blocks that were not loaded, and numbers without a block.
     pub orphans: Orphans,
     /// Blocks of commands, which need no directory.
     pub commands: Commands,
@@ -140,7 +141,7 @@ fn note(fault: BlockFault, at: At, problems: &mut Problems) {
     }
 }
 
-/// What a block holds, whether it is loaded or not, and what is wrong with it.
+/// Content and problems of a block, loaded or not.
 struct Content {
     header: At,
     parsed: Parsed,
@@ -213,7 +214,7 @@ impl Loader<'_, '_> {
         parsed.loads
     }
 
-    /// A block that no directory names would be missed silently.
+    /// Report blocks that no directory names.
     fn unloaded(&mut self, order: &[BlockNumber]) {
         for number in order.iter().filter(|number| !self.read.blocks.contains(number)) {
             if let Some(block) = self.all.remove(number) {

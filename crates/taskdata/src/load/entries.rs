@@ -1,4 +1,4 @@
-//! What a form says, before its names are looked up: one entry for each record or group of records that it makes.
+//! Entries of the forms before their names are looked up: one for each record or group of records.
 
 use diagnostics::{At, BlockNumber};
 use geometry::movetable::MovetableLine;
@@ -6,7 +6,7 @@ use rcs_core::name::Name;
 
 use crate::files::{Direction, RefType, SensorSource, TrajPara};
 
-/// A name and where it stands.
+/// A name and its place.
 #[derive(Clone, Copy, Debug)]
 pub struct Named<const N: usize> {
     /// The name.

@@ -48,8 +48,8 @@ const OFFSET_FROM: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefTyp
 const SUBJECTS: &[RefType] =
     &[RefType::Object, RefType::View, RefType::LocationPoint, RefType::Array, RefType::Owner, RefType::Any];
 
-/// `-file- name records`: the declaration of a file (VII, blocks 100-199). The manual tells what declarations
-/// are for but prints none; the form is ours.
+/// `-file- name records`: the declaration of a file (VII, blocks 100-199). The manual describes the purpose of
+/// declarations but prints none; the form is of this project.
 pub fn file(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let word = p.peek();
     let Some((word, file)) = word.and_then(|w| Some((w, *FILE_NAMES.iter().find(|f| **f == w.text)?))) else {

@@ -23,7 +23,7 @@ use super::{
     parser::{BEGINNINGS, Parser, Skip, is_compiling_word, is_integer},
 };
 
-/// From where a relative move leads.
+/// The start of a relative move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beginning {
     /// From the pose of the command's location.
@@ -37,7 +37,7 @@ pub enum Beginning {
 pub struct KnownMove {
     /// Its name in the task data.
     pub name: &'static str,
-    /// From where it leads.
+    /// Its start.
     pub from: Beginning,
     /// A sensor guards it (GO-UNTIL, GO-WHILE).
     pub guarded: bool,
@@ -74,7 +74,7 @@ pub fn relative_move_named(name: &str) -> Option<&'static KnownMove> {
     RELATIVE_MOVES.iter().find(|known| known.name == name)
 }
 
-/// A threshold, lb or in lb: well beyond what the tool gripper may press with.
+/// A threshold, lb or in lb: well above the force of the tool gripper.
 const THRESHOLD: RangeInclusive<i32> = -1000..=1000;
 /// The holsters right, left and centre.
 const HOLSTER: RangeInclusive<i32> = 1..=3;

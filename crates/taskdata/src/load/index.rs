@@ -1,8 +1,8 @@
-//! Building the indexes of the files; [`crate::files::index`] says how they are searched.
+//! Building of the indexes of the files; [`crate::files::index`] describes the search.
 //!
-//! The keys are put into buckets of three or so. The buckets get their pilots the fullest first, while most slots are free:
-//! the first pilot out of 256 that sends all keys of the bucket into free slots. If none does, which for 100,000 keys
-//! happens less than once in a million times, everything begins again with another seed.
+//! The keys are put into buckets of three or so. The buckets get their pilots the fullest first, while most slots are
+//! free: the first pilot out of 256 that sends all keys of the bucket into free slots. If none does, which for 100,000
+//! keys happens less than once in a million times, the build starts again with another seed.
 
 use crate::files::{
     Index,
@@ -20,11 +20,11 @@ pub(super) struct Pair {
     pub key: Key,
     /// Number of the record from 1.
     pub number: u32,
-    /// What look-ups ask of the record; 0 in an index whose keys records may share.
+    /// The field of the record that look-ups need; 0 in an index whose keys records may share.
     pub answer: u32,
 }
 
-/// What stands in the slots of a table.
+/// The slots of a table.
 trait Cells: Default {
     /// So many empty slots.
     fn empty(slots: usize) -> Self;
@@ -237,7 +237,7 @@ struct Place {
     slot: usize,
 }
 
-/// Which slots are taken, a bit each: what is asked so often must fit into the fastest cache.
+/// Occupied slots, one bit each: small enough for the fastest cache, because they are tested often.
 struct Taken {
     bits: Vec<u64>,
     slots: usize,

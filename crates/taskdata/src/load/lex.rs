@@ -1,4 +1,4 @@
-//! Words of a block: what is left when comments are taken out.
+//! Words of a block, without comments.
 //!
 //! `%` at the beginning of a word makes the rest of the line a comment (IV.3.2). A word that begins with `(` makes a
 //! comment of all up to the next `)`, over lines if need be; such comments do not nest
@@ -9,7 +9,7 @@ use diagnostics::{At, Problems};
 
 use super::source::{Block, SourceLine};
 
-/// A word and where it stands.
+/// A word and its place.
 #[derive(Clone, Copy, Debug)]
 pub struct Word<'a> {
     /// The text, without blanks.

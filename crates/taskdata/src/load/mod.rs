@@ -6,7 +6,7 @@
 //! 2. [`parse`], [`forms`] and [`guarded`]: words into [`entries`];
 //! 3. [`directory`]: which blocks are loaded at all (Figure VIII.12);
 //! 4. `link`: names into record numbers, duplicates, unknown names;
-//! 5. `check`: what a command would run into; every place the robot is sent to can be reached;
+//! 5. `check`: errors that a command would meet; the robot can reach every target;
 //! 6. [`store`]: the files; [`origins`]: where each record was entered; [`Diagnostics`]: everything that was found, with
 //!    its place.
 //!
@@ -53,7 +53,7 @@ impl Store {
         Self::load_part(directory).map_err(|(_, report)| report)
     }
 
-    /// The same, but from data with errors comes what could be read of them, for checks of jobs.
+    /// The same, but data with errors give their readable part, for checks of jobs.
     ///
     /// # Errors
     /// That part, and the report.
@@ -140,7 +140,7 @@ impl Store {
     }
 }
 
-/// What came of the texts of a load.
+/// Result of the texts of a load.
 struct Linked {
     store: Store,
     problems: Problems,
@@ -161,17 +161,17 @@ impl Linked {
     }
 }
 
-/// What could be read of task data with errors. No run uses it.
+/// The readable part of task data with errors. No run uses it.
 #[derive(Clone, Debug)]
 pub struct Part {
     store: Store,
-    /// Words of entries that could not be read or are not loaded, and names that the data ask for in vain.
+    /// Words of entries that could not be read or are not loaded, and unknown names.
     unread: HashSet<String>,
 }
 
 impl Part {
-    /// True if a name that is not known, with the nearest one that is, is likely a slip of the pen. Any other may
-    /// stand in what could not be read, also behind a name that is too long.
+    /// True if a name that is not known, with the nearest one that is, is probably misspelt. Any other name may be in
+    /// an entry that could not be read.
     fn is_slip(&self, name: &str, near: Option<&str>) -> bool {
         near.is_some() && !self.unread.iter().any(|word| word.starts_with(name))
     }

@@ -1,4 +1,4 @@
-//! Where each record was entered: for messages, and to explain why the robot goes where it goes.
+//! Places at which records were entered: for messages, and to explain the robot's path.
 
 use diagnostics::At;
 

@@ -1,5 +1,6 @@
-//! Blocks that no directory loads, and directory lines that lead to no such block. What one wrong or forgotten number makes of
-//! them is told in one message: a name that only such a block defines is no mistake of the entry that asks for it.
+//! Blocks that no directory loads, and directory lines that lead to no such block. The effects of one wrong or
+//! forgotten number are reported in one message: if only such a block defines a name, the entry that uses the name is
+//! not wrong.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -7,7 +8,7 @@ use diagnostics::{At, BlockNumber, Problems, Severity, amount, distance};
 
 use super::{entries::LoadLine, parse::Parsed, print, source::LAST_BLOCK};
 
-/// Two numbers that differ by no more keys can be meant for each other.
+/// Greatest edit distance of a number from the one that was probably meant.
 const SLIP: usize = 2;
 
 /// A block that is not loaded.
@@ -18,13 +19,13 @@ struct Orphan {
     /// The header of the loaded block of this number.
     first: Option<At>,
     loads: Vec<LoadLine>,
-    /// What is asked for and stands in it, or in a block that only it leads to.
+    /// Names that are used and defined in it, or in a block that only it loads.
     needed: Vec<String>,
-    /// Told with something else.
+    /// Reported with another problem.
     told: bool,
 }
 
-/// What became of the numbers of a load.
+/// Block numbers of a load without block, and blocks without a number.
 #[derive(Debug, Default)]
 pub(super) struct Orphans {
     list: Vec<Orphan>,
@@ -36,8 +37,8 @@ pub(super) struct Orphans {
     pub(super) again: Vec<LoadLine>,
     /// Loaded directory blocks, and what they name.
     pub(super) directories: BTreeMap<BlockNumber, Vec<BlockNumber>>,
-    /// A file could not be read: any name and any block may stand in it. A name that is not known is told only if a
-    /// known one is so near to it that it is likely a slip of the pen.
+    /// A file could not be read: any name and any block may stand in it. A name that is not known is reported only if a
+    /// known one is so near that it is probably misspelt.
     pub(super) incomplete: bool,
 }
 
@@ -79,7 +80,7 @@ impl Orphans {
         false
     }
 
-    /// Say it all, once every name was looked for.
+    /// Report all, after every name was looked up.
     pub(super) fn report(mut self, problems: &mut Problems) {
         let below = self.gather();
         for line in std::mem::take(&mut self.missing) {
@@ -116,7 +117,8 @@ impl Orphans {
         }
     }
 
-    /// Blocks that another orphan names are told with it. The numbers of those that stand for others, and for how many.
+    /// Blocks that another orphan names are reported with it. The numbers of those that stand for others, and for how
+    /// many.
     fn gather(&mut self) -> BTreeMap<BlockNumber, usize> {
         let named: HashSet<BlockNumber> =
             self.list.iter().flat_map(|orphan| &orphan.loads).map(|line| line.block).collect();

@@ -1,4 +1,5 @@
-//! Work on all processors whose results come in order, so that a load says the same however many processors there are.
+//! Work on all processors whose results come in order, so that the report of a load does not depend on the number of
+//! processors.
 
 use std::{
     iter::Flatten,

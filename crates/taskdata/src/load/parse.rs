@@ -1,9 +1,8 @@
 //! From words to entries: the compiling words of chapter VII.
 //!
-//! A form is read as FORTH reads it, word by word, without regard to columns: a compiling word takes the
-//! words after it (`-pt-`, `-obj-` …), or the numbers before it (`-pose-`, `-mtb-`). After an error the rest
-//! of the entry is skipped up to the next compiling word or the next line that begins with a number, so that
-//! one mistake gives one message.
+//! A form is read as in FORTH, word by word, without regard to columns: a compiling word takes the words after it
+//! (`-pt-`, `-obj-` …), or the numbers before it (`-pose-`, `-mtb-`). After an error the rest of the entry is skipped
+//! up to the next compiling word or the next line that begins with a number, so that one mistake gives one message.
 
 use diagnostics::{At, BlockNumber, Problems, nearest};
 
@@ -22,7 +21,7 @@ pub struct Parsed {
     pub entries: Vec<Entry>,
     /// Blocks that it loads.
     pub loads: Vec<LoadLine>,
-    /// Names that stand in entries that could not be read: asking for one of them is no second error.
+    /// Names that stand in entries that could not be read: a use of one of them is not a second error.
     pub broken: Vec<String>,
 }
 

@@ -122,7 +122,7 @@ impl<'a> Parser<'a, '_> {
         if self.peek()?.text == text { self.take() } else { None }
     }
 
-    /// Note an error that spoils the entry but lets it be read to its end.
+    /// Report an error of the entry, which can still be read to its end.
     pub fn flaw(&mut self, code: &'static str, at: At, message: impl Into<String>, help: Option<String>) {
         self.flawed = true;
         self.problems.push(Severity::Error, code, at, message.into(), help);
@@ -147,7 +147,7 @@ impl<'a> Parser<'a, '_> {
         self.next > self.start && (begins || BEGINNINGS.contains(&word.text))
     }
 
-    /// Note the nearest word, of the sort `what`, to the one that was just complained of.
+    /// Note the nearest word, of the sort `what`, to the one that was just reported.
     pub fn nearest(&mut self, what: &str, word: &str) {
         self.problems.nearest(what, word);
     }

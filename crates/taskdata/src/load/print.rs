@@ -1,8 +1,8 @@
-//! Entries as forms again: what a person would type to get the entry.
+//! Entries as forms: the text that gives the entry.
 //!
-//! The form is the manual's, with one line for each part that has a compiling word of its own (`-ppt`, `-m-`,
-//! `----`). A form that would need more lines than a block has is set solid, which always fits if the entry
-//! came from a block: an entry cannot be spread over two.
+//! The form is the manual's, with one line for each part that has a compiling word of its own (`-ppt`, `-m-`, `----`).
+//! A form with more lines than a block has is printed without line breaks between its parts, which always fits if the
+//! entry came from a block: an entry cannot be in two blocks.
 
 use super::{
     entries::{

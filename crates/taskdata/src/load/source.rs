@@ -1,10 +1,9 @@
 //! Text files with blocks in them: the "disk" (IV.2.7).
 //!
-//! A file holds blocks one after the other, each under a header `BLOCK# 619 OFFSET 21000`, each of at most 16
-//! lines of 64 columns. Two liberties are taken with the disk of the manual. A line that begins with `%%` is
-//! a remark on the file: it is no line of a block and may be as long as it likes, so that a datum can be
-//! explained where it stands without disturbing its block. And a block that was copied from a listing, with
-//! the line numbers 0 to 15 in front, is read without them.
+//! A file holds blocks one after the other, each under a header `BLOCK# 619 OFFSET 21000`, each of at most 16 lines of
+//! 64 columns. There are two extensions of the manual's disk. A line that begins with `%%` is a remark on the file: it
+//! is not a line of a block and may have any length, so that data can be explained without changing their block. And a
+//! block that was copied from a listing is read without its line numbers 0 to 15.
 
 use std::{collections::BTreeSet, fs, io, os::unix::fs::MetadataExt as _, path::Path};
 
@@ -42,7 +41,7 @@ pub struct Block<'a> {
     pub lines: Vec<SourceLine<'a>>,
 }
 
-/// What is wrong with the blocks of a source.
+/// A fault of the blocks of a source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockFault {
     /// A header without two numbers.
@@ -69,7 +68,7 @@ pub fn read(path: &Path, shown: &str) -> io::Result<Source> {
     Ok(Source { name: shown.to_owned(), text: files::read_text(path)?.into() })
 }
 
-/// What cannot be read: a path, and why.
+/// A path that cannot be read, and why.
 pub type Unreadable = (String, io::Error);
 
 /// All files `*.blk` under a directory, in the order of their paths, which are shown relative to the
@@ -116,7 +115,7 @@ fn short(value: usize) -> u32 {
     u32::try_from(value).unwrap_or(u32::MAX)
 }
 
-/// True for a line that is a header, or was meant to be one.
+/// True for a line that is a header, or probably was meant as one.
 fn is_header(line: &str) -> bool {
     let start = line.trim_start().as_bytes().get(..HEADER.len());
     start.is_some_and(|start| start.eq_ignore_ascii_case(HEADER.as_bytes()))

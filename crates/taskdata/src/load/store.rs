@@ -1,4 +1,4 @@
-//! The files of a load, owned: what [`TaskData`] is a view of.
+//! The files of a load, owned; [`TaskData`] is a view of them.
 
 use std::collections::BTreeSet;
 
@@ -124,7 +124,7 @@ pub struct Store {
     pub(super) files: Files,
     pub(super) indexes: OwnedIndexes,
     pub(super) sources: Vec<Source>,
-    /// What the records were made of, for the next generation.
+    /// The entries of the records, for the next generation.
     pub(super) entries: Collected,
     /// Blocks that were loaded.
     pub(super) blocks: BTreeSet<BlockNumber>,
@@ -134,7 +134,7 @@ pub struct Store {
 }
 
 impl Store {
-    /// What the control processes look into.
+    /// The view for the control processes.
     #[must_use]
     pub fn view(&self) -> TaskData<'_> {
         let (files, indexes) = (&self.files, &self.indexes);
@@ -201,7 +201,7 @@ impl Store {
         places_in_blocks(&self.sources)
     }
 
-    /// A place of the text in words: file, block and line; "?" if the text is not known.
+    /// A place of the text: file, block and line; "?" if the text is not known.
     #[must_use]
     pub fn place(&self, at: At) -> String {
         self.places().words(at)

@@ -1,11 +1,11 @@
-//! A frame and the arm: reach, joint limits, distance from vertical.
+//! Check of a frame: reach, joint limits, angle from vertical.
 
 use geometry::{
     frame::Frame,
     kinematics::{HOME_JOINTS, JOINT_NAMES, T3},
 };
 
-/// Nearer to vertical than this is warned of, degrees.
+/// Angle from vertical below which there is a warning, degrees.
 const VERTICAL: f64 = 2.0;
 
 /// Degrees of the gripper axis from vertical, up or down.
@@ -14,13 +14,13 @@ pub(super) fn from_vertical(frame: &Frame) -> f64 {
     axis.x.hypot(axis.y).atan2(axis.z.abs()).to_degrees()
 }
 
-/// True if the gripper axis is so near to vertical that it is warned of.
+/// True if the gripper axis is so near to vertical that there is a warning.
 pub(super) fn is_vertical(frame: &Frame) -> bool {
     // Most frames are far from it: then no angle has to be worked out.
     frame.x().z.abs() > 0.99 && from_vertical(frame) < VERTICAL
 }
 
-/// Why the arm cannot take a frame.
+/// Why the arm cannot reach a frame.
 pub(super) struct Fault {
     pub code: &'static str,
     pub message: String,

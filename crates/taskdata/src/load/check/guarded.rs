@@ -1,4 +1,4 @@
-//! Relative moves: that a command looks for each, that guarded ones have a sensor, and that the robot can stop in time.
+//! Checks of relative moves: each is used by a command, guarded ones have a sensor, and the robot can stop in time.
 
 use diagnostics::nearest;
 use interfaces::device::{ADC_FULL_SCALE, FORCE_COUNTS_PER_LB, FORCE_ZERO, MOMENT_COUNTS_PER_IN_LB};
@@ -15,9 +15,9 @@ use super::{
 /// From the moment when a sensor's condition comes to the halt of the robot, s
 /// (docs/design/motion.md "Guarded speed").
 const HALT: f64 = 0.2;
-/// How fast the force grows while the tool moves on against something hard, lb/in: that of the arm of the cell (ASSUMED).
+/// Growth of the force while the tool moves on against something hard, lb/in: that of the arm of the cell (ASSUMED).
 const STIFFNESS: f64 = 2000.0;
-/// From the tool point to the middle of the force sensor, in: what makes a moment of a force (ASSUMED, `data/cell.toml`).
+/// Lever arm from the tool point to the middle of the force sensor, in (ASSUMED, `data/cell.toml`).
 const LEVER: f64 = 8.0;
 /// in/s in a count of `vel-max` (ASSUMED, as `levels::prim::motion::limits` has it;
 /// docs/design/motion.md "Units").
@@ -32,13 +32,13 @@ fn overload(source: SensorSource) -> f64 {
     }
 }
 
-/// What is added to the reading for each in/s of speed until the robot stands.
+/// Growth of the reading until the robot stops, for each in/s of speed.
 fn growth(source: SensorSource) -> f64 {
     let force = HALT * STIFFNESS;
     if source == SensorSource::My { force * LEVER } else { force }
 }
 
-/// Note what is wrong with relative moves.
+/// Report problems of relative moves.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
     for (i, record) in data.relative_moves.iter().enumerate() {
         let at = origin(&origins.relative_moves, i);

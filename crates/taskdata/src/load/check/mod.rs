@@ -1,5 +1,4 @@
-//! Checks of linked data: what a command would run into while the robot moves is found
-//! before the first tick.
+//! Checks of linked data: errors that a command would meet during its motion are found before the first tick.
 //!
 //! * [`trays`]: sectors within their trays;
 //! * [`sizes`]: openings in order, tray grips, flips;
@@ -27,7 +26,7 @@ use super::origins::Origins;
 
 pub(super) use reach::check as reach;
 
-/// All checks but that of the reach; of data in which names are missing only those that look at one object.
+/// All checks except that of the reach; if names are missing, only the checks of single objects.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, whole: bool, problems: &mut Problems) {
     let mut findings = Findings::default();
     if whole {
@@ -42,7 +41,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, whole: bool, problem
     findings.report(problems);
 }
 
-/// What is wrong with an entry at the first place where it is wrong, and at how many more.
+/// The problem of an entry at the first place where it is wrong, and the number of further places.
 #[derive(Debug)]
 struct Finding {
     severity: Severity,
@@ -81,7 +80,7 @@ impl Findings {
         }
     }
 
-    /// An error of an entry by itself, however many others it spoils.
+    /// An error of an entry by itself, reported once.
     fn error_once(&mut self, code: &'static str, at: At, message: String, help: String) {
         self.add(Finding { severity: Severity::Error, code, at, message, help, more: None });
     }
@@ -110,7 +109,7 @@ fn origin(list: &[At], position: usize) -> At {
     list.get(position).copied().unwrap_or_default()
 }
 
-/// A location and its sector in words.
+/// A location and its sector as text.
 fn shown(location: &Location) -> String {
     match location.sector {
         None => location.name.to_string(),

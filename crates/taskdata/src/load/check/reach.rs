@@ -1,13 +1,12 @@
-//! Every target that a command can send the robot to is tried against the arm: reach, joint limits, distance
-//! from vertical.
+//! Checks that the arm reaches every target of a command: reach, joint limits, angle from vertical.
 //!
 //! Targets are location points, what lies in their sectors gripped in each way, views, and the points of the
-//! approaches, departs, trajectories and relative moves there. A base pose is no target of its own: it is
-//! complained of where a target that is derived from it cannot be reached, and then in place of that target,
-//! since the mistake is in the pose.
+//! approaches, departs, trajectories and relative moves there. A base pose is not a target itself: if a target derived
+//! from it cannot be reached, the error names the base pose instead of the target, because the mistake is in the pose.
 //!
-//! The gripper axis within 2 degrees of vertical is warned of: the Euler angles of the link are singular there (VIII
-//! introduction). The corners of trays are taught vertical and not driven to (VIII.3); they are left out.
+//! There is a warning if the gripper axis is within 2 degrees of vertical: the Euler angles of the link are singular
+//! there (VIII introduction). The corners of trays are taught vertical but the robot does not move there (VIII.3); they
+//! are left out.
 //!
 //! The wild card `$$$` is tried at the locations that are assigned to the object (VII.7.3).
 
@@ -64,16 +63,15 @@ fn spread(count: usize, entry: impl Fn(usize, &mut Findings) + Sync) -> Findings
     findings
 }
 
-/// The words for a target, put together only if something is wrong with it.
+/// The text for a target, made only if it has a problem.
 type What<'a> = &'a dyn Fn() -> String;
 
 struct Reach<'a> {
     data: &'a TaskData<'a>,
     origins: &'a Origins,
-    /// Location points out of reach: what is derived from them is not complained of again.
+    /// Location points out of reach: targets derived from them are not reported again.
     bad_points: HashSet<LocptId>,
-    /// Trajectories that begin with a movetable, by their start: where their points lie depends on what is
-    /// departed from.
+    /// Trajectories that begin with a movetable, by their start: their points depend on the start.
     relative_starts: HashMap<(u8, u32), Vec<TrajId>>,
 }
 
@@ -99,8 +97,8 @@ impl<'a> Reach<'a> {
         of_arrays.filter_map(|members| members.first()).map(|m| LocptId::new(m.member.number)).collect()
     }
 
-    /// Location points at which an object is gripped or looked at: what is there is driven to, and may be
-    /// tilted, not the point.
+    /// Location points at which an object is gripped or looked at: the robot moves to the object, which may be tilted,
+    /// and not to the point.
     fn bases(&self) -> HashSet<LocptId> {
         let grips = self.data.grip_locs.iter().map(|entry| entry.at);
         let named = grips.chain(self.data.visions.iter().map(|entry| entry.at));
@@ -130,7 +128,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Try a target that is derived from a pose; true if it is reached. One near the vertical is warned of.
+    /// Try a target that is derived from a pose; true if it is reached. There is a warning near the vertical.
     fn target(&self, what: What<'_>, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
         let reached = self.reached(what, frame, at, base, findings);
         if reached {

@@ -5,10 +5,10 @@ use interfaces::subtask::LocationKind;
 
 use super::{Findings, Origins, at_point, origin, owners_of};
 
-/// Places of an end that are tried; an owner of more is taken to be reachable.
+/// Most places of an end that are tried; an owner with more counts as reachable.
 const TRIED: usize = 64;
 
-/// Note each trajectory that is never looked up.
+/// Report each trajectory that no look-up finds.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
     for (i, trajectory) in data.trajectories.iter().enumerate() {
         let id = TrajId::at(i);

@@ -1,11 +1,11 @@
-//! Numbers of the object forms against each other: openings in order, a tray grip that an object form has, a flip that turns
-//! (VII.7.1, VII.7.2, VII.7.4).
+//! Checks of the numbers of object forms: openings in order, a tray grip that an object form has, a flip angle that is
+//! not 0 (VII.7.1, VII.7.2, VII.7.4).
 
 use crate::files::TaskData;
 
 use super::{Findings, Origins, origin};
 
-/// Note what is not in order.
+/// Report problems.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
     for (i, record) in data.end_effs.iter().enumerate() {
         let what = format!("grip {:+} of {}", record.grip, data.object_name(record.object));

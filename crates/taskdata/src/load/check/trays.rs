@@ -9,7 +9,7 @@ use super::{Findings, Origins, at_point, origin, owners_of};
 /// Sides of a tray, inches. The manual gives no size: a square of 21.00 is what all three printed arrays fill with equal margins
 /// (VIII.6; SPECNOTES).
 const TRAY: f64 = 21.0;
-/// What rounding of the integers of a form may do, inches.
+/// Tolerance for rounding of the integers of a form, inches.
 const ROUNDING: f64 = 0.01;
 
 /// Note each array that has a sector outside the tray at which it is used.

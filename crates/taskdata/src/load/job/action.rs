@@ -1,4 +1,4 @@
-//! What stands beside the robot in a job: things that the workstation does, and hands at the joystick box.
+//! Actions of a job besides commands: of the workstation, and of a person at the joystick box.
 
 use rcs_core::name::Name16;
 
@@ -26,7 +26,7 @@ pub struct Offset {
     pub angle: i32,
 }
 
-/// What the tool drum does, and what is done to it.
+/// Actions of the tool drum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drum {
     /// Its fingers close.
@@ -82,12 +82,12 @@ pub enum Stepped {
     Prim,
 }
 
-/// What a person does at the joystick box.
+/// Actions at the joystick box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Joystick {
     /// Set the coordinate switches.
     Frame(JoystickFrame),
-    /// Deflect the stick, then let it go.
+    /// Deflect the stick, then release it.
     Stick {
         /// -1000 to 1000.
         x: i16,
@@ -137,7 +137,7 @@ pub enum EStop {
     Pedestal,
 }
 
-/// What a person does at the panel, the keyboard and the pendant of the robot controller (IV.3.3).
+/// Actions at the panel, the keyboard and the pendant of the robot controller (IV.3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel {
     /// Control power on or off.
@@ -148,7 +148,7 @@ pub enum Panel {
     Hydraulics(bool),
     /// MANUAL on or off.
     Manual(bool),
-    /// Lead all axes to their arrows, or one of 1 to 6.
+    /// Align all axes to their arrows, or one of 1 to 6.
     Align(Option<u8>),
     /// AUTO.
     Auto,
@@ -164,7 +164,7 @@ pub enum Panel {
     Hold(bool),
 }
 
-/// What happens beside the robot.
+/// An action besides the commands to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Workstation {
     /// A part is delivered into a sector of a tray.
@@ -173,7 +173,7 @@ pub enum Workstation {
         location: Location,
         /// The part.
         object: Name16,
-        /// Where in the sector; `None` leaves it to the seed of the run.
+        /// Position in the sector; `None`: random, from the seed of the run.
         offset: Option<Offset>,
     },
     /// A vise moves its jaws.
@@ -182,14 +182,14 @@ pub enum Workstation {
         opening: ViseOpening,
         /// The vise.
         location: Location,
-        /// By which program from now on; `None` stays with the one that was named last.
+        /// The program from now on; `None` keeps the last one.
         program: Option<Name16>,
     },
     /// A part is machined in a vise or a nest.
     Machine {
-        /// What goes in.
+        /// The blank.
         blank: Name16,
-        /// What comes out.
+        /// The machined part.
         part: Name16,
         /// The vise or the nest.
         location: Location,
@@ -209,7 +209,7 @@ pub enum Workstation {
         /// Which of the job's reloads, from 1.
         number: u32,
     },
-    /// Nothing for a while.
+    /// Wait.
     Wait {
         /// How long.
         ticks: u32,

@@ -1,4 +1,4 @@
-//! The words of a line of a job, and what its fields are read into.
+//! The words of a line of a job, and the values of its fields.
 
 use diagnostics::At;
 use rcs_core::name::Name16;
@@ -41,14 +41,14 @@ impl<'a, 'w> Fields<'a, 'w> {
     }
 }
 
-/// A number and where it stands.
+/// A number and its place.
 #[derive(Clone, Copy)]
 pub(super) struct Number {
     pub(super) value: i32,
     pub(super) at: At,
 }
 
-/// A name field and where it stands; empty for `--`.
+/// A name field and its place; empty for `--`.
 #[derive(Clone, Copy)]
 pub(super) struct Field {
     pub(super) name: Name16,

@@ -1,11 +1,10 @@
-//! Job files: what the workstation controller sends, and what the workstation does in between.
+//! Job files: commands of the workstation controller, and actions of the workstation between them.
 //!
-//! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the
-//! variables of V.4.2 without the serial number (SPECNOTES.md, contradiction 25): object, source grip,
-//! location and sector, destination grip, location and sector, end-at location and sector; `--` is a null
-//! field. A serial number may stand behind them: `#17` (ours), and `expect error` for a command that has to
-//! fail (ours). The manual's own forms of lines end there: vise, trays and machine belong to the HWSC, not to
-//! the robot. Lines that begin with `**` say what they do:
+//! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the variables
+//! of V.4.2 without the serial number (SPECNOTES.md, contradiction 25): object, source grip, location and sector,
+//! destination grip, location and sector, end-at location and sector; `--` is a null field. A serial number may follow:
+//! `#17` (an extension), and `expect error` for a command that has to fail (an extension). The manual has no other
+//! lines: vise, trays and machine belong to the HWSC, not to the robot. Lines that begin with `**` are their actions:
 //!
 //! ```text
 //! ** tray UNIT_1 4 LINKBAR1_BH            a part is delivered into a sector, somewhere (a seed decides)
@@ -32,8 +31,8 @@
 //! ** after 50 joystick hold PRIM           any of these, so many ticks after the next command was sent
 //! ```
 //!
-//! Commands are checked against the task data, and so is the way from each to the next: a job which cannot
-//! run is refused before the first tick.
+//! Commands are checked against the task data, and so is the path from each to the next: a job that cannot run is
+//! refused before the first tick.
 
 mod action;
 mod fields;
@@ -82,13 +81,13 @@ pub const TASK_COMMANDS: &[&str] = &[
 pub enum Step {
     /// A command to Task, its number still 0.
     Command(HwsCommand),
-    /// Something that the workstation does.
+    /// An action of the workstation.
     Workstation(Workstation),
-    /// Something that happens while the robot executes the next command.
+    /// An action while the robot executes the next command.
     After {
         /// Ticks from the one in which that command is sent.
         ticks: u32,
-        /// What happens.
+        /// The action.
         action: Workstation,
     },
 }
@@ -114,7 +113,7 @@ pub struct Job {
     pub name: String,
     /// Its steps in order.
     pub steps: Vec<JobLine>,
-    /// What the lines `** load` load, in their order.
+    /// The reloads of the lines `** load`, in their order.
     pub reloads: Vec<Reload>,
     source: Source,
 }
@@ -135,7 +134,7 @@ impl Job {
         }
     }
 
-    /// Check a job against task data with errors: its lines by themselves, and names that look like slips of the pen.
+    /// Check a job against task data with errors: its lines by themselves, and names that look misspelt.
     #[must_use]
     pub fn check_part(path: &Path, part: &Part) -> Diagnostics {
         let mut problems = Problems::default();

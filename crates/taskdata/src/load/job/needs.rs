@@ -1,6 +1,6 @@
-//! What a command needs before anything moves: the fields that its verb uses, the grips of its object, what a
-//! regrip on the Active Pedestal implies, a tool in the gripper (V.4.1, V.3.1 FIX-GRIP). Task and Subtask
-//! refuse the command for the same reasons, but only once it is its turn.
+//! Preconditions of a command: the fields that its verb uses, the grips of its object, the data for a regrip on the
+//! Active Pedestal, a tool in the gripper (V.4.1, V.3.1 FIX-GRIP). Task and Subtask refuse the command for the same
+//! reasons, but only when the job has reached it.
 
 use diagnostics::{At, Problems};
 use rcs_core::name::{Name10, Name16};
@@ -8,7 +8,7 @@ use rcs_core::name::{Name10, Name16};
 use super::fields::{Field, Number};
 use crate::files::{ArrayId, Direction, LocptId, OwnerId, RefType, Reference, TaskData};
 
-/// Where the Active Pedestal takes an object (V.3.1 FIX-GRIP).
+/// Location at which the Active Pedestal grips an object (V.3.1 FIX-GRIP).
 const PEDESTAL: &str = "PEDESTAL";
 /// Where the robot is near the tool drum (V.4.1 ACQUIRE-TOOL).
 const NEAR_DRUM: &str = "TOOL-SAFE";
@@ -25,7 +25,7 @@ pub(super) struct Endpoint {
     pub(super) grip: Option<Number>,
 }
 
-/// The fields of a command that are looked at together. Names that are not known are noted already.
+/// The fields of a command that are checked together. Unknown names are reported already.
 #[derive(Clone, Copy)]
 pub(super) struct Command<'v> {
     pub(super) verb: &'v str,
@@ -36,7 +36,7 @@ pub(super) struct Command<'v> {
     pub(super) end_at: Endpoint,
 }
 
-/// What the robot holds between two commands, if all went well.
+/// The held object between two commands, if there was no error.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum Held {
     #[default]
@@ -70,7 +70,7 @@ impl Command<'_> {
         }
     }
 
-    /// Note what the command lacks; gives what the robot holds after it.
+    /// Report what is missing; returns the held object after the command.
     pub(super) fn check(&self, data: &TaskData<'_>, held: Held, problems: &mut Problems) -> Held {
         let mut needs = Needs { command: self, data, problems };
         needs.fields();
@@ -160,7 +160,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// +0 is no grip.
+    /// +0 is not a grip.
     fn grips(&mut self) {
         let command = self.command;
         let null = |place: &&Endpoint| command.object.given() && place.name.given() && place.grip.is_some();
@@ -173,7 +173,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// Unequal grips lead over the Active Pedestal.
+    /// Different grips need a regrip on the Active Pedestal.
     fn regrip(&mut self) {
         let command = self.command;
         let (Some(from), Some(to)) = (command.source.grip, command.destination.grip) else { return };

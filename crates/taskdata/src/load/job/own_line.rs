@@ -1,7 +1,7 @@
-//! A line that stands in no job: another process or an operator says it while the robot runs.
+//! A line that is not in a job: another process or an operator sends it during the run.
 //!
-//! It is read from its words and the task data alone. No file is opened for it, since that could take any
-//! time, and would tell the connected system which files there are.
+//! It is read from its words and the task data alone. It opens no file, because that could take any time, and would
+//! reveal to the connected system which files exist.
 
 use std::fmt;
 
@@ -17,17 +17,17 @@ use super::{
 /// Why a line is refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OwnLineError {
-    /// It says nothing.
+    /// It is empty.
     Nothing,
     /// A job's blocks are read and checked before its first tick.
     Load,
     /// The ticks of a job are those of its player.
     Wait,
-    /// So are those behind a command.
+    /// `after` counts ticks of a job, too.
     After,
     /// The workstation controller commands already.
     HandOver,
-    /// It is no line, or speaks of what the task data do not have.
+    /// It is not a line, or has names that the task data do not have.
     Unreadable(String),
 }
 
@@ -50,11 +50,11 @@ impl fmt::Display for OwnLineError {
 
 impl std::error::Error for OwnLineError {}
 
-/// The name of a line that stands in no job, in messages.
+/// The name of such a line in messages.
 const SOURCE: &str = "the line";
 
-/// Read a command as it stands in a job, with or without `==` in front of it. PAUSE, STARTUP and SHUTDOWN need no
-/// fields. Where the robot is and what it holds are not known here.
+/// Read a command as in a job, with or without `==` before it. PAUSE, STARTUP and SHUTDOWN need no fields. Position and
+/// held object of the robot are not known here.
 ///
 /// # Errors
 /// [`OwnLineError`].
@@ -95,7 +95,7 @@ fn unreadable(text: &str, problems: Problems) -> OwnLineError {
     OwnLineError::Unreadable(errors.join("; "))
 }
 
-/// Read a line as it stands in a job, without its asterisks.
+/// Read a line as in a job, without its asterisks.
 ///
 /// # Errors
 /// [`OwnLineError`].

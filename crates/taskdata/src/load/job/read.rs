@@ -17,9 +17,9 @@ use super::{
 /// Reads the lines of a job in their order.
 pub(super) struct Reader<'s, 'p> {
     data: TaskData<'s>,
-    /// The data have errors: what is not in them may be in what could not be read.
+    /// The data have errors: a missing name may be in a part that could not be read.
     part: Option<&'s Part>,
-    /// What the lines that load something change `data` to, in their order.
+    /// The task data after each line that loads blocks, in their order.
     reloads: std::vec::IntoIter<TaskData<'s>>,
     loaded: u32,
     pub(super) problems: &'p mut Problems,
@@ -36,12 +36,12 @@ impl<'s, 'p> Reader<'s, 'p> {
         Self { data, part: None, reloads: reloads.into_iter(), loaded: 0, problems, walk, held, after: None }
     }
 
-    /// Only what is certain is told: `part` is all that there is of the data.
+    /// Report only certain errors: `part` is the readable part of the data.
     pub(super) fn among(self, part: &'s Part) -> Self {
         Self { part: Some(part), ..self }
     }
 
-    /// Something beside the commands moves the robot: where it is and what it holds are not known.
+    /// Something other than a command moves the robot: position and held object are then unknown.
     pub(super) fn forget(&mut self) {
         self.walk.forget();
         self.held = Held::Unknown;
@@ -353,7 +353,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// What to say when the fields of a command do not come out right.
+/// Help if a command does not have the right fields.
 const NINE_FIELDS: &str = "a command has nine fields: object, grip, location, sector, grip, location, sector, end-at, sector; -- is null";
 
 /// Greatest number in a job line.

@@ -1,4 +1,4 @@
-//! Lines `** load FILE`: blocks that are loaded while the robot runs, so that the lines after them speak of other task data.
+//! Lines `** load FILE`: blocks that are loaded during the run, so that later lines use other task data.
 //!
 //! They are built and checked before the first tick, as everything of a job is: a block with a mistake in it refuses the job.
 
@@ -11,7 +11,7 @@ use super::{
     source_lines,
 };
 
-/// A reload: what was read, and the task data with it.
+/// A reload: the blocks, and the task data with them.
 #[derive(Clone, Debug)]
 pub struct Reload {
     /// The blocks.

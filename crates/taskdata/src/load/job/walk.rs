@@ -1,7 +1,7 @@
-//! The way of the robot through a job: from each location to the next there must be a trajectory, and a way to approach.
+//! The path of the robot through a job: from each location to the next there must be a trajectory and an approach.
 //!
-//! Where the robot is before the first command is not known here. A command whose way leads over the Active Pedestal or to the tool
-//! drum is not followed; the walk begins again at its end.
+//! The position of the robot before the first command is not known here. A command whose way leads over the Active
+//! Pedestal or to the tool drum is not followed; the walk begins again at its end.
 
 use diagnostics::{At, Problems};
 use rcs_core::name::Name16;
@@ -33,7 +33,7 @@ pub(super) struct Walk {
 }
 
 impl Walk {
-    /// Something beside the commands moves the robot.
+    /// Something other than a command moves the robot.
     pub(super) fn forget(&mut self) {
         self.last = None;
     }

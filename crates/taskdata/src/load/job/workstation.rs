@@ -10,7 +10,7 @@ use super::{
     read::{MOST, Reader},
 };
 
-/// The first words of a line, and of a line of the joystick box, with what reads the rest.
+/// The first words of a line, and of a line of the joystick box, with the function that reads the rest.
 #[derive(Clone, Copy)]
 enum Verb {
     Tray,
@@ -169,8 +169,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A line that stands in no job. Some have to do with the job in which they stand: its ticks, its files,
-    /// its next command.
+    /// A line that is not in a job. Some lines are possible only in a job: they use its ticks, its files, its next
+    /// command.
     pub(super) fn own_line(&mut self, fields: &mut Fields<'_, '_>) -> Option<Workstation> {
         let of_job = |verb: &Verb| matches!(verb, Verb::Wait | Verb::Load | Verb::After | Verb::HandOver);
         let is_own = |(_, verb): &(&str, Verb)| !of_job(verb);

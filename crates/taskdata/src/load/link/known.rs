@@ -1,5 +1,5 @@
-//! Look-ups of names that are declared, without a note of those that are not: these can be made on all processors at once. Entries
-//! with a name that is not known are linked once more one by one, with notes.
+//! Look-ups of declared names, without reports of unknown ones: these can be made on all processors at once. Entries
+//! with an unknown name are linked again one by one, with reports.
 
 use geometry::frame::Frame;
 

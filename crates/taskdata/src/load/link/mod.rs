@@ -46,7 +46,7 @@ pub(super) struct Linker<'a> {
     origins: Origins,
     /// Parameters that have a record already.
     paras: FxHashMap<[i32; 4], TrajParaId>,
-    /// Names that were looked for in vain.
+    /// Number of unknown names.
     unknown: usize,
     /// Each of them, with what it should be: where it was first asked for, and how often.
     asked: BTreeMap<(String, String), (At, usize)>,
@@ -83,7 +83,7 @@ pub(super) fn link(
 
 /// The keys of a file in the order of its records, and where these stand.
 struct Keyed {
-    /// What there must not be two of, with its article.
+    /// The kind of entry that must be unique, with its article.
     what: &'static str,
     keys: Vec<Pair>,
     ats: Vec<At>,
@@ -245,7 +245,7 @@ impl Linker<'_> {
         None
     }
 
-    /// Say of each unknown name how many more entries ask for it; all these names.
+    /// Report for each unknown name how many more entries use it; returns all these names.
     fn count_unknown(&mut self) -> Vec<String> {
         let mut names = Vec::new();
         for ((_, name), (at, times)) in std::mem::take(&mut self.asked) {
@@ -259,7 +259,7 @@ impl Linker<'_> {
         names
     }
 
-    /// True if a name stands in an entry that could not be read, or that is not loaded: that is told there.
+    /// True if a name stands in an entry that could not be read, or that is not loaded: that is reported there.
     fn has_elsewhere(&mut self, name: &str) -> bool {
         let longer = |broken: &String| broken.len() > name.len() && broken.starts_with(name);
         self.broken.contains(name)
@@ -329,7 +329,7 @@ impl Linker<'_> {
         }
     }
 
-    /// FILE FULL (VII): a file holds what its declaration allows.
+    /// FILE FULL (VII): check that a file has no more records than its declaration allows.
     fn check_full(&mut self, all: &Collected) {
         let mut declared = FxHashMap::default();
         for entry in &all.files {
