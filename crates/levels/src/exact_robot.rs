@@ -1,4 +1,4 @@
-//! A robot for tests at the controller's end of the line: it is where it is told to be, at once.
+//! A robot for tests at the controller's end of the line: it reaches every commanded position at once.
 
 use depc::{
     Plate,

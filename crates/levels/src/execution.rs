@@ -1,4 +1,4 @@
-//! What the processes have in common: the upper of the two state tables (II.2.2.2).
+//! The table common to all processes: the upper of the two state tables (II.2.2.2).
 //!
 //! The lower tables belong to commands; this one decides whether they are consulted at all. An outcome, once
 //! reached, stays until a new command number comes.
@@ -14,10 +14,10 @@
 //!     |______ new number ___|
 //! ```
 //!
-//! A process consults in turn, until a row decides: [`EXECUTE`], its table ACCEPT with what a new command
-//! needs, its table of what all commands have in common, if it has one, and the table of the command. A
-//! process with others below it consults [`HALT`](crate::halt::HALT) before ACCEPT; Subtask and E-move consult
-//! [`EFFECT`](crate::halt::EFFECT) after the table of the command. `docs/design/tables.md` tells more.
+//! A process consults in turn, until a row decides: [`EXECUTE`], its table ACCEPT with what a new command needs, its
+//! table of what all commands have in common, if it has one, and the table of the command. A process with others below
+//! it consults [`HALT`](crate::halt::HALT) before ACCEPT; Subtask and E-move consult [`EFFECT`](crate::halt::EFFECT)
+//! after the table of the command. See `docs/design/tables.md`.
 
 use interfaces::{Header, Reason, StatusReport};
 use rcs_core::{
@@ -142,7 +142,7 @@ pub trait Orders: Sized {
     /// The action orders something of a process below that changes a state variable when it is carried out.
     fn is_order(&self) -> bool;
 
-    /// What HALT asks for.
+    /// The action of HALT.
     #[must_use]
     fn of_halt(halting: Halting) -> Self {
         match halting {
@@ -151,7 +151,7 @@ pub trait Orders: Sized {
         }
     }
 
-    /// What EFFECT asks for.
+    /// The action of EFFECT.
     #[must_use]
     fn of_effect(Futile::Fail(reason): Futile) -> Self {
         Self::fail(reason)
@@ -167,7 +167,7 @@ pub struct Execution {
     pub outcome: Outcome,
     /// Why it failed.
     pub reason: Reason,
-    /// The rows that the header tells of.
+    /// The rows for the header.
     pub rows: Rows,
     /// The command is new and neither accepted nor refused yet.
     pub waiting: bool,

@@ -1,4 +1,4 @@
-//! A new command number replaces what is under way, whatever it is (docs/design/recovery.md "Replaced").
+//! A new command number replaces every command in progress (docs/design/recovery.md "Replaced").
 //!
 //! ```text
 //!              new command, something is under way below: Stop

@@ -1,11 +1,10 @@
 //! The ladder: all control processes, stepped once a tick.
 //!
-//! Every process reads common memory as the tick before left it and writes only its own part of the next one,
-//! so the order in which they are stepped cannot change a bit of the result ([`Ladder::step_in_order`] lets a
-//! test try).
+//! Every process reads common memory of the tick before and writes only its own part of the next one, so the order in
+//! which they are stepped does not change the result ([`Ladder::step_in_order`] lets a test check it).
 //!
-//! The processes of an Active Pedestal that is a system of its own are not stepped: what they sent is adopted
-//! in their place.
+//! The processes of an Active Pedestal that is a separate system are not stepped: their received outputs are copied
+//! instead.
 
 use interfaces::{
     CommonMemory, Decided, ExternalInputs, OutsidePedestal,

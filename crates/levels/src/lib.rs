@@ -1,9 +1,9 @@
 //! The control processes of RCS-II/T3 (chapters V and VI): a folder each.
 //!
-//! Every process is a pure state machine ([`interfaces::process::Process`]) in the manual's three phases:
-//! *preprocess* reads input buffers and sets state variables, a *decision table* of the current command
-//! selects one row, *postprocess* fills the output buffers. Processes read what was written in the tick
-//! before, so their order within a tick does not matter.
+//! Every process is a pure state machine ([`interfaces::process::Process`]) in the manual's three phases: *preprocess*
+//! reads input buffers and sets state variables, a *decision table* of the current command selects one row,
+//! *postprocess* fills the output buffers. Processes read the buffers of the tick before, so their order within a tick
+//! does not matter.
 //!
 //! ```text
 //!        HWSC                    Data System

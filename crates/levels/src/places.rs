@@ -1,4 +1,4 @@
-//! Places of task data in the words of the interfaces, and back.
+//! Conversion of places of task data to records of the interfaces, and back.
 
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{

@@ -1,4 +1,5 @@
-//! Which rows a process tells of in its header, when they fired, and what their tables were consulted with.
+//! The rows in the header of a process, with the ticks in which they fired, and the values with which their tables were
+//! consulted.
 
 use interfaces::{Basis, Consulted, Decided, Header};
 use rcs_core::{

@@ -1,4 +1,4 @@
-//! What E-move notes when a command ends: where the robot is, and what it has taken hold of.
+//! The records of E-move at the end of a command: the place of the robot, and the grasped object.
 
 use interfaces::{
     EmoveOutputs,

@@ -1,5 +1,4 @@
-//! Where the robot is in the change of a gripper, and how far the change has come
-//! (docs/design/recovery.md "Exchange").
+//! Position of the robot in the change of a gripper, and progress of the change (docs/design/recovery.md "Exchange").
 //!
 //! ```text
 //!   bare:     above --- fast --- slow (seat)      QC-ATTACH reads it from left to right and down,
@@ -110,7 +109,7 @@ const fn is_exchange(verb: EmoveVerb) -> bool {
 }
 
 impl State {
-    /// Where the robot is in the exchange that the command asks for.
+    /// Position of the robot in the exchange of the command.
     pub(super) fn along(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Along {
         if !is_exchange(command.command) {
             return Along::Off;
@@ -167,8 +166,8 @@ impl State {
         }
     }
 
-    /// The gripper whose change is half done: the robot is in its holster, or it hangs on a ring that is not
-    /// locked, wherever the robot has been led.
+    /// The gripper whose change is not finished: the robot is in its holster, or the gripper hangs on a ring that is
+    /// not locked, at any position of the robot.
     pub(super) fn changing(&self, memory: &CommonMemory) -> Option<u8> {
         let loose = memory.quick_change.status.end_effector_id.filter(|_| is_open(memory));
         self.beliefs.exchange.map(|exchange| exchange.gripper).or(loose)

@@ -1,5 +1,5 @@
-//! What the fingers are to do and what they have done: openings and sizes of the object forms (VII.7.1) as
-//! orders to the attached gripper, and its opening as state variables.
+//! Openings and sizes of the object forms (VII.7.1) as orders to the attached gripper, and its opening as state
+//! variables.
 
 use core::mem;
 
@@ -60,7 +60,7 @@ fn attached_stands_at(opening: i32, memory: &CommonMemory) -> bool {
 }
 
 impl State {
-    /// Is what was held still there, and is there something between the fingers?
+    /// Whether the held object is still held, and whether anything is between the fingers.
     pub(super) fn sense_held(&mut self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
         let attached = Gripper::attached(memory);
@@ -117,8 +117,8 @@ impl State {
         !looks && !moving && !self.beliefs.empty
     }
 
-    /// Is what was held still there? Fingers that open on it hold it until they have let go: what stops them
-    /// half-way leaves it between them, and the command that lets go can be sent again.
+    /// Whether the held object is still held. Opening fingers count as holding it until they have released it: if they
+    /// stop half-way, the object is still between them, and the command that releases it can be sent again.
     fn sense_loss(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
         let Some(held) = self.beliefs.held else { return };
@@ -168,7 +168,7 @@ impl State {
         }
     }
 
-    /// The opening to let go of what is held, or of the object of the command, 0.01 in.
+    /// The opening to release the held object, or the object of the command, 0.01 in.
     fn depart_opening(&self, command: &EmoveCommand, data: &TaskData<'_>) -> i32 {
         let held = self.beliefs.held.and_then(|held| data.end_eff(EndEffId::from_option(held.parameters)));
         held.or_else(|| sizes(command, data)).map_or(FULL_OPENING, |sizes| sizes.depart_size)

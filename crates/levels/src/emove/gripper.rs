@@ -1,5 +1,4 @@
-//! The gripper on the robot, as its sensors report it. Which one it is, Quick Change reads from the id pins in
-//! every tick.
+//! The gripper on the robot, by its sensors. Quick Change reads its id from the pins in every tick.
 
 use geometry::units::hundredths;
 use interfaces::{
@@ -16,7 +15,7 @@ const PARTS_BAND: i32 = 2;
 /// Fingers slower than this stand still, 0.01 in/s: above the noise of the potentiometer, below the finest
 /// flow of air.
 const STILL: i32 = 10;
-/// Fingers of the parts gripper this much wider than at the grasp have let go, 0.01 in.
+/// Opening beyond that of the grasp at which the parts gripper has released the object, 0.01 in.
 const LET_GO: i32 = 25;
 /// A finger that feels less than this touches nothing, lb; reported forces are rounded to a pound, and no
 /// grasp is weaker than three (`levels::grip`).
@@ -116,7 +115,7 @@ impl Gripper {
         }
     }
 
-    /// Does its process sleep, or has it been woken in this tick? What it is told now it does not execute
+    /// Whether its process is dormant, or was woken in this tick: it does not execute a command of this tick
     /// (docs/design/handshake.md "Wake").
     pub(super) const fn is_asleep(self, memory: &CommonMemory) -> bool {
         let dormant = &memory.emove.dormant;
@@ -163,11 +162,10 @@ impl Gripper {
         velocity.saturating_abs() < STILL
     }
 
-    /// Would closed fingers with this opening have something between them that is gripped at `grasp_size`?
-    /// (0.01 in.)
+    /// Whether closed fingers with this opening hold an object of `grasp_size`, 0.01 in.
     ///
-    /// The parts gripper closes until it feels the object: anything above the grasp size is one (VIII.9.1).
-    /// Jaws stop at the object or at their stop: only the size itself tells.
+    /// The parts gripper closes until it feels the object: any opening above the grasp size means an object (VIII.9.1).
+    /// Jaws stop at the object or at their stop: only the size distinguishes the two.
     #[must_use]
     pub fn grips(self, opening: i32, grasp_size: i32) -> bool {
         match self.stops() {

@@ -1,9 +1,9 @@
 //! The commands to the gripper processes (V.2: E-move coordinates the robot with "various gripper
 //! processes").
 //!
-//! The parts gripper servoes an opening or a force and takes five commands (VI.3.1); v-gripper and tool
-//! gripper open or close, no more, and take four (VI.4.1, VI.5). The tables of E-move see neither: they give
-//! a [`FingerVerb`] and read one [`Lower`]. Only the process of the gripper that is attached is stepped.
+//! The parts gripper servoes an opening or a force and takes five commands (VI.3.1); v-gripper and tool gripper only
+//! open or close, and take four (VI.4.1, VI.5). The tables of E-move are independent of both: they give a
+//! [`FingerVerb`] and read one [`Lower`]. Only the process of the gripper that is attached is stepped.
 //!
 //! | order     | Grip                  | V-Grip, Tool-Grip                                          |
 //! |-----------|-----------------------|------------------------------------------------------------|
@@ -46,7 +46,7 @@ pub struct Grippers {
     pub order: FingerVerb,
     /// Size commanded last to jaws, 0.01 in.
     pub size: i32,
-    /// Jaws were told to close by it.
+    /// It was a command to jaws to close.
     pub closing: bool,
 }
 
@@ -59,8 +59,7 @@ impl Grippers {
         self.tool.start_from(tick, written.tool_grip.number, memory.tool_grip.status.echo);
     }
 
-    /// In the first tick after a restart: the attached gripper may still be busy with what it was told
-    /// before.
+    /// In the first tick after a restart: the attached gripper may still execute an earlier command.
     pub fn adopt(&mut self, memory: &CommonMemory) {
         let (attached, written) = (Gripper::attached(memory), &memory.emove);
         self.order = match attached {
@@ -207,8 +206,7 @@ impl Grippers {
         }
     }
 
-    /// True when the attached gripper has done what [`FingerVerb::Release`] asks for: nothing is held any
-    /// more.
+    /// True when the attached gripper has finished [`FingerVerb::Release`]: nothing is held.
     #[must_use]
     pub fn has_let_go(&self, tick: Tick, memory: &CommonMemory) -> bool {
         self.order == FingerVerb::Release && self.status(tick, memory) == Lower::Done

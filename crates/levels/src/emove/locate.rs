@@ -1,8 +1,8 @@
 //! From a picture to a part frame (V.2.1 LOCATE-OBJ).
 //!
-//! A view movetable leads from a place to the tool frame from which the camera looks at it. Undone, it leads
-//! from the tool frame at which a picture was taken to the place in the middle of the picture; no other
-//! mounting data of the camera is needed. Vision answers in the axes of that place.
+//! A view movetable leads from a place to the tool frame from which the camera looks at it. Its inverse leads from the
+//! tool frame at which a picture was taken to the place in the middle of the picture; no other mounting data of the
+//! camera is needed. Vision answers in the axes of that place.
 
 use geometry::{
     frame::{Frame, Rotation, Vector},
@@ -55,8 +55,8 @@ pub fn is_plausible(request: &VisionRequest, answer: &VisionResponse) -> bool {
     inside(answer.y) && inside(answer.z) && answer.angle.unsigned_abs() <= QUARTER_TURN
 }
 
-/// True if vision has recognised another object than the one that it was asked for (V.2.1: it does so in the
-/// second picture).
+/// True if vision has recognised another object than the requested one (V.2.1: recognition is part of the second
+/// picture).
 #[must_use]
 pub fn is_another(request: &VisionRequest, answer: &VisionResponse) -> bool {
     request.picture == Picture::Precise && answer.recognised != Some(request.object_id)

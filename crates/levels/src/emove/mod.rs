@@ -1,8 +1,8 @@
-//! E-move (V.2): takes elemental moves apart into straight segments for Prim, and coordinates gripper, quick
-//! change and vision with them.
+//! E-move (V.2): divides elemental moves into straight segments for Prim, and coordinates gripper, quick change and
+//! vision with them.
 //!
-//! All that a command needs is looked up when it comes, before anything moves. What the robot carries, where
-//! it is and what vision has located are remembered from command to command.
+//! All data of a command are looked up when it comes, before anything moves. Held object, place of the robot and
+//! located object are kept from command to command.
 //!
 //! ```text
 //!                 ACCEPT             CARRIED, ORDERED: Prim, gripper, ring, vision
@@ -13,18 +13,18 @@
 //!     error <-----------------------------------------------
 //! ```
 //!
-//! * [`state`]: what E-move remembers;
-//! * [`robot_place`] and [`whereabouts`]: where the robot is;
+//! * [`state`]: the state of E-move;
+//! * [`robot_place`] and [`whereabouts`]: place of the robot;
 //! * [`route`]: depart, trajectory, approach and stop as one list of points;
-//! * [`way`]: going on with a way that was interrupted;
-//! * [`exchange`]: where the robot is in the change of a gripper;
-//! * [`drum`]: where it is at the tool drum;
+//! * [`way`]: continuation of an interrupted path;
+//! * [`exchange`]: position of the robot in the change of a gripper;
+//! * [`drum`]: its position at the tool drum;
 //! * [`locate`]: from a picture to a part frame;
 //! * [`relative`]: the short moves at holsters and tool drum;
 //! * [`gripper`] and [`order`]: the three grippers as one;
 //! * [`preprocess`] and [`plan`]: the state variables, and what a new command needs;
 //! * [`fingers`]: openings as state variables and as orders;
-//! * [`tables`]: the decision tables, a file a command;
+//! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`], [`camera`] and [`ends`]: the outputs that a row asks for.
 
 pub mod back;

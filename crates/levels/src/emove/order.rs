@@ -1,4 +1,4 @@
-//! What is asked of the attached gripper, whichever it is.
+//! Orders to the attached gripper, independent of its kind.
 
 use rcs_core::Plain;
 

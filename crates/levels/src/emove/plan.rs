@@ -1,4 +1,4 @@
-//! What a command needs, looked up when it comes: nothing moves for a command that cannot be executed.
+//! The data of a command, looked up when it comes: a command that cannot be executed moves nothing.
 
 use geometry::frame::Frame;
 use interfaces::{

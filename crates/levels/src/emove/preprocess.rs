@@ -1,4 +1,4 @@
-//! Preprocess of E-move: what is held, where the robot is, and the state variables of the tables.
+//! Preprocess of E-move: held object, place of the robot, and the state variables of the tables.
 
 use core::mem;
 
@@ -110,7 +110,7 @@ impl State {
         seen
     }
 
-    /// In its first tick E-move takes over what it believed before a restart.
+    /// In its first tick E-move adopts its beliefs from before a restart.
     fn adopt(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &EmoveOutputs) {
         if !mem::replace(&mut self.started, true) {
             let memory = inputs.memory;
@@ -284,7 +284,7 @@ impl State {
         }
     }
 
-    /// The attached gripper after its last order; one that has had none yet is as it came.
+    /// State of the attached gripper after its last order; without an order, the initial state.
     fn readiness(&self, gripper: Lower, memory: &CommonMemory) -> Readiness {
         let attached = Gripper::attached(memory);
         let idle = gripper == Lower::Done || self.grippers.to != attached;
@@ -334,9 +334,9 @@ impl State {
         }
     }
 
-    /// Quick change and gripper while pausing. Grip's PAUSE is done only when a calibration at the start is
-    /// (VI.3.1 UP-INIT); with no gripper, or one that has come since, there is nothing to wait for. A ring
-    /// that stands half-way is at rest, too: which commands it stands in the way of is said in ACCEPT.
+    /// Quick change and gripper while pausing. Grip's PAUSE is done only when a calibration at the start is (VI.3.1
+    /// UP-INIT); with no gripper, or one that has come since, there is nothing to wait for. A ring that stands half-way
+    /// is at rest, too: ACCEPT decides which commands it prevents.
     fn tooling(&self, ring: Ring, gripper: Lower, inputs: &Inputs<'_, TaskData<'_>>) -> Tooling {
         let asked = self.grippers.to == Gripper::attached(inputs.memory);
         match (ring, gripper) {

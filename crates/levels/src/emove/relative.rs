@@ -1,9 +1,8 @@
 //! Relative moves: the short straight motions at holsters and tool drum (V.2.1 QC-DETACH … REMOVE-TOOL).
 //!
-//! The manual keeps them in code; here a command names each, and task data say for the name and the location
-//! where it leads, how fast, and what guards it (file REL-MOVES). Some lead from the pose of the command's
-//! location, wherever the robot has come to stand; others lead from where it stands, because a guarded move
-//! before it ended where the sensor said.
+//! The manual keeps them in code; here a command names each, and task data give its movetable, parameters and sensor
+//! for the name and the location (file REL-MOVES). Some start from the pose of the command's location, independent of
+//! the robot's position; others start from the robot's position, because a sensor ended the guarded move before.
 
 use interfaces::{
     CommonMemory,
@@ -75,7 +74,7 @@ pub enum Relative {
 pub enum Reference {
     /// From the pose of the command's location.
     Location,
-    /// From where the robot was last told to stand.
+    /// From the last commanded position of the robot.
     Stand,
     /// From where a gripper is at its seat in the holster.
     Seat,

@@ -1,5 +1,5 @@
-//! Where the robot is (docs/design/motion.md "Where the robot is"): by E-move's last completed move, and by
-//! what Prim says.
+//! Place of the robot (docs/design/motion.md "Where the robot is"): by E-move's last completed move, and by Prim's
+//! status.
 
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
@@ -81,7 +81,7 @@ pub fn present_frame(memory: &CommonMemory) -> Option<Frame> {
     memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()
 }
 
-/// Where the robot was last told to be; where the resolvers say that it is, if Prim commands nothing.
+/// The last commanded pose of the robot; the pose of the resolvers if Prim commands nothing.
 #[must_use]
 pub fn commanded_pose(memory: &CommonMemory) -> Option<Pose> {
     let commanded = memory.prim.status.present_pose.and_then(|number| memory.changing_pose(number)).copied();

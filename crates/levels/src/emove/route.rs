@@ -1,5 +1,5 @@
-//! The way from where the robot is to the goal of a command (V.2.1 MOV-TO-LOC): depart points, intermediate
-//! trajectory, approach points, stop. [`super::way`] goes on with a way that was interrupted.
+//! The path from the place of the robot to the goal of a command (V.2.1 MOV-TO-LOC): depart points, intermediate
+//! trajectory, approach points, stop. [`super::way`] continues an interrupted path.
 //!
 //! ```text
 //!   departure --depart--> . --trajectory--> . --approach--> . --stop--> goal
@@ -107,7 +107,7 @@ pub struct Leg {
     pub parameters: TrajParaId,
 }
 
-/// Where a leg ends, as Prim is told.
+/// The end of a leg, as a command to Prim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LegGoal {
     /// A record with a movetable applied.
@@ -128,7 +128,7 @@ pub struct Goal {
     pub frame: Frame,
     /// Opening of the fingers, 0.01 in; `None` if it does not matter.
     pub opening: Option<i32>,
-    /// What is gone to.
+    /// The goal.
     pub gone_to: GoneTo,
 }
 
@@ -299,8 +299,7 @@ impl Route {
         self.points(data).nth(usize::from(point)).map_or(Part::Approach, |(part, _)| part)
     }
 
-    /// Where a point is and with which parameters it is gone to; the goal is the last. `None` if a record is
-    /// missing.
+    /// Frame of a point, and parameters of the motion to it; the goal is the last point. `None` if a record is missing.
     #[must_use]
     pub fn point(&self, point: u16, data: &TaskData<'_>) -> Option<(Frame, TrajParaId)> {
         let (departure, goal) = (self.from.pose.to_frame().ok()?, self.to.pose.to_frame().ok()?);

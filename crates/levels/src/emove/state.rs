@@ -1,4 +1,4 @@
-//! What E-move remembers from tick to tick.
+//! The state of E-move.
 
 use interfaces::{emove::Beliefs, prim::JoystickGrip};
 use rcs_core::{Plain, handshake::Commander};
@@ -39,9 +39,9 @@ pub struct State {
     pub route: Option<Route>,
     /// The part of an interrupted way that is flown back first.
     pub back: Option<Back>,
-    /// The point of an interrupted way that is gone to at first.
+    /// The first point of the continuation of an interrupted path.
     pub rejoin: Option<Rejoin>,
-    /// What is believed of the world: an output, adopted again after a restart.
+    /// Beliefs about the world: an output, adopted again after a restart.
     pub beliefs: Beliefs,
     /// The beliefs of the time before the start have been adopted.
     pub started: bool,
@@ -53,7 +53,7 @@ pub struct State {
     pub surroundings: Surroundings,
     /// The gripper on the robot in the tick before.
     pub attached: Gripper,
-    /// The fingers were told last to let go of what is held.
+    /// The last order to the fingers was to release the held object.
     pub releasing: bool,
     /// Ticks in which neither finger has felt what is held.
     pub unfelt: u8,

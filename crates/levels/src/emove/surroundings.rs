@@ -1,4 +1,4 @@
-//! The known places around a robot that is at none.
+//! The known places nearest to a robot that is at no known place.
 
 use geometry::frame::Frame;
 use interfaces::{emove::NearPlace, subtask::LocationKind};

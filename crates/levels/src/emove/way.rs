@@ -1,4 +1,4 @@
-//! Going on with a way that was interrupted (docs/design/recovery.md "On the way").
+//! Continuation of an interrupted path (docs/design/recovery.md "On the way").
 //!
 //! ```text
 //!   from ---depart---> end of depart ---trajectory---> . ---approach---> to
@@ -6,10 +6,10 @@
 //!                           `---trajectory---> . ---approach---> another goal
 //! ```
 //!
-//! The robot goes on to the same goal, or back along the way to the end of the depart leg and from there to
-//! another goal. Stopped inside the depart leg it goes out of it. Where a person has moved it beside the way with
-//! the joystick it comes back to the way at first, and stops there: the goal may be a nest that is closed beside
-//! it. The way itself is not remembered point by point: it follows from its two ends and the task data.
+//! The robot moves on to the same goal, or back along the path to the end of the depart leg and from there to another
+//! goal. If it was stopped inside the depart leg, it first completes that leg. If a person has moved it off the path
+//! with the joystick, it first returns to the path and stops there, because the goal may be a nest that is closed at
+//! its sides. The points of the path are not stored: they follow from its two ends and the task data.
 
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
@@ -48,7 +48,7 @@ pub struct Flight {
     pub route: Option<Route>,
     /// The part of an interrupted way that is flown back before.
     pub back: Option<Back>,
-    /// The point of an interrupted way that is gone to at first.
+    /// The first point of the continuation of an interrupted path.
     pub rejoin: Option<Rejoin>,
 }
 
@@ -94,7 +94,7 @@ fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<boo
     Some(beside(present, &start, &end) <= cut + LOST_INCHES && turned)
 }
 
-/// The point to which a robot is led that a person has moved beside its way: the nearest one of its segment.
+/// The point to which a robot returns that a person has moved off its path: the nearest one of its segment.
 fn rejoin(way: &Way, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Rejoin> {
     let present = present_frame(inputs.memory).filter(|_| way.by_hand)?;
     let (start, end, [_, parameters]) = segment(way, inputs.data)?;

@@ -1,4 +1,4 @@
-//! Whether it is known where the robot is, and looking for the location point at which it stands.
+//! Whether the place of the robot is known, and the search for its location point.
 
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{

@@ -1,9 +1,9 @@
-//! What Grip feels between its fingers, by strain gages and potentiometer alone.
+//! What is between the fingers of Grip, by strain gages and potentiometer alone.
 //!
-//! A part is between the fingers if both feel force and stand above the closed end of travel, where fingers
-//! that are shut on each other feel force too; nothing is there if neither feels any. One finger that touches
-//! tells nothing: a part that is held with little force hangs on one of them. A value counts after
-//! `FELT_TICKS`; in the meantime nothing that was certain becomes *nothing*.
+//! A part is between the fingers if both feel force and stand above the closed end of travel, where fingers that are
+//! shut on each other feel force too; nothing is between them if neither feels any. Contact of one finger alone is not
+//! enough: a part that is held with little force may touch only one of them. A value counts after `FELT_TICKS`; until
+//! then a certain value does not become *nothing*.
 
 use interfaces::{
     device::{ADC_FULL_SCALE, GripSensors},
@@ -67,7 +67,7 @@ impl State {
     }
 }
 
-/// Fingers that have come to rest may be pushed on a little: what they hold is not let go by that.
+/// Fingers at rest may be pushed a little: this does not release the held part.
 fn touch(measured: &Measured, at_rest: bool) -> Touch {
     match (measured.left > CONTACT, measured.right > CONTACT) {
         (false, false) => Touch::Free,

@@ -1,4 +1,4 @@
-//! What a command asks of the fingers.
+//! The goal of a command for the fingers.
 
 use geometry::units::inches;
 use interfaces::grip::{GripCommand, GripVerb};
@@ -15,7 +15,7 @@ pub(super) const OPEN_END: f64 = 5.00;
 /// fingers are shut on each other. ASSUMED: the pads meet at the closed end of travel.
 pub(super) const SUPPLY_FORCE: f64 = 80.0;
 
-/// What the current command asks for: a copy, because the buffer of a commander that restarts is empty.
+/// Goal of the current command: a copy, because the buffer of a commander that restarts is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Goal {
     /// What to do.

@@ -1,9 +1,9 @@
 //! Grip (VI.3): the parts gripper, end effector 1, by eight air valves, a potentiometer and two strain gages.
 //!
-//! Air cannot be metered: six flow valves open or close the fingers at three speeds, and trapped air holds
-//! what was reached. So the servo chooses a flow by the distance that is left, coarse to fine, stops inside a
-//! dead band, lets the readings settle, and only then judges. It does not hunt: a flow that was stopped
-//! starts again only if the settled reading is outside a wider band than the one that stopped it.
+//! Air flow is not proportional: six flow valves open or close the fingers at three speeds, and trapped air keeps the
+//! opening. So the servo chooses a flow by the remaining distance, coarse to fine, stops inside a dead band, lets the
+//! readings settle, and only then decides. It does not oscillate: a flow that was stopped starts again only if the
+//! settled reading is outside a wider band than the one that stopped it.
 //!
 //! The command selects the table. UP-INIT runs by itself when the system is booted, and a command that comes
 //! meanwhile waits; later it runs by command alone, and without a calibration commands that move the fingers
@@ -34,12 +34,11 @@
 //!    Done         (Error: too late, without the gripper)
 //! ```
 //!
-//! A gripper that is there when the system is booted is calibrated at once. One that comes later belongs to a
-//! process that was dormant, and a process that wakes moves nothing before a command asks for it
-//! (docs/design/handshake.md "Wake"): E-move sends UP-INIT when the gripper is clear of its holster (V.2.1
-//! QC-ATTACH). When the gripper is taken off, a calibration under way is void and all valves go off; one that
-//! was finished is kept. PAUSE leaves the valves as they are, literally (VI.3.1): sent while a flow is on,
-//! the flow stays on, and PAUSE is done when the fingers rest.
+//! A gripper that is attached when the system is booted is calibrated at once. The process of a gripper attached later
+//! was dormant, and a process that wakes moves nothing before it gets a command (docs/design/handshake.md "Wake"):
+//! E-move sends UP-INIT when the gripper is clear of its holster (V.2.1 QC-ATTACH). When the gripper is taken off, a
+//! calibration under way is void and all valves go off; one that was finished is kept. PAUSE leaves the valves as they
+//! are, literally (VI.3.1): sent while a flow is on, the flow stays on, and PAUSE is done when the fingers rest.
 //!
 //! * [`site`]: where a gripper that is servoed has its buffers and sensor words;
 //! * [`state`]: what the process remembers;

@@ -1,4 +1,4 @@
-//! Where a gripper that is servoed has its sensor words and its command.
+//! The sensor words and the command of a servoed gripper.
 
 use interfaces::{
     CommonMemory, Reason,
@@ -8,7 +8,7 @@ use interfaces::{
 
 use super::tables::Gripper;
 
-/// Where a gripper that is servoed has its sensor words and its command.
+/// The sensor words and the command of a servoed gripper.
 ///
 /// The hand of the Active Pedestal is nearly identical to the parts gripper (III.9.2): one servo serves both.
 pub trait Site {
@@ -24,7 +24,7 @@ pub trait Site {
     }
     /// The command buffer.
     fn command(memory: &CommonMemory) -> &GripCommand;
-    /// The sensor words, and whether the gripper that they come from is there.
+    /// The sensor words, and whether their gripper is attached.
     fn sensors(devices: &DeviceInputs) -> (Gripper, GripSensors);
 }
 

@@ -1,4 +1,4 @@
-//! What Grip remembers from tick to tick.
+//! The state of Grip.
 
 use interfaces::{
     device::GripSensors,
@@ -16,7 +16,7 @@ use crate::execution::Execution;
 /// Readings that are kept to report a steady opening and a velocity.
 pub(super) const WINDOW: usize = 4;
 
-/// The last readings of a gripper that is there.
+/// The last readings of the attached gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Sensed {
     /// All words of the last tick.
@@ -43,7 +43,7 @@ pub struct State {
     pub execution: Execution,
     /// Step of its table.
     pub step: Step,
-    /// What it asks for.
+    /// Its goal.
     pub goal: Goal,
     /// Since when it has not been waiting, or the calibration has been under way.
     pub since: Tick,

@@ -1,4 +1,4 @@
-//! What makes one gripper that opens and closes differ from another.
+//! Differences between the grippers that open and close.
 
 use interfaces::{CommonMemory, jaws::JawsCommand};
 

@@ -1,7 +1,8 @@
-//! V-Grip (VI.4) and Tool-Grip (VI.5): grippers that open and close by air, and tell where their fingers are.
+//! V-Grip (VI.4) and Tool-Grip (VI.5): grippers that open and close by air, with a potentiometer for the position of
+//! their fingers.
 //!
-//! TG-LEVEL is VG-LEVEL with other parameters, so there is one process here and a [`JawsKind`] each. Nothing
-//! is servoed: a command gives air to one side, waits until the potentiometer stands still, and reports where
+//! TG-LEVEL is VG-LEVEL with other parameters, so there is one process here and a [`JawsKind`] each. Nothing is
+//! servoed: a command gives air to one side, waits until the reading of the potentiometer is steady, and reports where
 //! the fingers have stopped.
 //!
 //! ```text
@@ -25,13 +26,13 @@
 //!     error <-----------------------------
 //! ```
 //!
-//! The process sleeps while its gripper is in the holster (II.2.3). When it wakes it adopts the command that
-//! stands in its buffer and executes none before a new one comes (docs/design/handshake.md "Wake").
+//! The process is dormant while its gripper is in the holster (II.2.3). When it wakes it adopts the number of the
+//! command in its buffer and executes nothing before a new one comes (docs/design/handshake.md "Wake").
 //!
-//! * [`kind`]: what makes one gripper differ from another;
-//! * [`state`]: what the process remembers;
+//! * [`kind`]: differences between the grippers;
+//! * [`state`]: the state;
 //! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, a file a command;
+//! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`]: valves and status.
 
 pub mod kind;

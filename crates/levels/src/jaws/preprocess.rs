@@ -26,13 +26,13 @@ pub(super) const START_TICKS: u8 = 6;
 const SETTLED_TICKS: u8 = 5;
 /// Ticks in which any way of the fingers must end (4 s).
 pub(super) const LIMIT_TICKS: u64 = 100;
-/// Readings of a window that differ by no more than this are those of fingers that stand still, counts.
+/// Greatest difference of the readings in a window for fingers at rest, counts.
 const STILL_COUNTS: u16 = 4;
 /// So near to an end of their way the fingers are at it, in.
 const STOP_BAND: f64 = 0.05;
 /// So far beyond an end of their way no fingers are: the potentiometer fails, in.
 const BEYOND: f64 = 0.15;
-/// So near to `commanded-size` the fingers are there, in.
+/// Distance from `commanded-size` within which the fingers are at it, in.
 const SIZE_BAND: f64 = 0.10;
 
 impl State {
@@ -101,9 +101,9 @@ impl State {
 }
 
 impl State {
-    /// What is between the fingers, by the potentiometer alone (VI.4 has no force sensors): whatever keeps
-    /// them between the ends of their way. At an end they hold nothing, though a thing that is as small as
-    /// the opening of closed fingers reads the same.
+    /// What is between the fingers, by the potentiometer alone (VI.4 has no force sensors): something, if the fingers
+    /// rest between the ends of their travel. At an end they hold nothing, although an object as small as the opening
+    /// of closed fingers reads the same.
     fn felt(&self, motion: Motion, stop: Stop, opening: f64, parameters: &Parameters) -> Felt {
         let settled = motion == Motion::Stopped && self.attached_ticks >= SETTLED_TICKS;
         match stop {

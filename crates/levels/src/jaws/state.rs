@@ -1,4 +1,4 @@
-//! What V-Grip and Tool-Grip remember from tick to tick.
+//! The state of V-Grip and Tool-Grip.
 
 use interfaces::{
     device::JawValves,

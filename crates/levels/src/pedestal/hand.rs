@@ -1,5 +1,4 @@
-//! The hand of the pedestal (III.9.2): "nearly identical" to the parts gripper, so that the servo of Grip
-//! serves it.
+//! The hand of the pedestal (III.9.2): "nearly identical" to the parts gripper, so it uses the servo of Grip.
 
 use interfaces::{
     CommonMemory, Reason,

@@ -1,4 +1,4 @@
-//! The Active Pedestal (VI.7): a small RCS of its own, that grasps and reorients objects.
+//! The Active Pedestal (VI.7): a small RCS itself, which grasps and reorients objects.
 //!
 //! ```text
 //!        Subtask
@@ -10,9 +10,9 @@
 //!   8 valves   rotary table controller
 //! ```
 //!
-//! The manual gives the interface of the upper process; the two below are "transparent to the RCS-II/T3
-//! controller". Both calibrate themselves when they are booted (IV.5.1 steps 7 and 10). None of the three
-//! opens the hand unless it is told to, whatever fails.
+//! The manual gives the interface of the upper process; the two below are "transparent to the RCS-II/T3 controller".
+//! Both calibrate themselves when they are booted (IV.5.1 steps 7 and 10). None of the three opens the hand without a
+//! command, also after a failure.
 
 pub mod control;
 pub mod hand;

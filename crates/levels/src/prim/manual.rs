@@ -1,9 +1,8 @@
 //! The joystick box moves the robot (III.3.3): a velocity instead of a goal.
 //!
-//! Stick and buttons ask for a velocity in the coordinates of the frame switch. It is kept in world
-//! coordinates, and changes by no more than [`ACCELERATION`] allows; so a stick that is thrown over, a
-//! switch that is turned off and a tool frame that turns below the stick all make ramps. Another frame is
-//! taken up only at rest.
+//! Stick and buttons command a velocity in the coordinates of the frame switch. It is kept in world coordinates, and
+//! its change is limited by [`ACCELERATION`]; so a sudden move of the stick, a switch that is turned off and a rotation
+//! of the tool frame all give ramps. Another frame takes effect only at rest.
 //!
 //! A rotation leaves its centre where it is: the tool point, or the wrist point 30.00 in behind it (VII.2
 //! `wo`). Its velocity is counted at the lever of [`INCHES_PER_RADIAN`], or at the tool point if that is
@@ -77,9 +76,9 @@ pub struct Manual {
     pub engaged: bool,
     /// Coordinates of the motion.
     pub coordinates: Coordinates,
-    /// Translation that is asked for, a share of [`SPEED`], in `coordinates`.
+    /// Commanded translation, a share of [`SPEED`], in `coordinates`.
     pub translate: [f64; 3],
-    /// Rotation that is asked for, a share of [`SPEED`] at the lever, about the axes of the tool.
+    /// Commanded rotation, a share of [`SPEED`] at the lever, about the axes of the tool.
     pub rotate: [f64; 3],
     /// in/s, in world coordinates.
     pub linear: [f64; 3],
@@ -92,7 +91,7 @@ fn buttons(plus: bool, minus: bool) -> f64 {
     f64::from(i8::from(plus).saturating_sub(i8::from(minus)))
 }
 
-/// The share that a deflected stick asks for, from -1 to 1: it grows from nothing at the end of the play.
+/// The share commanded by a deflected stick, from -1 to 1: it is 0 at the end of the play and grows from there.
 fn deflection(counts: i16) -> f64 {
     let share = f64::from(counts).abs() / f64::from(KNOB_FULL);
     let beyond = ((share - PLAY) / (1.0 - PLAY)).clamp(0.0, 1.0);
@@ -121,7 +120,7 @@ fn towards(from: [f64; 3], to: &Vector, most: f64) -> Vector {
 }
 
 impl Manual {
-    /// Nothing is asked for: what moves ramps down.
+    /// No motion is commanded: the velocity ramps down.
     pub fn release(&mut self) {
         self.engaged = false;
         (self.translate, self.rotate) = ([0.0; 3], [0.0; 3]);

@@ -1,16 +1,15 @@
-//! Prim (V.1): takes a motion command apart into trajectory points, one every 40 ms.
+//! Prim (V.1): divides a motion command into trajectory points, one every 40 ms.
 //!
-//! A command of E-move names records; Prim looks them up, gives the goal to the trajectory generator, and
-//! sends T3I a point whenever it wants one. Three things are kept apart:
+//! A command of E-move names records; Prim looks them up, gives the goal to the trajectory generator, and sends T3I a
+//! point whenever T3I is ready for one. Three things are separate:
 //!
-//! * the *command* (its table decides when it is done, and when it failed);
-//! * the *motion* ([`motion`], or [`manual`] while the operator has the robot), which goes on when a GO-THRU
-//!   is done, and ramps down when a command failed;
-//! * the *path clock* ([`tables::path_clock`]), which stands while T3I has points enough.
+//! * the *command* (its table decides when it is done or has failed);
+//! * the *motion* ([`motion`], or [`manual`] while the operator has the robot), which continues when a GO-THRU is done,
+//!   and ramps down when a command has failed;
+//! * the *path clock* ([`tables::path_clock`]), which stops while T3I has enough points.
 //!
-//! So three tables are consulted in every tick, whatever the command: ATTEND says whether the tables of the
-//! command are consulted; PATH-CLOCK and RECORD-POSE look at the motion as the row of the command has left
-//! it.
+//! So three tables are consulted in every tick, whatever the command: ATTEND says whether the tables of the command are
+//! consulted; PATH-CLOCK and RECORD-POSE use the motion after the row of the command.
 //!
 //! ```text
 //!                        ROBOT-INIT: RESTART, link runs, frame-feedback taken over
@@ -20,11 +19,11 @@
 //!     T3I: PAUSE         link off, link error, refused or silent T3I; a restart        T3I: POINT
 //! ```
 //!
-//! A motion leads from the left to the right too, if T3I says that the robot is where it was sent; the
-//! command goes on executing meanwhile, and then goes on from rest where the robot is. So the robot is never
-//! asked to jump to where Prim believes it to be. PAUSE ramps down and then repeats the last point under its
-//! number: T3I holds it, its queue is not cut short, and the commanded position stays exact. PAUSE goes to
-//! T3I only while Prim has no position.
+//! A motion also leads from the left to the right if T3I reports that the robot is at its commanded position; the
+//! command stays in execution, and then continues from rest at the robot's position. So the robot is never commanded to
+//! jump to a position that Prim assumes. PAUSE ramps down and then repeats the last point under its number: T3I holds
+//! it, its queue is not cut short, and the commanded position stays exact. PAUSE goes to T3I only while Prim has no
+//! position.
 //!
 //! A stick or button of the joystick box that is moved while a frame switch is on stops every motion with
 //! `joystick-on`; only PAUSE lets the box move the robot. The sensors of guarded moves are in [`sensors`].

@@ -28,7 +28,7 @@ use super::{
 use crate::execution::Outcome;
 
 impl State {
-    /// Do what only an accepted command asks for: the detected pose is that of the last GO-UNTIL.
+    /// Begin an accepted command: the detected pose is that of the last GO-UNTIL.
     pub(super) fn begin(&self, outputs: &mut PrimOutputs) {
         if self.target.verb == PrimVerb::GoUntil {
             let [_, _, detected, _] = &mut outputs.poses;

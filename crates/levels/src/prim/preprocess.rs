@@ -111,7 +111,7 @@ impl State {
         Request { asked: Asked::Now, missing }
     }
 
-    /// What the robot was told to do.
+    /// The state of the commanded motion.
     pub(super) fn posture(&self, t3i: Interface) -> Posture {
         match &self.motion {
             None => Posture::Unpositioned,
@@ -297,8 +297,8 @@ fn operator(joystick: &JoystickBox) -> Operator {
     if on && is_moved(joystick) { Operator::Moves } else { Operator::Idle }
 }
 
-/// What T3I makes of the report to the last RESTART: nothing before it has echoed that, or while it starts
-/// the link.
+/// T3I's check of the report after the last RESTART: none before T3I has echoed the RESTART, or while it starts the
+/// link.
 const fn report(interface: Interface, status: &T3iStatus) -> ReportCheck {
     match interface {
         Interface::Busy | Interface::Silent => ReportCheck::NoReport,

@@ -1,14 +1,12 @@
-//! The sensors of guarded moves: device words become "the condition has come", or "the sensor cannot be
-//! trusted".
+//! The sensors of guarded moves: from device words they derive "the condition holds", or "the sensor is faulty".
 //!
-//! Prim is where low-level sensors that affect the motion from cycle to cycle are brought in (V.1.1). A
-//! guarded move names one (SENSOR-PARA); it watches the tool gripper's force sensor (III.3.8), the proximity
-//! sensors of a holster (III.3.4) or the beams between the fingers (III.3.6).
+//! Low-level sensors that affect the motion from cycle to cycle are inputs of Prim (V.1.1). A guarded move names one
+//! (SENSOR-PARA); it watches the tool gripper's force sensor (III.3.8), the proximity sensors of a holster (III.3.4) or
+//! the beams between the fingers (III.3.6).
 //!
-//! A force is the reading less the *bias*, which CAL-SENSOR takes with the robot at rest: strain gages
-//! drift, and feel the weight of what is held. Without a bias a force means nothing, and the guarded move is
-//! refused with `sensor-error`; so it is when a reading stands at an end of its converter, because beyond it
-//! every force looks alike.
+//! A force is the reading less the *bias*, which CAL-SENSOR takes with the robot at rest: strain gages drift, and
+//! measure the weight of the held part. Without a bias a force is not valid, and the guarded move is refused with
+//! `sensor-error`; also if a reading is at an end of its converter, where greater forces cannot be distinguished.
 
 use interfaces::{
     device::{
@@ -34,7 +32,7 @@ const SEATED: u8 = 0x0C;
 /// The bias of the force sensor and how it is taken. Counts, in the order tool Fx, Fy, Fz, My.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Calibration {
-    /// What is read without a force of interest, if that was taken and the sensor has had power ever since.
+    /// The reading without load, if it was taken and the sensor has had power ever since.
     pub bias: Option<[f64; FORCE_AXES]>,
     /// Sum of the readings taken so far.
     pub sum: [f64; FORCE_AXES],
@@ -91,7 +89,7 @@ impl Calibration {
         (self.sum, self.samples) = ([0.0; FORCE_AXES], 0);
     }
 
-    /// Can a reading be taken, or is there nothing left to take?
+    /// Whether a reading can be taken, or all have been taken.
     #[must_use]
     pub fn progress(&self, force: &ForceSensor) -> Samples {
         if tool_axes(force).is_none() {

@@ -1,4 +1,4 @@
-//! What Prim remembers from tick to tick.
+//! The state of Prim.
 
 use geometry::pose::WireFrame;
 use interfaces::prim::PrimVerb;
@@ -99,7 +99,7 @@ pub struct State {
     pub manual: Manual,
     /// The end of a motion.
     pub standstill: Standstill,
-    /// The resolver frame of the tick before, if it could be believed.
+    /// The resolver frame of the tick before, if it was valid.
     pub resolver_frame: Option<WireFrame>,
     /// The force sensor.
     pub calibration: Calibration,

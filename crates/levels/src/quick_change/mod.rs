@@ -1,8 +1,7 @@
 //! Quick Change (VI.2): turns the locking ring, watches it, and reads which gripper is mated.
 //!
-//! Two reflectance sensors see the ring at either end of its way. What they say together is one of four
-//! readings; a reading that may be a passing one (the ring on its way, a sensor that switches late) counts
-//! only after some ticks.
+//! Two reflectance sensors detect the ring at the ends of its travel. Together they give one of four readings; a
+//! reading that may be temporary (the ring moves, a sensor switches late) counts only after some ticks.
 //!
 //! ```text
 //!                     locked seen             neither seen, 12 ticks
@@ -31,9 +30,9 @@
 //!                   '----------------------------> Stuck     until the next command
 //! ```
 //!
-//! * [`state`]: what Quick Change remembers;
+//! * [`state`]: the state of Quick Change;
 //! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, a file a command;
+//! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`]: valves and status.
 
 pub mod postprocess;

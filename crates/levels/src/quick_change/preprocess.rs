@@ -1,4 +1,4 @@
-//! Preprocess of Quick Change: its state variables, from the command and the sensors; which readings count.
+//! Preprocess of Quick Change: its state variables, from the command and the sensors, and the filter of the readings.
 
 use interfaces::{device::QuickChangeSensors, process::Inputs, quick_change::RingPosition};
 use rcs_core::handshake::Arrival;

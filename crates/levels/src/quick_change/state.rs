@@ -1,4 +1,4 @@
-//! What Quick Change remembers from tick to tick.
+//! The state of Quick Change.
 
 use interfaces::quick_change::{QuickChangeVerb, RingPosition};
 use rcs_core::{Plain, tick::Tick};

@@ -1,8 +1,7 @@
-//! Objects and locations that commands to E-move are aimed at.
+//! Objects and locations of commands to E-move.
 //!
-//! Task names one location with each command. Holsters, the pedestal and the tool drum are Subtask's own: it
-//! looks them up when the command arrives, before anything moves, and publishes their poses in its own
-//! changing records.
+//! Task names one location with each command. Subtask itself looks up holsters, the pedestal and the tool drum when the
+//! command arrives, before anything moves, and publishes their poses in its own changing records.
 
 use geometry::pose::Pose;
 use interfaces::{

@@ -1,8 +1,8 @@
-//! Subtask (V.3): takes a command of Task apart into commands to E-move, and coordinates the robot with the
-//! Active Pedestal.
+//! Subtask (V.3): divides a command of Task into commands to E-move, and coordinates the robot with the Active
+//! Pedestal.
 //!
-//! Task names one location with each command. Holsters, the pedestal and the tool drum are Subtask's own:
-//! they are looked up when the command arrives, before anything moves.
+//! Task names one location with each command. Subtask itself looks up holsters, the pedestal and the tool drum when the
+//! command arrives, before anything moves.
 //!
 //! ```text
 //!                 ACCEPT                 ORDERED: E-move, pedestal
@@ -13,11 +13,11 @@
 //!     error <-----------------------------------------------
 //! ```
 //!
-//! * [`state`]: what Subtask remembers;
+//! * [`state`]: the state of Subtask;
 //! * `pedestal_hand`: the part in the pedestal's hand;
 //! * [`aims`]: objects and locations of the commands to E-move;
 //! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, a file a command;
+//! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`]: the outputs that a row asks for.
 
 pub mod aims;

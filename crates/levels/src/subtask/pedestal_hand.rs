@@ -1,4 +1,4 @@
-//! The part in the pedestal's hand: what the hand feels, and what Subtask believes that it is.
+//! The part in the pedestal's hand: the sensors of the hand, and Subtask's belief which part it is.
 
 use interfaces::{
     grip::Felt,
@@ -19,15 +19,14 @@ const OPEN_WITHIN: i32 = 10;
 const AT_ANGLE: u32 = 10;
 
 impl State {
-    /// Once a tick: does the hand agree with what Subtask believes is in it? A hand that moves is believed
-    /// until it rests.
+    /// Once a tick: compare the sensors of the hand with Subtask's belief. While the hand moves the belief is kept.
     pub(super) fn sense_hand(&mut self, status: &PedestalStatus, pedestal: Pedestal) {
         if pedestal != Pedestal::Moving && pedestal_hand(status) == PedestalHand::Free {
             self.regrip = None;
         }
     }
 
-    /// The pedestal is told to close its hand on the object of the command.
+    /// The pedestal is commanded to close its hand on the object of the command.
     pub(super) const fn give(&mut self, command: &SubtaskCommand) {
         self.regrip = match command.object {
             Some(object) => Some(Regrip { object }),
@@ -52,7 +51,7 @@ impl State {
     }
 }
 
-/// Is a part in the hand? What it feels before it was told to grip, or after it was told to open, is none.
+/// Whether a part is in the hand. Contact before GRIP, or after an opening, does not count.
 pub(super) const fn pedestal_hand(status: &PedestalStatus) -> PedestalHand {
     match status.felt {
         Felt::Something if status.gripped => PedestalHand::HoldsPart,

@@ -114,8 +114,7 @@ impl State {
         };
     }
 
-    /// A pedestal that was told to move is told to stop; one that was not needed is left alone. True if it is
-    /// to be waited for.
+    /// Stop the pedestal if it was commanded to move; otherwise send nothing. True if Subtask has to wait for it.
     fn pause_pedestal(
         &mut self,
         seen: &Seen,

@@ -200,7 +200,7 @@ fn station(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     }
 }
 
-/// Was the object of a command let go at its destination?
+/// Whether the object of a command was released at its destination.
 fn placed(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     let there = (command.object, command.destination_grip, command.location_record, command.location_array);
     match emove.placed {

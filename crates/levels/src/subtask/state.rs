@@ -1,4 +1,4 @@
-//! What Subtask remembers from tick to tick.
+//! The state of Subtask.
 
 use interfaces::subtask::Regrip;
 use rcs_core::{Plain, handshake::Commander};

@@ -10,16 +10,15 @@
 //! | k+1 | writes n+1 | reads n, sends it, reports 3 | frame n | acknowledges n and moves |
 //! | k+2 | reads 3, writes n+2 | reads the ACK of n, sends n+1 | frame n+1 | acknowledges n+1 and moves |
 //!
-//! While nothing moves the last position is repeated every tick, so that a dead link is noticed within three
-//! ticks. A point beyond the velocity limits stays in the queue and is approached as fast as they allow.
-//! RESTART, PAUSE and the loss of the link empty the queue; while Prim is held or lost the queue waits and
-//! the position stands.
+//! While nothing moves the last position is repeated every tick, so that a dead link is detected within three ticks. A
+//! point beyond the velocity limits stays in the queue and is approached as fast as they allow. RESTART, PAUSE and the
+//! loss of the link empty the queue; while Prim is held or lost the queue waits and the position stands.
 //!
-//! When the link begins again the controller reports where the robot is. T3I compares the words of the report
-//! with those that it sent, and publishes what comes of it (`check`): Prim goes on, or a person decides.
+//! When the link starts again the controller reports the position of the robot. T3I compares the words of the report
+//! with those that it sent, and publishes the result (`check`): Prim continues, or a person decides.
 //!
-//! Three tables decide in a tick: REPORT on what came from the controller, RECEIVE on the command in the
-//! buffer, then that of the current command on what goes out.
+//! Three tables decide in a tick: REPORT for the report of the controller, RECEIVE for the command in the buffer, then
+//! the table of the current command for the output.
 //!
 //! ```text
 //!                 a point that is missing or cannot be sent

@@ -1,4 +1,4 @@
-//! Preprocess of T3I: what came over the line, and the state variables.
+//! Preprocess of T3I: the received bytes, and the state variables.
 
 use depc::{
     Plate,

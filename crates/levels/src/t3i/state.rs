@@ -1,4 +1,4 @@
-//! What T3I remembers from tick to tick.
+//! The state of T3I.
 
 use depc::{
     Limits,
@@ -43,7 +43,7 @@ pub struct State {
     pub queue: [WireFrame; QUEUE_POINTS],
     /// How many.
     pub queued: u8,
-    /// The rows that the header tells of.
+    /// The rows for the header.
     pub rows: Rows,
 }
 

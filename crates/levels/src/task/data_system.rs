@@ -1,10 +1,10 @@
-//! Task and the Data System (IV.4.2, IX.2): what is asked, asked again, and kept until it is taken.
+//! Task and the Data System (IV.4.2, IX.2): commands, repetitions, and updates that are kept until they are accepted.
 //!
-//! While no Data System is connected nothing is told and nothing waited for, as with DB-DONE (Figure IV.1).
-//! Once connected, the move of a command from or to the MBD is told when it has been made, and so is the
-//! place where an object is let go that the data base knows as the robot's. An update that is not taken is
-//! kept, also when another command replaces the one that told it: before the next object is moved, or at the
-//! end of the next STARTUP, it is told again, so that the data base is never more than one command behind.
+//! While no Data System is connected, Task sends no updates and does not wait, as with DB-DONE (Figure IV.1). Once
+//! connected, Task sends an update after each completed move from or to the MBD, and after the release of an object
+//! that the data base has as held by the robot. An update that is not accepted is kept, also when another command
+//! replaces the one that sent it. It is sent again before the next object is moved, or at the end of the next STARTUP,
+//! so that the data base is never more than one command behind.
 
 use interfaces::{
     DataBaseCommand, DataBaseStatus, TaskOutputs,

@@ -1,10 +1,10 @@
 //! The ledger: the last command about an object or a tool that was accepted and has not been finished
 //! (docs/design/recovery.md "Ledger").
 //!
-//! It is an output of Task, and read from there: so a Task that is restarted has it too. It tells a command
-//! that is sent *again* from one that is sent *anew*: a TRANSFER that was interrupted behind its RELEASE goes
-//! on with the update and the way to its end-at location, while the same TRANSFER after a finished one begins
-//! anew. What has been achieved is not in the ledger; the statuses from below say that.
+//! It is an output of Task and is read from there, so that a restarted Task has it too. It distinguishes a repeated
+//! command from a new one: a TRANSFER that was interrupted after its RELEASE continues with the update and the motion
+//! to its end-at location, while the same TRANSFER after a finished one begins from the start. The progress of the
+//! command is not in the ledger; it follows from the statuses from below.
 
 use interfaces::{
     data_base::Carried,

@@ -1,8 +1,8 @@
-//! Task (V.4): takes a command of the workstation controller apart into commands to Subtask.
+//! Task (V.4): divides a command of the workstation controller into commands to Subtask.
 //!
-//! Task looks every name of a new command up before anything moves: a command that names an unknown object,
-//! location, sector or grip is refused whole. What it found travels down as record numbers and as the poses
-//! T-POSE-1 to T-POSE-3 (VII.1).
+//! Task looks every name of a new command up before anything moves: a command that names an unknown object, location,
+//! sector or grip is refused whole. The results are passed down as record numbers and as the poses T-POSE-1 to T-POSE-3
+//! (VII.1).
 //!
 //! ```text
 //!                 ACCEPT                 ORDERED: Subtask, Data System
@@ -14,12 +14,12 @@
 //!     error <-----------------------------------------
 //! ```
 //!
-//! * [`state`]: what Task remembers;
+//! * [`state`]: the state of Task;
 //! * [`plan`]: a command with its names looked up;
 //! * [`ledger`]: the command that is not finished;
-//! * [`data_system`]: what the Data System has been told;
+//! * [`data_system`]: updates of the Data System;
 //! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, a file a command;
+//! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`]: the outputs that a row asks for.
 
 pub mod data_system;

@@ -1,4 +1,4 @@
-//! What Task remembers from tick to tick.
+//! The state of Task.
 
 use rcs_core::{Plain, handshake::Commander};
 

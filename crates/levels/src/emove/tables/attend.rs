@@ -1,4 +1,4 @@
-//! What goes on after a command has ended.
+//! Work that continues after a command has ended.
 
 use rcs_core::decision_table;
 

@@ -1,4 +1,4 @@
-//! What becomes of a tool command that was interrupted at the drum.
+//! Continuation of a tool command that was interrupted at the drum.
 
 use rcs_core::{Actions, Plain, Variables, decision_table};
 

@@ -1,4 +1,4 @@
-//! Finding out where the robot is.
+//! Search for the place of the robot.
 
 use rcs_core::{Actions, decision_table};
 

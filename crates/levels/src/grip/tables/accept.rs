@@ -1,4 +1,4 @@
-//! What a command must have before the fingers move.
+//! Preconditions of a command before the fingers move.
 
 use rcs_core::decision_table;
 

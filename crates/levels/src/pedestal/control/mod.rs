@@ -17,13 +17,13 @@
 //!     can't-do                           error
 //! ```
 //!
-//! A failure sends nothing to the hand: what it holds, it goes on holding. Before a new command is accepted
-//! or refused the table stops, and the hand comes to the end of what it was told; so it is after a restart.
+//! A failure sends nothing to the hand, which keeps holding its part. Before a new command is accepted or refused, the
+//! table stops and the hand finishes its command; the same holds after a restart.
 //!
-//! * [`state`]: what the process remembers;
-//! * [`orders`]: what a command asks of hand and table;
+//! * [`state`]: the state;
+//! * [`orders`]: orders of a command to hand and table;
 //! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, a file a command;
+//! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`]: commands to hand and table, and the status.
 
 pub mod orders;

@@ -1,4 +1,4 @@
-//! What a command asks of hand and table.
+//! Orders of a command to hand and table.
 
 use interfaces::{
     grip::{GripCommand, GripVerb},
@@ -8,7 +8,7 @@ use interfaces::{
 use super::tables::{Angle, Opening};
 use crate::{grip::goal::Goal, pedestal::table::is_within_limits};
 
-/// The command to the hand that opens or closes it as the pedestal is told; the number is missing.
+/// The command that opens or closes the hand, by the command of the pedestal; without its number.
 pub(super) fn hand_command(command: &PedestalCommand) -> GripCommand {
     let (verb, force) = match command.command {
         PedestalVerb::PreGrip | PedestalVerb::Release => (GripVerb::OpenGrip, 0),

@@ -66,7 +66,7 @@ impl State {
         self.execution.fail(if silent { Reason::NeighbourLost } else { below });
     }
 
-    /// Open the hand: what it holds is let go.
+    /// Open the hand, which releases its part.
     fn open(&mut self, tick: Tick, outputs: &mut PedestalOutputs) {
         self.gripped = false;
         self.command_hand(hand_command(&self.command), tick, outputs);

@@ -1,4 +1,4 @@
-//! What the pedestal process remembers from tick to tick.
+//! The state of the pedestal process.
 
 use interfaces::pedestal::PedestalCommand;
 use rcs_core::{Plain, handshake::Commander, tick::Tick};
@@ -23,6 +23,6 @@ pub struct State {
     pub hand: Commander,
     /// Commands to the table.
     pub table: Commander,
-    /// The hand was told to grip, and not to open since.
+    /// GRIP was ordered, and no opening since.
     pub gripped: bool,
 }

@@ -1,9 +1,9 @@
 //! Rotary table of the pedestal (III.9.1, III.10): a step motor behind a controller that counts its steps.
 //!
-//! The controller takes orders by number over a serial link: turn by so many steps, give the counter a value,
-//! stop. Its counter means an angle only after it has been set where the angle is known: to zero at the +
-//! limit (IV.1 step 3). So the table calibrates first, by itself when it is booted, and before the first turn
-//! it is asked for. In the end it is parked at -20.00, clear of the switch.
+//! The controller takes orders by number over a serial link: turn by so many steps, set the counter, stop. The counter
+//! gives an angle only after it was set at a known angle: to zero at the + limit (IV.1 step 3). So the table calibrates
+//! first, automatically when it is booted, and before the first commanded turn. Then it is parked at -20.00, clear of
+//! the switch.
 //!
 //! ```text
 //!   Missing, Deferred, Failed                    a command TURN
@@ -33,12 +33,12 @@
 //!            ^ restarted in the middle of a job: a table that turns is stopped
 //! ```
 //!
-//! An angle is believed if counter and potentiometer agree. If they do not, steps were lost, and the table
-//! has to find its + limit again.
+//! An angle is valid if counter and potentiometer agree. If they do not, steps were lost, and the table has to find its
+//! + limit again.
 //!
-//! * [`state`]: what the process remembers;
+//! * [`state`]: the state;
 //! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, a file a command;
+//! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`]: orders to the motor, and the status.
 
 pub mod postprocess;

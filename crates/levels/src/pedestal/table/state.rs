@@ -1,4 +1,4 @@
-//! What the table process remembers from tick to tick.
+//! The state of the table process.
 
 use interfaces::{device::MotorCommand, pedestal::TableCommand};
 use rcs_core::{Plain, handshake::Commander, tick::Tick};
@@ -15,7 +15,7 @@ pub struct State {
     pub step: Step,
     /// The current command: a copy, because the buffer of a commander that restarts is empty.
     pub command: TableCommand,
-    /// When it came, or when the calibration began or ended, whatever was last.
+    /// When it came, or when the calibration began or ended, whichever was last.
     pub since: Tick,
     /// Step of CALIBRATE.
     pub phase: Phase,

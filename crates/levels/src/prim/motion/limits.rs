@@ -1,7 +1,7 @@
-//! What TRAJ-PARA and the velocity knob allow.
+//! Limits of TRAJ-PARA and the velocity knob.
 //!
-//! The manual names the columns of a trajectory form (VII.6) but gives no units, so the three units are
-//! ASSUMED; they stand here and nowhere else.
+//! The manual names the columns of a trajectory form (VII.6) but gives no units, so the three units are ASSUMED; they
+//! are defined only here.
 
 use interfaces::device::KNOB_FULL;
 use rcs_core::{Plain, tick::TICK_S};

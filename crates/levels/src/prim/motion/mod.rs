@@ -1,9 +1,9 @@
-//! The trajectory generator: the manual's Traj-program, of which it says nothing (V.1).
+//! The trajectory generator: the manual's Traj-program, which it does not describe (V.1).
 //!
-//! Each segment is a straight line with its own jerk-limited [`profile`]. A profile always stops at the end
-//! of its line, through points included, so that a stop is possible at any time and nothing depends on a next
-//! goal that may never come. At a through point two motions are superposed: the old segment goes on braking
-//! (the *residual*) while the new one already starts from rest *at the through point*:
+//! Each segment is a straight line with its own jerk-limited [`profile`]. A profile always stops at the end of its
+//! line, through points included, so that a stop is possible at any time, and a missing next goal is no problem. At a
+//! through point two motions are superposed: the old segment continues braking (the *residual*) while the new one
+//! already starts from rest *at the through point*:
 //!
 //! ```text
 //!  velocity   old ________                       frame = new segment's frame, displaced by what
@@ -24,8 +24,8 @@
 //!   point use all.
 //! * At most two motions are superposed: a through point counts as passed only when no older residual is
 //!   left.
-//! * Knob, PAUSE and a new goal before its time are the same thing: a new velocity for the running profile.
-//!   After a stop the next segment starts from where the stop ended.
+//! * Knob, PAUSE and an early new goal are handled alike: as a new velocity for the running profile. After a stop the
+//!   next segment starts from where the stop ended.
 //!
 //! Rotations are superposed as world rotations; their acceleration then has a small extra term, at most the
 //! product of both angular velocities.
@@ -123,7 +123,7 @@ impl Motion {
         }
     }
 
-    /// The robot has stood for a while, wherever the motion had come to: go on from rest at the last point,
+    /// The robot has been at rest for a while, at any point of the motion: continue from rest at the last point,
     /// straight to the goal of the last order.
     pub fn stand(&mut self) {
         let under_way = self.current.filter(|_| !self.halting).map(|segment| segment.order);

@@ -1,14 +1,12 @@
-//! How far along a segment at what time: a jerk-limited profile in closed form.
+//! Distance along a segment over time: a jerk-limited profile in closed form.
 //!
-//! A profile changes the velocity to a cruise velocity, cruises, and stops at the goal: up to seven phases of
-//! constant jerk, from any velocity and acceleration. The change and the stop may have different limits.
-//! Because the profile is continuous in time and only its *samples* are sent, differences of samples are
-//! means of the true velocity, acceleration and jerk, and cannot exceed the limits however the phases fall
-//! between the ticks.
+//! A profile changes the velocity to a cruise velocity, cruises, and stops at the goal: up to seven phases of constant
+//! jerk, from any velocity and acceleration. The change and the stop may have different limits. Because the profile is
+//! continuous in time and only its *samples* are sent, differences of samples are means of the true velocity,
+//! acceleration and jerk, and cannot exceed the limits, wherever the phases begin between the ticks.
 //!
-//! The cruise velocity is the highest that still lets the profile stop in the distance that is left. It is
-//! found by a fixed number of bisections over the closed forms; what the last bisection leaves over is
-//! cruised, so that the end is exact.
+//! The cruise velocity is the highest that still lets the profile stop in the distance that is left. It is found by a
+//! fixed number of bisections over the closed forms; the remaining distance is cruised, so that the end is exact.
 
 use rcs_core::Plain;
 

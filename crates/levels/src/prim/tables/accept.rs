@@ -1,4 +1,4 @@
-//! What a command must have before anything moves.
+//! Preconditions of a command before anything moves.
 
 use rcs_core::decision_table;
 

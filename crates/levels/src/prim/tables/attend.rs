@@ -1,4 +1,4 @@
-//! The table of every tick that looks after finished commands.
+//! The table of every tick for finished commands.
 
 use rcs_core::{Actions, Plain, decision_table};
 

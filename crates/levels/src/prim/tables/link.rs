@@ -1,4 +1,4 @@
-//! What a motion and the calibration of the force sensor need: T3I, E-move, the link, and a position.
+//! Preconditions of a motion and of the calibration of the force sensor: T3I, E-move, the link, and a position.
 //!
 //! ```text
 //!                    an error of the link, or no position: RESTART

@@ -1,8 +1,7 @@
-//! The path clock: a table of every tick, whatever the command.
+//! The path clock: a table of every tick, for all commands.
 //!
-//! Time on the path is counted in points, not in ticks: when T3I has enough of them the path stands still,
-//! and nothing is lost or hurried afterwards. So the clock goes on after a GO-THRU is done, and while an
-//! error ramps down.
+//! Time on the path is counted in points, not in ticks: when T3I has enough of them the path stops, and no time is lost
+//! or made up for afterwards. The clock continues after a GO-THRU is done, and during the ramp after an error.
 
 use rcs_core::{Actions, Plain, decision_table};
 

@@ -1,4 +1,4 @@
-//! The record button of the joystick box: a table of every tick, whatever the command.
+//! The record button of the joystick box: a table of every tick, for all commands.
 
 use rcs_core::{Actions, Plain, decision_table};
 

@@ -1,4 +1,4 @@
-//! What a command must be.
+//! Preconditions of a command.
 
 use rcs_core::decision_table;
 

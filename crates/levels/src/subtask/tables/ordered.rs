@@ -1,4 +1,4 @@
-//! What has become of the last order of a command.
+//! Result of the last order of a command.
 
 use rcs_core::decision_table;
 

@@ -1,4 +1,4 @@
-//! What comes from Prim.
+//! The command from Prim.
 
 use rcs_core::{Actions, Plain, decision_table};
 

@@ -1,4 +1,4 @@
-//! What a report of the robot controller is worth: a table of every tick, whatever the command.
+//! Check of a report of the robot controller: a table of every tick, for all commands.
 
 use rcs_core::{Actions, Plain, decision_table};
 

@@ -1,4 +1,4 @@
-//! What all commands have in common: errors.
+//! Errors, common to all commands.
 
 use rcs_core::decision_table;
 

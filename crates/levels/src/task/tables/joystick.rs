@@ -1,4 +1,4 @@
-//! The joystick box (V.4.1 PAUSE): the table of every tick, whatever the command.
+//! The joystick box (V.4.1 PAUSE): the table of every tick, for all commands.
 
 use rcs_core::decision_table;
 

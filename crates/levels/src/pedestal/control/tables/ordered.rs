@@ -1,4 +1,4 @@
-//! What has become of the orders of a command.
+//! Results of the orders of a command.
 
 use rcs_core::decision_table;
 

@@ -1,4 +1,4 @@
-//! What a command must be before the table turns.
+//! Preconditions of a command before the table turns.
 
 use rcs_core::decision_table;
 
