@@ -54,7 +54,7 @@ impl Emulation {
     /// A robot that will send to the host.
     ///
     /// # Errors
-    /// In words, if the robot's frames or a socket cannot be had.
+    /// A sentence, if the robot's frames or a socket cannot be used.
     pub fn new(target: &EgmTarget, data: &std::path::Path) -> Result<Self, String> {
         let options: &EgmOptions = &target.0;
         let Peer::Udp(host) = options.peer else { return Err("--emulate needs a port to send to".into()) };

@@ -3,10 +3,9 @@
 //! The path is a symbolic link to the slave; a host opens it as it would open a serial port. A
 //! pseudo-terminal has no modem lines: that a host has it open stands for the host's DTR.
 //!
-//! The terminal stays when a host hangs up, and is made ready for the next: raw again, and empty. One thing
-//! cannot be taken back from outside: a host that was killed leaves the exclusive lock of the port (TIOCEXCL)
-//! behind, and only the superuser could open it again. Then a new terminal takes its place under the same
-//! path.
+//! The terminal stays when a host closes it, and is made ready for the next: raw again, and empty. One thing cannot be
+//! taken back from outside: a host that was killed leaves the exclusive lock of the port (TIOCEXCL) behind, and only
+//! the superuser could open it again. Then a new terminal takes its place under the same path.
 //!
 //! While the program lives it holds an abstract socket that is named after the path; the kernel removes it whenever the
 //! program ends, however it ends. So a link without its socket is dead and may be replaced.
@@ -145,7 +144,7 @@ impl Pty {
         }
     }
 
-    /// A host has hung up: make the terminal ready for the next one. True if a new one had to take its place.
+    /// A host has closed the terminal: make it ready for the next one. True if a new terminal had to replace it.
     ///
     /// # Errors
     /// [`PtyError`] if that cannot be done.

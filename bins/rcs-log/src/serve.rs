@@ -42,7 +42,7 @@ fn rate(text: &str) -> Result<f64, String> {
 /// Play a log once, from its start, when a viewer has subscribed to something.
 ///
 /// # Errors
-/// [`Error`] if the log cannot be read, or the port cannot be had.
+/// [`Error`] if the log cannot be read, or the port is not available.
 pub fn serve(arguments: &Arguments) -> Result<ExitCode, Error> {
     let path = &arguments.file;
     // The schemas travel in the log: one of another version can be shown as well.

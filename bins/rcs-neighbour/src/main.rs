@@ -1,4 +1,4 @@
-//! `rcs-neighbour`: neighbours of the controller as processes of their own, on this machine or on another.
+//! `rcs-neighbour`: neighbour systems of the controller as separate processes, on this machine or on another.
 //!
 //! Each connects to the mailboxes of a run (`rcs-run --network … --outside …`) and does there what the one in
 //! the controller's process would do. Programs of others speak the same bytes: docs/neighbours.md.
@@ -48,7 +48,7 @@ enum Error {
     /// Options of the network do not fit together.
     #[error(transparent)]
     Address(#[from] AddressError),
-    /// The data base cannot be had.
+    /// The data base cannot be used.
     #[error("the items cannot be kept: {0}")]
     DataBase(#[from] StoreError),
     /// The cell description cannot be used.

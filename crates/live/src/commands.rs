@@ -113,8 +113,7 @@ impl Service {
             None => (json!({ "token": token, "line": line() }), json!(["token", "line"])),
         };
         let request = json!({ "type": "object", "properties": properties, "required": required });
-        let answer =
-            json!({ "answer": text("the tick in which it was carried out, and what there is to say") });
+        let answer = json!({ "answer": text("the tick in which it was carried out, and a text") });
         let response = json!({ "type": "object", "properties": answer, "required": ["answer"] });
         let schema = |name: &str, schema: &Value| {
             json!({

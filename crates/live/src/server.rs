@@ -174,7 +174,7 @@ impl Accept {
         self.clients = self.clients.saturating_add(1);
         let Ok(name) = format!("viewer-{}", self.clients).parse() else { return };
         let (options, feed, open) = (self.options.clone(), self.feed.clone(), Open(self.open.clone()));
-        // If the thread cannot be had, the client sees the end of its connection.
+        // If the thread cannot be started, the client sees the end of its connection.
         let _ = thread::Builder::new().name("live client".into()).spawn(move || {
             let _open = open;
             serve(stream, &options, feed, name);

@@ -51,10 +51,10 @@ pub enum StartError {
     /// A clock that cannot be kept.
     #[error("a speed from 1 to {most} times real time was expected, found {0}", most = crate::setup::MOST_SPEED)]
     Speed(u8),
-    /// A robot of the caller's own that the caller did not bring.
+    /// A robot of the caller that the caller did not provide.
     #[error("the configuration names a robot of the caller's own: start the run by Run::with_robot")]
     NoOwnRobot,
-    /// Faults for a line that has its own.
+    /// Faults of the line for a robot that is not the simulated one.
     #[error("the file has faults of the line to the simulated robot; leave them out for any other robot")]
     FaultsAtPort,
     /// The port cannot be opened.

@@ -1,8 +1,8 @@
 //! `rcs-log fork`: what would have happened if?
 //!
-//! The run of a log is run again from tick 0 with what stands in the log ([`runtime::repeat`]), and each tick is compared
-//! with the log, to the bit. After a tick something is changed ([`change`]), the run goes on to its end, and what is
-//! different from the log is told ([`crate::difference`]). A run of four minutes takes about a second.
+//! The run of a log is run again from tick 0 with what stands in the log ([`runtime::repeat`]), and each tick is
+//! compared with the log, bit for bit. After a tick something is changed ([`change`]), the run goes on to its end, and
+//! what is different from the log is told ([`crate::difference`]). A run of four minutes takes about a second.
 
 mod change;
 mod datum;

@@ -1,4 +1,4 @@
-//! A run that repeats a log, to the bit.
+//! A run that repeats a log, bit for bit.
 
 use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{Plain, plain::Writer, tick::Tick};

@@ -226,7 +226,7 @@ fn force_words(sensor: &SensorPara, nearest: f64, way: &str) -> String {
     }
 }
 
-/// A sensor as a person says it: `"SEATED-2" (seated in holster 2)`.
+/// A sensor as text: `"SEATED-2" (seated in holster 2)`.
 fn sensor_name(sensor: &SensorPara) -> String {
     let what = match (sensor.source, sensor.which) {
         (SensorSource::Near | SensorSource::Seated, holster) => {

@@ -142,7 +142,7 @@ pub fn because(conditions: &[String]) -> String {
     }
 }
 
-/// A row as one says it: `table QC-DETACH row 7: Unlock, then Unlocking, because step is Start`.
+/// A row as text: `table QC-DETACH row 7: Unlock, then Unlocking, because step is Start`.
 pub fn row_words(process: ProcessId, fired: &Fired) -> String {
     match row_of(process, fired) {
         None => "by no row of a table".to_owned(),

@@ -110,8 +110,7 @@ pub struct Operator<'f> {
 }
 
 impl<'f> Operator<'f> {
-    /// An operator that comes upon line `current` of a job, which began at `began`; `last` is the command
-    /// that Task has.
+    /// An operator at line `current` of a job, which began at `began`; `last` is the command that Task has.
     #[must_use]
     pub fn new(lines: &'f [JobLine], current: usize, began: Tick, last: &HwsCommand, tries: u32) -> Self {
         let mut operator = Self {

@@ -1,4 +1,4 @@
-//! `--boards split`: the control processes spread over operating system processes, one a board (IV.2.2).
+//! `--boards split`: the control processes are distributed over operating system processes, one per board (IV.2.2).
 //!
 //! | board | runs                                                                                        |
 //! |-------|---------------------------------------------------------------------------------------------|
@@ -8,10 +8,10 @@
 //! | 6     | Task, Subtask                                                                               |
 //! | 8     | Quick Change, the grippers; the Active Pedestal with its hand and table                     |
 //!
-//! The pedestal has a rack of its own in the original (III.2), on the other side of the factory network; here
-//! it shares the board of the grippers, since its hand is a gripper and a network is not what is tested.
+//! In the original (III.2) the pedestal has its own rack, on the other side of the factory network; here it shares the
+//! board of the grippers, because its hand is a gripper.
 //!
-//! A tick, seen from board 0 ([`coordinator`]) and from one of the others ([`member`]):
+//! A tick of board 0 ([`coordinator`]) and of another board ([`member`]):
 //!
 //! ```text
 //!   board 0                                     board n
@@ -24,13 +24,13 @@
 //!   gathers the halves of tick k: common memory
 //! ```
 //!
-//! So no board can be a tick ahead of another by more than one, and two halves are enough: while a fast board
-//! writes tick k, a slow one still reads k-1 from the other half ([`exchange`]). The pulse only wakes; what a
-//! board does follows from the number that it reads, so a pulse that is lost or comes twice changes nothing.
+//! So no board can be a tick ahead of another by more than one, and two halves are enough: while a fast board writes
+//! tick k, a slow one still reads k-1 from the other half ([`exchange`]). The pulse only wakes; the number that a board
+//! reads decides what it does, so a lost or repeated pulse changes nothing.
 //!
-//! The blackboards between the boards are not those that programs outside read ([`crate::memory`]): board 0
-//! publishes common memory for them as in a run on one board. An observer sees the same services however the
-//! processes are spread, follows no board that is restarted, and cannot delay one.
+//! The blackboards between the boards are not those for other programs ([`crate::memory`]): for these board 0 publishes
+//! common memory, as in a run on one board. So an observer has the same services for every distribution of the
+//! processes, is not affected by the restart of a board, and cannot delay one.
 
 pub mod coordinator;
 pub mod exchange;

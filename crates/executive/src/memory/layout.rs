@@ -40,7 +40,7 @@ pub struct Outside {
     pub inputs: ExternalInputs,
 }
 
-/// The services of a run that no process writes.
+/// The services of a run that are not outputs of a process.
 pub(super) const OUTSIDE: &str = "outside";
 pub(super) const EXECUTIVE: &str = "executive";
 

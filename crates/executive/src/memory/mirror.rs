@@ -171,7 +171,7 @@ impl Drop for Mirror {
             thread::sleep(Duration::from_millis(1));
         }
         if thread.is_finished() {
-            // A panic of the mirror has been reported by the thread itself, and is no matter of the run.
+            // A panic of the mirror has been reported by the thread itself, and does not affect the run.
             let _ = thread.join();
         }
     }

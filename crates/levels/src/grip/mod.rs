@@ -41,12 +41,12 @@
 //! are, literally (VI.3.1): sent while a flow is on, the flow stays on, and PAUSE is done when the fingers rest.
 //!
 //! * [`site`]: where a gripper that is servoed has its buffers and sensor words;
-//! * [`state`]: what the process remembers;
+//! * [`state`]: the state;
 //! * [`goal`]: what a command asks of the fingers;
 //! * [`calibration`]: from counts to inches and pounds;
 //! * [`felt`]: what is between the fingers, as the sensors tell it;
 //! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, a file a command;
+//! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`]: valves and status.
 
 pub mod calibration;

@@ -317,7 +317,7 @@ pub fn decode(bytes: &[u8]) -> Result<Received<'_>, DecodeError> {
         return Err(DecodeError::Size(size));
     }
     for (at, expected) in FIXED {
-        // The client is its own affair, and the last field stands in a DML command only.
+        // The client is checked by itself, and only a DML command has the last field.
         if at != 8 && at < size {
             expect(bytes, at, expected)?;
         }

@@ -1,4 +1,4 @@
-//! Decision tables of E-move: what a new command needs, what is common to all commands, and a file a command.
+//! Decision tables of E-move: preconditions of a new command, rows common to all commands, and one file per command.
 //! The motion commands share one table, each with its own above it.
 
 pub mod accept;

@@ -1,5 +1,5 @@
-//! Decision tables of Prim: what a new command needs, what a motion needs of the link, a file a command, and
-//! those of every tick: what becomes of finished commands, the path clock, the record button.
+//! Decision tables of Prim: preconditions of a new command, preconditions of a motion, one file per command, and those
+//! of every tick: finished commands, the path clock, the record button.
 
 pub mod accept;
 pub mod attend;

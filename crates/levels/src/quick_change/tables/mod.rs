@@ -1,4 +1,4 @@
-//! Decision tables of Quick Change: what a new command needs, and a file a command.
+//! Decision tables of Quick Change: what a new command needs, and one file per command.
 
 pub mod accept;
 pub mod qc_lock;

@@ -1,5 +1,5 @@
-//! Decision tables of T3I: what comes from Prim, what a report of the robot controller is worth, what all
-//! commands have in common, and a file a command.
+//! Decision tables of T3I: commands from Prim, reports of the robot controller, rows common to all commands, and one
+//! file per command.
 
 pub mod pause;
 pub mod point;

@@ -1,5 +1,5 @@
-//! Decision tables of Task: the joystick box, what a new command needs, what has become of its last order,
-//! and a file a command.
+//! Decision tables of Task: the joystick box, what a new command needs, what has become of its last order, and one file
+//! per command.
 
 pub mod accept;
 pub mod acquire;

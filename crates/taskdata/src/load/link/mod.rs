@@ -216,7 +216,7 @@ impl Linker<'_> {
         }
         let wanted = name.name.as_str();
         self.unknown += 1;
-        // Its definition may be in an entry that could not be read, which is noted there; a slip of the pen included.
+        // Its definition may be in an entry that could not be read, which is noted there; also if it is misspelt.
         if self.has_elsewhere(wanted) {
             return None;
         }

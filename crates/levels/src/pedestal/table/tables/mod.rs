@@ -1,5 +1,5 @@
-//! Decision tables of the table process: what a new command needs, the calibration, what commands have in
-//! common, and a file a command.
+//! Decision tables of the table process: what a new command needs, the calibration, what commands have in common, and
+//! one file per command.
 
 pub mod accept;
 pub mod calibrate;
