@@ -450,7 +450,7 @@ fn boards_are_started_by_hand_and_strangers_are_refused() {
 
     // One that is killed while the others are still missing leaves its place to the next.
     let mut first = seated(&bench, "2", &data);
-    running.hear("board 2 is there");
+    running.hear("board 2 is ready");
     first.kill().expect("it has not been waited for");
     first.wait().expect("it can be waited for");
     running.hear("board 2 is gone");

@@ -320,7 +320,7 @@ fn a_job_without_its_pedestal_says_so() {
         .expect("rcs-run can be started");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("pedestal has not come; the run begins without it"), "{said}");
+    assert!(said.contains("pedestal has not connected; the run begins without it"), "{said}");
     let last = said.lines().last().unwrap_or_default();
     assert!(last.contains(&format!("Subtask: {SILENT}, while it executed FIX-GRIP LCLEVIS_IH")), "{last}");
     let why = Command::new(rcs_log()).arg("why").arg(&log).output().expect("rcs-log can be started");

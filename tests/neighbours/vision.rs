@@ -153,7 +153,7 @@ fn a_run_without_its_vision_says_so_and_begins() {
     let controller = Controller::start("blind", "vision", &["linkbar", "--wait", "1"]);
     let ended = controller.end();
     assert_eq!(ended.status, Some(1), "{}", ended.said);
-    assert!(ended.said.contains("vision has not come; the run begins without it"), "{}", ended.said);
+    assert!(ended.said.contains("vision has not connected; the run begins without it"), "{}", ended.said);
     assert!(
         ended.said.contains("E-move: vision does not answer, while it executed LOCATE-OBJ"),
         "{}",

@@ -176,7 +176,7 @@ impl fmt::Display for Info {
         writeln!(f, "started    {}", of("command_line"))?;
         let end = match (&self.result, self.complete) {
             (Some(result), true) => result.clone(),
-            _ => "the log has no end: the run was killed, or its log broke off".to_owned(),
+            _ => "the log has no end: the run was killed, or its log could not be written".to_owned(),
         };
         writeln!(f, "ended      {end}")?;
         writeln!(

@@ -69,7 +69,7 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
             ExitCode::SUCCESS
         }
         MemberEnd::Replaced => {
-            stderr_line!("rcs-run: {name} ends: another process has its place in {}", arguments.run);
+            stderr_line!("rcs-run: {name} ends: another process runs this board of {}", arguments.run);
             ExitCode::from(STOPPED)
         }
         MemberEnd::Orphaned => {

@@ -462,7 +462,7 @@ fn what_a_killed_run_left_is_removed_by_clean() {
         .expect("the program starts");
     wait_for(|| executive_runs(child.id()) == 1);
     let alive = rcs_run(&["clean"]);
-    assert!(stdout(&alive).contains(&format!("linkbar-{} is alive", child.id())), "{}", stdout(&alive));
+    assert!(stdout(&alive).contains(&format!("linkbar-{} is running", child.id())), "{}", stdout(&alive));
     child.kill().unwrap();
     child.wait().unwrap();
     // A run of another test may clean up already when it starts; what counts is that nothing is left.

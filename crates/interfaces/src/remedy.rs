@@ -67,10 +67,10 @@ impl Reason {
             | Self::PedestalCannot
             | Self::TableLimit
             | Self::InterfaceRefused => "correct the command in the job, or the task data",
-            Self::NeighbourLost | Self::InterfaceSilent => "start the process that is lost again",
+            Self::NeighbourLost | Self::InterfaceSilent => "restart the lost process",
             Self::JoystickOn => "switch the frame at the joystick box off",
             Self::UnknownStart => "move the robot to one of the known places with the joystick box",
-            Self::RobotElsewhere => "look where the robot is; PAUSE takes its position over",
+            Self::RobotElsewhere => "check where the robot is; PAUSE takes its position over",
             Self::LinkOff => {
                 "press Hold again or cycle start at the robot controller's panel, if it shows HOLD; \
                  else start it up there"
@@ -93,7 +93,7 @@ impl Reason {
                 "send the command that regrips the part again, or open the hand at the pedestal"
             }
             Self::PedestalHoldsOther | Self::HandUncertain => {
-                "look what is in the pedestal's hand, and open it at the pedestal"
+                "check what is in the pedestal's hand, and open it at the pedestal"
             }
             Self::HandLost => "take the object out of the pedestal, and put it back to its place",
             Self::HandNotCalibrated | Self::TableAngleUnknown => "calibrate the Active Pedestal",

@@ -30,12 +30,12 @@ use crate::{
 
 /// What a walk cannot check.
 pub const NOT_CHECKED: [&str; 6] = [
-    "where a guarded move ends: its joints are checked over its whole length, its clearance is not",
-    "slip of a part in the fingers, and how a part comes to lie that is dropped or pushed",
+    "where a guarded move ends: joints are checked over its whole length, clearances are not",
+    "slip of a part in the fingers, and the position of a part that is dropped or pushed",
     "commands of another workstation controller",
     "a start after the joystick, an emergency stop, a retry or PAUSE away from the points of a route",
     "faults of sensors, valves and the link",
-    "the lag of the resolvers; that of the servos is walked with",
+    "the lag of the resolvers; the lag of the servos is included",
 ];
 /// Distance within which the robot counts as being at a location point at the start, in.
 const STANDS: f64 = 0.5;

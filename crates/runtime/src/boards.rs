@@ -133,7 +133,7 @@ impl Controller {
         if config.boards != Boards::Manual {
             return false;
         }
-        observer.message(&format!("{lost}; the robot waits for another to take its place:"));
+        observer.message(&format!("{lost}; the robot waits for a replacement:"));
         observer.message(&format!("  {}", command_line(config, coordinator.name(), lost.board)));
         let came = coordinator.await_successor(lost, patience(config), &config.stop, |event, missing| {
             announce(event, missing, observer);
@@ -196,10 +196,10 @@ fn announce(event: BoardEvent, missing: &[Board], observer: &mut dyn Observer) {
     };
     match event {
         BoardEvent::Came { board, pid } => {
-            observer.message(&format!("{board} is there (process {pid}); {rest}"));
+            observer.message(&format!("{board} is ready (process {pid}); {rest}"));
         }
         BoardEvent::Left { board, pid } => {
-            observer.message(&format!("{board} is gone (process {pid}); {rest}"));
+            observer.message(&format!("{board} has ended (process {pid}); {rest}"));
         }
     }
 }

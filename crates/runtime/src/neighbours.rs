@@ -131,7 +131,7 @@ impl Neighbours {
                 }
                 for handle in missing {
                     let role = handle.role();
-                    observer.message(&format!("{role} has not come; the run begins without it"));
+                    observer.message(&format!("{role} has not connected; the run begins without it"));
                 }
                 return Ok(());
             }

@@ -120,7 +120,7 @@ impl Lost {
             format!("while {doing}")
         };
         format!(
-            "{self}, {doing}; there is no pulse without it: the robot gets no further point, what is held stays held"
+            "{self}, {doing}; without it there is no pulse: the robot gets no further point, grippers keep what they hold"
         )
     }
 }
