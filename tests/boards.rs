@@ -453,7 +453,7 @@ fn boards_are_started_by_hand_and_strangers_are_refused() {
     running.hear("board 2 is ready");
     first.kill().expect("it has not been waited for");
     first.wait().expect("it can be waited for");
-    running.hear("board 2 is gone");
+    running.hear("board 2 has ended");
     // What a console shows meanwhile.
     let there = || {
         let boards = coming_up(&bench.name)?;

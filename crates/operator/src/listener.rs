@@ -129,7 +129,7 @@ fn end(stream: &UnixStream) {
     let _ = stream.shutdown(std::net::Shutdown::Both);
 }
 
-/// Where operators come in who have proved who they are in another way than by their user.
+/// Opens sessions for operators that were authenticated otherwise than by their user, as by a certificate.
 #[derive(Clone)]
 pub struct Entrance {
     sessions: Arc<Sessions>,

@@ -225,13 +225,13 @@ impl Peer {
         let (ours, theirs) = UnixStream::pair()?;
         let thread = thread::Builder::new().name("operator".into()).spawn(move || {
             let unread = self.session.take_unread();
-            // Why it ends is nothing to the client, which sees the end of its stream.
+            // The client sees the end of its stream, whatever the reason.
             let _ = carry(&mut self.channel, &theirs, unread, None);
         })?;
         Ok((ours, Carrier::of(thread)))
     }
 
-    /// What comes next.
+    /// Wait for the next message.
     ///
     /// # Errors
     /// [`PeerError`] if the connection ends.

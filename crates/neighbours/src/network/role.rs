@@ -1,4 +1,4 @@
-//! Who may connect, and which mailboxes each has.
+//! The roles of those that connect, and the mailboxes of each.
 
 use std::{fmt, str::FromStr};
 
@@ -8,7 +8,7 @@ use crate::mailbox::{
     PEDESTAL_TABLE_STATUS, Place, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE,
 };
 
-/// Who connects: a neighbour of the controller, or an operator. The number stands in the hello.
+/// What connects: a neighbour of the controller, or an operator. The hello contains the number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u16)]
 pub enum Role {
@@ -25,7 +25,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// All who may connect.
+    /// All roles.
     pub const ALL: [Self; 5] =
         [Self::Workstation, Self::DataSystem, Self::Pedestal, Self::Vision, Self::Operator];
 
@@ -81,7 +81,7 @@ impl fmt::Display for Role {
     }
 }
 
-/// A word that is no role.
+/// A word that does not name a role.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{} was expected, found {found}", Role::ALL.map(Role::text).join(" or "))]
 pub struct UnknownRole {

@@ -113,7 +113,7 @@ impl Server {
         Ok(Connection { channel, session: Session::controller(self.clock, Instant::now()) })
     }
 
-    /// A session for who asks for admission, if it may have one.
+    /// Open a session for a client that asks for one, if it is permitted.
     fn admit(&self, role: Role, channel: &Channel) -> Result<Admitted<'_>, String> {
         if let Some(keys) = &self.keys {
             let certificate = channel.certificate().ok_or("the neighbour has no certificate")?;
@@ -131,7 +131,7 @@ impl Server {
     }
 }
 
-/// Who was admitted.
+/// An admitted client.
 enum Admitted<'a> {
     Neighbour(Link),
     /// With the stream on which the run listens to the operator.
