@@ -467,7 +467,7 @@ fn boards_are_started_by_hand_and_strangers_are_refused() {
     };
     assert_eq!(there(), Some(Vec::new()));
     let mut boards = vec![seated(&bench, "6", &data)];
-    running.hear("board 6 is there");
+    running.hear("board 6 is ready");
     assert_eq!(there(), Some(vec![6]));
     boards.extend(["2", "4", "8"].iter().map(|number| seated(&bench, number, &data)));
     running.hear("all are there");

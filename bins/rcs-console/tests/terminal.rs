@@ -449,7 +449,7 @@ fn a_run_whose_boards_come_up_is_waited_for() {
     console.wait_for("board 4   MISSING    T3 Interface");
     stop.store(true, Ordering::Relaxed);
     assert!(run.join().unwrap(), "it was interrupted");
-    console.wait_for("Nothing runs on this machine");
+    console.wait_for("There is no run on this machine");
     console.press("q");
     assert_eq!(console.end(), Some(0));
 }

@@ -395,7 +395,7 @@ fn a_block_is_loaded_while_the_link_to_a_robot_runs() {
         ask("line-load 863 5 5", "command ");
         // A block with an error is told, and changes nothing.
         fs::write(&commands, text.replace(safe, "== NONSENSE\n")).unwrap();
-        ask("load 16000 863", "the task data have errors with it");
+        ask("load 16000 863", "the task data have errors");
         ask("line-load 863 5 5", "command ");
         send(&child, Signal::TERM);
         let output = child.wait_with_output().unwrap();
