@@ -27,14 +27,15 @@ pub fn with_control(event: &Event) -> Option<char> {
     }
 }
 
-/// The terminal, empty: the next picture is drawn as a whole. (`Terminal::clear` asks the terminal where its cursor is.)
+/// Clear the terminal, so that the next picture is drawn as a whole. `Terminal::clear` would wait for the terminal to
+/// report its cursor.
 pub fn cleared() -> io::Result<DefaultTerminal> {
     execute!(io::stdout(), Clear(ClearType::All))?;
     DefaultTerminal::new(CrosstermBackend::new(io::stdout()))
 }
 
-/// Give the terminal back to the shell until it continues this program. The run hears nothing meanwhile, so that it lets
-/// go of stick and buttons.
+/// Give the terminal back to the shell until it continues this program. The console sends nothing meanwhile, so the run
+/// releases stick and buttons.
 pub fn suspended(terminal: DefaultTerminal) -> Result<DefaultTerminal, ConsoleError> {
     drop(terminal);
     ratatui::try_restore().map_err(ConsoleError::Terminal)?;

@@ -170,13 +170,11 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A run in real time, in a thread of its own, and what ends it.
-fn run(
-    name: &str,
-    log: &Path,
-    job: &str,
-    speed: u8,
-) -> (thread::JoinHandle<Vec<&'static str>>, Arc<AtomicBool>) {
+/// A run in a thread of its own, which returns the outcome of each step; and what ends it.
+type Running = (thread::JoinHandle<Vec<&'static str>>, Arc<AtomicBool>);
+
+/// A run in real time, `speed` times as fast.
+fn run(name: &str, log: &Path, job: &str, speed: u8) -> Running {
     let data = shipped();
     let config = RunConfig {
         clock: ClockKind::Real,
@@ -188,11 +186,25 @@ fn run(
     begin(config)
 }
 
+/// A run in real time, `speed` times as fast, whose job of one command waits for an operator; its data are `data`.
+fn waiting_run(directory: &Path, data: &Path, name: &str, speed: u8) -> Running {
+    let job = directory.join("safe.job");
+    std::fs::write(&job, TO_SAFE).unwrap();
+    begin(RunConfig {
+        clock: ClockKind::Real,
+        speed,
+        stand_by: true,
+        name: Some(name.parse().unwrap()),
+        log: LogTarget::File(directory.join("run.mcap")),
+        ..RunConfig::new(data, job.to_string_lossy())
+    })
+}
+
 fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data")
 }
 
-fn begin(config: RunConfig) -> (thread::JoinHandle<Vec<&'static str>>, Arc<AtomicBool>) {
+fn begin(config: RunConfig) -> Running {
     let name = config.name.clone().unwrap();
     let stop = Arc::clone(&config.stop);
     let run = thread::spawn(move || {
@@ -339,8 +351,8 @@ fn own_data(directory: &Path) -> PathBuf {
     data
 }
 
-/// Lead the robot up with the joystick box, record the pose there as VIA-1 of block 610, and lead the robot down again; with a
-/// pause between the keys.
+/// Lead the robot up with the joystick box, record the pose there as VIA-1 of block 610, and lead the robot down again;
+/// with a pause between the keys.
 fn teach(console: &mut Terminal, pause: Duration) {
     thread::sleep(pause);
     console.press("6ssw");
@@ -386,22 +398,13 @@ fn teach(console: &mut Terminal, pause: Duration) {
     console.wait_for("generation 1");
 }
 
-/// III.3.3: a via point is taught with the joystick box, a route is changed to lead through it, and the job goes that way.
+/// III.3.3: a via point is taught with the joystick box, a trajectory is changed to lead through it, and the job uses it.
 #[test]
 fn a_via_point_is_taught_and_the_job_goes_through_it() {
     let directory = tempfile::tempdir().unwrap();
     let data = own_data(directory.path());
-    let job = directory.path().join("safe.job");
-    std::fs::write(&job, TO_SAFE).unwrap();
     let name = format!("taught-{}", std::process::id());
-    let (run, _) = begin(RunConfig {
-        clock: ClockKind::Real,
-        speed: 10,
-        stand_by: true,
-        name: Some(name.parse().unwrap()),
-        log: LogTarget::File(directory.path().join("taught.mcap")),
-        ..RunConfig::new(&data, job.to_string_lossy())
-    });
+    let (run, _) = waiting_run(directory.path(), &data, &name, 10);
     let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);
     console.wait_for("JOB WAITS");
     teach(&mut console, Duration::ZERO);

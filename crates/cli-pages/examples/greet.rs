@@ -3,11 +3,11 @@
 
 use clap::Parser;
 
-/// Greet somebody.
+/// Greet a person by name
 #[derive(Parser)]
 #[command(name = "greet")]
 struct Cli {
-    /// Whom
+    /// Name of the person
     name: String,
 }
 

@@ -176,7 +176,7 @@ impl Sessions {
                 thread::sleep(SILENCE);
                 continue;
             };
-            // If the thread cannot be had, the client sees the end of its session.
+            // If the thread cannot be started, the client sees the end of its session.
             let stream = Arc::new(stream);
             let _ = match check_user(&stream) {
                 Ok(()) => self.admit(stream, String::new()),

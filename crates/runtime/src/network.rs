@@ -16,11 +16,11 @@ use crate::{
 
 /// The network of a run, as long as it lasts.
 pub struct Network {
-    /// Which neighbours may come.
+    /// Endpoints of the neighbours that may connect.
     pub handles: Vec<EndpointHandle>,
-    /// Operators, if they may come, and what happens with them.
+    /// Operators, if they may connect, and the events of their connections.
     operators: Option<(Operators, Receiver<NetEvent>)>,
-    /// Lets them in.
+    /// Accepts connections.
     _listener: Listener,
 }
 
@@ -28,7 +28,7 @@ impl Network {
     /// Listen where a configuration says, if it names an address.
     ///
     /// # Errors
-    /// [`StartError`] if its options do not fit together, or the address cannot be had.
+    /// [`StartError`] if its options do not fit together, or the address cannot be used.
     pub fn start(
         config: &RunConfig,
         endpoints: &[&Endpoint],
@@ -54,14 +54,14 @@ impl Network {
         Ok(Some(Self { handles, operators, _listener: listener }))
     }
 
-    /// The run has begun: operators are let in.
+    /// The run has begun: from now on operators are admitted.
     pub fn let_operators_in(&self, enter: impl Fn() -> io::Result<UnixStream> + Send + Sync + 'static) {
         if let Some((operators, _)) = &self.operators {
             operators.open(enter);
         }
     }
 
-    /// What has happened with operators since the last call.
+    /// Events of operators' connections since the last call.
     pub fn events(&self) -> impl Iterator<Item = NetEvent> {
         self.operators.iter().flat_map(|(_, events)| events.try_iter())
     }

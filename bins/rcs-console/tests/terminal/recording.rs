@@ -97,17 +97,8 @@ fn a_recording_shows_the_start_up_of_the_robot_and_a_taught_point() {
     let (speed, pause) = if file.is_some() { (5, Duration::from_millis(900)) } else { (10, Duration::ZERO) };
     let directory = tempfile::tempdir().unwrap();
     let data = own_data(directory.path());
-    let job = directory.path().join("safe.job");
-    std::fs::write(&job, TO_SAFE).unwrap();
     let name = format!("recorded-{}", std::process::id());
-    let (run, stop) = begin(RunConfig {
-        clock: ClockKind::Real,
-        speed,
-        stand_by: true,
-        name: Some(name.parse().unwrap()),
-        log: LogTarget::File(directory.path().join("recorded.mcap")),
-        ..RunConfig::new(&data, job.to_string_lossy())
-    });
+    let (run, stop) = waiting_run(directory.path(), &data, &name, speed);
     // A run begins with the robot under control: the power goes first.
     let socket = executive::memory::operator_socket(&name.parse().unwrap());
     let mut before = Client::connect(&socket, &"before".parse().unwrap()).unwrap();

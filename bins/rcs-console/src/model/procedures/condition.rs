@@ -190,8 +190,8 @@ impl Sight<'_> {
         status.resolver_frame.unwrap_or(status.frame_feedback)
     }
 
-    /// What Prim gets as the present frame, and what it gives (IV.3.3 step 13). A Prim that has taken its position over,
-    /// and has sent no point yet, gives it as its present pose.
+    /// The present frame that Prim reads, and the frame that Prim writes (IV.3.3 step 13). After ROBOT-INIT, before its
+    /// first point, Prim has not written one: its present pose counts.
     pub(super) fn prim_frames(&self) -> (WireFrame, WireFrame) {
         let memory = &self.picture.memory;
         let present = memory.prim.status.present_pose.and_then(|number| memory.changing_pose(number));
