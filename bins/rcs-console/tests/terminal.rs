@@ -398,7 +398,7 @@ fn teach(console: &mut Terminal, pause: Duration) {
     console.wait_for("generation 1");
 }
 
-/// III.3.3: a via point is taught with the joystick box, a trajectory is changed to lead through it, and the job uses it.
+/// III.3.3: a via point is taught with the joystick box, a trajectory is led through it, and the job uses it.
 #[test]
 fn a_via_point_is_taught_and_the_job_goes_through_it() {
     let directory = tempfile::tempdir().unwrap();

@@ -32,11 +32,11 @@ fn connect(arguments: &SendArguments) -> Result<Client, Error> {
     Ok(Client::over(stream, carrier, &arguments.name)?)
 }
 
-/// Ask for one line after the other, and print the answers. A refusal ends it with exit status 1.
+/// Send one request after the other, and print the answers. A refused request ends this with exit status 1.
 ///
 /// # Errors
-/// [`Error::Operator`] if the run takes no operator, [`Error::Network`] if it cannot be reached at its address, [`Error::SharedMemory`] and [`Error::WhichRun`] if it is not
-/// clear which run is meant.
+/// [`Error::Operator`] if the run takes no operator, [`Error::Network`] if it cannot be reached at its address,
+/// [`Error::SharedMemory`] and [`Error::WhichRun`] if it is not clear which run is meant.
 pub fn send(arguments: &SendArguments) -> Result<ExitCode, Error> {
     let mut client = connect(arguments)?;
     for line in &arguments.lines {

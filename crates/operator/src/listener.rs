@@ -136,8 +136,8 @@ pub struct Entrance {
 }
 
 impl Entrance {
-    /// Begin a session; the other end of it. In the log its name has `netN.` in front, N counted from 1, so that it is no
-    /// other session's.
+    /// Begin a session, and return the other end of its stream. In the log its name begins with `netN.`, N counted from
+    /// 1, so that no other session has the same name.
     ///
     /// # Errors
     /// What the system says, or that the run is over.

@@ -62,8 +62,8 @@ pub enum Board {
     Eight,
 }
 
-/// The boards of a run that has not begun because it waits for them, each with whether its program is there; none of any
-/// other run.
+/// The boards of a run that waits for its boards, each with whether its process has joined; none if the run does not
+/// exist or has begun.
 #[must_use]
 pub fn coming_up(name: &RunName) -> Option<Vec<(Board, bool)>> {
     let is_there = |role| memory::is_there(name, role);

@@ -1,6 +1,7 @@
 //! The bytes by which states are told apart.
 //!
-//! Of a time counts whether it is over the limit, and of the time of a command its age while an echo may be due. Which row has decided counts for nobody but people. A counter counts up to where it matters.
+//! A time enters as whether it is over its limit; the time of a command as its age, while an echo may be due. A counter
+//! enters up to the value from which on it makes no difference. The row that fired is left out: no process reads it.
 
 use rcs_core::{
     Plain,

@@ -194,8 +194,8 @@ impl<'a> Interpreter<'a> {
         }
         if word == "<=" {
             return Err(
-                "a buffer has one writer, its process: what a person may change are commands, the joystick \
-                        box, and the blocks of the task data"
+                "values cannot be written into buffers: use commands, the joystick box, or the blocks of the \
+                 task data"
                     .to_owned(),
             );
         }
@@ -362,7 +362,7 @@ mod tests {
             (4, "TDEF", "word of board 6"),
             (6, "NONSENSE", "not a word of the terminal"),
             (6, "BOARD 3", "BOARD 0, 2, 4, 6, 8 or 12"),
-            (6, ":S command-in <= MOVE", "one writer"),
+            (6, ":S command-in <= MOVE", "values cannot be written into buffers"),
         ] {
             let mut bench = Bench::new(board);
             let outcome = bench.enter(line);
