@@ -8,6 +8,7 @@ mod between_machines;
 mod data_system;
 mod ends;
 mod hung;
+mod loading;
 mod operators;
 mod pedestal;
 mod python;

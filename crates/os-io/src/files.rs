@@ -61,6 +61,16 @@ pub fn is_file(path: &Path) -> bool {
     carried::inside(path).map_or_else(|| path.is_file(), |inside| carried::read(inside).is_ok())
 }
 
+/// Whether a path below a directory still lies in it when all symbolic links are followed.
+#[must_use]
+pub fn lies_in(path: &Path, directory: &Path) -> bool {
+    if carried::inside(directory).is_some() {
+        return path.starts_with(directory);
+    }
+    let real = directory.canonicalize().and_then(|directory| Ok((path.canonicalize()?, directory)));
+    real.is_ok_and(|(path, directory)| path.starts_with(directory))
+}
+
 /// The paths of what is in a directory, sorted.
 ///
 /// # Errors
@@ -172,6 +182,23 @@ mod tests {
         let link = place.path().join("l");
         std::os::unix::fs::symlink(&file, &link).unwrap();
         assert_eq!(read_text(&link).unwrap(), "text");
+    }
+
+    #[test]
+    fn a_link_out_of_a_directory_does_not_lie_in_it() {
+        let (place, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let (inside, outside) = (place.path().join("in.blk"), other.path().join("out.blk"));
+        fs::write(&inside, "").unwrap();
+        fs::write(&outside, "").unwrap();
+        let link = |name: &str, to: &Path| {
+            let link = place.path().join(name);
+            std::os::unix::fs::symlink(to, &link).unwrap();
+            link
+        };
+        let lies = |path: &Path| lies_in(path, place.path());
+        assert!(lies(&inside) && lies(&link("a.blk", &inside)));
+        assert!(!lies(&outside) && !lies(&link("b.blk", &outside)) && !lies(&place.path().join("none.blk")));
+        assert!(!lies(&link("folder", other.path()).join("out.blk")));
     }
 
     #[test]

@@ -20,7 +20,7 @@ use neighbours::{
     },
 };
 use rcs_core::tick::Tick;
-use taskdata::load::Store;
+use taskdata::load::{BlockNumber, Store};
 
 use crate::{
     event::Event,
@@ -166,6 +166,30 @@ impl Neighbours {
     #[must_use]
     pub fn is_stand_alone(&self) -> bool {
         matches!(&self.workstation, WorkstationSource::Outside(commanded) if commanded.is_stand_alone())
+    }
+
+    /// The workstation controller in another process, if one can connect.
+    fn outside(&mut self) -> Option<&mut OutsideWorkstation> {
+        match &mut self.workstation {
+            WorkstationSource::Emulator(_) => None,
+            WorkstationSource::Outside(commanded) => Some(&mut commanded.outside),
+            WorkstationSource::Switched(switched) => Some(switched.outside()),
+        }
+    }
+
+    /// The block that the workstation controller has asked for in this tick, and its line.
+    pub fn load_asked(&mut self) -> Option<(BlockNumber, String)> {
+        self.outside()?.load_asked()
+    }
+
+    /// Its load is over; why it was refused.
+    pub fn load_answered(&mut self, refused: Option<String>) {
+        if let Some(why) = &refused {
+            self.events.push(Event::CellLineRefused(why.clone()));
+        }
+        if let Some(outside) = self.outside() {
+            outside.load_answered(refused);
+        }
     }
 
     /// Take over from the workstation controller; `now`: also in the middle of a command.

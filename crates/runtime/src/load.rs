@@ -1,5 +1,9 @@
 //! LOAD during a run (IV.2.4): a block of the run's data directory, as the file is now, becomes part of the task data
-//! before the next command. First all boards check the whole data with the block.
+//! before the next command. First all boards check the whole data with the block. An operator asks for it, or the
+//! workstation controller with a line for the cell.
+//!
+//! On the 40 ms grid the data are checked beside the ticks. In fast clock the next tick waits for it, so that a run does
+//! not depend on how fast the machine is.
 //!
 //! The log keeps the text, so that a replay, and a repetition with the same inputs, load the same block.
 
@@ -14,7 +18,7 @@ use executive::{
     memory::load_file,
 };
 use rcs_core::tick::{TICK_MS, Tick};
-use taskdata::load::{BlockNumber, Source};
+use taskdata::load::{BlockNumber, Diagnostics, Source};
 
 use crate::{
     Run,
@@ -39,10 +43,14 @@ pub enum LoadError {
     Loading,
     /// The data directory has no such block.
     NoBlock(BlockNumber),
+    /// A symbolic link leads from this file out of the data directory.
+    Outside(String),
     /// The log whose inputs are replayed does not have the text.
     NotRecorded,
+    /// The log says that it was refused.
+    Recorded(String),
     /// With the block the data have errors.
-    Data(String),
+    Data(Box<Diagnostics>),
     /// The job has loaded blocks meanwhile, or waits for the end of a command with some.
     Reload,
     /// The file for the boards cannot be written.
@@ -63,7 +71,12 @@ impl fmt::Display for LoadError {
             }
             Self::Loading => f.write_str("another block is being checked: ask again when that is answered"),
             Self::NoBlock(block) => write!(f, "the run's data directory has no {block}"),
+            Self::Outside(file) => write!(
+                f,
+                "{file} is a link to a file outside of the run's data directory: a block of that directory was expected"
+            ),
             Self::NotRecorded => f.write_str("the log has no text of the block"),
+            Self::Recorded(why) => f.write_str(why),
             Self::Data(report) => write!(f, "with this change the task data have errors:\n{report}"),
             Self::Reload => f.write_str("the job loads blocks at this moment: ask again"),
             Self::Write(error) => write!(f, "the blocks for the boards cannot be written: {error}"),
@@ -83,10 +96,42 @@ impl fmt::Display for LoadError {
     }
 }
 
-/// Loads and jobs that operators have asked for during a run.
+impl LoadError {
+    /// The same in one line.
+    #[must_use]
+    pub fn in_line(&self) -> String {
+        match self {
+            Self::Data(report) => format!("with this change the task data have errors: {}", report.in_line()),
+            other => other.to_string(),
+        }
+    }
+}
+
+/// Who has asked for a load, and gets the answer.
+pub enum Asker {
+    /// An operator.
+    Operator(Input),
+    /// The workstation controller, with this line for the cell.
+    Workstation(String),
+}
+
+/// An answered load.
+pub type Answer = (Asker, Result<String, LoadError>);
+
+/// `load OFFSET BLOCK` (IV.2.4); none if the words begin something else. With another word behind it, it is a line of a
+/// job, which says what is wrong.
+#[must_use]
+pub fn asked(words: &[&str]) -> Option<Result<BlockNumber, String>> {
+    let ["load", offset, block] = words else { return None };
+    let numbers = offset.parse().ok().zip(block.parse().ok());
+    let expected = || "load OFFSET BLOCK was expected, such as load 21000 610".to_owned();
+    Some(numbers.map(|(offset, number)| BlockNumber { offset, number }).ok_or_else(expected))
+}
+
+/// Loads and jobs that were asked for during a run.
 #[derive(Default)]
 pub struct Loads {
-    /// Thread that reads and checks; none where no operator can connect.
+    /// Thread that reads and checks beside the ticks; none in fast clock.
     loader: Option<Loader>,
     loading: Option<Loading>,
     /// Number of the last load that was announced to boards in other processes.
@@ -107,17 +152,11 @@ impl Loads {
     pub const fn is_loading(&self) -> bool {
         self.loading.is_some()
     }
-
-    /// Blocks can be checked beside the ticks.
-    #[must_use]
-    pub const fn can_load(&self) -> bool {
-        self.loader.is_some()
-    }
 }
 
 /// A load that was asked for and is not answered yet.
 struct Loading {
-    input: Input,
+    asker: Asker,
     number: BlockNumber,
     stage: Stage,
 }
@@ -131,59 +170,63 @@ enum Stage {
 
 impl Run {
     /// Whether a block can be loaded now.
-    ///
-    /// # Errors
-    /// Why not.
-    pub(crate) fn can_load(&self) -> Result<(), LoadError> {
+    fn can_load(&self) -> Result<(), LoadError> {
         if self.loads.loading.is_some() {
             return Err(LoadError::Loading);
         }
         if generations::is_busy(self.runner.memory()) { Err(LoadError::Busy) } else { Ok(()) }
     }
 
-    /// Begin to load a block beside the ticks; the input is answered later.
-    pub(crate) fn begin_load(&mut self, number: BlockNumber, input: Input) {
-        let order = self.order(number, None);
+    /// Load a block. Beside the ticks it only begins, and is answered later by [`Run::follow_load`].
+    pub(crate) fn load(&mut self, number: BlockNumber, asker: Asker) -> Option<Answer> {
+        if let Err(why) = self.can_load() {
+            return Some((asker, Err(why)));
+        }
+        let inside = matches!(asker, Asker::Workstation(_));
+        if self.loads.loader.is_none() {
+            return Some((asker, self.load_at_once(number, inside)));
+        }
+        let order = self.order(number, None, inside);
         if let Some(loader) = &self.loads.loader {
             loader.begin(order);
         }
-        self.loads.loading = Some(Loading { input, number, stage: Stage::Checking });
+        self.loads.loading = Some(Loading { asker, number, stage: Stage::Checking });
+        None
     }
 
-    /// Once between two ticks: the result of the load in progress, with the input that asked for it.
-    pub(crate) fn follow_load(&mut self, tick: Tick) -> Option<(Input, Result<String, LoadError>)> {
-        let Loading { input, number, stage } = self.loads.loading.take()?;
+    /// Once between two ticks: the result of the load in progress, with who asked for it.
+    pub(crate) fn follow_load(&mut self, tick: Tick) -> Option<Answer> {
+        let Loading { asker, number, stage } = self.loads.loading.take()?;
         let stage = match stage {
             Stage::Checking => match self.loads.loader.as_ref()?.look() {
                 None => Stage::Checking,
-                Some(Err(why)) => return Some((input, Err(why))),
+                Some(Err(why)) => return Some((asker, Err(why))),
                 Some(Ok(loaded)) => {
                     let Some(load) = self.announce() else {
-                        return Some((input, self.take_up(number, loaded)));
+                        return Some((asker, self.take_up(number, loaded)));
                     };
                     self.loads.last = load;
                     Stage::Announced { loaded, since: tick }
                 }
             },
             Stage::Announced { loaded, since } => match self.boards_have_checked(&loaded) {
-                Ok(true) => return Some((input, self.take_up(number, loaded))),
+                Ok(true) => return Some((asker, self.take_up(number, loaded))),
                 Ok(false) if tick.since(since) < BOARDS_LIMIT => Stage::Announced { loaded, since },
-                Ok(false) => return Some((input, Err(self.take_back(LoadError::Late)))),
-                Err(board) => return Some((input, Err(self.take_back(LoadError::Differs(board))))),
+                Ok(false) => return Some((asker, Err(self.take_back(LoadError::Late)))),
+                Err(board) => return Some((asker, Err(self.take_back(LoadError::Differs(board))))),
             },
         };
-        self.loads.loading = Some(Loading { input, number, stage });
+        self.loads.loading = Some(Loading { asker, number, stage });
         None
     }
 
-    /// Load a block before the next tick, as a log has it.
-    ///
-    /// # Errors
-    /// [`LoadError`]; then nothing has changed.
-    pub(crate) fn load_recorded(&mut self, number: BlockNumber) -> Result<String, LoadError> {
-        let recorded = self.asked.recorded_block(self.generations.number().saturating_add(1));
-        let source = recorded.ok_or(LoadError::NotRecorded)?;
-        let loaded = self.order(number, Some(source)).carry_out()?;
+    /// Load a block before the next tick; in a repetition as the log has it.
+    fn load_at_once(&mut self, number: BlockNumber, inside: bool) -> Result<String, LoadError> {
+        let source = match self.asked.recorded_block(self.generations.number().saturating_add(1)) {
+            Some(recorded) => Some(recorded.ok_or(LoadError::NotRecorded)?),
+            None => None,
+        };
+        let loaded = self.order(number, source, inside).carry_out()?;
         if let Some(load) = self.announce() {
             self.loads.last = load;
             let begun = Instant::now();
@@ -199,7 +242,7 @@ impl Run {
         self.take_up(number, loaded)
     }
 
-    fn order(&self, number: BlockNumber, source: Option<Source>) -> Order {
+    fn order(&self, number: BlockNumber, source: Option<Source>, inside: bool) -> Order {
         let is_split = matches!(self.runner.levels(), Controller::Split(_));
         Order {
             number,
@@ -209,6 +252,7 @@ impl Run {
             reloads: self.job.reloads.clone(),
             done: self.generations_done(),
             file: is_split.then(|| load_file(&self.name, self.loads.last.saturating_add(1))),
+            inside,
         }
     }
 

@@ -27,6 +27,7 @@ use executive::{
     boards::{BoardData, Checked, Fingerprint},
     memory::{RunName, load_file},
 };
+use os_io::files;
 use rcs_core::Plain as _;
 use taskdata::{
     files::TaskData,
@@ -86,6 +87,8 @@ pub struct Order {
     pub done: usize,
     /// Where the boards of other processes read it.
     pub file: Option<PathBuf>,
+    /// A symbolic link may not lead out of the directory.
+    pub inside: bool,
 }
 
 impl Order {
@@ -94,11 +97,14 @@ impl Order {
     /// # Errors
     /// [`LoadError`].
     pub fn carry_out(self) -> Result<Loaded, LoadError> {
-        let Self { number, source, directory, base, reloads, done, file } = self;
+        let Self { number, source, directory, base, reloads, done, file, inside } = self;
+        let is_recorded = source.is_some();
         let read = || read_blocks_under(&directory).0.iter().find_map(|file| cut(file, number));
         let source = source.or_else(read).ok_or(LoadError::NoBlock(number))?;
-        let reloads =
-            insert(&base, &reloads, done, &source).map_err(|report| LoadError::Data(report.render(false)))?;
+        if inside && !is_recorded && !files::lies_in(&directory.join(&source.name), &directory) {
+            return Err(LoadError::Outside(source.name));
+        }
+        let reloads = insert(&base, &reloads, done, &source).map_err(LoadError::Data)?;
         let data = reloads.get(done).map_or(0, |reload| fingerprint(&reload.store));
         if let Some(path) = &file {
             write(path, done, &source).map_err(LoadError::Write)?;

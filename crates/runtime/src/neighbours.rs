@@ -76,7 +76,7 @@ pub struct Neighbours {
     vision: Option<vision::Port>,
     /// Accepts neighbours during the run; `None` if no neighbour is another process.
     pub(crate) network: Option<Network>,
-    events: Vec<Event>,
+    pub(crate) events: Vec<Event>,
     /// No more commands are given.
     is_ending: bool,
 }

@@ -15,9 +15,9 @@ use neighbours::{
     },
 };
 use rcs_core::{name::Name16, tick::Tick};
-use taskdata::load::{Store, job};
+use taskdata::load::{BlockNumber, Store, job};
 
-use crate::{event::Event, workstation::SimulatedWorkstation};
+use crate::{event::Event, load, workstation::SimulatedWorkstation};
 
 /// Commands that a run remembers; a run of a year must not fill the memory.
 const REMEMBERED: usize = 10_000;
@@ -31,6 +31,10 @@ pub struct OutsideWorkstation {
     line: u16,
     /// Why it was refused.
     refused: Option<String>,
+    /// The block that it asks for, until the run begins to load it.
+    load: Option<(BlockNumber, String)>,
+    /// Number of the line whose load is not answered yet.
+    loading: Option<u16>,
     begun_steps: Vec<BegunStep>,
     began: Tick,
     /// It has been connected in a tick.
@@ -50,6 +54,8 @@ impl OutsideWorkstation {
             line_read: 0,
             line: 0,
             refused: None,
+            load: None,
+            loading: None,
             begun_steps: Vec::new(),
             began: Tick::BEFORE_START,
             came: false,
@@ -95,6 +101,18 @@ impl OutsideWorkstation {
         std::mem::take(&mut self.begun_steps)
     }
 
+    /// The block that a line of this tick asks for, and the line.
+    pub const fn load_asked(&mut self) -> Option<(BlockNumber, String)> {
+        self.load.take()
+    }
+
+    /// The load is over; why it was refused. A newer line, or another workstation controller, does not get the answer.
+    pub fn load_answered(&mut self, refused: Option<String>) {
+        if self.loading.take() == Some(self.line) {
+            self.refused = refused;
+        }
+    }
+
     /// Once a tick while an operator or the job commands: it may connect and disconnect, reads no status, and its
     /// commands are not read.
     pub fn attend(&mut self, tick: Tick, events: &mut Vec<Event>) {
@@ -114,7 +132,7 @@ impl OutsideWorkstation {
             events.push(Event::Network(event));
         }
         if presence.new {
-            (self.line_read, self.line, self.refused) = (0, 0, None);
+            (self.line_read, self.line, self.refused, self.loading) = (0, 0, None, None);
         }
         self.here = presence.connected;
         presence
@@ -213,7 +231,8 @@ impl OutsideWorkstation {
             (None, None, Some(text)) => (Trouble::Refused, text.as_str()),
             (None, None, None) => (Trouble::None, ""),
         };
-        let status = CellStatus { echo: self.line, busy: workstation.busy(), trouble, text }.encode();
+        let busy = workstation.busy() || self.loading.is_some();
+        let status = CellStatus { echo: self.line, busy, trouble, text }.encode();
         let mailbox = self.endpoint.outgoing(CELL_STATUS);
         if mailbox.data() != status
             && let Err(error) = mailbox.write(&status)
@@ -234,17 +253,32 @@ impl OutsideWorkstation {
             Ok(CellLine { number: 0, .. }) => Err("a number from 1 on was expected, found 0".to_owned()),
             Ok(CellLine { number, text: Ok(_) }) if number == self.line => return,
             Ok(CellLine { number, text }) => {
+                let line = text.map(str::to_owned).map_err(|error| error.to_string());
                 self.line = number;
-                text.map_err(|error| error.to_string()).and_then(|line| {
-                    let action = job::own_line(line, store).map_err(|error| error.to_string())?;
-                    workstation.begin(&action, line)
-                })
+                line.and_then(|line| self.begin_line(&line, workstation, store))
             }
         };
         self.refused = begun.err();
         if let Some(why) = &self.refused {
             events.push(Event::CellLineRefused(why.clone()));
         }
+    }
+
+    /// A line for the cell, or a load, which the run begins after this tick.
+    fn begin_line(
+        &mut self,
+        line: &str,
+        workstation: &mut SimulatedWorkstation,
+        store: &Store,
+    ) -> Result<(), String> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        if let Some(block) = load::asked(&words) {
+            self.load = Some((block?, line.to_owned()));
+            self.loading = Some(self.line);
+            return Ok(());
+        }
+        let action = job::own_line(line, store).map_err(|error| error.to_string())?;
+        workstation.begin(&action, line)
     }
 }
 

@@ -262,6 +262,7 @@ impl Run {
             &mut self.workstation,
             self.generations.current(),
         );
+        self.load_for_workstation(tick);
         self.tell_operators(tick);
         self.note_neighbours(tick);
         self.publish_cell(tick);

@@ -82,6 +82,11 @@ impl Switched {
         (!self.is_handed_over()).then_some(&mut self.job.hwsc)
     }
 
+    /// The workstation controller.
+    pub const fn outside(&mut self) -> &mut OutsideWorkstation {
+        &mut self.outside
+    }
+
     /// Steps of the job, or the commands of the workstation controller since it took over.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {

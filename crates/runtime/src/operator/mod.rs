@@ -27,7 +27,7 @@ use rcs_core::tick::Tick;
 use serde::Serialize;
 use taskdata::load::{BlockNumber, Store};
 
-pub use self::source::{Input, Inputs};
+pub use self::source::{Input, Inputs, WORKSTATION};
 use self::{request::Request, terminals::Terminals};
 use crate::{neighbours::Neighbours, workstation::SimulatedWorkstation};
 

@@ -8,7 +8,7 @@ use taskdata::load::{
 };
 
 use super::terminals::Entry;
-use crate::workstation::at_the_box;
+use crate::{load, workstation::at_the_box};
 
 /// A request.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,7 +95,10 @@ impl Request {
         if let Some(entry) = Entry::read(&each) {
             return entry.map(Self::Terminal);
         }
-        if let Some(request) = line_load(&each, store).or_else(|| load(&each)).or_else(|| play(&each)) {
+        if let Some(block) = load::asked(&each) {
+            return block.map(Self::Load);
+        }
+        if let Some(request) = line_load(&each, store).or_else(|| play(&each)) {
             return request;
         }
         if job::is_command(line) {
@@ -165,15 +168,6 @@ fn line_load(words: &[&str], store: &Store) -> Option<Result<Request, String>> {
         Step::Command(command) => Ok(Request::Command(read.text, command)),
         _ => Err(expected()),
     }))
-}
-
-/// `load OFFSET BLOCK` (IV.2.4); none if the words begin another request. With another word behind it, it is a line of a
-/// job, which says what is wrong.
-fn load(words: &[&str]) -> Option<Result<Request, String>> {
-    let ["load", offset, block] = words else { return None };
-    let numbers = offset.parse().ok().zip(block.parse().ok());
-    let expected = || "load OFFSET BLOCK was expected, such as load 21000 610".to_owned();
-    Some(numbers.map(|(offset, number)| Request::Load(BlockNumber { offset, number })).ok_or_else(expected))
 }
 
 /// `run JOB`; none if the words begin another request.

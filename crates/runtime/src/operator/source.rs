@@ -25,14 +25,19 @@ pub enum Inputs {
     Recorded(VecDeque<OperatorLine>, Texts),
 }
 
-/// Blocks and jobs that operators have loaded during a run, from its log.
+/// Blocks and jobs that were loaded during a run, from its log.
 #[derive(Default)]
 pub struct Texts {
     /// Blocks by the generation of the task data that they made.
     blocks: Vec<(u32, Source)>,
     /// Jobs by their number.
     jobs: Vec<(u32, Source)>,
+    /// Loads of the workstation controller. It asks for them itself, also in a repetition; their verdicts count.
+    workstation: VecDeque<OperatorLine>,
 }
+
+/// Source of the loads that the workstation controller asks for; no operator can have such a name.
+pub const WORKSTATION: &str = "workstation controller";
 
 /// An input from a session or a log.
 pub enum Input {
@@ -133,11 +138,13 @@ impl Inputs {
 
     fn recorded(path: &Path) -> Result<Self, StartError> {
         let log = Log::open(path).map_err(|source| StartError::Inputs(Box::new(source)))?;
+        let (workstation, operators) = log.operator_lines().partition(|line| line.source == WORKSTATION);
         let texts = Texts {
             blocks: log.attachments.iter().filter_map(Attachment::as_reload).collect(),
             jobs: log.attachments.iter().filter_map(Attachment::as_played).collect(),
+            workstation,
         };
-        Ok(Self::Recorded(log.operator_lines().collect(), texts))
+        Ok(Self::Recorded(operators, texts))
     }
 
     /// Where operators connect, if they can.
@@ -158,11 +165,18 @@ impl Inputs {
         }
     }
 
-    /// The block that a log has for a generation of the task data.
+    /// The block that a log has for a generation of the task data; none if inputs do not come from a log.
     #[must_use]
-    pub fn recorded_block(&self, generation: u32) -> Option<Source> {
+    pub fn recorded_block(&self, generation: u32) -> Option<Option<Source>> {
         let Self::Recorded(_, texts) = self else { return None };
-        texts.blocks.iter().find(|(number, _)| *number == generation).map(|(_, source)| source.clone())
+        let found = texts.blocks.iter().find(|(number, _)| *number == generation);
+        Some(found.map(|(_, source)| source.clone()))
+    }
+
+    /// Why the log says that the next load of the workstation controller was refused; none if it was not.
+    pub fn recorded_refusal(&mut self) -> Option<String> {
+        let Self::Recorded(_, texts) = self else { return None };
+        texts.workstation.pop_front()?.refused
     }
 
     /// The job that a log has as the one of this number; none if inputs do not come from a log.

@@ -4,6 +4,7 @@ use std::path::{Component, Path};
 
 use os_io::files;
 use rcs_core::tick::Tick;
+use record::OperatorLine;
 use taskdata::load::{
     Job, Source,
     job::{JobLine, Step, Workstation},
@@ -11,7 +12,8 @@ use taskdata::load::{
 
 use super::Run;
 use crate::{
-    operator::{A_TICK, Around, Input, Later},
+    load::{Answer, Asker, LoadError},
+    operator::{A_TICK, Around, Input, Later, WORKSTATION},
     setup::{EXTENSION, JOBS},
     workstation::orders,
 };
@@ -20,8 +22,8 @@ impl Run {
     /// Carry out the requests since the last tick. The next tick is the first to see them.
     pub(super) fn operate(&mut self, tick: Tick) {
         let first = tick.next();
-        if let Some((input, verdict)) = self.follow_load(tick) {
-            self.settle(first, input, verdict.map_err(|error| error.to_string()));
+        if let Some(answer) = self.follow_load(tick) {
+            self.loaded(tick, answer);
         }
         for _ in 0..A_TICK {
             let Some(input) = self.asked.next(first) else { break };
@@ -40,20 +42,51 @@ impl Run {
                 // A log has no text of what was not read.
                 (Some(_), Some(why)) => Err(why.to_owned()),
                 (Some(Later::Play(job)), None) => self.play(tick, &job),
-                (Some(Later::Load(block)), None) if !self.loads.can_load() => {
-                    self.load_recorded(block).map_err(|error| error.to_string())
-                }
-                (Some(Later::Load(block)), None) => match self.can_load() {
-                    Ok(()) => {
-                        self.begin_load(block, input);
-                        continue;
+                (Some(Later::Load(block)), None) => {
+                    if let Some(answer) = self.load(block, Asker::Operator(input)) {
+                        self.loaded(tick, answer);
                     }
-                    Err(why) => Err(why.to_string()),
-                },
+                    continue;
+                }
             };
             self.settle(first, input, verdict);
         }
         self.operator.end_tick();
+    }
+
+    /// Carry out the load that the workstation controller has asked for. The next tick is the first to see it.
+    pub(super) fn load_for_workstation(&mut self, tick: Tick) {
+        let Some((block, line)) = self.neighbours.load_asked() else { return };
+        let asker = Asker::Workstation(line);
+        let answer = match self.asked.recorded_refusal() {
+            Some(why) => Some((asker, Err(LoadError::Recorded(why)))),
+            None => self.load(block, asker),
+        };
+        if let Some(answer) = answer {
+            self.loaded(tick, answer);
+        }
+    }
+
+    /// Answer a load and log it.
+    fn loaded(&mut self, tick: Tick, (asker, verdict): Answer) {
+        match asker {
+            Asker::Operator(input) => {
+                self.settle(tick.next(), input, verdict.map_err(|error| error.to_string()));
+            }
+            Asker::Workstation(line) => {
+                let verdict = verdict.map_err(|error| error.in_line());
+                if let Some(log) = &mut self.log {
+                    log.operator(OperatorLine {
+                        tick: tick.next(),
+                        source: WORKSTATION.to_owned(),
+                        line,
+                        answer: verdict.clone().unwrap_or_default(),
+                        refused: verdict.clone().err(),
+                    });
+                }
+                self.neighbours.load_answered(verdict.err());
+            }
+        }
     }
 
     /// Answer an input and log it.

@@ -8,11 +8,12 @@ use executive::{
     runner::Runner,
 };
 use interfaces::ExternalInputs;
+use neighbours::network::Role;
 
 use super::Run;
 use crate::{
     boards::Controller,
-    config::{OperatorAccess, RobotKind, RunConfig},
+    config::{ClockKind, OperatorAccess, RobotKind, RunConfig},
     contacts::ContactCheck,
     error::StartError,
     load::Loads,
@@ -110,7 +111,9 @@ impl Run {
             live.start(&config, &job.name, operators, &mut *observer)?;
         }
         // It begins before this process asks for real time.
-        let loader = asked.socket().map(|_| Loader::start()).transpose().map_err(StartError::Thread)?;
+        let asks = config.outside.contains(&Role::Workstation) || asked.socket().is_some();
+        let beside = asks && config.clock == ClockKind::Real && config.inputs.is_none();
+        let loader = beside.then(Loader::start).transpose().map_err(StartError::Thread)?;
         let mirror = runner.publisher().and_then(|publisher| mirror(publisher, &mut *observer));
         Ok(Self {
             runner,

@@ -1,7 +1,7 @@
 //! A line that is not in a job: another process or an operator sends it during the run.
 //!
-//! It is read from its words and the task data alone. It opens no file, because that could take any time, and would
-//! reveal to the connected system which files exist.
+//! It is read from its words and the task data alone, after the run has taken out `load OFFSET BLOCK`. It opens no file,
+//! because that could take any time, and would reveal to the connected system which files exist.
 
 use std::fmt;
 
@@ -19,7 +19,7 @@ use super::{
 pub enum OwnLineError {
     /// It is empty.
     Nothing,
-    /// A job's blocks are read and checked before its first tick.
+    /// A job names files, whose blocks are read and checked before its first tick.
     Load,
     /// The ticks of a job are those of its player.
     Wait,
@@ -36,7 +36,8 @@ impl fmt::Display for OwnLineError {
         f.write_str(match self {
             Self::Nothing => "a line for the cell was expected, such as vise close PFIXTURE; found none",
             Self::Load => {
-                "load stands in the controller's own jobs only, whose blocks are read before the first tick"
+                "load OFFSET BLOCK was expected, such as load 21000 610; load FILE stands in the controller's own \
+                 jobs only, whose blocks are read before the first tick"
             }
             Self::Wait => "wait stands in jobs only: the workstation controller counts the ticks by itself",
             Self::After => {
