@@ -9,6 +9,7 @@ use std::{
 };
 
 use executive::memory::{Attached, RunName, operator_socket};
+use interfaces::ExternalInputs;
 use operator::{Client, ClientError};
 use record::{Log, OperatorLine};
 use runtime::{Boards, ClockKind, LogTarget, OperatorAccess, Run, RunConfig, RunOutcome};
@@ -364,6 +365,40 @@ fn a_job_on_stand_by_begins_when_it_may_and_one_that_nobody_attends_ends_with_it
     let failure = outcome.result.failure.as_ref().expect("nobody is left who could start the robot up");
     assert!(failure.text.contains("pedestal"), "{}", failure.text);
     assert_repeats_with(|config| RunConfig { stand_by: true, ..config }, &outcome, &log, &directory);
+}
+
+/// IV.1 step 3, at the panel of the rotary table's controller; the table has calibrated itself before.
+#[test]
+fn the_rotary_table_is_started_up_at_its_panel() {
+    let stand_by = |config| RunConfig { stand_by: true, ..config };
+    let cell = Cell::start(TO_SAFE_AND_HOME, stand_by);
+    let mut client = cell.client("anna");
+    wait_ticks(&mut client, 700);
+    let run = Attached::open(&cell.name).unwrap();
+    let wait_for_home = || {
+        let begun = Instant::now();
+        let stands = |inputs: ExternalInputs| inputs.devices.pedestal.motor_counter == -2000;
+        while !run.external().is_ok_and(stands) {
+            assert!(begun.elapsed() < PATIENCE, "its counter should read -20.00");
+            thread::sleep(Duration::from_millis(5));
+        }
+    };
+    wait_for_home();
+    let refused = client.ask("table reset").unwrap().unwrap_err();
+    assert!(refused.contains("table mode manual comes first"), "{refused}");
+    ask(&mut client, &["table power off", "table power on", "table mode manual", "table run+ 1000"]);
+    ask_until(&mut client, "table run- 10", "the rotary table turns");
+    ask_until(&mut client, "table reset", "the rotary table turns");
+    ask_until(&mut client, "table step- 2000", "the rotary table turns");
+    wait_for_home();
+    ask(&mut client, &["table mode prog"]);
+    assert!(!run.cell().unwrap().expect("it is simulated").table.obeys, "its power was on all the time");
+    ask(&mut client, &["table power off", "table power on"]);
+    go_on(&mut client);
+    drop(client);
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}", outcome.result.failure);
+    assert_repeats_with(stand_by, &outcome, &log, &directory);
 }
 
 #[test]

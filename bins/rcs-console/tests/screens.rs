@@ -8,7 +8,7 @@ use std::{
 use executive::boards::Board;
 use executive::memory::{
     Text,
-    cell::{CellView, ControllerView, Lamps},
+    cell::{CellView, ControllerView, Lamps, TableView},
 };
 use interfaces::ProcessId;
 use ratatui::{Terminal, backend::TestBackend};
@@ -112,7 +112,8 @@ impl Source for Operated {
             aligned: [true; 6],
             ..ControllerView::default()
         };
-        Cell::Shown(Box::new(CellView { controller, ..CellView::default() }))
+        let table = TableView { power: true, manual: false, obeys: true };
+        Cell::Shown(Box::new(CellView { controller, table, ..CellView::default() }))
     }
 }
 

@@ -305,6 +305,7 @@ fn act(state: &mut State<'_>, action: &Workstation) -> bool {
         | Workstation::Press(_)
         | Workstation::Release(_)
         | Workstation::Panel(_)
+        | Workstation::Table(_)
         | Workstation::HandOver => return false,
     }
     true

@@ -81,4 +81,5 @@ pub use cell::{
 pub use description::CellDescription;
 pub use joystick::{BoxAction, BoxButton, Joystick};
 pub use part::PartState;
+pub use pedestal::{TableKey, TablePanel};
 pub use t3::{Cut, EStop, Key};

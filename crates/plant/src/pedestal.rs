@@ -11,11 +11,14 @@
 //!   ratio is not exactly one (ASSUMED); the two are equal where the fingers move across the radial line from the
 //!   robot.
 
+mod panel;
+
 use geometry::frame::{Frame, Vector as Inches, rotation_from_x_y};
 use interfaces::device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH};
 use rapier3d_f64::prelude::*;
 use serde::{Deserialize, Serialize};
 
+pub use self::panel::{TableKey, TablePanel, TableRefusal};
 use crate::{
     convert::to_pose,
     description::{Pedestal as Description, RotaryTable},
@@ -43,6 +46,7 @@ pub struct Table {
     /// Counter less motor angle, steps.
     offset: f64,
     echo: u32,
+    panel: TablePanel,
 }
 
 impl Table {
@@ -57,12 +61,13 @@ impl Table {
             speed: 0.0,
             offset: -position,
             echo: 0,
+            panel: TablePanel::READY,
         }
     }
 
     /// Once a tick: take an order, if it is a new one.
     pub fn order(&mut self, command: &MotorCommand) {
-        if command.number == 0 || command.number == self.echo {
+        if !self.attend(command.number) || command.number == 0 || command.number == self.echo {
             return;
         }
         self.echo = command.number;
@@ -72,8 +77,13 @@ impl Table {
             MotorOrder::None => {}
             MotorOrder::Turn => self.goal = here + steps,
             MotorOrder::SetCounter => self.offset = steps - here,
-            MotorOrder::Stop => self.goal = libm::round(self.position + self.stopping_way()),
+            MotorOrder::Stop => self.ramp_down(),
         }
+    }
+
+    /// Come to rest as soon as the ramp lets it.
+    fn ramp_down(&mut self) {
+        self.goal = libm::round(self.position + self.stopping_way());
     }
 
     /// Steps in which the motor comes to rest from its present speed, with their sign.

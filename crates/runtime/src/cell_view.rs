@@ -3,10 +3,10 @@
 use ::neighbours::workstation::player::BegunStep;
 use executive::memory::{
     Text,
-    cell::{CellView, ControllerView, JobView, Lamps, LatenessView, PARTS, PartView},
+    cell::{CellView, ControllerView, JobView, Lamps, LatenessView, PARTS, PartView, TableView},
 };
 use plant::{
-    Cell, EStop, PartState,
+    Cell, EStop, PartState, TablePanel,
     t3::{Stage, T3Controller},
 };
 use rcs_core::{name::Name16, tick::Tick};
@@ -39,6 +39,7 @@ impl View {
         self.shown = CellView {
             tick,
             controller: controller(cell.t3(), warning, tick, &self.shown.controller),
+            table: table(cell.table_panel()),
             joints: cell.joints(),
             tool: cell.tool().position.into(),
             fingers: [fingers, force],
@@ -89,6 +90,10 @@ fn controller(
         aligned: t3.aligned(),
         at_rest: t3.at_rest(),
     }
+}
+
+const fn table(panel: TablePanel) -> TableView {
+    TableView { power: panel.power, manual: panel.manual, obeys: panel.obeys }
 }
 
 fn count(number: usize) -> u32 {

@@ -3,13 +3,13 @@
 use interfaces::device::{joystick_frame, single_step};
 use neighbours::workstation::player::Workstation;
 use plant::{
-    BoxAction, BoxButton, Cell, CellDescription, CellEvent, Droop, EStop, Key, Placement, WorkstationAction,
-    WorkstationError, t3::Stage,
+    BoxAction, BoxButton, Cell, CellDescription, CellEvent, Droop, EStop, Key, Placement, TableKey,
+    WorkstationAction, WorkstationError, t3::Stage,
 };
 use rcs_core::tick::{TICK_MS, Tick};
 use taskdata::load::job::{
-    Drum, EStop as Site, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, ViseOpening,
-    Workstation as Action,
+    Drum, EStop as Site, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, TablePanel,
+    ViseOpening, Workstation as Action,
 };
 
 /// Ticks to wait for an arm without pressure to come to rest before the run ends: two minutes. From HOME it takes 40 s;
@@ -172,6 +172,7 @@ pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<Workstation
         Action::Press(site) => WorkstationAction::T3(Key::Press(estop(*site))),
         Action::Release(site) => WorkstationAction::T3(Key::Release(estop(*site))),
         Action::Panel(key) => WorkstationAction::T3(at_the_panel(*key)),
+        Action::Table(key) => WorkstationAction::Table(at_the_table(*key)),
         // These are not the cell's.
         Action::Wait { .. } | Action::Load { .. } | Action::HandOver => return Ok(Vec::new()),
     }])
@@ -200,6 +201,16 @@ const fn at_the_panel(key: Panel) -> Key {
         Panel::Cancel => Key::Cancel,
         Panel::Enter => Key::Enter,
         Panel::Hold(on) => Key::Hold(on),
+    }
+}
+
+const fn at_the_table(key: TablePanel) -> TableKey {
+    match key {
+        TablePanel::Power(on) => TableKey::Power(on),
+        TablePanel::Manual(on) => TableKey::Manual(on),
+        TablePanel::Run { plus, ticks } => TableKey::Run { plus, ticks },
+        TablePanel::Step { plus, count } => TableKey::Step { plus, count },
+        TablePanel::Reset => TableKey::Reset,
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use rcs_core::name::Name16;
 use taskdata::load::{
     Job, Source, Step, Store, ViseOpening, Workstation,
-    job::{Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped},
+    job::{Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, TablePanel},
     source::read_blocks_under,
 };
 
@@ -163,6 +163,19 @@ fn emergency_stops_and_the_panel_of_the_robot_controller() {
     ];
     for (words, key) in keys {
         assert_eq!(action(&format!("** panel {words}")), Workstation::Panel(key));
+    }
+    let keys = [
+        ("power off", TablePanel::Power(false)),
+        ("mode manual", TablePanel::Manual(true)),
+        ("mode prog", TablePanel::Manual(false)),
+        ("run+ 25", TablePanel::Run { plus: true, ticks: 25 }),
+        ("run- 1", TablePanel::Run { plus: false, ticks: 1 }),
+        ("step+", TablePanel::Step { plus: true, count: 1 }),
+        ("step- 30", TablePanel::Step { plus: false, count: 30 }),
+        ("reset", TablePanel::Reset),
+    ];
+    for (words, key) in keys {
+        assert_eq!(action(&format!("** table {words}")), Workstation::Table(key));
     }
 }
 

@@ -1,7 +1,10 @@
-//! Joystick box (III.3.3), robot controller (IV.3.3) and emergency stops (III.6), as they are now, and the requests to
-//! a run.
+//! Joystick box (III.3.3), robot controller (IV.3.3), emergency stops (III.6) and rotary table (IV.1 step 3), as they are
+//! now, and the requests to a run.
 
-use interfaces::device::{JoystickBox, KNOB_FULL, joystick_frame, single_step};
+use executive::memory::cell::TableView;
+use interfaces::device::{
+    DeviceInputs, JoystickBox, KNOB_FULL, PedestalSensors, TABLE_STEPS_PER_TENTH, joystick_frame, single_step,
+};
 
 use super::{
     Section, Text, Tone,
@@ -10,7 +13,7 @@ use super::{
 use crate::source::Cell;
 
 /// What the list of keys presses, in its order.
-pub const KEYS: [&str; 27] = [
+pub const KEYS: [&str; 36] = [
     "job go",
     "job wait",
     "job skip",
@@ -37,18 +40,30 @@ pub const KEYS: [&str; 27] = [
     "release pedestal",
     "joystick hold EMOVE",
     "joystick free EMOVE",
+    "table power off",
+    "table power on",
+    "table mode manual",
+    "table run+ 25",
+    "table run- 25",
+    "table step+",
+    "table step-",
+    "table reset",
+    "table mode prog",
     "leave",
 ];
 /// Keys around the cursor that are shown.
-const SHOWN: usize = 5;
+const SHOWN: usize = 3;
 /// The emergency stops, in the order of the cell.
 const ESTOPS: [&str; 5] =
     ["control panel", "teach pendant", "terminals", "joystick box", "near the pedestal"];
 
 /// Box, controller and keys, from the top.
 #[must_use]
-pub fn sections(joystick: &JoystickBox, cell: &Cell, operating: Option<&Operating>) -> Vec<Section> {
-    let mut sections = vec![joystick_box(joystick, operating), controller(cell)];
+pub fn sections(devices: &DeviceInputs, cell: &Cell, operating: Option<&Operating>) -> Vec<Section> {
+    let mut sections = vec![joystick_box(&devices.joystick, operating), controller(cell)];
+    if let Cell::Shown(view) = cell {
+        sections.push(rotary_table(&devices.pedestal, view.table));
+    }
     match operating {
         Some(operating) => sections.push(keys(operating)),
         None => sections.push(look_only()),
@@ -133,6 +148,26 @@ fn controller(cell: &Cell) -> Section {
         false => Text::new(Tone::Trouble, format!("!!E-stops that are in: {}", pressed.join(", "))),
     });
     Section::new("robot controller", lines)
+}
+
+/// The counter reads degrees, with two places behind the point (IV.1 step 3).
+fn rotary_table(sensors: &PedestalSensors, panel: TableView) -> Section {
+    let counter = f64::from(sensors.motor_counter) / f64::from(TABLE_STEPS_PER_TENTH * 10);
+    let at = match (sensors.limit_plus, sensors.limit_minus) {
+        (true, _) => "at its + limit",
+        (_, true) => "at its - limit",
+        _ if sensors.motor_moving => "turns",
+        _ => "stands",
+    };
+    let mode = if panel.manual { "MANUAL" } else { "PROG" };
+    let shown = match panel {
+        TableView { power: false, .. } => format!("power off, mode {mode}"),
+        TableView { obeys: true, .. } => format!("power on, mode {mode}, obeys its serial line"),
+        TableView { manual: true, .. } => format!("power on, mode {mode}: RUN, STEP and RESET count"),
+        _ => format!("power on, mode {mode}: turn it off and on"),
+    };
+    let line = Text::plain(format!(" counter {counter:>7.2}, {at}; {shown}"));
+    Section::new("rotary table controller", vec![line])
 }
 
 fn keys(operating: &Operating) -> Section {

@@ -10,6 +10,7 @@ mod panes;
 mod text;
 mod waiting;
 
+use interfaces::device::DeviceInputs;
 use ratatui::{
     Frame,
     style::{Color, Modifier, Style},
@@ -173,8 +174,9 @@ fn screen(
                 )
             }
             Screen::Panels => {
-                let (joystick, cell) = (model.joystick(), source.cell(picture.tick.0));
-                let sections = panels::sections(&joystick, &cell, model.operating.as_ref());
+                let devices = DeviceInputs { joystick: model.joystick(), ..picture.external.devices };
+                let cell = source.cell(picture.tick.0);
+                let sections = panels::sections(&devices, &cell, model.operating.as_ref());
                 panes::column(&sections, model, look, width, room)
             }
         },

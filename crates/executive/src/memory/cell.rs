@@ -19,6 +19,8 @@ pub struct CellView {
     pub tick: Tick,
     /// The robot controller.
     pub controller: ControllerView,
+    /// The panel of the rotary table's controller.
+    pub table: TableView,
     /// Joint angles of the arm, base to roll, radians.
     pub joints: [f64; 6],
     /// The tool point in world coordinates, in.
@@ -79,6 +81,17 @@ pub struct Lamps {
     pub auto: bool,
     /// Hold is on.
     pub hold: bool,
+}
+
+/// The panel of the rotary table's controller (IV.1 step 3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct TableView {
+    /// It has power.
+    pub power: bool,
+    /// The mode switch stands at MANUAL.
+    pub manual: bool,
+    /// It obeys its serial line.
+    pub obeys: bool,
 }
 
 /// A part in the cell.

@@ -47,7 +47,7 @@ use crate::{
     joystick::Joystick,
     noise::{Noise, Stream},
     part::{Part, PartState},
-    pedestal::Pedestal,
+    pedestal::{Pedestal, TablePanel},
     scene::{Block, FINGER, furniture},
     sensor::DeadTimes,
     t3::{DriveError, Key, Message, Refusal, StepInputs, StepOutputs, T3Controller},
@@ -390,6 +390,12 @@ impl Cell {
         let done = self.t3.press(key);
         self.hear_t3();
         done
+    }
+
+    /// The panel of the rotary table's controller.
+    #[must_use]
+    pub const fn table_panel(&self) -> TablePanel {
+        self.pedestal.table.panel()
     }
 
     /// The T3 controller.

@@ -63,7 +63,8 @@ impl CellDescription {
             | WorkstationAction::DrumGrip
             | WorkstationAction::DrumRelease
             | WorkstationAction::Joystick(_)
-            | WorkstationAction::T3(_) => Ok(()),
+            | WorkstationAction::T3(_)
+            | WorkstationAction::Table(_) => Ok(()),
         }
     }
 

@@ -6,6 +6,7 @@ use super::Cell;
 use crate::{
     description::Tolerance,
     joystick::BoxAction,
+    pedestal::{TableKey, TableRefusal},
     t3::{Key, Refusal},
     vise::Jaws,
 };
@@ -85,6 +86,8 @@ pub enum WorkstationAction {
     Joystick(BoxAction),
     /// Do something at the T3 controller, or an emergency stop.
     T3(Key),
+    /// Do something at the panel of the rotary table's controller.
+    Table(TableKey),
 }
 
 /// Why the workstation refuses an action.
@@ -250,6 +253,9 @@ pub enum WorkstationError {
     /// The T3 controller does not do that now.
     #[error(transparent)]
     Refused(#[from] Refusal),
+    /// The rotary table's controller does not do that now.
+    #[error(transparent)]
+    TableRefused(#[from] TableRefusal),
     /// The next part does not fit into the blank.
     #[error("{to} does not fit into {from}")]
     TooLarge {
@@ -292,14 +298,15 @@ impl Cell {
                 Ok(())
             }
             WorkstationAction::T3(key) => Ok(self.press(*key)?),
+            WorkstationAction::Table(key) => Ok(self.pedestal.table.press(*key)?),
         }
     }
 
-    /// True while the vise is moving, something at the joystick box is held down, or the T3 controller does what a key has
-    /// begun.
+    /// True while the vise is moving, something at the joystick box is held down, or the T3 controller or that of the
+    /// rotary table does what a key has begun.
     #[must_use]
     pub fn workstation_busy(&self) -> bool {
-        self.vise.moving() || self.joystick.busy() || self.t3.busy()
+        self.vise.moving() || self.joystick.busy() || self.t3.busy() || self.pedestal.table.is_led_by_hand()
     }
 
     fn remove(&mut self, id: u32) -> Result<(), WorkstationError> {

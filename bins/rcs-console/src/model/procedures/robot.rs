@@ -38,7 +38,7 @@ pub const POWER_UP: Procedure = Procedure {
             ..state("2", "CONTROL POWER of the robot controller is on", &[Condition::Reached("fault")])
         },
         Step {
-            how: "It turns to its + limit, its counter is set, and it is parked at -20.00 degrees.",
+            how: "Its process turns it to the + limit, sets its counter and parks it; its keys are on screen 6.",
             show: Show::Pedestal,
             ..state("3", "the rotary table stands at -20.0 degrees", &[Condition::TableAt(-200)])
         },

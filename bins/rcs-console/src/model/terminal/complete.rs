@@ -67,7 +67,7 @@ fn runtime_jobs(directory: &Path) -> Vec<String> {
 }
 
 /// What follows the first words of a line. A word of an entry can be `*`, which is any.
-static FOLLOWING: [(&[&str], &[&str]); 24] = [
+static FOLLOWING: [(&[&str], &[&str]); 27] = [
     (&["job"], &["wait", "go", "skip"]),
     (&["board"], &["0", "2", "4", "6", "8"]),
     (&["board", "*"], &["stop", "go"]),
@@ -106,6 +106,9 @@ static FOLLOWING: [(&[&str], &[&str]); 24] = [
         ],
     ),
     (&["panel", "power"], ON_OFF),
+    (&["table"], &["power", "mode", "run+", "run-", "step+", "step-", "reset"]),
+    (&["table", "power"], ON_OFF),
+    (&["table", "mode"], &["manual", "prog"]),
     (&["panel", "manual"], ON_OFF),
     (&["panel", "hold"], ON_OFF),
     (&["panel", "hydraulics"], &["enable", "disable"]),
@@ -122,7 +125,7 @@ const LEVELS: &[&str] = &["TASK", "SUBTASK", "EMOVE", "PRIM"];
 const ESTOPS: &[&str] = &["control-panel", "teach-pendant", "terminals", "joystick-box", "pedestal"];
 const ON_OFF: &[&str] = &["on", "off"];
 /// Requests in words of today.
-const REQUESTS: [&str; 21] = [
+const REQUESTS: [&str; 22] = [
     "board",
     "drum",
     "estop",
@@ -142,6 +145,7 @@ const REQUESTS: [&str; 21] = [
     "send",
     "stand-alone",
     "stop",
+    "table",
     "tray",
     "vise",
 ];

@@ -164,6 +164,31 @@ pub enum Panel {
     Hold(bool),
 }
 
+/// Actions at the panel of the rotary table's controller (IV.1 step 3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TablePanel {
+    /// The power on or off.
+    Power(bool),
+    /// The mode switch to MANUAL, or to PROG.
+    Manual(bool),
+    /// RUN+ or RUN- is held down.
+    Run {
+        /// Toward the + limit.
+        plus: bool,
+        /// How long.
+        ticks: u32,
+    },
+    /// STEP+ or STEP- is pressed.
+    Step {
+        /// Toward the + limit.
+        plus: bool,
+        /// How often.
+        count: u32,
+    },
+    /// RESET.
+    Reset,
+}
+
 /// An action besides the commands to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Workstation {
@@ -204,6 +229,8 @@ pub enum Workstation {
     Release(EStop),
     /// The robot controller's panel.
     Panel(Panel),
+    /// The panel of the rotary table's controller.
+    Table(TablePanel),
     /// Blocks are loaded into the running system.
     Load {
         /// Which of the job's reloads, from 1.

@@ -52,7 +52,8 @@ pub use own_line::{OwnLineError, is_command, own_command, own_line};
 pub use reload::Reload;
 
 pub use action::{
-    Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, ViseOpening, Workstation,
+    Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, TablePanel, ViseOpening,
+    Workstation,
 };
 
 use super::{

@@ -3,8 +3,8 @@
 use super::{
     Step,
     action::{
-        Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, ViseOpening,
-        Workstation,
+        Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, TablePanel,
+        ViseOpening, Workstation,
     },
     fields::Fields,
     read::{MOST, Reader},
@@ -21,6 +21,7 @@ enum Verb {
     EStop,
     Release,
     Panel,
+    Table,
     Wait,
     Load,
     After,
@@ -36,6 +37,7 @@ const VERBS: &[(&str, Verb)] = &[
     ("estop", Verb::EStop),
     ("release", Verb::Release),
     ("panel", Verb::Panel),
+    ("table", Verb::Table),
     ("wait", Verb::Wait),
     ("load", Verb::Load),
     ("after", Verb::After),
@@ -117,6 +119,26 @@ const PANEL_VERBS: &[(&str, PanelVerb)] = &[
     ("hold", PanelVerb::Hold),
 ];
 
+#[derive(Clone, Copy)]
+enum TableVerb {
+    Power,
+    Mode,
+    Run { plus: bool },
+    Step { plus: bool },
+    Reset,
+}
+
+const TABLE_VERBS: &[(&str, TableVerb)] = &[
+    ("power", TableVerb::Power),
+    ("mode", TableVerb::Mode),
+    ("run+", TableVerb::Run { plus: true }),
+    ("run-", TableVerb::Run { plus: false }),
+    ("step+", TableVerb::Step { plus: true }),
+    ("step-", TableVerb::Step { plus: false }),
+    ("reset", TableVerb::Reset),
+];
+
+const MODES: &[(&str, bool)] = &[("manual", true), ("prog", false)];
 const SWITCH: &[(&str, bool)] = &[("on", true), ("off", false)];
 const KEYSWITCH: &[(&str, bool)] = &[("enable", true), ("disable", false)];
 
@@ -141,6 +163,8 @@ const PRESS_FORM: &str = "** joystick up|down|roll+|roll-|open|close TICKS";
 const VELOCITY_FORM: &str = "** joystick velocity N, from 0 to 1000";
 const STEP_FORM: &str = "** joystick step PROCESS, or with a COUNT behind it";
 const ALIGN_FORM: &str = "** panel align, or with an AXIS from 1 to 6 behind it";
+const RUN_FORM: &str = "** table run+|run- TICKS";
+const TABLE_STEP_FORM: &str = "** table step+|step-, or with a COUNT behind it: a step is 0.01 degree";
 const WAIT_FORM: &str = "** wait TICKS; a tick is 40 ms";
 const AFTER_FORM: &str = "** after TICKS, then another line's words behind its **";
 
@@ -191,6 +215,7 @@ impl Reader<'_, '_> {
             Verb::EStop => self.estop(fields).map(Workstation::Press),
             Verb::Release => self.estop(fields).map(Workstation::Release),
             Verb::Panel => self.panel(fields).map(Workstation::Panel),
+            Verb::Table => self.table(fields).map(Workstation::Table),
             Verb::HandOver => Some(Workstation::HandOver),
             Verb::Load => {
                 let at = fields.at();
@@ -307,6 +332,24 @@ impl Reader<'_, '_> {
                 }
                 Panel::Align(u8::try_from(axis.value).ok())
             }
+        })
+    }
+
+    fn table(&mut self, fields: &mut Fields<'_, '_>) -> Option<TablePanel> {
+        Some(match self.choice(fields, "key of the rotary table's controller", TABLE_VERBS)? {
+            TableVerb::Power => {
+                TablePanel::Power(self.choice(fields, "position of the power switch", SWITCH)?)
+            }
+            TableVerb::Mode => {
+                TablePanel::Manual(self.choice(fields, "position of the mode switch", MODES)?)
+            }
+            TableVerb::Run { plus } => TablePanel::Run { plus, ticks: self.ticks(fields, RUN_FORM)? },
+            TableVerb::Step { plus } => {
+                let more = fields.more();
+                let count = if more { self.count(fields, "a count", TABLE_STEP_FORM)? } else { 1 };
+                TablePanel::Step { plus, count }
+            }
+            TableVerb::Reset => TablePanel::Reset,
         })
     }
 
