@@ -40,6 +40,7 @@ mod needs;
 mod own_line;
 mod read;
 mod reload;
+mod table_panel;
 mod walk;
 mod workstation;
 

@@ -3,8 +3,8 @@
 use super::{
     Step,
     action::{
-        Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, TablePanel,
-        ViseOpening, Workstation,
+        Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, ViseOpening,
+        Workstation,
     },
     fields::Fields,
     read::{MOST, Reader},
@@ -119,27 +119,7 @@ const PANEL_VERBS: &[(&str, PanelVerb)] = &[
     ("hold", PanelVerb::Hold),
 ];
 
-#[derive(Clone, Copy)]
-enum TableVerb {
-    Power,
-    Mode,
-    Run { plus: bool },
-    Step { plus: bool },
-    Reset,
-}
-
-const TABLE_VERBS: &[(&str, TableVerb)] = &[
-    ("power", TableVerb::Power),
-    ("mode", TableVerb::Mode),
-    ("run+", TableVerb::Run { plus: true }),
-    ("run-", TableVerb::Run { plus: false }),
-    ("step+", TableVerb::Step { plus: true }),
-    ("step-", TableVerb::Step { plus: false }),
-    ("reset", TableVerb::Reset),
-];
-
-const MODES: &[(&str, bool)] = &[("manual", true), ("prog", false)];
-const SWITCH: &[(&str, bool)] = &[("on", true), ("off", false)];
+pub(super) const SWITCH: &[(&str, bool)] = &[("on", true), ("off", false)];
 const KEYSWITCH: &[(&str, bool)] = &[("enable", true), ("disable", false)];
 
 const FRAMES: &[(&str, JoystickFrame)] = &[
@@ -163,8 +143,6 @@ const PRESS_FORM: &str = "** joystick up|down|roll+|roll-|open|close TICKS";
 const VELOCITY_FORM: &str = "** joystick velocity N, from 0 to 1000";
 const STEP_FORM: &str = "** joystick step PROCESS, or with a COUNT behind it";
 const ALIGN_FORM: &str = "** panel align, or with an AXIS from 1 to 6 behind it";
-const RUN_FORM: &str = "** table run+|run- TICKS";
-const TABLE_STEP_FORM: &str = "** table step+|step-, or with a COUNT behind it: a step is 0.01 degree";
 const WAIT_FORM: &str = "** wait TICKS; a tick is 40 ms";
 const AFTER_FORM: &str = "** after TICKS, then another line's words behind its **";
 
@@ -335,30 +313,12 @@ impl Reader<'_, '_> {
         })
     }
 
-    fn table(&mut self, fields: &mut Fields<'_, '_>) -> Option<TablePanel> {
-        Some(match self.choice(fields, "key of the rotary table's controller", TABLE_VERBS)? {
-            TableVerb::Power => {
-                TablePanel::Power(self.choice(fields, "position of the power switch", SWITCH)?)
-            }
-            TableVerb::Mode => {
-                TablePanel::Manual(self.choice(fields, "position of the mode switch", MODES)?)
-            }
-            TableVerb::Run { plus } => TablePanel::Run { plus, ticks: self.ticks(fields, RUN_FORM)? },
-            TableVerb::Step { plus } => {
-                let more = fields.more();
-                let count = if more { self.count(fields, "a count", TABLE_STEP_FORM)? } else { 1 };
-                TablePanel::Step { plus, count }
-            }
-            TableVerb::Reset => TablePanel::Reset,
-        })
-    }
-
     fn process(&mut self, fields: &mut Fields<'_, '_>) -> Option<Stepped> {
         self.choice(fields, "process that the joystick box can hold", PROCESSES)
     }
 
     /// One word of several.
-    fn choice<T: Copy>(
+    pub(super) fn choice<T: Copy>(
         &mut self,
         fields: &mut Fields<'_, '_>,
         what: &str,
@@ -377,11 +337,11 @@ impl Reader<'_, '_> {
         found.map(|(_, choice)| *choice)
     }
 
-    fn ticks(&mut self, fields: &mut Fields<'_, '_>, form: &str) -> Option<u32> {
+    pub(super) fn ticks(&mut self, fields: &mut Fields<'_, '_>, form: &str) -> Option<u32> {
         self.count(fields, "a number of ticks", form)
     }
 
-    fn count(&mut self, fields: &mut Fields<'_, '_>, what: &str, form: &str) -> Option<u32> {
+    pub(super) fn count(&mut self, fields: &mut Fields<'_, '_>, what: &str, form: &str) -> Option<u32> {
         let number = self.number(fields, what, form)?;
         if number.value < 1 {
             let message = format!("{what} is 1 to {MOST}, {} found", number.value);
