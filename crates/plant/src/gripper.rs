@@ -8,7 +8,11 @@
 
 use geometry::frame::Vector as Inches;
 use interfaces::device::GripSensors;
-use rapier3d_f64::{math::Rotation, prelude::*};
+use rapier3d_f64::{
+    math::Rotation,
+    parry::{bounding_volume::BoundingVolume, query},
+    prelude::*,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -29,6 +33,8 @@ const FREE_GAP: f64 = 0.001;
 /// then.
 const BREAKAWAY_TIME: f64 = 0.25;
 /// Fingers can sleep when none of their points has moved faster than this for half a second, m/s (rad/s): their
+/// Nearer than this to a finger, m, something may be touched in the next step, beside the travel of the hand in it.
+const TOUCHABLE: Real = 2e-3;
 /// remaining motion is then less than 1e-11 m.
 const STILL: Real = 1e-9;
 /// Speed of fingers that trapped air drives, in/s: that of the coarse flow, which the same ports limit.
@@ -87,6 +93,13 @@ impl Air {
     #[must_use]
     pub fn speed(&self) -> f64 {
         self.speed
+    }
+
+    /// True if a supply neither moves the fingers, which stood in the last step, nor changes their force.
+    #[must_use]
+    pub fn stands(&self, supply: &Supply) -> bool {
+        let full = supply.flow < 0.0 && self.force >= self.greatest_force;
+        self.speed == 0.0 && !supply.vent && (supply.flow == 0.0 || full)
     }
 
     /// Let the air flow for `dt` seconds; `stop` is the opening at which something between the fingers blocks them.
@@ -268,12 +281,9 @@ impl Gripper {
     /// Move the fingers with the hand while they hold nothing and nothing is near them: springs without a load are not
     /// computed. Otherwise the fingers are on their springs.
     pub fn carry_fingers(&self, world: &mut PhysicsWorld) {
-        let groups = |collider: ColliderHandle| world.colliders[collider].collision_groups();
-        // The pair of a part that is held stays in the list, but is not looked at any more.
-        let is_near = |finger: &Finger| {
-            let mut pairs = world.narrow_phase.contact_pairs_with(finger.collider);
-            pairs.any(|pair| groups(pair.collider1).test(groups(pair.collider2)))
-        };
+        let hand = &world.bodies[self.hand];
+        let travel = (hand.next_position().translation - hand.position().translation).length();
+        let is_near = |finger: &Finger| finger.is_near(world, TOUCHABLE + travel);
         if self.fingers.iter().any(is_near) {
             return self.hang_fingers(world);
         }
@@ -449,6 +459,18 @@ struct Mount<'a> {
 }
 
 impl Finger {
+    /// Something that it may touch is nearer than `distance`, m.
+    fn is_near(&self, world: &PhysicsWorld, distance: Real) -> bool {
+        world.narrow_phase.contact_pairs_with(self.collider).any(|pair| {
+            let [one, other] = [&world.colliders[pair.collider1], &world.colliders[pair.collider2]];
+            // The pair of a part that is held stays in the list, but is not looked at any more.
+            one.collision_groups().test(other.collision_groups())
+                && one.compute_aabb().loosened(distance).intersects(&other.compute_aabb())
+                && query::distance(one.position(), one.shape(), other.position(), other.shape())
+                    .is_ok_and(|between| between.distance < distance)
+        })
+    }
+
     fn new(
         world: &mut PhysicsWorld,
         description: &Description,

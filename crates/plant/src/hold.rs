@@ -148,6 +148,12 @@ impl Hold {
         self.slipped
     }
 
+    /// True if friction holds the part along the pads.
+    #[must_use]
+    pub fn sticks(&self) -> bool {
+        self.grip == Grip::Sticks
+    }
+
     /// Load of the part on the pads' body, weight included: position of the part's middle (m), force (N) and moment
     /// about it (N·m), in the axes of the pads' body.
     #[must_use]

@@ -87,6 +87,11 @@ impl Changer {
         ROBOT_HANDS.into_iter().find(|hand| self.place(*hand) == Some(GripperPlace::Robot))
     }
 
+    /// Nothing is being changed: the ring is at one of its ends, and it holds what its pins touch.
+    pub(super) fn rests(&self) -> bool {
+        (self.ring.locked() || self.ring.unlocked()) && self.mated() == self.carried()
+    }
+
     /// Where a gripper is; `None` for a hand that the robot cannot wear.
     pub(super) fn place(&self, hand: Hand) -> Option<GripperPlace> {
         hand.slot().map(|slot| self.places[slot])

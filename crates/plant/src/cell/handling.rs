@@ -187,7 +187,7 @@ impl Cell {
     }
 
     /// True if something other than `hand` holds part `index`.
-    fn is_held_elsewhere(&self, hand: Hand, index: usize) -> bool {
+    pub(super) fn is_held_elsewhere(&self, hand: Hand, index: usize) -> bool {
         self.is_clamped(index)
             || self.is_in_drum(index)
             || hand.others().any(|other| self.is_held_by(other, index))

@@ -1,0 +1,115 @@
+//! How long a step of the simulation is.
+//!
+//! A tick has as many sub-steps as the description says: springs, contacts and moving air need them. Most of the time
+//! nothing needs them. The servos of the arm always move in sub-steps; the physics takes several at once while
+//!
+//! * nothing moves but bodies that are led: a whole tick;
+//! * a part hangs free in the still fingers of one hand: a quarter of a tick.
+//!
+//! Sub-steps are taken one by one while anything is as near to the robot's hand as [`NEAR`].
+
+use geometry::frame::Frame;
+use interfaces::device::DeviceOutputs;
+use rapier3d_f64::{parry::bounding_volume::Aabb, prelude::*};
+
+use super::{Cell, handling::Hand};
+use crate::{
+    convert::{metres, to_pose},
+    jaws::Supply,
+};
+
+/// Nearer than this to hand, fingers or held part, m, something may be touched in the next sub-step, beside twice the
+/// travel of the hand in this one.
+const NEAR: Real = 0.004;
+/// Colliders farther than this from the middle of the hand are out of its reach for a tick, in.
+const REACH: f64 = 30.0;
+
+/// What the steps of a tick depend on.
+pub(super) struct Stride {
+    /// Sub-steps that the physics takes at once.
+    pub(super) most: u32,
+    /// Boxes around what the hand may come near to.
+    around: Vec<Aabb>,
+    /// Colliders of hand and held part, and their poses in the hand.
+    carried: Vec<(ColliderHandle, Pose)>,
+}
+
+impl Cell {
+    /// The steps of a tick with these commands.
+    pub(super) fn stride(&self, outputs: &DeviceOutputs) -> Stride {
+        let most = self.most_at_once(outputs);
+        let hand = self.changer.mated().filter(|_| most > 1);
+        let carried = hand.map_or_else(Vec::new, |hand| self.carried_by(hand));
+        let around = hand.map_or_else(Vec::new, |hand| self.around(hand, &carried));
+        Stride { most, around, carried }
+    }
+
+    /// Sub-steps that the physics may take at once if the hand stays clear of everything.
+    fn most_at_once(&self, outputs: &DeviceOutputs) -> u32 {
+        let whole = self.description.physics.substeps;
+        if !self.t3.arm().has_pressure() || self.something_works(outputs) {
+            return 1;
+        }
+        let is_loose = |body: &RigidBody| body.is_dynamic() && body.is_enabled() && !body.is_sleeping();
+        let mut loose = self.world.bodies.iter().filter(|(_, body)| is_loose(body)).peekable();
+        if loose.peek().is_none() {
+            return whole;
+        }
+        if loose.all(|(body, _)| self.hangs_free(body, outputs)) { (whole / 4).max(1) } else { 1 }
+    }
+
+    /// A device moves, or is about to move, that is neither the arm nor the free fingers of its hand.
+    fn something_works(&self, outputs: &DeviceOutputs) -> bool {
+        let pedestal = Supply::of_bits(outputs.pedestal_hand.bits);
+        self.vise.moving()
+            || self.pedestal.table.moving()
+            || !self.pedestal.hand.air.stands(&pedestal)
+            || self.drum.tool.is_some_and(|pocketed| !pocketed.fast)
+            || !self.changer.rests()
+    }
+
+    /// A body is a part in the still fingers of the robot that touches nothing else.
+    fn hangs_free(&self, body: RigidBodyHandle, outputs: &DeviceOutputs) -> bool {
+        let Some(hand) = self.changer.mated() else { return false };
+        let Some((index, hold)) = &self.hand(hand).hold else { return false };
+        let part = &self.parts[*index];
+        part.body == body
+            && hold.sticks()
+            && self.hand(hand).air.stands(&self.supply(hand, outputs))
+            && !self.is_held_elsewhere(hand, *index)
+            && !self.world.contact_pairs_with(part.collider).any(ContactPair::has_any_active_contact)
+    }
+
+    /// Colliders of a hand and of what it holds, and their poses in the hand.
+    fn carried_by(&self, hand: Hand) -> Vec<(ColliderHandle, Pose)> {
+        let gripper = self.hand(hand);
+        let held = gripper.hold.as_ref().map(|(index, _)| self.parts[*index].collider);
+        let palm = self.world.bodies[gripper.hand()].colliders().iter().copied();
+        let tool = self.world.bodies[gripper.hand()].position();
+        palm.chain(gripper.finger_colliders())
+            .chain(held)
+            .map(|handle| (handle, tool.inv_mul(self.world.colliders[handle].position())))
+            .collect()
+    }
+
+    /// Boxes around everything that the hand may reach in a tick.
+    fn around(&self, hand: Hand, carried: &[(ColliderHandle, Pose)]) -> Vec<Aabb> {
+        let middle = self.world.bodies[self.hand(hand).hand()].translation();
+        let reach = Aabb::from_half_extents(middle, Vector::splat(metres(REACH)));
+        let others = self.world.colliders.iter().filter(|(handle, collider)| {
+            collider.is_enabled() && !carried.iter().any(|(own, _)| own == handle)
+        });
+        others.map(|(_, collider)| collider.compute_aabb()).filter(|near| near.intersects(&reach)).collect()
+    }
+
+    /// The hand, which the arm has moved from `before` in a sub-step, is near nothing.
+    pub(super) fn is_clear(&self, stride: &Stride, before: &Frame) -> bool {
+        let tool = self.t3.arm().tool();
+        let margin = NEAR + 2.0 * metres((tool.position - before.position).norm());
+        let tool = to_pose(&tool);
+        stride.carried.iter().all(|(handle, at)| {
+            let own = self.world.colliders[*handle].shape().compute_aabb(&(tool * *at)).loosened(margin);
+            !stride.around.iter().any(|other| other.intersects(&own))
+        })
+    }
+}
