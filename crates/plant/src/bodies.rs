@@ -15,7 +15,7 @@ use crate::{
     clearance::Body,
     convert::{metres, to_metres, to_pose},
     description::{CellDescription, Gripper, Kind, PartType},
-    gripper::finger_rest,
+    finger::finger_rest,
     holster::ears,
     linkage::Chain,
     scene::{Block, jaw_blocks},

@@ -111,12 +111,19 @@ pub struct CellDescription {
     pub part: Vec<PartType>,
 }
 
+const fn yes() -> bool {
+    true
+}
+
 /// Steps and stiffness of the simulation.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Physics {
     /// Steps in a tick of 40 ms.
     pub substeps: u32,
+    /// Whether the physics takes several sub-steps at once while only led bodies move, or a part free in still fingers.
+    #[serde(default = "yes")]
+    pub long_steps: bool,
     /// Solver iterations in a step.
     pub solver_iterations: usize,
     /// Natural frequency of contacts, Hz.

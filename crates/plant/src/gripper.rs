@@ -8,18 +8,15 @@
 
 use geometry::frame::Vector as Inches;
 use interfaces::device::GripSensors;
-use rapier3d_f64::{
-    math::Rotation,
-    parry::{bounding_volume::BoundingVolume, query},
-    prelude::*,
-};
+use rapier3d_f64::{math::Rotation, prelude::*};
 use serde::{Deserialize, Serialize};
 
 use crate::{
     convert::{KILOGRAMS_PER_POUND, inches, metres, newtons, on_the_side_of, to_inches},
     description::Gripper as Description,
+    finger::{Finger, Mount, finger_rest},
     force::Wrench,
-    hold::{Hold, Stiffness},
+    hold::Hold,
     jaws::Supply,
     noise::Noise,
     scene::{PALM, groups},
@@ -32,9 +29,9 @@ const FREE_GAP: f64 = 0.001;
 /// Time for which the seals hold free fingers before trapped air moves them, s; a part that slides out is clear by
 /// then.
 const BREAKAWAY_TIME: f64 = 0.25;
-/// Fingers can sleep when none of their points has moved faster than this for half a second, m/s (rad/s): their
 /// Nearer than this to a finger, m, something may be touched in the next step, beside the travel of the hand in it.
 const TOUCHABLE: Real = 2e-3;
+/// Fingers can sleep when none of their points has moved faster than this for half a second, m/s (rad/s): their
 /// remaining motion is then less than 1e-11 m.
 const STILL: Real = 1e-9;
 /// Speed of fingers that trapped air drives, in/s: that of the coarse flow, which the same ports limit.
@@ -168,17 +165,6 @@ pub struct Gripper {
     hand: RigidBodyHandle,
     fingers: [Finger; 2],
     shown: (f64, f64),
-}
-
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
-struct Finger {
-    /// +1 left (tool +Y), -1 right.
-    side: Real,
-    body: RigidBodyHandle,
-    collider: ColliderHandle,
-    joint: ImpulseJointHandle,
-    /// Of its springs, N/m and N·m/rad.
-    stiffness: Stiffness,
 }
 
 impl Gripper {
@@ -438,80 +424,6 @@ impl Gripper {
 fn wrench(point: Vector, force: Vector, moment: Vector) -> Wrench {
     let pounds = |v: Vector| Inches::new(v.x, v.y, v.z) / newtons(1.0);
     Wrench::at(&to_inches(point), pounds(force), pounds(moment) / metres(1.0))
-}
-
-/// Where a finger's middle stands in the tool frame, metres; `side` is 1 for the left finger, -1 for the right one.
-pub(crate) fn finger_rest(description: &Description, side: Real, opening: f64) -> Pose {
-    let [length, thickness, _] = description.fingers;
-    Pose::from_translation(Vector::new(
-        -metres(length / 2.0),
-        side * metres((opening + thickness) / 2.0),
-        0.0,
-    ))
-}
-
-/// The mount of the fingers.
-struct Mount<'a> {
-    hand: RigidBodyHandle,
-    tool: &'a Pose,
-    stiffness: f64,
-    group: Group,
-}
-
-impl Finger {
-    /// Something that it may touch is nearer than `distance`, m.
-    fn is_near(&self, world: &PhysicsWorld, distance: Real) -> bool {
-        world.narrow_phase.contact_pairs_with(self.collider).any(|pair| {
-            let [one, other] = [&world.colliders[pair.collider1], &world.colliders[pair.collider2]];
-            // The pair of a part that is held stays in the list, but is not looked at any more.
-            one.collision_groups().test(other.collision_groups())
-                && one.compute_aabb().loosened(distance).intersects(&other.compute_aabb())
-                && query::distance(one.position(), one.shape(), other.position(), other.shape())
-                    .is_ok_and(|between| between.distance < distance)
-        })
-    }
-
-    fn new(
-        world: &mut PhysicsWorld,
-        description: &Description,
-        mount: &Mount<'_>,
-        side: Real,
-        opening: f64,
-    ) -> Self {
-        let &Mount { hand, tool, stiffness, group } = mount;
-        let rest = finger_rest(description, side, opening);
-        let mass = description.finger_weight * KILOGRAMS_PER_POUND;
-        let [x, y, z] = description.fingers.map(|size| metres(size / 2.0));
-        // The weight of the fingers is part of the arm's calibration: resting springs are not loaded by it.
-        let body = world
-            .insert_body(RigidBodyBuilder::dynamic().pose(*tool * rest).gravity_scale(0.0).can_sleep(false));
-        let collider = ColliderBuilder::cuboid(x, y, z)
-            .mass(mass)
-            .friction(description.friction)
-            // What stands still is near, too, while the fingers are led.
-            .active_collision_types(ActiveCollisionTypes::all())
-            .collision_groups(groups(group, Group::ALL & !group));
-        let collider = world.insert_collider(collider, Some(body));
-        let linear = newtons(stiffness) / metres(1.0) / 2.0;
-        // The moment arm of a fingertip is half the finger's length: the springs about the middle are made so
-        // stiff that they add a hundredth to what the tip gives way.
-        let angular = 100.0 * linear * x * x;
-        let inertia = mass / 3.0 * (x * x + z * z);
-        let mut data = GenericJointBuilder::new(JointAxesMask::empty())
-            .local_frame1(rest)
-            .contacts_enabled(false)
-            .build();
-        for axis in [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ] {
-            let damping = 2.0 * libm::sqrt(linear * mass);
-            data.set_motor_model(axis, MotorModel::ForceBased).set_motor(axis, 0.0, 0.0, linear, damping);
-        }
-        for axis in [JointAxis::AngX, JointAxis::AngY, JointAxis::AngZ] {
-            let damping = 2.0 * libm::sqrt(angular * inertia);
-            data.set_motor_model(axis, MotorModel::ForceBased).set_motor(axis, 0.0, 0.0, angular, damping);
-        }
-        let joint = world.insert_impulse_joint(hand, body, data);
-        Self { side, body, collider, joint, stiffness: Stiffness { linear, angular } }
-    }
 }
 
 /// Opening of the finger bodies, in: differs from that of the air by the deflection of the springs.

@@ -51,6 +51,7 @@ pub mod convert;
 pub mod description;
 pub mod drum;
 pub mod fault;
+pub mod finger;
 pub mod fingerprint;
 pub mod force;
 pub mod friction;

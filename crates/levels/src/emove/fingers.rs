@@ -33,6 +33,8 @@ const UNFELT_TICKS: u8 = 5;
 /// Force with which the joystick box closes the parts gripper, lb: the least of the usual ones (VIII.9.1;
 /// ASSUMED).
 const HAND_FORCE: i32 = 30;
+/// Something unknown is let go by this much at least, 0.01 in (ASSUMED).
+const LEAST_RELEASE: i32 = 50;
 
 /// Parameters of the holster object of a command with the gripper on.
 pub(super) fn gripper_on<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
@@ -168,10 +170,17 @@ impl State {
         }
     }
 
-    /// The opening to release the held object, or the object of the command, 0.01 in.
-    fn depart_opening(&self, command: &EmoveCommand, data: &TaskData<'_>) -> i32 {
+    /// The opening to release the held object, or the object of the command, 0.01 in. Something unknown may be wider
+    /// than the object of the command: the fingers open from where they are.
+    fn depart_opening(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> i32 {
+        let Inputs { data, memory, .. } = inputs;
         let held = self.beliefs.held.and_then(|held| data.end_eff(EndEffId::from_option(held.parameters)));
-        held.or_else(|| sizes(command, data)).map_or(FULL_OPENING, |sizes| sizes.depart_size)
+        let size = held.or_else(|| sizes(command, data)).map_or(FULL_OPENING, |sizes| sizes.depart_size);
+        let now = match self.holding(memory) {
+            Holding::Something | Holding::NotKnown => Gripper::attached(memory).opening(memory),
+            Holding::Nothing | Holding::Object(_) => None,
+        };
+        now.map_or(size, |now| size.max(now.saturating_add(LEAST_RELEASE).min(FULL_OPENING)))
     }
 
     /// The order to the gripper that an action stands for.
@@ -193,7 +202,7 @@ impl State {
                 FingerOrder::to(FingerVerb::Stand, opening)
             }
             Action::OpenToDepart => {
-                FingerOrder::to(FingerVerb::Release, self.depart_opening(command, inputs.data))
+                FingerOrder::to(FingerVerb::Release, self.depart_opening(command, inputs))
             }
             Action::OpenByHand | Action::OpenFully => FingerOrder::to(FingerVerb::Release, FULL_OPENING),
             Action::Close => {
@@ -244,7 +253,7 @@ impl State {
         inputs: &Inputs<'_, TaskData<'_>>,
     ) -> Spread {
         let attached = Gripper::attached(inputs.memory);
-        let open = attached.is_open(self.depart_opening(command, inputs.data), inputs.memory);
+        let open = attached.is_open(self.depart_opening(command, inputs), inputs.memory);
         let at_rest = attached == Gripper::None || gripper == Lower::Done;
         match (attached.is_uncalibrated(inputs.memory), open && at_rest) {
             (true, _) => Spread::Unknown,

@@ -33,7 +33,6 @@ use handling::Hand;
 pub use picture::{Link, part_link};
 pub use sagging::Droop;
 pub use saving::{RestoreError, SaveError};
-use stride::Stride;
 pub use workstation::{Placement, WorkstationAction, WorkstationError};
 
 use crate::{
@@ -279,50 +278,10 @@ impl Cell {
     /// One tick of all moving bodies.
     fn advance(&mut self, outputs: &DeviceOutputs) {
         self.pedestal.table.order(&outputs.pedestal_table);
-        let near = self.near_arm();
-        let mut stride = self.stride(outputs);
-        let mut left = self.description.physics.substeps;
-        while left > 0 {
-            left -= self.step_physics(outputs, &near, &mut stride, left);
-        }
+        self.step_bodies(outputs);
         self.after_tick();
         self.watch_droop();
         self.look(outputs);
-    }
-
-    /// One step of the simulation, of at most `left` sub-steps: returns of how many. `near` are the bodies that an arm
-    /// without pressure may touch.
-    fn step_physics(
-        &mut self,
-        outputs: &DeviceOutputs,
-        near: &[Body],
-        stride: &mut Stride,
-        left: u32,
-    ) -> u32 {
-        let substep = TICK_S / f64::from(self.description.physics.substeps);
-        let mut taken = 0;
-        while taken < stride.most.min(left) {
-            let before = self.t3.arm().tool();
-            self.t3.advance(substep, &self.loads(near));
-            taken += 1;
-            if stride.most > 1 && !self.is_clear(stride, &before) {
-                stride.most = 1;
-            }
-        }
-        let dt = substep * f64::from(taken);
-        self.world.integration_parameters.dt = dt;
-        self.change_grippers(dt, &outputs.quick_change);
-        self.pedestal.turn(&mut self.world, dt);
-        if let Some(hand) = self.changer.mated() {
-            self.drive_fingers(dt, hand, self.supply(hand, outputs));
-        }
-        self.drive_fingers(dt, Hand::Pedestal, Supply::of_bits(outputs.pedestal_hand.bits));
-        self.drive_jaw(dt);
-        self.rub_holds(dt);
-        self.work_drum(dt);
-        self.world.step();
-        self.let_holds_give_way();
-        taken
     }
 
     /// Air supply of a gripper of the robot.

@@ -10,10 +10,15 @@
 
 use geometry::frame::Frame;
 use interfaces::device::DeviceOutputs;
-use rapier3d_f64::{parry::bounding_volume::Aabb, prelude::*};
+use rapier3d_f64::{
+    parry::bounding_volume::{Aabb, BoundingVolume},
+    prelude::*,
+};
+use rcs_core::tick::TICK_S;
 
 use super::{Cell, handling::Hand};
 use crate::{
+    clearance::Body,
     convert::{metres, to_pose},
     jaws::Supply,
 };
@@ -21,13 +26,14 @@ use crate::{
 /// Nearer than this to hand, fingers or held part, m, something may be touched in the next sub-step, beside twice the
 /// travel of the hand in this one.
 const NEAR: Real = 0.004;
-/// Colliders farther than this from the middle of the hand are out of its reach for a tick, in.
-const REACH: f64 = 30.0;
+/// Colliders farther than this from hand, fingers and held part are out of their reach for a tick, m: six joints at
+/// their greatest speeds.
+const REACH: Real = 0.5;
 
 /// What the steps of a tick depend on.
-pub(super) struct Stride {
+struct Stride {
     /// Sub-steps that the physics takes at once.
-    pub(super) most: u32,
+    most: u32,
     /// Boxes around what the hand may come near to.
     around: Vec<Aabb>,
     /// Colliders of hand and held part, and their poses in the hand.
@@ -35,19 +41,65 @@ pub(super) struct Stride {
 }
 
 impl Cell {
+    /// Move all bodies for one tick.
+    pub(super) fn step_bodies(&mut self, outputs: &DeviceOutputs) {
+        let near = self.near_arm();
+        let mut stride = self.stride(outputs);
+        let mut left = self.description.physics.substeps;
+        while left > 0 {
+            left -= self.step_physics(outputs, &near, &mut stride, left);
+        }
+    }
+
+    /// One step of the physics, of at most `left` sub-steps; returns of how many. `near` are the bodies that an arm
+    /// without pressure may touch.
+    fn step_physics(
+        &mut self,
+        outputs: &DeviceOutputs,
+        near: &[Body],
+        stride: &mut Stride,
+        left: u32,
+    ) -> u32 {
+        let substep = TICK_S / f64::from(self.description.physics.substeps);
+        let mut taken = 0;
+        while taken < stride.most.min(left) {
+            let before = self.t3.arm().tool();
+            self.t3.advance(substep, &self.loads(near));
+            taken += 1;
+            if stride.most > 1 && !self.is_clear(stride, &before) {
+                stride.most = 1;
+            }
+        }
+        let dt = substep * f64::from(taken);
+        self.world.integration_parameters.dt = dt;
+        self.change_grippers(dt, &outputs.quick_change);
+        self.pedestal.turn(&mut self.world, dt);
+        if let Some(hand) = self.changer.mated() {
+            self.drive_fingers(dt, hand, self.supply(hand, outputs));
+        }
+        self.drive_fingers(dt, Hand::Pedestal, Supply::of_bits(outputs.pedestal_hand.bits));
+        self.drive_jaw(dt);
+        self.rub_holds(dt);
+        self.work_drum(dt);
+        self.world.step();
+        self.let_holds_give_way();
+        taken
+    }
+
     /// The steps of a tick with these commands.
-    pub(super) fn stride(&self, outputs: &DeviceOutputs) -> Stride {
+    fn stride(&self, outputs: &DeviceOutputs) -> Stride {
         let most = self.most_at_once(outputs);
         let hand = self.changer.mated().filter(|_| most > 1);
         let carried = hand.map_or_else(Vec::new, |hand| self.carried_by(hand));
-        let around = hand.map_or_else(Vec::new, |hand| self.around(hand, &carried));
+        let around = self.around(&carried);
         Stride { most, around, carried }
     }
 
     /// Sub-steps that the physics may take at once if the hand stays clear of everything.
     fn most_at_once(&self, outputs: &DeviceOutputs) -> u32 {
         let whole = self.description.physics.substeps;
-        if !self.t3.arm().has_pressure() || self.something_works(outputs) {
+        let always_small = !self.description.physics.long_steps;
+        if always_small || !self.t3.arm().has_pressure() || self.something_works(outputs) {
             return 1;
         }
         let is_loose = |body: &RigidBody| body.is_dynamic() && body.is_enabled() && !body.is_sleeping();
@@ -92,18 +144,21 @@ impl Cell {
             .collect()
     }
 
-    /// Boxes around everything that the hand may reach in a tick.
-    fn around(&self, hand: Hand, carried: &[(ColliderHandle, Pose)]) -> Vec<Aabb> {
-        let middle = self.world.bodies[self.hand(hand).hand()].translation();
-        let reach = Aabb::from_half_extents(middle, Vector::splat(metres(REACH)));
-        let others = self.world.colliders.iter().filter(|(handle, collider)| {
+    /// Boxes around everything that what the hand carries may reach in a tick.
+    fn around(&self, carried: &[(ColliderHandle, Pose)]) -> Vec<Aabb> {
+        let colliders = &self.world.colliders;
+        let own = carried.iter().map(|(own, _)| colliders[*own].compute_aabb());
+        let Some(reach) = own.reduce(|all, one| all.merged(&one)).map(|all| all.loosened(REACH)) else {
+            return Vec::new();
+        };
+        let others = colliders.iter().filter(|(handle, collider)| {
             collider.is_enabled() && !carried.iter().any(|(own, _)| own == handle)
         });
-        others.map(|(_, collider)| collider.compute_aabb()).filter(|near| near.intersects(&reach)).collect()
+        others.map(|(_, collider)| collider.compute_aabb()).filter(|other| other.intersects(&reach)).collect()
     }
 
     /// The hand, which the arm has moved from `before` in a sub-step, is near nothing.
-    pub(super) fn is_clear(&self, stride: &Stride, before: &Frame) -> bool {
+    fn is_clear(&self, stride: &Stride, before: &Frame) -> bool {
         let tool = self.t3.arm().tool();
         let margin = NEAR + 2.0 * metres((tool.position - before.position).norm());
         let tool = to_pose(&tool);

@@ -13,9 +13,9 @@ use plant::{
 use super::{CELL, FIX_V1, FX1, HOLD, Rig, SEAT, description};
 
 /// Poses of the cell proposal, §4.
-const TOOL_V1: Pose =
+pub const TOOL_V1: Pose =
     Pose { wrist: [2757, -2683, 2321], tool: [5597, -3497, 1800], finger: [5987, -1052, 105] };
-const TOOL_SAFE: Pose =
+pub const TOOL_SAFE: Pose =
     Pose { wrist: [5298, -2322, 1559], tool: [8296, -2431, 1585], finger: [8357, -1417, -1238] };
 
 /// The cell with the tool gripper on the robot.

@@ -478,9 +478,9 @@ fn what_is_not_known_is_held() {
         bench
     };
     // Felt, and it is not known what it is.
-    let felt = |location: &str| {
+    let felt_of = |location: &str, size: i32| {
         let mut bench = Bench::new(location, 1);
-        (bench.grip.opening, bench.world.object) = (75, Some(75));
+        (bench.grip.opening, bench.world.object) = (size, Some(size));
         bench.steps(3);
         bench.process = Emove::default();
         bench.memory.emove.beliefs.empty = false;
@@ -488,6 +488,7 @@ fn what_is_not_known_is_held() {
         assert_eq!(bench.memory.emove.status.held, Holding::Something);
         bench
     };
+    let felt = |location: &str| felt_of(location, 75);
     for (verb, object, location, something, not_known) in [
         (MovToObj, "BLOCK", "BENCH", Reason::AlreadyHolding, Reason::HeldNotKnown),
         (MovToVu, "BLOCK", "BENCH", Reason::AlreadyHolding, Reason::HeldNotKnown),
@@ -508,6 +509,12 @@ fn what_is_not_known_is_held() {
     for mut bench in [felt("HOME"), blind("HOME")] {
         assert_eq!(bench.run(Release, "BLOCK", 1, "HOME", 1), DONE);
         assert_eq!(bench.log(), ["OPEN-GRIP"]);
+    }
+    // It opens, even if what is held is wider than the depart size of the command's object.
+    for (size, opened) in [(75, 350), (345, 395), (480, 500)] {
+        let mut bench = felt_of("HOME", size);
+        assert_eq!(bench.run(Release, "BLOCK", 1, "HOME", 1), DONE);
+        assert_eq!(bench.memory.emove.grip.position, opened);
     }
     // A gripper that was never calibrated opens fully, and is calibrated on the way to the next object.
     let mut bench = blind("HOME");
