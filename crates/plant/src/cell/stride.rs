@@ -26,6 +26,8 @@ use crate::{
 /// Nearer than this to hand, fingers or held part, m, something may be touched in the next sub-step, beside twice the
 /// travel of the hand in this one.
 const NEAR: Real = 0.004;
+/// Fingers stay farther than this from anything in a long step, m.
+const SLACK: Real = 0.001;
 /// Colliders farther than this from hand, fingers and held part are out of their reach for a tick, m: six joints at
 /// their greatest speeds.
 const REACH: Real = 0.5;
@@ -38,6 +40,10 @@ struct Stride {
     around: Vec<Aabb>,
     /// Colliders of hand and held part, and their poses in the hand.
     carried: Vec<(ColliderHandle, Pose)>,
+    /// The tool frame of the arm after the last sub-step.
+    tool: Frame,
+    /// [`NEAR`], or more if the fingers move by more than that in a tick.
+    near: Real,
 }
 
 impl Cell {
@@ -63,10 +69,9 @@ impl Cell {
         let substep = TICK_S / f64::from(self.description.physics.substeps);
         let mut taken = 0;
         while taken < stride.most.min(left) {
-            let before = self.t3.arm().tool();
             self.t3.advance(substep, &self.loads(near));
             taken += 1;
-            if stride.most > 1 && !self.is_clear(stride, &before) {
+            if stride.most > 1 && !self.is_clear(stride) {
                 stride.most = 1;
             }
         }
@@ -92,7 +97,9 @@ impl Cell {
         let hand = self.changer.mated().filter(|_| most > 1);
         let carried = hand.map_or_else(Vec::new, |hand| self.carried_by(hand));
         let around = self.around(&carried);
-        Stride { most, around, carried }
+        let flow = hand.map_or(0.0, |hand| self.supply(hand, outputs).flow.abs());
+        let near = NEAR.max(SLACK + metres(flow / 2.0 * TICK_S));
+        Stride { most, around, carried, tool: self.t3.arm().tool(), near }
     }
 
     /// Sub-steps that the physics may take at once if the hand stays clear of everything.
@@ -157,13 +164,15 @@ impl Cell {
         others.map(|(_, collider)| collider.compute_aabb()).filter(|other| other.intersects(&reach)).collect()
     }
 
-    /// The hand, which the arm has moved from `before` in a sub-step, is near nothing.
-    fn is_clear(&self, stride: &Stride, before: &Frame) -> bool {
+    /// The hand, which the arm has moved in a sub-step, is near nothing.
+    fn is_clear(&self, stride: &mut Stride) -> bool {
         let tool = self.t3.arm().tool();
-        let margin = NEAR + 2.0 * metres((tool.position - before.position).norm());
+        let travel = metres((tool.position - stride.tool.position).norm());
+        stride.tool = tool;
         let tool = to_pose(&tool);
         stride.carried.iter().all(|(handle, at)| {
-            let own = self.world.colliders[*handle].shape().compute_aabb(&(tool * *at)).loosened(margin);
+            let own = self.world.colliders[*handle].shape().compute_aabb(&(tool * *at));
+            let own = own.loosened(stride.near + 2.0 * travel);
             !stride.around.iter().any(|other| other.intersects(&own))
         })
     }
