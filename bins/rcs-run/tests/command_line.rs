@@ -249,7 +249,7 @@ fn a_name_that_only_the_cell_has_is_told_before_the_first_tick() {
         "location = \"PFIXTURE\"",
         "location = \"PFIXTUR\"",
         &[
-            "cell.toml: line 216, column 12: vise.location: expected a location of the task data, found PFIXTUR",
+            "cell.toml: line 217, column 12: vise.location: expected a location of the task data, found PFIXTUR",
             "the nearest one is PFIXTURE",
             ".job: line 7, column 17: there is no vise at PFIXTURE; the cell description has one at PFIXTUR",
         ],
