@@ -1,4 +1,5 @@
-//! LOAD by the workstation controller (IV.2.4): a block of the run's own data directory counts from the next command on.
+//! LOAD by the workstation controller (IV.2.4): a block of the run's own data directory counts from the next command
+//! on.
 
 use std::{fs, os::unix::fs::symlink, path::PathBuf};
 

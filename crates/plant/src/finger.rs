@@ -51,7 +51,7 @@ pub struct Mount<'a> {
 }
 
 impl Finger {
-    /// Something that it may touch is nearer than `distance`, m.
+    /// True if something that it may touch is nearer than `distance`, m.
     pub fn is_near(&self, world: &PhysicsWorld, distance: Real) -> bool {
         world.narrow_phase.contact_pairs_with(self.collider).any(|pair| {
             let [one, other] = [&world.colliders[pair.collider1], &world.colliders[pair.collider2]];

@@ -2,8 +2,8 @@
 //! before the next command. First all boards check the whole data with the block. An operator asks for it, or the
 //! workstation controller with a line for the cell.
 //!
-//! On the 40 ms grid the data are checked beside the ticks. In fast clock the next tick waits for it, so that a run does
-//! not depend on how fast the machine is.
+//! On the 40 ms grid the data are checked beside the ticks. In fast clock the next tick waits for the check, so that a
+//! run does not depend on how fast the machine is.
 //!
 //! The log keeps the text, so that a replay, and a repetition with the same inputs, load the same block.
 
@@ -222,10 +222,8 @@ impl Run {
 
     /// Load a block before the next tick; in a repetition as the log has it.
     fn load_at_once(&mut self, number: BlockNumber, inside: bool) -> Result<String, LoadError> {
-        let source = match self.asked.recorded_block(self.generations.number().saturating_add(1)) {
-            Some(recorded) => Some(recorded.ok_or(LoadError::NotRecorded)?),
-            None => None,
-        };
+        let recorded = self.asked.recorded_block(self.generations.number().saturating_add(1));
+        let source = recorded.map(|block| block.ok_or(LoadError::NotRecorded)).transpose()?;
         let loaded = self.order(number, source, inside).carry_out()?;
         if let Some(load) = self.announce() {
             self.loads.last = load;

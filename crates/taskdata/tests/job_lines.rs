@@ -206,7 +206,8 @@ fn every_mistake_has_its_message() {
         ),
         (
             "**",
-            "column 1: tray, vise, machine, drum, joystick, estop, release, panel, table, wait, load, after, workstation was expected, the line ends",
+            "column 1: tray, vise, machine, drum, joystick, estop, release, panel, table, wait, load, after, \
+             workstation was expected, the line ends",
             "",
         ),
         (

@@ -1,5 +1,5 @@
-//! Joystick box (III.3.3), robot controller (IV.3.3), emergency stops (III.6) and rotary table (IV.1 step 3), as they are
-//! now, and the requests to a run.
+//! Joystick box (III.3.3), robot controller (IV.3.3), emergency stops (III.6) and rotary table (IV.1 step 3), as they
+//! are now, and the requests to a run.
 
 use executive::memory::cell::TableView;
 use interfaces::device::{

@@ -28,8 +28,8 @@ use crate::{
 const NEAR: Real = 0.004;
 /// Fingers stay farther than this from anything in a long step, m.
 const SLACK: Real = 0.001;
-/// Colliders farther than this from hand, fingers and held part are out of their reach for a tick, m: six joints at
-/// their greatest speeds.
+/// What is farther than this from hand, fingers and held part is out of their reach for a tick, m: the shipped arm
+/// moves by less with all joints at their greatest speeds.
 const REACH: Real = 0.5;
 
 /// What the steps of a tick depend on.

@@ -6,8 +6,8 @@
 //!            └──power off, then on, at PROG─── on, PROG, obeys nothing
 //! ```
 //!
-//! IV.1 says that the power is turned off and on again at the end, and that the switch stands at PROG whenever it is turned
-//! on. So a controller that was at MANUAL, or was turned on there, does not obey its serial line (CHOSEN).
+//! IV.1 says that the power is turned off and on again at the end, and that the switch stands at PROG whenever it is
+//! turned on. So a controller that was at MANUAL, or was turned on there, does not obey its serial line (CHOSEN).
 
 use serde::{Deserialize, Serialize};
 

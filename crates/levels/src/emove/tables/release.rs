@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// RELEASE (V.2.1): open the gripper to the depart size; done at once if it is open and holds nothing. A
-    /// gripper that is not calibrated knows no size: it opens fully.
+    /// RELEASE (V.2.1): open the gripper to the depart size, and from something unknown by 0.5 in at least; done
+    /// at once if it is open and holds nothing. A gripper that is not calibrated knows no size: it opens fully.
     pub RELEASE: fn release(enum ReleaseStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                        => Wait;

@@ -1,6 +1,6 @@
 //! A line that is not in a job: another process or an operator sends it during the run.
 //!
-//! It is read from its words and the task data alone, after the run has taken out `load OFFSET BLOCK`. It opens no file,
+//! It is read from its words and the task data alone; the run reads `load OFFSET BLOCK` before. It opens no file,
 //! because that could take any time, and would reveal to the connected system which files exist.
 
 use std::fmt;
