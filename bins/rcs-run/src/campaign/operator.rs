@@ -95,6 +95,10 @@ pub struct Operator<'f> {
     /// When the command or the action began.
     began: Tick,
     number: u32,
+    /// Number of the command of the job that a command of the operator replaces.
+    replaced: Option<u32>,
+    /// It finished before Task took the operator's command, and is not sent again.
+    has_finished: bool,
     outgoing: Option<HwsCommand>,
     /// The interruption goes on: nothing is tried.
     pub is_waiting: bool,
@@ -119,6 +123,8 @@ impl<'f> Operator<'f> {
             doing: Doing::Over,
             began,
             number: last.number,
+            replaced: None,
+            has_finished: false,
             outgoing: None,
             is_waiting: false,
             recovery: Recovery::Pause,
@@ -182,6 +188,8 @@ impl<'f> Operator<'f> {
 
     /// Send a command that is not one of the job.
     pub fn interject(&mut self, tick: Tick, command: &HwsCommand, then: Then) {
+        self.replaced = (self.doing == Doing::Command).then_some(self.number);
+        self.has_finished = false;
         self.doing = Doing::Own(then);
         self.send(tick, command);
     }
@@ -336,6 +344,8 @@ impl Commander for Operator<'_> {
             Doing::Failed if self.is_waiting => {}
             Doing::Failed => self.recover(tick),
             Doing::Own(then) => {
+                let echoes_replaced = self.replaced == Some(u32::from(status.echo));
+                self.has_finished |= echoes_replaced && status.report == HwsReport::Finished;
                 if let Some(end) = self.end(tick, status) {
                     self.note(
                         tick,
@@ -345,6 +355,7 @@ impl Commander for Operator<'_> {
                     );
                     match then {
                         Then::Recovery => self.recover(tick),
+                        Then::SameCommand if self.has_finished => self.next(tick, workstation),
                         Then::SameCommand => self.same(tick),
                     }
                 }

@@ -38,13 +38,14 @@ pub struct Parent {
     pub digest: String,
 }
 
-/// Steps and command numbers of all processes.
+/// Steps and command numbers of all processes. The number of the T3 interface's command is left out: Prim sends one for
+/// each trajectory point, so while the robot moves it changes in every tick.
 type Steps = Vec<(Option<Name16>, Option<u32>)>;
 
 fn steps(memory: &CommonMemory, task: u32) -> Steps {
     let step = |process: &ProcessId| {
         let number = memory.command_number(*process).unwrap_or(task);
-        (memory.header(*process).step, Some(number))
+        (memory.header(*process).step, (*process != ProcessId::T3i).then_some(number))
     };
     ProcessId::ALL.iter().map(step).collect()
 }

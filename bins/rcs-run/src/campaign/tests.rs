@@ -134,6 +134,20 @@ fn an_undisturbed_branch_is_done() {
     assert!(result.doing[0].starts_with("Task: MOVE"), "{:?}", result.doing);
 }
 
+#[test]
+fn a_command_that_finishes_while_it_is_replaced_is_not_sent_again() {
+    let (facility, parent, fork) = empty_move();
+    let last =
+        (1..parent.ticks).rfind(|tick| parent.line_at(Tick(*tick)).0 == 1).expect("it has a first line");
+    let at_end = pool::fork_at(&facility, last).expect("the run can be forked");
+    let sent_again = |fork: &Fork| {
+        let result = judged(&facility, &parent, fork, "replaced");
+        assert_eq!((result.verdict, result.detail.as_str()), (Verdict::Done, ""));
+        result.ended.iter().any(|ended| ended.contains("SAFE"))
+    };
+    assert!(sent_again(&fork) && !sent_again(&at_end));
+}
+
 /// A part in the way of the hand: the contact, the tick and the command are named.
 #[test]
 fn the_monitor_finds_a_contact_that_was_planted() {
