@@ -1,5 +1,4 @@
-//! An EGM robot in the place of a T3: behind the controller's side of DEPC stands ABB's Externally Guided
-//! Motion.
+//! An EGM robot in the place of a T3: connects the controller's side of DEPC to ABB's Externally Guided Motion.
 //!
 //! ```text
 //!   host (T3 Interface, or any other)
@@ -11,7 +10,7 @@
 //!   robot controller, or emulator::EgmRobot
 //! ```
 //!
-//! * [`options`] reads what is typed, `egm:[ADDRESS:]PORT[,OPTION...]`;
+//! [`options`]: parses `egm:[ADDRESS:]PORT[,OPTION...]`;
 //! * [`placement`]: where the T3's world lies in the robot's work object, from a file;
 //! * [`arm`]: the axes of the robot, from the same file, to know before whether it reaches;
 //! * [`bridge`]: the robot's border;
