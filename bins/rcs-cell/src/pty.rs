@@ -164,7 +164,7 @@ impl Drop for Pty {
     fn drop(&mut self) {
         // Only if the link is still this program's own.
         if self.path.read_link().is_ok_and(|target| target == self.slave) {
-            // An error could be reported to nobody; the next start replaces the stale link.
+            // Nowhere is left to report an error; the next start replaces the stale link.
             let _ = std::fs::remove_file(&self.path);
         }
     }
