@@ -149,8 +149,8 @@ impl Arm {
         &self.name
     }
 
-    /// All axis angles, rad, that bring the tool to a pose in the work object and are within the limits of the axes. Of
-    /// several turns of an axis, the first that is within its limits is used, beginning with none.
+    /// All axis angles, rad, that bring the tool to a pose in the work object, within the limits of the axes. A turn is
+    /// added to an axis, or subtracted, only if its limits require it.
     #[must_use]
     pub fn solutions(&self, tool: &Pose) -> Vec<Axes> {
         let mut solutions = self.kinematics.inverse(&self.flange(tool));

@@ -47,7 +47,7 @@ impl Order {
 pub struct Report {
     /// State of the host.
     pub sample: Sample,
-    /// Time since the previous message, ns; `None` for the first.
+    /// Time since the previous message, ns; `None` if there is none.
     pub cycle: Option<u64>,
     /// Time from the message to its answer, ns.
     pub answered: u64,

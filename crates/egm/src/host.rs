@@ -76,7 +76,8 @@ pub struct Sample {
     pub speed: Twist,
     /// True while a path is moving: the host accepts points.
     pub is_moving: bool,
-    /// Pose at which a path may begin; `None` while the robot does not follow, is not at rest, or is not at its target.
+    /// Pose at which a path may begin or continue; `None` while the robot does not follow, is not at its target, or is
+    /// stopping.
     pub start: Option<Pose>,
     /// Utilization of the robot by the motion, percent; `None` if the robot does not send it.
     pub utilization: Option<f64>,

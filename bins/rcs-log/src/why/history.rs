@@ -26,7 +26,7 @@ pub struct Commanded {
 pub struct Fired {
     /// The tick.
     pub tick: u64,
-    /// Table and row; `None` if the process had nothing to decide.
+    /// Table and row; `None` if no row of a table fired.
     pub decided: Option<Decided>,
     /// Step of the command after the row.
     pub step: Option<Name16>,
