@@ -1,8 +1,8 @@
-//! The operator of `--auto`: goes through the start-up by itself, so that a link can be tested without a person.
+//! The automatic operator of `--auto`: performs the start-up by itself, so that a link can be tested without a person.
 //!
-//! It presses what IV.3.3 says, one key after the other, up to the DEPC function. From then on it answers ENTER to what
-//! a host can bring about (WD1 once a host is there, WD3, WD4), and starts the program again after a cancel. As soon as a
-//! person touches the console it leaves the robot to that person: an emergency stop must stay one.
+//! It presses the keys of IV.3.3 one after the other, up to the DEPC function. After that it answers ENTER to the
+//! warnings that a host can cause (WD1 once a host is connected, WD3, WD4), and restarts the program after a cancel.
+//! When a person presses a key, the operator stops for good, so that it never undoes a person's emergency stop.
 
 use depc::controller::{ControllerState, Warning};
 use plant::{
@@ -10,25 +10,25 @@ use plant::{
     t3::{Stage, T3Controller},
 };
 
-/// The operator.
+/// The automatic operator.
 #[derive(Debug)]
 pub struct Operator {
     on_duty: bool,
 }
 
 impl Operator {
-    /// One that works, or one that does nothing.
+    /// An active operator, or one that does nothing.
     #[must_use]
     pub const fn new(on_duty: bool) -> Self {
         Self { on_duty }
     }
 
-    /// A person has pressed a key; true if the operator has just stepped back.
+    /// Stops the operator because a person has pressed a key. Returns true if it was active.
     pub fn step_back(&mut self) -> bool {
         std::mem::replace(&mut self.on_duty, false)
     }
 
-    /// What the operator does now. `cts` says that a host has the line open.
+    /// The next key to press, `None` if there is none. `cts` is true if a host has the line open.
     #[must_use]
     pub fn next(&self, t3: &T3Controller, cts: bool) -> Option<Key> {
         if !self.on_duty {
@@ -63,7 +63,7 @@ mod tests {
         T3Controller::dark(Limits::NBS, &Actuators::default(), 5)
     }
 
-    /// Run for `seconds` and press what the operator wants; returns the keys.
+    /// Runs for `seconds` and presses the operator's keys; returns the keys.
     fn run(t3: &mut T3Controller, operator: &Operator, seconds: f64, host: bool) -> Vec<Key> {
         let mut keys = Vec::new();
         for _ in 0..(seconds / 0.04) as u32 {

@@ -69,7 +69,7 @@ pub struct Cli {
     pub faults: Option<PathBuf>,
 }
 
-/// Where an emulated robot sends to.
+/// Target of an emulated robot: the host's address, and the robot's options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EgmTarget(pub EgmOptions);
 

@@ -1,4 +1,4 @@
-//! The console: what a person can press, turn and ask for, one command a line.
+//! The console: keys, switches and queries, one command per line.
 
 use std::str::FromStr;
 
@@ -7,13 +7,13 @@ use plant::{EStop, Key};
 /// A line of the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConsoleCommand {
-    /// Do something at the controller.
+    /// Press a key or turn a switch of the controller.
     Key(Key),
-    /// Show everything.
+    /// Show the state of the controller and of the line.
     Status,
     /// List the commands.
     Help,
-    /// Wait so many milliseconds before the next line.
+    /// Wait this long before the next line, ms.
     Wait(u64),
     /// End the program.
     Quit,
@@ -22,7 +22,7 @@ pub enum ConsoleCommand {
 /// Longest wait, seconds.
 const LONGEST_WAIT_S: f64 = 3600.0;
 
-/// All commands, in the order of the start-up.
+/// Help text with all commands, in the order of the start-up.
 pub const HELP: &str = "\
 control power on|off        power of the controller
 fault reset                 the red FAULT RESET button
@@ -87,7 +87,7 @@ impl FromStr for ConsoleCommand {
     }
 }
 
-/// Degrees that the pendant turns an axis by at most.
+/// Largest jog of one axis from the pendant, degrees.
 const LONGEST_JOG: i8 = 20;
 
 fn jog(axis: &str, degrees: &str) -> Result<Key, String> {
@@ -110,7 +110,7 @@ fn on(switch: &str) -> Result<bool, String> {
     one_of(switch, "on", "off")
 }
 
-/// True for the word `yes`, false for the word `no`.
+/// Returns true for the word `yes` and false for the word `no`.
 fn one_of(word: &str, yes: &str, no: &str) -> Result<bool, String> {
     if word == yes {
         Ok(true)
@@ -130,7 +130,7 @@ fn wait(seconds: &str) -> Result<ConsoleCommand, String> {
     }
 }
 
-/// Bytes as they come from standard input, cut into lines. A line that is too long is cut off.
+/// Splits the bytes of standard input into lines. A line that is too long is truncated.
 #[derive(Debug, Default)]
 pub struct Lines {
     bytes: Vec<u8>,
@@ -140,7 +140,7 @@ pub struct Lines {
 const LONGEST_LINE: usize = 256;
 
 impl Lines {
-    /// Take in `bytes`; returns the lines that are complete, without those that are empty or a `#` comment.
+    /// Takes `bytes` and returns the lines that they complete, without empty lines and `#` comments.
     pub fn accept(&mut self, bytes: &[u8]) -> Vec<String> {
         let mut lines = Vec::new();
         for byte in bytes {

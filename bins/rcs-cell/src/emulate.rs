@@ -1,7 +1,7 @@
 //! `--emulate egm:[ADDRESS:]PORT[,OPTION...]`: an EGM robot that sends to a host over UDP.
 //!
-//! One thread: it sleeps until the next cycle of 4.032 ms, or until a datagram comes. Its network may be a bad
-//! one, by seed. Buttons and programs are lines of standard input, as at the T3's console.
+//! One thread, which sleeps until the next cycle of 4.032 ms or until a datagram arrives. Network faults can be
+//! simulated, random with a seed. Lines of standard input operate buttons and programs, as at the T3's console.
 
 use std::{
     io::{self, BufRead as _},
@@ -26,9 +26,9 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::cli::EgmTarget;
 
-/// Cycles of at most so long are made up for, ns.
+/// Longest time for which missed cycles are executed afterwards, ns.
 const MOST_BEHIND: u64 = 100_000_000;
-/// What can be typed.
+/// The commands that standard input accepts.
 const HELP: &str = "estop      motors off, as by the emergency stop\n\
                     motors     motors on\n\
                     start      start the RAPID program: EGM begins where the robot is\n\
@@ -36,7 +36,7 @@ const HELP: &str = "estop      motors off, as by the emergency stop\n\
                     status     where the robot is, and what it does\n\
                     quit       end the program";
 
-/// The robot and its socket.
+/// The emulated robot with its socket.
 pub struct Emulation {
     robot: EgmRobot,
     socket: UdpSocket,
@@ -46,15 +46,15 @@ pub struct Emulation {
     start: Instant,
     received: u64,
     refused: u64,
-    /// What was last said of its state.
+    /// State reported last on standard output.
     said: Option<&'static str>,
 }
 
 impl Emulation {
-    /// A robot that will send to the host.
+    /// A robot that sends to the host of `target`.
     ///
     /// # Errors
-    /// A sentence, if the robot's frames or a socket cannot be used.
+    /// A sentence for messages if the robot's file or a socket cannot be used.
     pub fn new(target: &EgmTarget, data: &std::path::Path) -> Result<Self, String> {
         let options: &EgmOptions = &target.0;
         let Peer::Udp(host) = options.peer else { return Err("--emulate needs a port to send to".into()) };
@@ -80,7 +80,7 @@ impl Emulation {
         })
     }
 
-    /// Run until `quit` or a signal.
+    /// Runs until `quit` or a signal.
     ///
     /// # Errors
     /// [`io::Error`] of the socket.
@@ -102,7 +102,7 @@ impl Emulation {
                     stdout_line!("[egm] refused: {error}");
                 }
             }
-            // Cycles that the system has slept through are made up for, as far as there is sense in it.
+            // Executes cycles that were missed while the system slept, but not more than `MOST_BEHIND`.
             next = next.max(now.saturating_sub(MOST_BEHIND));
             while now >= next {
                 next += CYCLE_NS;
@@ -122,7 +122,7 @@ impl Emulation {
 
     fn cycle(&mut self, now: u64) {
         let mut buffer = [0; MOST_BYTES];
-        // The buffer holds the longest message.
+        // The buffer has room for the longest message.
         if let Ok(datagram) = self.robot.cycle().encode(&mut buffer) {
             self.to_host.send(now, datagram);
         }
@@ -132,7 +132,7 @@ impl Emulation {
         }
     }
 
-    /// A host that is not there yet is no error.
+    /// Sends a datagram to the host. A host that is not running yet is no error.
     fn send(&self, datagram: &[u8]) -> io::Result<()> {
         match self.socket.send_to(datagram, self.host) {
             Ok(_) => Ok(()),
@@ -141,11 +141,11 @@ impl Emulation {
         }
     }
 
-    /// Wait for a datagram, at most until the next cycle or until one is due.
+    /// Waits for a datagram, at most until the next cycle or the next due datagram.
     fn wait(&mut self, next: u64) -> io::Result<()> {
         let due = [self.to_host.next(), self.to_robot.next()].into_iter().flatten().fold(next, u64::min);
         let left = Duration::from_nanos(due.saturating_sub(self.now()));
-        // The time-out of a socket is rounded to the ticks of the system, which may be longer than a cycle.
+        // The receive timeout of a socket is rounded to the system's ticks, which can be longer than a cycle.
         let timeout = Timespec::try_from(left).map_err(io::Error::other)?;
         let mut fds = [PollFd::new(&self.socket, PollFlags::IN)];
         match poll(&mut fds, Some(&timeout)) {
@@ -166,7 +166,7 @@ impl Emulation {
         }
     }
 
-    /// Do as typed; true for `quit`.
+    /// Executes a command line; returns true for `quit`.
     fn obey(&mut self, line: &str) -> bool {
         match line {
             "" => {}
@@ -196,7 +196,7 @@ fn is_quiet(error: &io::Error) -> bool {
     matches!(error.kind(), WouldBlock | Interrupted | ConnectionRefused)
 }
 
-/// Lines of standard input. Its end ends nothing: a robot may run without a person.
+/// Lines of standard input. The robot keeps running when standard input ends.
 fn typed() -> Receiver<String> {
     let (sender, lines) = mpsc::channel();
     thread::spawn(move || {

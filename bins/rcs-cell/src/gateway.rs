@@ -1,7 +1,7 @@
-//! `--egm [ADDRESS:]PORT[,OPTION...]`: a gateway that gives any DEPC host a robot with EGM.
+//! `--egm [ADDRESS:]PORT[,OPTION...]`: a gateway that connects any DEPC host to an EGM robot.
 //!
-//! On one side the pseudo-terminal of `--link`, on the other the UDP port; between them the DEPC function of
-//! the robot's border. What the host sees is a T3 controller whose program begins when the robot follows.
+//! One side is the pseudo-terminal of `--link`, the other the UDP port; between them runs the DEPC function of
+//! [`egm_robot::Bridge`]. The host sees a T3 controller whose program begins when the robot follows.
 
 use std::{
     io,
@@ -19,7 +19,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::{host_line::HostLine, line::Cadence, pty::Pty, shell::ShellError};
 
-/// Longest sleep, microseconds: a signal is noticed within it.
+/// Longest sleep, us: the program notices a signal within this time.
 const LONGEST_SLEEP: u64 = 20_000;
 
 /// The gateway.
@@ -29,15 +29,15 @@ pub struct Gateway {
     cadence: Cadence,
     robot: Line,
     bridge: Bridge,
-    /// What was last said of the robot.
+    /// State of the robot reported last on standard output.
     said: Option<&'static str>,
 }
 
 impl Gateway {
-    /// Listen for the robot.
+    /// Listens for the robot.
     ///
     /// # Errors
-    /// In words, if the port or the robot's frames cannot be used.
+    /// A sentence for messages if the port or the robot's file cannot be used.
     pub fn new(
         options: &EgmOptions,
         data: &std::path::Path,
@@ -61,10 +61,10 @@ impl Gateway {
         })
     }
 
-    /// Run until a signal.
+    /// Runs until a signal.
     ///
     /// # Errors
-    /// [`ShellError`].
+    /// [`ShellError`] if the pseudo-terminal or waiting fails.
     pub fn run(&mut self, stop: &Arc<AtomicBool>) -> Result<(), ShellError> {
         while !stop.load(Ordering::Relaxed) {
             self.host.poll(self.now())?;

@@ -1,4 +1,4 @@
-//! The pseudo-terminal with the serial line in time behind it: what a DEPC host is connected to.
+//! A pseudo-terminal with a simulated serial line behind it: what a DEPC host connects to.
 
 use std::os::fd::BorrowedFd;
 
@@ -10,10 +10,10 @@ use crate::{
     pty::{Pty, PtyError},
 };
 
-/// Baud of the link (VI.1).
+/// Baud rate of the link (VI.1).
 const BAUD: u32 = 9600;
 
-/// The line to a host. Times are microseconds of one monotonic clock.
+/// The line to a host. Times are us of one monotonic clock.
 pub struct HostLine {
     pty: Pty,
     host: bool,
@@ -28,29 +28,29 @@ impl HostLine {
         Self { pty, host: false, line: SerialLine::new(BAUD) }
     }
 
-    /// A host has the terminal open: that stands for its DTR.
+    /// True if a host has the terminal open, which stands for the host's DTR.
     #[must_use]
     pub const fn has_host(&self) -> bool {
         self.host
     }
 
-    /// The line in time.
+    /// The simulated serial line.
     #[must_use]
     pub const fn line(&self) -> &SerialLine {
         &self.line
     }
 
-    /// What is to be waited for: without a host the master reports a hang-up all the time, and a full line has
-    /// no room for what is there.
+    /// The file descriptor to wait for; `None` without a host, because the master then signals a hang-up all the time,
+    /// and `None` if the line has no room for more bytes.
     #[must_use]
     pub fn readable(&self) -> Option<BorrowedFd<'_>> {
         (self.host && self.line.room() > 0).then(|| self.pty.fd())
     }
 
-    /// Has a host come or gone? Then take what it has sent.
+    /// Checks whether a host has opened or closed the terminal, and reads its bytes.
     ///
     /// # Errors
-    /// [`PtyError`].
+    /// [`PtyError`] if the pseudo-terminal fails.
     pub fn poll(&mut self, now: u64) -> Result<(), PtyError> {
         let host = self.pty.has_host();
         if host != self.host {
@@ -66,22 +66,22 @@ impl HostLine {
         Ok(())
     }
 
-    /// What has arrived from the host.
+    /// Takes the bytes of the host that have arrived by `now`, us.
     pub fn arrived(&mut self, now: u64) -> LinkBytes {
         self.line.arrived(now)
     }
 
-    /// Put bytes on the line, if a host is there.
+    /// Puts bytes on the line if a host is connected.
     pub fn send(&mut self, now: u64, bytes: &[u8]) {
         if self.host {
             self.line.send(now, bytes);
         }
     }
 
-    /// Hand over the bytes that have reached the host.
+    /// Writes the bytes that have passed the line by `now`, us, to the terminal.
     ///
     /// # Errors
-    /// [`PtyError`].
+    /// [`PtyError`] if the pseudo-terminal fails.
     pub fn deliver(&mut self, now: u64) -> Result<(), PtyError> {
         while let Some(byte) = self.line.delivered(now) {
             self.pty.write(byte)?;

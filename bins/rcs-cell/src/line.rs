@@ -1,23 +1,23 @@
-//! The serial line in time: a pseudo-terminal passes bytes at once, a line at one byte after the other.
+//! A simulated serial line: a pseudo-terminal passes bytes at once, but a serial line passes them one after the other.
 //!
-//! Bytes of the host arrive here one byte time apart, and bytes to the host leave so. All times are microseconds of one
-//! monotonic clock; nothing here reads it.
+//! Bytes arrive one byte time apart in both directions. All times are us of one monotonic clock; this module reads no
+//! clock.
 
 use std::collections::VecDeque;
 
 use depc::wire::{FRAME_BYTES, START};
 use interfaces::device::LinkBytes;
 
-/// Bytes that wait on the line; a host that sends more finds the pseudo-terminal full.
+/// Capacity of the line, bytes; if a host sends more, the pseudo-terminal fills up.
 const MOST_WAITING: usize = 1024;
-/// Bits of a byte: start, eight data, stop.
+/// Bits per byte: start, eight data, stop.
 const BITS: u64 = 10;
-/// Bytes to wait for a next one before a burst counts as over (ASSUMED).
+/// A burst of bytes is over after a gap of this many byte times (ASSUMED).
 const PAUSE_BYTES: u64 = 2;
-/// A step waits so many byte times at most for a frame that is just arriving.
+/// Longest delay of a step for a frame that is just arriving, byte times.
 const PATIENCE_BYTES: u64 = 20;
 
-/// Both directions of the line.
+/// Both directions of the line: arrival time in us, and byte.
 #[derive(Debug)]
 pub struct SerialLine {
     byte_us: u64,
@@ -28,21 +28,21 @@ pub struct SerialLine {
 }
 
 impl SerialLine {
-    /// A line of so many bits a second.
+    /// A line with `baud` bits per second.
     #[must_use]
     pub fn new(baud: u32) -> Self {
-        // Rounded up: never faster than the line.
+        // Rounded up, so that the line is never too fast.
         let byte_us = (BITS * 1_000_000).div_ceil(u64::from(baud.max(1)));
         Self { byte_us, rx: VecDeque::new(), tx: VecDeque::new(), rx_end: 0, tx_end: 0 }
     }
 
-    /// How many more bytes of the host the line takes.
+    /// Number of bytes from the host that the line can still take.
     #[must_use]
     pub fn room(&self) -> usize {
         MOST_WAITING.saturating_sub(self.rx.len())
     }
 
-    /// The host has put `bytes` on the line.
+    /// Puts bytes of the host on the line at `now`, us.
     pub fn host_sent(&mut self, now: u64, bytes: &[u8]) {
         for byte in bytes.iter().take(self.room()) {
             self.rx_end = self.rx_end.max(now) + self.byte_us;
@@ -50,7 +50,7 @@ impl SerialLine {
         }
     }
 
-    /// The bytes that have arrived by `now`, as many as a step takes.
+    /// Takes the bytes that have arrived by `now`, us, at most as many as a step accepts.
     pub fn arrived(&mut self, now: u64) -> LinkBytes {
         let mut bytes = LinkBytes::default();
         while let Some(&(at, byte)) = self.rx.front() {
@@ -62,7 +62,7 @@ impl SerialLine {
         bytes
     }
 
-    /// The controller puts `bytes` on the line.
+    /// Puts bytes of the controller on the line at `now`, us.
     pub fn send(&mut self, now: u64, bytes: &[u8]) {
         for byte in bytes {
             self.tx_end = self.tx_end.max(now) + self.byte_us;
@@ -70,7 +70,7 @@ impl SerialLine {
         }
     }
 
-    /// The next byte that has reached the host by `now`.
+    /// Takes the next byte that has reached the host by `now`, us.
     pub fn delivered(&mut self, now: u64) -> Option<u8> {
         let (at, _) = self.tx.front()?;
         if *at > now {
@@ -79,24 +79,24 @@ impl SerialLine {
         self.tx.pop_front().map(|(_, byte)| byte)
     }
 
-    /// When the next byte reaches the host.
+    /// Time at which the next byte reaches the host, us.
     #[must_use]
     pub fn next_delivery(&self) -> Option<u64> {
         self.tx.front().map(|(at, _)| *at)
     }
 
-    /// The cable is pulled: nothing is on the line.
+    /// Removes all bytes from the line, as when the cable is pulled.
     pub fn clear(&mut self) {
         self.rx.clear();
         self.tx.clear();
     }
 }
 
-/// When the controller takes its next step.
+/// Schedule of the controller's steps.
 ///
-/// A move takes a period, and the next command is taken when it is over; a controller that waits takes a command as
-/// soon as it is there (A 2.3: ACK, then the move during the next period). Without that, two clocks of the same period would
-/// lose every second period whenever a frame happened to straddle a step.
+/// A move takes one period, and the controller takes the next command when it is over. A controller without a move
+/// takes a command as soon as it has arrived (A 2.3: ACK, then the move during the next period). Otherwise a host with
+/// the same period would lose every second period when its frames straddle the controller's steps.
 #[derive(Debug)]
 pub struct Cadence {
     period_us: u64,
@@ -105,13 +105,13 @@ pub struct Cadence {
 }
 
 impl Cadence {
-    /// The first step is due one period after `now`.
+    /// A schedule whose first step is due one period after `now`, us.
     #[must_use]
     pub fn new(period_us: u32, now: u64) -> Self {
         Self { period_us: u64::from(period_us), last: now, busy: true }
     }
 
-    /// When the next step is due, as far as the bytes tell that are on the line now.
+    /// Time at which the next step is due, us, judged by the bytes now on the line.
     #[must_use]
     pub fn next(&self, line: &SerialLine) -> u64 {
         let regular = self.last + self.period_us;
@@ -125,13 +125,13 @@ impl Cadence {
         if complete && !self.busy { over.max(self.last) } else { regular }
     }
 
-    /// A step was taken at `now`; `busy` if it began a move or an answer.
+    /// Records a step at `now`, us; `busy` if it began a move or an answer.
     pub fn stepped(&mut self, now: u64, busy: bool) {
         self.last = now;
         self.busy = busy;
     }
 
-    /// When the last step was taken.
+    /// Time of the last step, us.
     #[must_use]
     pub fn last(&self) -> u64 {
         self.last
@@ -164,7 +164,7 @@ mod tests {
         assert_eq!(line.room(), 0);
     }
 
-    /// A host and a controller of the same period: one command a period, whatever the phase between their clocks.
+    /// With equal periods, host and controller exchange one command per period for every phase between their clocks.
     #[test]
     fn every_phase_gives_a_command_a_period() {
         for phase in (0..40_000).step_by(500) {

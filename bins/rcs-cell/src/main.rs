@@ -1,8 +1,8 @@
-//! `rcs-cell`: the simulated T3 controller behind a pseudo-terminal; a gateway to a robot with EGM in its place;
-//! an emulated robot with EGM.
+//! `rcs-cell`: the simulated T3 controller behind a pseudo-terminal, a gateway to an EGM robot, or an emulated EGM
+//! robot.
 //!
-//! Any DEPC host can open the terminal and finds what it would find on the serial line of a Cincinnati Milacron T3: the
-//! start-up of the manual's IV.3.3 at the console, the function of appendix A on the line, 9600 baud.
+//! Any DEPC host can open the terminal like the serial line of a Cincinnati Milacron T3: start-up at the console as in
+//! IV.3.3, the DEPC function of appendix A on the line, 9600 baud.
 //!
 //! ```text
 //!   console (standard input) ──► plant::t3: start-up, program, DEPC, arm
@@ -10,8 +10,8 @@
 //!                               line: bytes in time ◄──► pty ◄──► host
 //! ```
 //!
-//! The controller and its arm are those of the simulated cell, [`plant::t3`]. They, [`mod@line`],
-//! [`auto`] and [`console`] neither read a clock nor do I/O; [`shell`] and [`pty`] do nothing else.
+//! Controller and arm are those of the simulated cell, [`plant::t3`]. They, [`mod@line`], [`auto`] and [`console`]
+//! neither read a clock nor do I/O; [`shell`] and [`pty`] do that for them.
 
 mod auto;
 mod cli;
@@ -35,9 +35,9 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::{cli::Cli, emulate::Emulation, gateway::Gateway, pty::Pty, shell::Shell};
 
-/// Exit status if the pseudo-terminal fails while it runs.
+/// Exit status if the pseudo-terminal fails during the run.
 const FAILED: u8 = 1;
-/// Exit status if nothing can be started.
+/// Exit status if the program cannot start.
 const UNUSABLE: u8 = 2;
 
 fn main() -> ExitCode {
@@ -71,7 +71,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// An emulated robot; the command line has one if it has no link.
+/// Runs an emulated robot, if the command line asks for one instead of a link.
 fn emulate(cli: &Cli, stop: &Arc<AtomicBool>) -> ExitCode {
     let target = cli.emulate.as_ref().ok_or_else(|| "--link or --emulate is needed".to_owned());
     match target.and_then(|target| Emulation::new(target, &cli.data)) {
@@ -83,7 +83,7 @@ fn emulate(cli: &Cli, stop: &Arc<AtomicBool>) -> ExitCode {
     }
 }
 
-/// The fault plan in a file, if a pseudo-terminal can do what it says.
+/// Reads a fault plan; an error if the plan has faults that a pseudo-terminal cannot produce.
 fn plan(path: &Path) -> Result<Plan, String> {
     let refused = |why: String| format!("{}: {why}", path.display());
     let text = os_io::files::read_text(path).map_err(|error| refused(error.to_string()))?;

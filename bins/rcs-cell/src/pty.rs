@@ -1,14 +1,14 @@
-//! The pseudo-terminal behind a path.
+//! A pseudo-terminal that hosts open by a path.
 //!
-//! The path is a symbolic link to the slave; a host opens it as it would open a serial port. A
-//! pseudo-terminal has no modem lines: that a host has it open stands for the host's DTR.
+//! The path is a symbolic link to the slave; a host opens it like a serial port. A pseudo-terminal has no modem lines:
+//! an open terminal stands for the host's DTR.
 //!
-//! The terminal stays when a host closes it, and is made ready for the next: raw again, and empty. One thing cannot be
-//! taken back from outside: a host that was killed leaves the exclusive lock of the port (TIOCEXCL) behind, and only
-//! the superuser could open it again. Then a new terminal takes its place under the same path.
+//! The terminal stays open when a host closes it, and is prepared for the next host: raw mode, buffers empty. One thing
+//! cannot be reset from outside: a host that was killed leaves its exclusive lock of the port (TIOCEXCL), and then only
+//! the superuser can open it. In this case a new terminal replaces it under the same path.
 //!
-//! While the program lives it holds an abstract socket that is named after the path; the kernel removes it whenever the
-//! program ends, however it ends. So a link without its socket is dead and may be replaced.
+//! While the program runs, it holds an abstract socket named after the path. The kernel removes this socket when the
+//! program ends, for whatever reason. A link without its socket is therefore stale and may be replaced.
 
 use std::{
     io,
@@ -31,30 +31,30 @@ use rustix::{
     termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr},
 };
 
-/// Where slaves are.
+/// Directory of the slaves.
 const SLAVES: &str = "/dev/pts";
 
-/// Why there is no pseudo-terminal behind the path.
+/// Errors of a pseudo-terminal and its link.
 #[derive(Debug, thiserror::Error)]
 pub enum PtyError {
     /// Another program serves the path.
     #[error("{} is the link of another rcs-cell that still runs: stop it, or choose another path", .0.display())]
     Alive(PathBuf),
-    /// Something else is there.
+    /// The path names something that rcs-cell has not made.
     #[error("{} exists and is not a link that rcs-cell has left behind: remove it, or choose another path", .0.display())]
     Occupied(PathBuf),
-    /// The directory of the path is not there.
+    /// The directory of the path does not exist.
     #[error("there is no directory for the link {}", .0.display())]
     NoDirectory(PathBuf),
-    /// The link cannot be made.
+    /// The link cannot be created.
     #[error("the link {} cannot be made: {source}", path.display())]
     Link {
-        /// Where.
+        /// Path of the link.
         path: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The terminal cannot be opened or set up.
+    /// The terminal cannot be opened or configured.
     #[error("no pseudo-terminal: {0}")]
     Terminal(#[from] Errno),
 }
@@ -65,18 +65,18 @@ pub struct Pty {
     master: OwnedFd,
     slave: PathBuf,
     path: PathBuf,
-    /// Held for as long as the link is ours.
+    /// Held while this program owns the link.
     _alive: UnixDatagram,
 }
 
 impl Pty {
-    /// Open a pseudo-terminal and link it at `path`.
+    /// Opens a pseudo-terminal and links it at `path`.
     ///
     /// # Errors
-    /// [`PtyError`]: what stands in the way. Nothing was changed.
+    /// [`PtyError`] with the cause. Nothing has been changed then.
     pub fn open(path: &Path) -> Result<Self, PtyError> {
         let link_error = |source| PtyError::Link { path: path.to_owned(), source };
-        // A link is named by its directory, which does not change when the link does.
+        // The link is identified by its directory, which stays the same when the link changes.
         let (Some(name), Some(parent)) = (path.file_name(), path.parent()) else {
             return Err(PtyError::Occupied(path.to_owned()));
         };
@@ -101,19 +101,19 @@ impl Pty {
         Ok(Self { master, slave, path, _alive: alive })
     }
 
-    /// The slave, as the link points to it.
+    /// Path of the slave, the target of the link.
     #[must_use]
     pub fn slave(&self) -> &Path {
         &self.slave
     }
 
-    /// To wait for.
+    /// File descriptor of the master, to wait for.
     #[must_use]
     pub fn fd(&self) -> BorrowedFd<'_> {
         self.master.as_fd()
     }
 
-    /// A host has the terminal open.
+    /// Returns true if a host has the terminal open.
     #[must_use]
     pub fn has_host(&self) -> bool {
         let mut fds = [PollFd::new(&self.master, PollFlags::empty())];
@@ -121,10 +121,10 @@ impl Pty {
         asked.is_ok() && !fds.iter().any(|fd| fd.revents().contains(PollFlags::HUP))
     }
 
-    /// Bytes of the host, if there are any; 0 if there are none.
+    /// Reads bytes of the host without blocking; 0 if there are none.
     ///
     /// # Errors
-    /// What the system says beside "nothing there" and "no host".
+    /// The error of the operating system, except "no data" and "no host".
     pub fn read(&self, bytes: &mut [u8]) -> Result<usize, PtyError> {
         match rustix::io::read(&self.master, bytes) {
             Ok(count) => Ok(count),
@@ -133,7 +133,8 @@ impl Pty {
         }
     }
 
-    /// A byte for the host. If the host does not read and the terminal is full, it is lost, as on a line.
+    /// Writes a byte for the host. If the host does not read and the terminal is full, the byte is lost, as on a serial
+    /// line.
     ///
     /// # Errors
     /// As [`Pty::read`].
@@ -144,10 +145,10 @@ impl Pty {
         }
     }
 
-    /// A host has closed the terminal: make it ready for the next one. True if a new terminal had to replace it.
+    /// Prepares the terminal for the next host after a host has closed it. Returns true if a new terminal replaced it.
     ///
     /// # Errors
-    /// [`PtyError`] if that cannot be done.
+    /// [`PtyError`] if the new terminal or its link cannot be made.
     pub fn renew(&mut self) -> Result<bool, PtyError> {
         if prepare(&self.slave).is_ok() {
             return Ok(false);
@@ -161,23 +162,23 @@ impl Pty {
 
 impl Drop for Pty {
     fn drop(&mut self) {
-        // Not if something else was put there in the meantime.
+        // Only if the link is still this program's own.
         if self.path.read_link().is_ok_and(|target| target == self.slave) {
-            // If this fails there is nothing left to report to; the next start replaces the dead link.
+            // Nowhere is left to report an error; the next start replaces the stale link.
             let _ = std::fs::remove_file(&self.path);
         }
     }
 }
 
-/// The sign of life for a path.
+/// Binds the abstract socket that shows that the path is in use.
 fn claim(path: &Path) -> io::Result<UnixDatagram> {
-    // The name of a socket is short; a long path is told apart by its end.
+    // Names of sockets are short: the end of a long path identifies it.
     let bytes = path.as_os_str().as_bytes();
     let end = &bytes[bytes.len().saturating_sub(90)..];
     UnixDatagram::bind_addr(&SocketAddr::from_abstract_name([b"rcs-cell:", end].concat())?)
 }
 
-/// A pseudo-terminal in raw mode, its master never blocking.
+/// Opens a pseudo-terminal in raw mode with a non-blocking master.
 fn terminal() -> Result<(OwnedFd, PathBuf), PtyError> {
     let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
     grantpt(&master)?;
@@ -189,7 +190,7 @@ fn terminal() -> Result<(OwnedFd, PathBuf), PtyError> {
     Ok((master, slave))
 }
 
-/// Raw mode, 9600 baud, nothing left over.
+/// Sets raw mode and 9600 baud, and empties the buffers.
 fn prepare(slave: &Path) -> Result<(), Errno> {
     let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
     let slave = rustix::fs::open(slave, flags, Mode::empty())?;
@@ -200,7 +201,7 @@ fn prepare(slave: &Path) -> Result<(), Errno> {
     tcflush(&slave, QueueSelector::IOFlush)
 }
 
-/// Make `path` a link to `slave`, in one step.
+/// Makes `path` a link to `slave` atomically.
 fn point(path: &Path, slave: &Path) -> io::Result<()> {
     let mut beside = path.as_os_str().to_owned();
     beside.push(format!(".{}", std::process::id()));
@@ -240,7 +241,7 @@ mod tests {
             let mut one = [0];
             host.read_exact(&mut one).unwrap();
             assert_eq!(one, [0x11]);
-            // Left unread, and gone when the next one comes.
+            // A byte that no host reads is gone when the next host connects.
             pty.write(0x22).unwrap();
             drop(host);
             assert!(!pty.has_host());
@@ -258,7 +259,7 @@ mod tests {
         assert!(matches!(Pty::open(&path), Err(PtyError::Alive(_))));
         drop(first);
         assert!(path.symlink_metadata().is_err());
-        // As a kill leaves it.
+        // The state that a killed program leaves.
         std::os::unix::fs::symlink("/dev/pts/99999", &path).unwrap();
         drop(Pty::open(&path).unwrap());
         assert!(path.symlink_metadata().is_err());

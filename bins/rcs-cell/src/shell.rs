@@ -1,7 +1,7 @@
-//! The shell around the state machine: clock, pseudo-terminal, standard input and output.
+//! The input and output around the state machine: clock, pseudo-terminal, standard input and output.
 //!
-//! One thread, which sleeps until a byte comes or the next one is due. Nothing in it blocks: what a host does not
-//! read is lost, what has not come is not there yet.
+//! One thread, which sleeps until a byte arrives or the next one is due. Nothing in it blocks: bytes that a host does
+//! not read are lost.
 
 use std::{
     collections::VecDeque,
@@ -33,44 +33,44 @@ use crate::{
     pty::{Pty, PtyError},
 };
 
-/// Longest sleep, microseconds: a signal is noticed within it.
+/// Longest sleep, us: the program notices a signal within this time.
 const LONGEST_SLEEP: u64 = 50_000;
-/// Longest time that a step makes up for, seconds, if the program was stopped.
+/// Longest time that one step simulates, s, after the program was stopped.
 const LONGEST_STEP_S: f64 = 2.0;
 
-/// What ends the program in an error.
+/// Errors that end the program.
 #[derive(Debug, thiserror::Error)]
 pub enum ShellError {
-    /// The pseudo-terminal.
+    /// The pseudo-terminal failed.
     #[error(transparent)]
     Pty(#[from] PtyError),
-    /// Standard input, or waiting.
+    /// Standard input or waiting failed.
     #[error("standard input failed: {0}")]
     Io(#[from] io::Error),
 }
 
-/// Everything that runs.
+/// The simulated controller with its line, its console and its clock.
 pub struct Shell {
     start: Instant,
     stop: Arc<AtomicBool>,
     host: HostLine,
     faults: Option<Injector>,
-    /// Steps of the controller: the ticks of the fault plan.
+    /// Number of the controller's steps: the ticks of the fault plan.
     tick: Tick,
     cadence: Cadence,
     t3: T3Controller,
     operator: Operator,
     lines: Lines,
     waiting: VecDeque<String>,
-    /// Lines are not read before this time, microseconds.
+    /// Time until which no line of the console is executed, us.
     wait_until: u64,
-    /// A key waits for its step.
+    /// A key was pressed and its step has not run yet.
     pressed: bool,
     input_open: bool,
 }
 
 impl Shell {
-    /// Ready to run. `stop` ends it.
+    /// A controller that is switched off. `stop` ends [`Self::run`] when it becomes true.
     #[must_use]
     pub fn new(cli: &Cli, plan: Option<&Plan>, pty: Pty, stop: Arc<AtomicBool>) -> Self {
         Self {
@@ -90,10 +90,10 @@ impl Shell {
         }
     }
 
-    /// Run until `quit`, the end of a terminal's input, or a signal.
+    /// Runs until `quit`, the end of a terminal's input, or a signal.
     ///
     /// # Errors
-    /// [`ShellError`].
+    /// [`ShellError`] if the pseudo-terminal, standard input or waiting fails.
     pub fn run(&mut self) -> Result<(), ShellError> {
         stdout_line!("help lists the commands");
         while !self.stop.load(Ordering::Relaxed) {
@@ -111,7 +111,7 @@ impl Shell {
         Ok(())
     }
 
-    /// Microseconds since the start.
+    /// Time since the start, us.
     fn now(&self) -> u64 {
         u64::try_from(self.start.elapsed().as_micros()).unwrap_or(u64::MAX)
     }
@@ -131,15 +131,15 @@ impl Shell {
             }
             Ok(count) => self.waiting.extend(self.lines.accept(&bytes[..count])),
             Err(rustix::io::Errno::INTR | rustix::io::Errno::AGAIN) => {}
-            // A terminal that was closed.
+            // The terminal has been closed.
             Err(_) => self.input_open = false,
         }
         Ok(())
     }
 
-    /// The lines that are due; true if one of them was `quit`.
+    /// Executes the lines that are due; returns true after `quit`.
     fn obey(&mut self) -> bool {
-        // A key counts in the next step; the key after it must find what this one has done.
+        // A key takes effect in the next step, and the next key must see its effect.
         while self.wait_until <= self.now() && !self.pressed {
             let Some(text) = self.waiting.pop_front() else { break };
             match text.parse() {
@@ -200,7 +200,7 @@ impl Shell {
         self.show();
     }
 
-    /// Bytes and DTR of one end, with the faults of the plan.
+    /// Applies the faults of the plan to the bytes and the DTR of one direction.
     fn carry(&mut self, direction: Direction, sent: LinkBytes, ready: bool) -> (LinkBytes, bool) {
         match &mut self.faults {
             Some(injector) => injector.carry(direction, self.tick, &sent, ready),
@@ -236,7 +236,7 @@ impl Shell {
         stdout_line!("{}", lines.join("\n"));
     }
 
-    /// Sleep until something comes or is due.
+    /// Sleeps until input arrives or an event is due.
     fn sleep(&self) -> Result<(), ShellError> {
         let now = self.now();
         let due = [Some(self.cadence.next(self.host.line())), self.host.line().next_delivery()]

@@ -1,4 +1,4 @@
-//! The program as a host and a person at the console find it.
+//! Tests the program from outside: as a host and as a person at the console.
 
 use std::{
     fs::{self, File, OpenOptions},
@@ -17,20 +17,20 @@ use rustix::{
 };
 use tempfile::TempDir;
 
-/// Longer than anything takes on a machine that does something else as well.
+/// Generous time limit for a busy machine.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// The report at HOME, byte for byte.
+/// The position report at HOME, byte by byte.
 const HOME: [u8; 16] =
     [0xFF, 0xFF, 0x03, 0x00, 0x00, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x7A];
-/// The data command to 0.10 in beside HOME.
+/// The data command for a position 0.10 in beside HOME.
 const BESIDE: [u8; 16] =
     [0x03, 0x00, 0x00, 0x00, 0x0A, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x70];
-/// The report there.
+/// The position report at that position.
 const BESIDE_REPORT: [u8; 16] =
     [0xFF, 0xFF, 0x03, 0x00, 0x0A, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x70];
 
-/// A directory for one test, removed at the end.
+/// A directory for one test, removed at its end.
 struct Place(TempDir);
 
 impl Place {
@@ -43,7 +43,7 @@ impl Place {
     }
 }
 
-/// The program, its console and its screen.
+/// The running program, its standard input and its output.
 struct Cell {
     child: Child,
     console: ChildStdin,
@@ -76,7 +76,7 @@ impl Cell {
         writeln!(self.console, "{line}").unwrap();
     }
 
-    /// Wait for a line that contains `text`; returns the lines up to it.
+    /// Waits for a line that contains `text`; returns the lines up to it.
     fn wait_for(&self, text: &str) -> Vec<String> {
         let mut seen = Vec::new();
         let end = Instant::now() + PATIENCE;
@@ -116,7 +116,7 @@ impl Drop for Cell {
     }
 }
 
-/// A host that opens the link as a file: the terminal is raw already.
+/// A host that opens the link as a plain file, because the terminal is already raw.
 struct Host(File);
 
 impl Host {
@@ -161,7 +161,7 @@ fn the_host_finds_the_robot_at_home_and_comes_back_where_it_left_it() {
     let sent = Instant::now();
     host.send(&[0x05]);
     assert_eq!(host.receive(), BESIDE_REPORT);
-    // Seventeen bytes at 9600 baud; this can only take longer on a busy machine.
+    // Seventeen bytes at 9600 baud; a busy machine can only take longer.
     assert!(sent.elapsed() >= Duration::from_micros(17 * 1041), "{:?}", sent.elapsed());
 
     drop(host);

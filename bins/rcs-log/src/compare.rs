@@ -1,5 +1,5 @@
-//! `rcs-log compare`: runs jobs with two data directories, and says what is different: rows, clearances, times, outcome.
-//! Jobs run side by side, as many as the machine has cores.
+//! `rcs-log compare`: runs jobs with two data directories and reports the differences: rows, clearances, times,
+//! outcome. It runs as many jobs in parallel as the machine has cores.
 
 use std::{
     collections::BTreeSet,
@@ -41,17 +41,17 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// The answer.
+/// The answer: the differences of all jobs.
 #[derive(Debug, Serialize)]
 struct Comparison {
     jobs: Vec<OneJob>,
 }
 
-/// A job with both data.
+/// Results of a job with both data directories.
 #[derive(Debug, Serialize)]
 struct OneJob {
     job: String,
-    /// Both runs were the same in all that is compared.
+    /// Both runs are the same in everything that is compared.
     same: bool,
     outcome: [String; 2],
     seconds: [f64; 2],
@@ -60,7 +60,7 @@ struct OneJob {
     difference: Difference,
 }
 
-/// Run the jobs and print what is different.
+/// Runs the jobs and prints the differences.
 pub fn compare(arguments: &Arguments) -> Result<ExitCode, Error> {
     let Arguments { old, new, .. } = arguments;
     let mut names: BTreeSet<String> = arguments.jobs.iter().cloned().collect();
@@ -100,7 +100,7 @@ pub fn compare(arguments: &Arguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::from(if same { 0 } else { DIFFERENT }))
 }
 
-/// Run a job to its end.
+/// Runs a job to its end.
 fn run(data: &Path, job: &str, seed: u64) -> Result<Trace, StartError> {
     let config = RunConfig { log: LogTarget::None, shared_memory: false, seed, ..RunConfig::new(data, job) };
     let mut run = Run::new(config, Box::new(()))?;
@@ -119,13 +119,13 @@ fn run(data: &Path, job: &str, seed: u64) -> Result<Trace, StartError> {
     Ok(trace)
 }
 
-/// The distance in the words of a clearance; "none" without one.
+/// The distance in a clearance text; the whole text, such as "none", if it has no distance.
 fn inches(clearance: &str) -> &str {
     let distance = clearance.split_once(" by ").and_then(|(_, rest)| rest.split_once(" in "));
     distance.map_or(clearance, |(distance, _)| distance)
 }
 
-/// What was, and what is, if that is something else.
+/// The value of both runs, or `was -> is` if they differ.
 fn turned<T: fmt::Display + PartialEq>([was, is]: [T; 2]) -> String {
     if was == is { was.to_string() } else { format!("{was} -> {is}") }
 }

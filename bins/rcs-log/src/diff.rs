@@ -1,8 +1,8 @@
-//! `rcs-log diff`: where two runs differ: first which rows, motions and times changed ([`Changes`]), then the
-//! first tick, and then by buffer and field. Runs with different task data are compared without record numbers.
+//! `rcs-log diff`: the differences between two runs: changed rows, motions and times ([`Changes`]), then the first tick
+//! that differs, then all by buffer and field. Record numbers are ignored if the runs have different task data.
 //!
-//! Ticks are aligned by their number, or by command: then the ticks of a command are counted from the one in which Task
-//! took it, so that a command which took longer in one run does not make all that follows it different.
+//! Ticks are aligned by number, or by command. By command, each tick is counted from the tick in which Task took the
+//! command, so that one longer command does not shift everything after it.
 
 use std::{
     collections::{BTreeMap, HashMap},
@@ -26,7 +26,7 @@ use crate::{
     story::{Moment, open, walk},
 };
 
-/// Fields that are listed.
+/// Greatest number of fields in the answer.
 const LISTED: usize = 40;
 
 /// Arguments of `diff`.
@@ -43,23 +43,23 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// How two runs differ.
+/// The differences between two runs.
 #[derive(Debug, Serialize)]
 struct Differences {
-    /// Ticks that both have.
+    /// Number of ticks that both logs have.
     compared: u64,
-    /// Ticks that only the first has.
+    /// Number of ticks that only the first log has.
     only_a: u64,
-    /// Ticks that only the second has.
+    /// Number of ticks that only the second log has.
     only_b: u64,
-    /// Compared ticks in which something differs.
+    /// Number of compared ticks that differ.
     different: u64,
-    /// Which rows, motions and times changed.
+    /// Changed rows, motions and times.
     changes: Changes,
     first: Option<First>,
-    /// Fields that differ, in the order in which they begin to.
+    /// Fields that differ, in the order of their first difference.
     fields: Vec<FieldStory>,
-    /// Fields that differ and are not listed.
+    /// Number of differing fields that are not in the list.
     more_fields: usize,
 }
 
@@ -79,7 +79,7 @@ struct FieldStory {
     ticks: u64,
 }
 
-/// Compare two logs and print how they differ.
+/// Compares two logs and prints the differences.
 pub fn diff(arguments: &Arguments) -> Result<ExitCode, Error> {
     let differences = compare(&arguments.a, &arguments.b, arguments.align)?;
     print(&differences, arguments.answer.json)?;
@@ -87,7 +87,7 @@ pub fn diff(arguments: &Arguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::from(if same { 0 } else { DIFFERENT }))
 }
 
-/// What there is of a tick: inputs, output buffers, and the digest of the simulated cell.
+/// Data of a tick: inputs, output buffers, and the digest of the simulated cell.
 struct Images {
     tick: u64,
     cell: Option<u64>,
@@ -114,7 +114,7 @@ fn compare(a: &Path, b: &Path, align: Align) -> Result<Differences, Error> {
         true
     })?;
     let mut of_b: HashMap<_, _> = trace_b.keys(align).zip(images_b).collect();
-    // The images of one log are enough to hold at once.
+    // Only the images of the second log are kept in memory.
     let trace_a = Trace::of_log(&log_a, a)?;
     let mut keys = trace_a.keys(align);
     let mut found = Comparison::new(task_data(&log_a) != task_data(&log_b));
@@ -126,7 +126,7 @@ fn compare(a: &Path, b: &Path, align: Align) -> Result<Differences, Error> {
     Ok(found.differences(Changes::between(&trace_a, &trace_b, align), of_b.len()))
 }
 
-/// The task data of a log: names and texts.
+/// The task data of a log: names and contents of its attachments.
 fn task_data(log: &Log) -> Vec<(&str, &[u8])> {
     let is_meant = |attachment: &&Attachment| attachment.name.starts_with(Attachment::TASK_DATA);
     log.attachments.iter().filter(is_meant).map(|one| (one.name.as_str(), &one.data[..])).collect()
@@ -143,7 +143,7 @@ struct Comparison {
 }
 
 impl Comparison {
-    /// Without record numbers if the task data differ.
+    /// Ignores record numbers if `by_name` is true, because the task data differ.
     fn new(by_name: bool) -> Self {
         let mut memory = layout::leaves(CommonMemory::STRUCT);
         memory.retain(|leaf| !by_name || !leaf.is_record_number());
@@ -164,7 +164,7 @@ impl Comparison {
             return;
         };
         self.compared += 1;
-        // Stamps differ wherever ticks are aligned by command.
+        // Stamps differ whenever ticks with different numbers are compared.
         let matters = |leaf: &&Leaf| a.tick == b.tick || !leaf.path.ends_with("stamp");
         let pairs = [
             (&self.external, "external.", &a.external, &b.external),
@@ -179,7 +179,7 @@ impl Comparison {
                 different.push((format!("{prefix}{}", leaf.path), [leaf.text(was), leaf.text(is)]));
             }
         }
-        // A cell that is elsewhere shows in the inputs sooner or later; the digest says when it began.
+        // The inputs show a changed cell only later; the digest shows the tick in which the change begins.
         if let (Some(was), Some(is)) = (a.cell, b.cell)
             && was != is
         {

@@ -1,5 +1,5 @@
-//! `rcs-log golden`: turns logs of whole runs into the small files that tests replay, and a text beside each whose change
-//! a person reviews.
+//! `rcs-log golden`: converts logs of whole runs to small files that tests replay, each with a text whose changes a
+//! person can review.
 
 use std::{
     fmt, fs,
@@ -25,7 +25,7 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// The files that were written.
+/// The answer: the files that were written.
 #[derive(Debug, Serialize)]
 struct Made {
     goldens: Vec<One>,
@@ -39,7 +39,7 @@ struct One {
     digest: String,
 }
 
-/// Make a golden of each log.
+/// Makes a golden of each log.
 pub fn golden(arguments: &Arguments) -> Result<ExitCode, Error> {
     let make = |path: &PathBuf| make(path, &arguments.output);
     let goldens = arguments.files.iter().map(make).collect::<Result<_, _>>()?;

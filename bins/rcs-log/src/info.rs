@@ -1,4 +1,4 @@
-//! `rcs-log info`: what ran, how long it took, with which commands, and how it ended.
+//! `rcs-log info`: what ran, how long it took, its commands, and how it ended.
 
 use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode};
 
@@ -21,49 +21,49 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// What a log says of its run.
+/// Summary of a log.
 #[derive(Debug, Serialize)]
 struct Info {
     file: String,
     bytes: usize,
-    /// What the run wrote about itself at its start.
+    /// Facts that the run recorded at its start.
     run: BTreeMap<String, String>,
     ticks: u64,
     seconds: f64,
-    /// Ticks that the log could not keep up with.
+    /// Number of ticks that the recorder dropped.
     missing_ticks: u64,
-    /// Times of the controller, where the log has them: that of a run in fast clock has not.
+    /// Times of the controller; `None` if the log has none, as in a run with fast clock.
     times: Option<Times>,
-    /// The log has its end; a killed run's has not.
+    /// True if the log has its end record; the log of a killed run has none.
     complete: bool,
-    /// What of the file cannot be read.
+    /// Why part of the file cannot be read.
     damage: Option<String>,
     result: Option<String>,
     digest: Option<String>,
     commands: Vec<CommandStory>,
     link: Link,
     failure: Option<String>,
-    /// What else the run said of its end: parts, faults, verdicts.
+    /// Facts that the run recorded at its end: parts, faults, verdicts.
     facts: BTreeMap<String, String>,
-    /// Warnings and errors on `/log`.
+    /// Number of warnings and of errors on `/log`.
     warnings: usize,
     errors: usize,
     attachments: Vec<String>,
 }
 
-/// How punctual the run was.
+/// Timing of the run.
 #[derive(Debug, Serialize)]
 struct Times {
-    /// Slots of the 40 ms grid that were skipped.
+    /// Number of skipped slots of the 40 ms grid.
     overruns: u64,
-    /// Controller part of a tick, microseconds: median, 99 of 100, longest.
+    /// Time of the controller part of a tick, us: median, 99th percentile, maximum.
     p50_us: f64,
     p99_us: f64,
     max_us: f64,
 }
 
 impl Times {
-    /// Of all ticks, nanoseconds each; none if there are none.
+    /// From the times of all ticks, ns; `None` if there are none.
     fn new(mut nanoseconds: Vec<u64>, overruns: u64) -> Option<Self> {
         nanoseconds.sort_unstable();
         let last = nanoseconds.len().checked_sub(1)?;
@@ -97,7 +97,7 @@ impl From<&LinkCounters> for Link {
     }
 }
 
-/// Print what a log says of its run.
+/// Prints the summary of a log.
 pub fn info(arguments: &Arguments) -> Result<ExitCode, Error> {
     let log = open(&arguments.file)?;
     print(&look(&log, arguments)?, arguments.answer.json)?;
@@ -147,11 +147,11 @@ fn look(log: &Log, arguments: &Arguments) -> Result<Info, Error> {
     })
 }
 
-/// Entries of the end that the recorder itself writes.
+/// Entries of the end record that the recorder itself writes.
 const RECORDER: [&str; 8] =
     ["digest", "result", "ticks", "gaps", "lost_ticks", "lost_frames", "lost_notes", "lost_files"];
 
-/// What the run wrote of its end, without what the recorder did.
+/// The facts at the end of the run, without the recorder's own.
 fn facts(log: &Log) -> BTreeMap<String, String> {
     let end = log.end.iter().flatten();
     end.filter(|(key, value)| !RECORDER.contains(&key.as_str()) && !value.is_empty())

@@ -112,27 +112,27 @@ struct Answer {
     json: bool,
 }
 
-/// Why a log cannot be looked into.
+/// Errors of examining a log.
 #[derive(Debug, thiserror::Error)]
 enum Error {
-    /// It cannot be read.
+    /// The log cannot be read.
     #[error("{}: {source}", path.display())]
     Read {
-        /// The file.
+        /// Path of the log.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: record::ReadError,
     },
-    /// A tick that the log does not have.
+    /// The log does not have the requested tick.
     #[error("{}: tick {tick} is not in the log, which has ticks {first} to {last}", path.display())]
     NoTick {
-        /// The file.
+        /// Path of the log.
         path: PathBuf,
-        /// As asked for.
+        /// The requested tick.
         tick: u64,
-        /// First tick there.
+        /// First tick of the log.
         first: u64,
-        /// Last tick there.
+        /// Last tick of the log.
         last: u64,
     },
     /// A log without ticks.
@@ -141,67 +141,67 @@ enum Error {
     /// The task data cannot be used.
     #[error("the task data under {}:\n{report}", path.display())]
     Data {
-        /// The directory.
+        /// Path of the directory.
         path: PathBuf,
-        /// All that is wrong with them.
+        /// All errors of the task data.
         report: String,
     },
-    /// It cannot become a golden.
+    /// The log cannot become a golden.
     #[error("{}: {source}", path.display())]
     Golden {
-        /// The log.
+        /// Path of the log.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: record::golden::GoldenError,
     },
-    /// This program does not do what the log says.
+    /// The replay of this program differs from the log.
     #[error(
         "{}: this program differs from the log from tick {first} to {last}: make a golden from a run of the program \
          that is to be tested (rcs-log replay names the field)",
         path.display()
     )]
     NotGolden {
-        /// The log.
+        /// Path of the log.
         path: PathBuf,
-        /// First tick of the second.
+        /// First tick of the stretch that differs.
         first: u64,
-        /// Last tick of the second.
+        /// Last tick of that stretch.
         last: u64,
     },
-    /// A fork cannot be run.
+    /// A fork is not possible.
     #[error("{}: {source}", path.display())]
     Fork {
-        /// The log.
+        /// Path of the log.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: Box<fork::ForkError>,
     },
-    /// A job cannot be run with some data.
+    /// A job cannot start with the given data.
     #[error("{source}")]
     Start {
-        /// Why.
+        /// The cause.
         source: Box<runtime::StartError>,
     },
-    /// There is nothing to compare.
+    /// The directories have no job to compare.
     #[error("neither {} nor {} has a job: name directories with jobs/NAME.job", .0.display(), .1.display())]
     NoJobs(PathBuf, PathBuf),
-    /// The page cannot be written.
+    /// The HTML page cannot be written.
     #[error("{}: {source}", path.display())]
     Write {
-        /// The file.
+        /// Path of the page.
         path: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// Viewers cannot connect.
+    /// The server for viewers cannot start.
     #[error("viewers cannot connect at 127.0.0.1:{port}: {source}; --port names another one")]
     Port {
-        /// The port.
+        /// The port on 127.0.0.1.
         port: u16,
-        /// Why.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The system has no random numbers.
+    /// The operating system supplies no random numbers.
     #[error(transparent)]
     NoRandom(#[from] live::NoRandom),
     /// The answer cannot be written.
@@ -229,7 +229,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// Print an answer: as JSON, or as the lines that people read.
+/// Prints an answer as JSON or as text.
 fn print<T: serde::Serialize + std::fmt::Display>(answer: &T, json: bool) -> Result<(), Error> {
     let text = if json {
         serde_json::to_string(answer).map_err(io::Error::from)? + "\n"

@@ -1,4 +1,4 @@
-//! The same for several things at once, as many as the machine has cores; the answers are in the order of the things.
+//! Does the same work for several things in parallel, on as many threads as the machine has cores.
 
 use std::{
     num::NonZero,
@@ -9,7 +9,7 @@ use std::{
     thread,
 };
 
-/// Do `work` for each thing.
+/// Calls `work` for each thing; the results are in the order of the things.
 pub fn each<T: Sync, A: Send>(things: &[T], work: impl Fn(&T) -> A + Sync) -> Vec<A> {
     let workers = thread::available_parallelism().map_or(1, NonZero::get).min(things.len());
     let next = AtomicUsize::new(0);

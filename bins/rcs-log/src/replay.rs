@@ -1,5 +1,5 @@
-//! `rcs-log replay`: computes the control processes again on the recorded inputs, and compares every output
-//! buffer of every tick, bit for bit. Several logs are replayed at once.
+//! `rcs-log replay`: computes the control processes again on the recorded inputs, and compares every output buffer of
+//! every tick, bit for bit. Several logs are replayed in parallel.
 
 use std::{fmt, path::PathBuf, process::ExitCode};
 
@@ -29,7 +29,7 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// What became of all logs.
+/// The answer: the results of all logs.
 #[derive(Debug, Serialize)]
 struct Outcome {
     logs: Vec<OneLog>,
@@ -38,20 +38,20 @@ struct Outcome {
 #[derive(Debug, Serialize)]
 struct OneLog {
     file: String,
-    /// Every computed tick was the same.
+    /// True if every computed tick is the same as recorded.
     same: bool,
     ticks: u64,
-    /// Ticks that could not be computed: those of gaps, and where the replay began anew after them.
+    /// Number of ticks that were not computed: ticks in gaps, and ticks up to the next snapshot after a gap.
     skipped: u64,
-    /// The log has its end.
+    /// True if the log has its end record.
     complete: bool,
-    /// What of the log cannot be read.
+    /// Why part of the log cannot be read.
     damage: Option<String>,
     times_real_time: f64,
     digest: Option<String>,
-    /// Where the replay first went another way.
+    /// The first difference.
     difference: Option<String>,
-    /// Why there was no replay.
+    /// Why the log was not replayed.
     error: Option<String>,
 }
 
@@ -86,7 +86,7 @@ impl OneLog {
     }
 }
 
-/// Replay all logs and print what was found.
+/// Replays all logs and prints the results.
 pub fn replay(arguments: &Arguments) -> Result<ExitCode, Error> {
     let data = arguments.data.as_deref().map(|data| {
         let unusable =

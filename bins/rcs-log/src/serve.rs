@@ -13,7 +13,7 @@ use record::Log;
 
 use crate::Error;
 
-/// How often to look whether viewers have come or gone.
+/// Interval of checking whether viewers have connected or disconnected.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Arguments of `serve`.
@@ -32,20 +32,20 @@ pub struct Arguments {
     live_origin: Vec<Origin>,
 }
 
-/// A rate of playing.
+/// Parses a playing speed.
 fn rate(text: &str) -> Result<f64, String> {
     let rate: Option<f64> = text.parse().ok();
     rate.filter(|rate| (0.01..=1000.0).contains(rate))
         .ok_or_else(|| format!("a number from 0.01 to 1000 was expected, found {text}"))
 }
 
-/// Play a log once, from its start, when a viewer has subscribed to something.
+/// Plays a log once, from its start; begins when a viewer has subscribed to a channel.
 ///
 /// # Errors
 /// [`Error`] if the log cannot be read, or the port is not available.
 pub fn serve(arguments: &Arguments) -> Result<ExitCode, Error> {
     let path = &arguments.file;
-    // The schemas travel in the log: one of another version can be shown as well.
+    // The log contains its schemas, so a log of another version can be shown too.
     let log = Log::open(path).map_err(|source| Error::Read { path: path.clone(), source })?;
     if let Some(damage) = log.damage() {
         stderr_line!("rcs-log: {}: {damage}", path.display());
@@ -75,10 +75,10 @@ pub fn serve(arguments: &Arguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// When a message is due.
+/// Computes when messages are due.
 struct Pace {
     rate: f64,
-    /// Time of the first message, nanoseconds, and when it was sent.
+    /// Time stamp of the first message, ns, and the instant of sending it.
     start: Option<(u64, Instant)>,
 }
 
@@ -86,7 +86,7 @@ impl Pace {
     fn wait(&mut self, time: u64) {
         let (first, begin) = *self.start.get_or_insert_with(|| (time, Instant::now()));
         let seconds = Duration::from_nanos(time.saturating_sub(first)).as_secs_f64() / self.rate;
-        // A damaged log may have any time: a year is as good as for ever.
+        // A damaged log can have any time stamp; a wait of this length does not end.
         let due = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
         thread::sleep(due.saturating_sub(begin.elapsed()));
     }

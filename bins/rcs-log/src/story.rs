@@ -1,4 +1,4 @@
-//! A log read once, tick by tick: what the other modules ask their questions of.
+//! Reads a log once, tick by tick; the other modules analyse the ticks.
 
 use std::path::Path;
 
@@ -11,25 +11,25 @@ use serde::Serialize;
 
 use crate::Error;
 
-/// A tick with its records decoded.
+/// A tick with its decoded records.
 pub struct Moment {
     /// The tick.
     pub tick: Tick,
-    /// Ticks that are missing before it.
+    /// Number of missing ticks before it.
     pub gap: u64,
-    /// What came from outside.
+    /// Inputs from outside the controller.
     pub external: ExternalInputs,
-    /// What the processes read: common memory as the tick before left it.
+    /// Common memory at the start of the tick, which the processes read.
     pub before: CommonMemory,
-    /// What they wrote.
+    /// Common memory at the end of the tick, with the outputs of the processes.
     pub after: CommonMemory,
-    /// How punctual the tick was, where the log says so.
+    /// Timing of the tick, if recorded.
     pub timing: Option<Timing>,
-    /// Fingerprint of the simulated cell before the tick, where the log has it.
+    /// Digest of the simulated cell before the tick, if recorded.
     pub world: Option<u64>,
 }
 
-/// Open a log whose layout is ours.
+/// Opens a log; an error if it was written with another layout.
 pub fn open(path: &Path) -> Result<Log, Error> {
     let failed = |source| Error::Read { path: path.to_owned(), source };
     let log = Log::open(path).map_err(failed)?;
@@ -40,7 +40,7 @@ pub fn open(path: &Path) -> Result<Log, Error> {
     Ok(log)
 }
 
-/// Show `each` every tick of a log in order, until it returns false.
+/// Calls `each` for every tick of a log in order, until it returns false.
 pub fn walk(log: &Log, path: &Path, mut each: impl FnMut(&Moment) -> bool) -> Result<(), Error> {
     let failed = |source| Error::Read { path: path.to_owned(), source };
     let mut before = CommonMemory::default();
@@ -54,7 +54,7 @@ pub fn walk(log: &Log, path: &Path, mut each: impl FnMut(&Moment) -> bool) -> Re
     Ok(())
 }
 
-/// The ticks of a log up to its end or its damage, with the states where they were recorded.
+/// The ticks of a log up to its end or its damage, with the states of the processes where recorded.
 pub fn moments(log: &Log) -> impl Iterator<Item = (Moment, Option<Vec<u8>>)> {
     let mut before = CommonMemory::default();
     log.ticks().map_while(move |logged| {
@@ -78,25 +78,25 @@ fn decode(logged: &LoggedTick, before: CommonMemory) -> Result<Moment, ReadError
     })
 }
 
-/// A command of the workstation controller as the log shows it.
+/// A command of the workstation controller, as recorded.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CommandStory {
-    /// As people write it.
+    /// The command as text.
     pub text: String,
     /// Tick in which Task took it.
     pub first_tick: u64,
-    /// Tick in which it ended, or the last one of the log.
+    /// Tick in which it ended, or the last tick of the log.
     pub last_tick: u64,
-    /// How it ended.
+    /// Its last status.
     pub status: String,
 }
 
-/// The commands of a run, and its failure if Task reported one.
+/// The commands of a run, and the failure if Task reported one.
 #[derive(Default)]
 pub struct Chronicle {
-    /// Commands in their order.
+    /// Commands in order.
     pub commands: Vec<CommandStory>,
-    /// Why the last failing command failed.
+    /// Why the last failed command failed.
     pub failure: Option<Failure>,
     watch: Box<Watch>,
     number: u32,
@@ -104,7 +104,7 @@ pub struct Chronicle {
 }
 
 impl Chronicle {
-    /// Take a tick in.
+    /// Records a tick.
     pub fn note(&mut self, moment: &Moment) {
         self.watch.observe(moment.tick, &moment.external, &moment.before, &moment.after);
         let status = &moment.after.task.status;

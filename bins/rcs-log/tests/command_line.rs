@@ -1,4 +1,4 @@
-//! `rcs-log` as a program: what it answers to logs that the recorder wrote.
+//! Tests the program `rcs-log` on logs that the recorder wrote.
 
 use std::{
     fs, io,
@@ -14,7 +14,7 @@ use taskdata::files::TaskData;
 use tempfile::TempDir;
 
 const TICKS: u64 = 120;
-/// Tick in which the workstation commands something that cannot be done.
+/// Tick in which the workstation gives an impossible command.
 const COMMANDED: u64 = 50;
 
 struct Scratch(TempDir);
@@ -24,17 +24,17 @@ impl Scratch {
         Self(tempfile::tempdir().expect("a directory for scratch files"))
     }
 
-    /// A run without task data, in which TRANSFER fails; `speed` is the velocity knob.
+    /// The log of a run without task data, in which TRANSFER fails; `speed` is the velocity knob.
     fn log(&self, name: &str, speed: u16) -> PathBuf {
         self.written(name, speed, COMMANDED, |_| 0)
     }
 
-    /// The same with the command in another tick.
+    /// The same log with the command in another tick.
     fn log_commanded_at(&self, name: &str, commanded: u64) -> PathBuf {
         self.written(name, 1000, commanded, |_| 0)
     }
 
-    /// The same with a cell that has the given digests.
+    /// The same log with the given digests of the cell.
     fn log_of_cell(&self, name: &str, speed: u16, digest_of_cell: impl Fn(Tick) -> u64) -> PathBuf {
         self.written(name, speed, COMMANDED, digest_of_cell)
     }

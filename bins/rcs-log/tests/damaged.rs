@@ -1,6 +1,5 @@
-//! Logs that are damaged in places that are known, and files that are no logs: `rcs-log` reads the rest, or
-//! says why not, within a gigabyte of memory. The robustness campaign (tests/robustness) damages logs at
-//! random.
+//! Logs damaged at known places, and files that are not logs: `rcs-log` reads the rest or prints an error, within a
+//! gigabyte of memory. The robustness campaign (tests/robustness) damages logs at random places.
 
 use std::{
     fs::{self, File},
@@ -15,10 +14,10 @@ use record::{CellFrame, CellModel, End, Epoch, Log, Pace, Recorder, Setup, Timin
 use taskdata::files::TaskData;
 
 const TICKS: u64 = 260;
-/// Address space of the program, kilobytes.
+/// Limit of the program's address space, kilobytes.
 const LIMIT: &str = "1048576";
 
-/// A small run with everything that a log can have.
+/// Records a small run with every kind of record.
 fn record(path: &Path) {
     let run = [("program", "test"), ("job", "nothing"), ("seed", "7")];
     let run = run.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
@@ -40,14 +39,14 @@ fn record(path: &Path) {
     recorder.finish(End { result: "failed".into(), ..End::default() }).expect("the log ends");
 }
 
-/// `rcs-log` with little memory.
+/// Runs `rcs-log` with limited memory.
 fn rcs_log(arguments: &[&str], files: &[&Path]) -> Output {
     let mut command = Command::new("sh");
     command.args(["-c", "ulimit -v \"$0\" && exec \"$@\"", LIMIT, env!("CARGO_BIN_EXE_rcs-log")]);
     command.args(arguments).args(files).output().expect("sh runs")
 }
 
-/// The program has ended by itself, with a sentence if it has no answer.
+/// Checks that the program ended normally, and that it printed a sentence if it has no answer.
 fn assert_answered(output: &Output, what: &str) -> i32 {
     let said = String::from_utf8_lossy(&output.stderr);
     let status = output.status.code();
@@ -60,7 +59,7 @@ fn assert_answered(output: &Output, what: &str) -> i32 {
     status.unwrap()
 }
 
-/// A log with a chunk in the middle whose bytes are changed, and the ticks in it.
+/// A log with changed bytes in a chunk in the middle.
 fn with_a_bad_chunk(place: &Path) -> PathBuf {
     let path = place.join("middle.mcap");
     record(&path);
@@ -71,7 +70,7 @@ fn with_a_bad_chunk(place: &Path) -> PathBuf {
     path
 }
 
-/// Where the chunks begin.
+/// Offsets of the chunks.
 fn chunks(bytes: &[u8]) -> Vec<usize> {
     let (mut at, mut chunks) = (8, Vec::new());
     while at + 9 < bytes.len() {
@@ -123,7 +122,7 @@ fn only_regular_files_are_logs() {
         let output = rcs_log(&["info"], &[Path::new(file)]);
         assert_eq!(assert_answered(&output, file), 2);
     }
-    // A file with a hole of a terabyte.
+    // A sparse file of a terabyte.
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("hole.mcap");
     File::create(&path).unwrap().set_len(1 << 40).unwrap();

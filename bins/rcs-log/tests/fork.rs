@@ -1,4 +1,4 @@
-//! `fork` and `compare` as programs, with whole runs of the shipped jobs.
+//! Tests the programs `fork` and `compare` with whole runs of the shipped jobs.
 
 use std::{
     fs,
@@ -15,7 +15,7 @@ const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
 /// The pose of the tray UNIT_1.
 const TRAY: &str = "datum poses.blk:612:3-5:3";
 
-/// Logs that several tests look at.
+/// Logs that several tests use.
 static LOGS: LazyLock<TempDir> = LazyLock::new(|| tempfile::tempdir().expect("a directory for logs"));
 static LINKBAR: LazyLock<PathBuf> = LazyLock::new(|| log("linkbar.mcap", |_| {}));
 static MISSING: LazyLock<PathBuf> = LazyLock::new(|| {
@@ -55,7 +55,7 @@ fn fork(log: &Path, tick: &str, changes: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).expect("one JSON object")
 }
 
-/// What is said to be different at the end: the log, and the fork.
+/// A fact that differs at the end: its value in the log, and in the fork.
 fn ends<'v>(answer: &'v Value, what: &str) -> Option<[&'v str; 2]> {
     let ends = answer["ends"].as_array().expect("a list");
     let end = ends.iter().find(|end| end["what"] == what)?;
@@ -117,7 +117,7 @@ fn faults_begin_after_the_tick() {
 
 #[test]
 fn another_command_takes_the_place_of_the_next() {
-    // ACQUIRE goes on, and TRANSFER would be next.
+    // ACQUIRE continues; TRANSFER would be the next command.
     let answer = fork(&LINKBAR, "4000", &["command=MOVE -- +0 -- 0 +0 HOME 0 -- 0"]);
     let [logged, forked] = ends(&answer, "parts").expect("the part is not brought to the tray");
     assert!(logged.contains("UNIT_1 sector 1") && !forked.contains("UNIT_1 sector 1"), "{forked}");
@@ -170,7 +170,7 @@ fn wrong_changes_are_refused_before_anything_runs() {
     assert!(said.contains("a tick from 0 to 5968 was expected"), "{said}");
 }
 
-/// A run that was changed by other means than its log tells.
+/// A run that was changed in a way that its log does not record.
 #[test]
 fn a_log_that_this_program_does_not_repeat_is_not_forked() {
     let path = LOGS.path().join("changed.mcap");

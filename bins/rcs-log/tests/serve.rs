@@ -1,4 +1,4 @@
-//! `rcs-log serve`: a viewer gets the whole log, in its order and with its times.
+//! Tests `rcs-log serve`: a viewer receives the whole log in order and with its time stamps.
 
 use std::{
     io::{BufRead as _, BufReader},

@@ -1,4 +1,4 @@
-//! The Data System: a server with a data base of items, for one run after the other.
+//! The Data System: a server with a data base of items, which serves one run after the other.
 
 use neighbours::{
     data_system::{Server, Store, command},
@@ -8,7 +8,7 @@ use neighbours::{
 
 use crate::{Error, Reconnect, cli::DataSystemArguments, connect, connect_again};
 
-/// Serve until no run has come for a while.
+/// Serves runs until none connects within the waiting time.
 pub fn serve(arguments: &DataSystemArguments) -> Result<(), Error> {
     let mut server = Server::new(Store::open(&arguments.data_base)?);
     let mut peer = connect(&arguments.controller, Role::DataSystem)?;
@@ -18,7 +18,7 @@ pub fn serve(arguments: &DataSystemArguments) -> Result<(), Error> {
             Err(Error::Peer(error)) if error.is_passing() => os_io::stdout_line!("{error}"),
             other => return other,
         }
-        // The line is cut before the next one is made: there is one neighbour of a kind.
+        // The old connection is closed first, because the controller accepts one neighbour of each role.
         drop(peer);
         let Some(next) = connect_again(&arguments.controller, Role::DataSystem, &mut reconnect)? else {
             return Ok(());
@@ -27,7 +27,7 @@ pub fn serve(arguments: &DataSystemArguments) -> Result<(), Error> {
     }
 }
 
-/// Carry out the commands of a run.
+/// Executes the commands of a run.
 fn attend(peer: &mut Peer, server: &mut Server) -> Result<(), Error> {
     let mut status_box = Mailbox::initialized(DATA_SYSTEM_STATUS);
     let mut read = 0;
@@ -45,7 +45,7 @@ fn attend(peer: &mut Peer, server: &mut Server) -> Result<(), Error> {
     }
 }
 
-/// One line on standard output for every command.
+/// Prints one line for every command.
 fn tell(bytes: &[u8], why: &str) {
     let said = command::decode(bytes).map_or_else(
         |_| "not a command".to_owned(),

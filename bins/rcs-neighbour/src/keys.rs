@@ -1,7 +1,7 @@
-//! `rcs-neighbour keys`: an authority, and certificates for the controller and all neighbours.
+//! `rcs-neighbour keys`: makes a certificate authority, and certificates for the controller and all neighbours.
 //!
-//! What is there stays: a certificate that is to be renewed is deleted, with its key, and made again by the
-//! same authority. What the names and purposes in the certificates mean: [`neighbours::network::keys`].
+//! Existing files are kept. To renew a certificate, delete it and its key; the same authority then signs a new one.
+//! [`neighbours::network::keys`] explains the names and purposes in the certificates.
 
 use std::{
     fs::{DirBuilder, OpenOptions},
@@ -26,34 +26,34 @@ use crate::cli::KeysArguments;
 
 /// Common name of the authority.
 const NAME: &str = "RCS-II cell authority";
-/// How long the authority is valid.
+/// Validity of the authority, days.
 const AUTHORITY_DAYS: i64 = 3650;
-/// Clocks of other machines may be so far behind.
+/// Tolerance for clocks of other machines that are behind.
 const SKEW: Duration = Duration::hours(1);
-/// Mode of what all may read, and of what only its owner may.
+/// File mode of certificates, readable by all, and of private keys, readable by the owner.
 const CERTIFICATE: u32 = 0o644;
 const PRIVATE: u32 = 0o600;
 
-/// Why there are no keys.
+/// Errors of making keys.
 #[derive(Debug, thiserror::Error)]
 pub enum KeysFailure {
-    /// A file cannot be written; one that is there is not replaced.
+    /// A file cannot be written; an existing file is not replaced.
     #[error("{} cannot be written: {source}", .file.display())]
     Write {
-        /// Which.
+        /// Path of the file.
         file: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// The authority cannot be read.
     #[error("the authority {} cannot be read: {source}", .file.display())]
     Read {
-        /// Which file.
+        /// Path of the file.
         file: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The authority was made by another program.
+    /// Another program made the authority.
     #[error("{} is not a certificate authority of this program: sign with the program that made it, or name another directory", .0.display())]
     Foreign(PathBuf),
     /// A certificate cannot be made.
@@ -61,16 +61,16 @@ pub enum KeysFailure {
     Make(#[from] rcgen::Error),
 }
 
-/// What a certificate is for.
+/// Contents of a certificate.
 struct Subject {
-    /// Front of its files.
+    /// First part of the names of its files.
     name: &'static str,
-    /// What it is bound to.
+    /// Subject alternative name: what the certificate is bound to.
     binding: SanType,
     purpose: ExtendedKeyUsagePurpose,
 }
 
-/// Make all keys in a directory, which is made if it is not there.
+/// Makes all missing keys and certificates in a directory, and the directory if it does not exist.
 pub fn make(arguments: &KeysArguments) -> Result<(), KeysFailure> {
     let directory = &arguments.directory;
     let made = DirBuilder::new().recursive(true).mode(0o700).create(directory);
@@ -111,7 +111,7 @@ pub fn make(arguments: &KeysArguments) -> Result<(), KeysFailure> {
     Ok(())
 }
 
-/// The authority of the directory; a new one if there is none.
+/// Loads the authority of the directory, or makes a new one if there is none.
 fn authority(directory: &Path) -> Result<Issuer<'static, KeyPair>, KeysFailure> {
     let (certificate, private) = (directory.join(AUTHORITY), directory.join("ca.key"));
     if certificate.exists() {

@@ -1,7 +1,7 @@
 //! `rcs-neighbour`: neighbour systems of the controller as separate processes, on this machine or on another.
 //!
-//! Each connects to the mailboxes of a run (`rcs-run --network … --outside …`) and does there what the one in
-//! the controller's process would do. Programs of others speak the same bytes: docs/neighbours.md.
+//! Each process connects to the mailboxes of a run (`rcs-run --network … --outside …`) and replaces the neighbour in
+//! the controller's process. Other programs can use the same byte formats: docs/neighbours.md.
 
 mod cli;
 mod data_system;
@@ -28,12 +28,12 @@ use crate::{
     keys::KeysFailure,
 };
 
-/// Exit status of a job that failed, or a connection that broke.
+/// Exit status if a job failed or a connection broke.
 const FAILED: u8 = 1;
 /// Exit status of a usage, configuration or data error.
 const UNUSABLE: u8 = 2;
 
-/// Why a neighbour ends before its time.
+/// Errors that end a neighbour.
 #[derive(Debug, thiserror::Error)]
 enum Error {
     /// The controller cannot be reached, or has closed the connection.
@@ -45,7 +45,7 @@ enum Error {
     /// Keys or certificates cannot be made.
     #[error(transparent)]
     Make(#[from] KeysFailure),
-    /// Options of the network do not fit together.
+    /// Options of the network contradict each other.
     #[error(transparent)]
     Address(#[from] AddressError),
     /// The data base cannot be used.
@@ -54,26 +54,26 @@ enum Error {
     /// The cell description cannot be used.
     #[error("the cell description cannot be used: {0}")]
     Cell(#[from] DescriptionError),
-    /// The run has another cell than this process.
+    /// The cell descriptions of the run and of this process differ.
     #[error(
         "the cell description of the run was expected: camera and parts have the fingerprint {found:016x} there, and here \
          {expected:016x}; name its directory with --data"
     )]
     AnotherCell {
-        /// Of the description here.
+        /// Fingerprint of this process's description.
         expected: u64,
-        /// Of the run's.
+        /// Fingerprint of the run's description.
         found: u64,
     },
     /// Task data or the job have errors.
     #[error("{what} cannot be used")]
     Data {
-        /// Which.
+        /// Name of the data.
         what: String,
-        /// All that was found.
+        /// All problems found.
         report: Box<Diagnostics>,
     },
-    /// The job came to nothing.
+    /// The job failed.
     #[error("{0}")]
     Job(String),
 }
@@ -118,14 +118,14 @@ fn main() -> ExitCode {
 
 /// Shortest pause before another attempt to connect.
 const SHORTEST: Duration = Duration::from_millis(50);
-/// Longest one.
+/// Longest pause before another attempt to connect.
 const LONGEST: Duration = Duration::from_secs(2);
-/// A connection that has lasted so long was a good one: the next attempt comes at once.
+/// After a connection that lasted at least this long, the next attempt follows without a pause.
 const GOOD: Duration = Duration::from_secs(1);
-/// The controller has noticed by now that the line was cut.
+/// Time within which the controller detects a closed connection.
 const NOTICED: Duration = Duration::from_secs(5);
 
-/// When the next attempt to connect may come: pauses grow while connections do not last.
+/// Pauses between attempts to connect, which grow while connections are short.
 struct Reconnect {
     since: Instant,
     pause: Duration,
@@ -136,7 +136,7 @@ impl Reconnect {
         Self { since: Instant::now(), pause: Duration::ZERO }
     }
 
-    /// Sleep before the next attempt.
+    /// Sleeps before the next attempt.
     fn wait(&mut self) {
         self.pause = pause(self.pause, self.since.elapsed());
         thread::sleep(self.pause);
@@ -144,12 +144,12 @@ impl Reconnect {
     }
 }
 
-/// The pause after a connection, or an attempt, that has lasted so long; `before` is the pause before that.
+/// The pause after a connection or attempt of the duration `lasted`; `before` is the previous pause.
 fn pause(before: Duration, lasted: Duration) -> Duration {
     if lasted >= GOOD + before { Duration::ZERO } else { (before * 2).clamp(SHORTEST, LONGEST) }
 }
 
-/// Connect for another run, or since the line was cut; `None` if no run has come for a while.
+/// Connects again, to the same run or the next one; `None` if no run connects within the waiting time.
 fn connect_again(
     arguments: &ControllerArguments,
     role: Role,
@@ -168,7 +168,7 @@ fn connect_again(
     connect(arguments, role).map(Some)
 }
 
-/// Connect to the controller.
+/// Connects to the controller.
 fn connect(arguments: &ControllerArguments, role: Role) -> Result<Peer, Error> {
     let keys = arguments.keys.as_deref().map(|directory| NeighbourKeys::load(directory, role)).transpose()?;
     let wait = Duration::from_secs(arguments.wait);

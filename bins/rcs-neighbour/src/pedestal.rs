@@ -1,7 +1,7 @@
-//! The Active Pedestal: its three processes, behind their mailboxes, for one run after the other.
+//! The Active Pedestal: its three processes behind their mailboxes, for one run after the other.
 //!
-//! A line that was cut is mended: the pedestal goes on as it is. Another run has another cell, in which the
-//! pedestal was switched on just now.
+//! After a broken connection the pedestal keeps its state. A new run has a new cell, so the pedestal starts from its
+//! initial state.
 
 use interfaces::pedestal::PedestalReport;
 use neighbours::{
@@ -12,7 +12,7 @@ use neighbours::{
 
 use crate::{Error, Reconnect, cli::PedestalArguments, connect, connect_again};
 
-/// Serve until no run has come for a while.
+/// Serves runs until none connects within the waiting time.
 pub fn serve(arguments: &PedestalArguments) -> Result<(), Error> {
     let mut served = Served::default();
     let mut peer = connect(&arguments.controller, Role::Pedestal)?;
@@ -27,7 +27,7 @@ pub fn serve(arguments: &PedestalArguments) -> Result<(), Error> {
             }
             other => return other,
         }
-        // The line is cut before the next one is made: there is one neighbour of a kind.
+        // The old connection is closed first, because the controller accepts one neighbour of each role.
         drop(peer);
         let Some(next) = connect_again(&arguments.controller, Role::Pedestal, &mut reconnect)? else {
             return Ok(());
@@ -36,18 +36,18 @@ pub fn serve(arguments: &PedestalArguments) -> Result<(), Error> {
     }
 }
 
-/// The pedestal, and what it was told last.
+/// The pedestal, and the state reported last.
 #[derive(Default)]
 struct Served {
     system: System,
-    /// The last pulse.
+    /// Tick number of the last pulse.
     pulse: u64,
-    /// What was said last: number, report, and why the command was refused.
+    /// Reported last on standard output: command number, report, and why the command was refused.
     said: (u32, PedestalReport, String),
 }
 
 impl Served {
-    /// Carry out the commands of a run.
+    /// Executes the commands of a run.
     fn attend(&mut self, peer: &mut Peer) -> Result<(), Error> {
         self.system.join();
         let (mut sent, mut is_there) = ([0; 4], false);
@@ -58,7 +58,7 @@ impl Served {
                 is_there = true;
             }
             if pulse <= self.pulse {
-                // Ticks begin anew with a run.
+                // A pulse that does not increase comes from a new run.
                 *self = Self::default();
             }
             self.pulse = pulse;
@@ -74,7 +74,7 @@ impl Served {
         }
     }
 
-    /// One line on standard output for everything that becomes of a command.
+    /// Prints a line for every change of a command's status.
     fn tell(&mut self) {
         let status = &self.system.memory().pedestal.status;
         let refused = self.system.refusal().map(ToString::to_string).unwrap_or_default();

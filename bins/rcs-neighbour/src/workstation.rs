@@ -1,4 +1,4 @@
-//! The workstation controller: the emulator of the controller's own process, behind mailboxes.
+//! The workstation controller: the emulator that also runs in the controller's process, here behind mailboxes.
 
 use std::{collections::VecDeque, path::PathBuf};
 
@@ -20,10 +20,10 @@ use taskdata::load::{Job, Store, job::Workstation as Action};
 
 use crate::{Error, cli::WorkstationArguments, connect};
 
-/// Ticks in which a command must be echoed over a network: 2 s.
+/// Ticks within which a command must be echoed over a network: 2 s.
 const NETWORK_TICKS: u64 = 50;
 
-/// Play a job.
+/// Plays a job.
 pub fn play(arguments: &WorkstationArguments) -> Result<(), Error> {
     let job = job(arguments)?;
     let mut peer = connect(&arguments.controller, Role::Workstation)?;
@@ -79,7 +79,7 @@ fn job(arguments: &WorkstationArguments) -> Result<Job, Error> {
     Ok(job)
 }
 
-/// One line on standard output for every step that is over.
+/// Prints one line for every finished step.
 fn tell(hwsc: &Hwsc, told: &mut usize, over: bool) {
     let finished = if over { hwsc.begun_steps().len() } else { hwsc.begun_steps().len().saturating_sub(1) };
     for step in hwsc.begun_steps().get(*told..finished).unwrap_or_default() {
@@ -88,12 +88,12 @@ fn tell(hwsc: &Hwsc, told: &mut usize, over: bool) {
     *told = finished.max(*told);
 }
 
-/// The simulated cell, as far as its mailboxes show it.
+/// The simulated cell as seen through its mailboxes.
 struct Cell {
     command_box: Mailbox,
-    /// Number of the line that was sent last.
+    /// Number of the line sent last.
     number: u16,
-    /// Lines that are to be sent: the mailbox holds one.
+    /// Lines not yet sent: the mailbox holds only one.
     lines: VecDeque<String>,
     echo: u16,
     busy: bool,
@@ -124,7 +124,7 @@ impl Cell {
         Ok(())
     }
 
-    /// Send the next line, if the one before has arrived.
+    /// Sends the next line if the cell has echoed the previous one.
     fn send(&mut self, peer: &mut Peer) -> Result<(), Error> {
         if self.echo != self.number {
             return Ok(());

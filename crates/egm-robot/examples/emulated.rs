@@ -1,4 +1,4 @@
-//! An emulated EGM robot in simulated time, led 50 mm along X and back in ten seconds.
+//! Moves an emulated EGM robot 50 mm along X and back in ten seconds of simulated time.
 //! `cargo run --release -p egm-robot --example emulated`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
@@ -9,7 +9,7 @@ use egm_robot::{EgmOptions, Line, Order, Placement};
 const TICK_NS: u64 = 40_000_000;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // One datagram in a hundred is lost, as on a network that is shared.
+    // The network loses one datagram in a hundred, as a shared network does.
     let options: EgmOptions = "sim,loss=1".parse()?;
     let mut line = Line::Simulated(Box::new(options.simulated(&Placement::default())));
     let mut from: Option<Pose> = None;

@@ -1,9 +1,9 @@
-//! The arm of a robot with a spherical wrist, from its file: which angles of the axes a pose takes, and what is in
-//! the way. The robot itself does this calculation while EGM runs; `rcs-run check --robot` does it before.
+//! Kinematics of a robot with a spherical wrist, read from its file: the axis angles for a pose, and why a motion is
+//! not possible. While EGM runs, the robot itself computes this; `rcs-run check --robot` computes it beforehand.
 //!
-//! Lengths as in Brandstötter, Angerer, Hofbaur, "An analytical solution of the inverse kinematics problem of
-//! industrial serial manipulators with an ortho-parallel basis and a spherical wrist" (2014); the solution is
-//! that of the crate `rs-opw-kinematics`.
+//! Lengths are named as in Brandstötter, Angerer, Hofbaur, "An analytical solution of the inverse kinematics problem of
+//! industrial serial manipulators with an ortho-parallel basis and a spherical wrist" (2014); the crate
+//! `rs-opw-kinematics` computes the solution.
 
 use std::{
     f64::consts::{PI, TAU},
@@ -23,10 +23,10 @@ use serde::Deserialize;
 
 use crate::placement::{KIND, Place};
 
-/// Angles of the axes, radians.
+/// Axis angles, radians.
 pub type Axes = [f64; 6];
 
-/// The table `[arm]` as the file has it: mm, degrees, degrees/s.
+/// The table `[arm]` of the file: mm, degrees, degrees/s.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ArmText {
@@ -47,25 +47,25 @@ pub(crate) struct ArmText {
     tool: Place,
 }
 
-/// Why the arm cannot follow.
+/// Why the arm cannot follow a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Hindrance {
-    /// No angles of the axes bring the tool there.
+    /// No axis angles bring the tool to the pose.
     OutOfReach,
-    /// An axis, from 0, would be so many degrees beyond its limit.
+    /// An axis would be beyond its limit.
     Limit {
-        /// The axis.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Degrees.
+        /// Degrees beyond the limit.
         by: f64,
     },
-    /// An axis, from 0, would have to turn faster than it can, degrees/s: the wrist comes near its singularity.
+    /// An axis would have to turn faster than it can: the wrist is near its singularity.
     Speed {
-        /// The axis.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Degrees/s that it would need.
+        /// Speed needed, degrees/s.
         needed: f64,
-        /// Degrees/s that it has.
+        /// Greatest speed of the axis, degrees/s.
         most: f64,
     },
 }
@@ -88,25 +88,25 @@ impl fmt::Display for Hindrance {
     }
 }
 
-/// The arm.
+/// The arm: kinematics, limits and frames.
 #[derive(Clone, Debug)]
 pub struct Arm {
     name: String,
     kinematics: OPWKinematics,
-    /// Angles at which the kinematics has axis 5 straight.
+    /// Angle of axis 5, rad, at which the kinematics has a straight wrist.
     straight: f64,
     /// Least and greatest angle of each axis, rad.
     limits: [[f64; 2]; 6],
     /// Greatest speed of each axis, rad/s.
     speeds: Axes,
-    /// The work object in the robot's base frame.
+    /// Pose of the work object in the robot's base frame.
     work_object: Pose,
-    /// The tool in tool0, the frame of the flange.
+    /// Pose of the tool in tool0, the frame of the flange.
     tool: Pose,
 }
 
 impl Arm {
-    /// The arm of a table; what of it cannot be used goes to `problems`.
+    /// Converts the table of the file; adds its errors to `problems`.
     pub(crate) fn from_text(text: &ArmText, problems: &mut Vec<Problem>) -> Option<Self> {
         let lengths = [text.a1, text.a2, text.b, text.c1, text.c2, text.c3, text.c4];
         let [a1, a2, b, c1, c2, c3, c4] = lengths.map(|mm| mm / 1e3);
@@ -143,14 +143,14 @@ impl Arm {
         })
     }
 
-    /// What the robot is called.
+    /// Name of the robot.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// All ways to bring the tool to a pose in the work object, within the limits of the axes, each axis as near
-    /// to 0 as it can be.
+    /// All axis angles, rad, that bring the tool to a pose in the work object, within the limits of the axes. A turn is
+    /// added to an axis, or subtracted, only if its limits require it.
     #[must_use]
     pub fn solutions(&self, tool: &Pose) -> Vec<Axes> {
         let mut solutions = self.kinematics.inverse(&self.flange(tool));
@@ -164,7 +164,7 @@ impl Arm {
         solutions
     }
 
-    /// The tool in the work object.
+    /// Pose of the tool in the work object, mm, at the given axis angles.
     #[must_use]
     pub fn pose(&self, axes: &Axes) -> Pose {
         let flange = self.kinematics.forward(axes);
@@ -173,7 +173,7 @@ impl Arm {
         self.work_object.inverse().compose(&flange).compose(&self.tool)
     }
 
-    /// The axis, from 0, that is nearest to a limit, and how near, degrees; negative beyond it.
+    /// The axis, from 0, with the least margin to its limits, and that margin, degrees; negative beyond the limit.
     #[must_use]
     pub fn margin(&self, axes: &Axes) -> (usize, f64) {
         let margins =
@@ -190,20 +190,20 @@ impl Arm {
     }
 }
 
-/// An arm on its way: the configuration in which it began is kept, as the robot does under EGM.
+/// A motion of the arm that keeps the configuration of its start, as the robot does under EGM.
 #[derive(Clone, Debug)]
 pub struct Track {
     axes: Axes,
-    /// The axis that came nearest to a limit, and how near, degrees.
+    /// The axis, from 0, that came nearest to a limit, and the margin, degrees.
     pub margin: (usize, f64),
-    /// How far the wrist always was from straight, degrees.
+    /// Least angle of axis 5 from the straight wrist, degrees.
     pub wrist: f64,
-    /// The greatest speed of each axis, degrees/s.
+    /// Greatest speed of each axis, degrees/s.
     pub speeds: Axes,
 }
 
 impl Track {
-    /// An arm at rest.
+    /// Starts at rest at the given axis angles.
     #[must_use]
     pub fn begin(arm: &Arm, axes: &Axes) -> Self {
         let mut track = Self { axes: *axes, margin: (0, f64::INFINITY), wrist: 180.0, speeds: [0.0; 6] };
@@ -211,10 +211,10 @@ impl Track {
         track
     }
 
-    /// Go to the next pose of the tool in the work object, within so many seconds.
+    /// Moves to the next pose of the tool in the work object within the given time, seconds.
     ///
     /// # Errors
-    /// [`Hindrance`]; the arm stays where it was.
+    /// [`Hindrance`]; the arm then keeps its axis angles.
     pub fn go(&mut self, arm: &Arm, tool: &Pose, seconds: f64) -> Result<(), Hindrance> {
         let solutions = arm.kinematics.inverse_continuing(&arm.flange(tool), &self.axes);
         let axes = *solutions.first().ok_or(Hindrance::OutOfReach)?;
@@ -255,13 +255,13 @@ mod tests {
         RobotFile::from_toml(&crate::placement::source(text)).unwrap().arm.unwrap()
     }
 
-    /// Of the drawing of the IRB 6700-200/2.60: all axes at 0, forearm level, tool0 1662.5 mm in front, 2105 mm high.
+    /// From the drawing of the IRB 6700-200/2.60: all axes at 0, forearm level, tool0 1662.5 mm in front, 2105 mm high.
     #[test]
     fn the_arm_is_the_one_of_its_drawing() {
         let arm = arm(TEXT);
         let at_zero = arm.kinematics.forward(&[0.0; 6]);
         assert!((at_zero.translation * 1e3 - DVec3::new(1662.5, 0.0, 2105.0)).length() < 1e-9, "{at_zero:?}");
-        // tool0 looks forward with its z.
+        // The z axis of tool0 points forward.
         assert!((at_zero.rotation * DVec3::Z - DVec3::X).length() < 1e-9);
         // Axis 2 leans the arm forward, axis 3 lowers the forearm.
         assert!(arm.kinematics.forward(&[0.0, 0.1, 0.0, 0.0, 0.0, 0.0]).translation.x > 1.7);
@@ -301,7 +301,7 @@ mod tests {
         assert!((track.speeds[0] - 0.05_f64.to_degrees() / 0.04).abs() < 1e-6, "{:?}", track.speeds);
     }
 
-    /// Axis 6 may turn once around; the track does not jump by a turn at half of it.
+    /// Axis 6 has a range of more than a turn; the motion does not jump by a turn at 180 degrees.
     #[test]
     fn turns_are_carried_along() {
         let arm = arm(TEXT);

@@ -1,16 +1,15 @@
-//! The robot's border: the DEPC function of the controller, with an EGM robot behind it.
+//! The adapter between the DEPC function of the controller and an EGM robot.
 //!
-//! A tick brings the host's bytes and the newest sample, and gives at most one order. While the function runs
-//! there is a point in every tick: the one that was accepted, or the one before again, since a robot without
-//! a new set point keeps the old one. So the path ends exactly, and a tick without a command costs nothing
-//! but time.
+//! A step takes the host's bytes and the newest sample, and gives at most one order. While the function runs, every
+//! tick orders a point: the position just accepted, or the previous one again, because a robot without a new set point
+//! keeps the old one. So the path ends exactly at its last point, and a tick without a command only takes time.
 //!
-//! | the robot | the function |
+//! | state of the robot | state of the DEPC function |
 //! |---|---|
-//! | motors off; RAPID or EGM stopped | has ended: no answers, DTR off |
-//! | follows, and stands where it was sent | can begin, with a report of that place |
-//! | no message for 3 ticks | warns: no answers; DTR stays on, since nothing says that the robot's program has ended |
-//! | its path was interrupted, or it is not where it was sent | warns; the host's restart is answered when it stands |
+//! | motors off; RAPID or EGM stopped | ended: no answers, DTR off |
+//! | follows, and rests at its last target | can begin, with a report of that position |
+//! | no message for 3 ticks | warns: no answers; DTR stays on, because the robot's program may still run |
+//! | path interrupted, or not at its last target | warns; answers the host's restart when the robot is at rest |
 
 use depc::{
     Limits, Plate,
@@ -24,10 +23,10 @@ use geometry::{frame::Frame, kinematics::T3, pose::WireFrame};
 
 use crate::{Line, Order, Placement};
 
-/// What goes back to the host.
+/// Outputs of a step to the host.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BridgeOutputs {
-    /// Bytes.
+    /// Bytes to the host.
     pub tx: LinkBytes,
     /// The controller's DTR.
     pub dtr: bool,
@@ -35,22 +34,22 @@ pub struct BridgeOutputs {
     pub busy: bool,
 }
 
-/// The border.
+/// The adapter: the controller's side of DEPC and the robot behind it.
 pub struct Bridge {
     controller: Controller,
     robot: Border,
 }
 
-/// What the function moves.
+/// The robot as the DEPC function sees it.
 struct Border {
     placement: Placement,
     exact: ExactFrames,
     sample: Sample,
-    /// The last position of the path: words, and the target behind them. `None` if no path was begun.
+    /// The last position of the path: its DEPC words, and the target pose that they stand for. `None` without a path.
     path: Option<(Plate, Pose)>,
-    /// D and R of the next report are near these.
+    /// The angles D and R of the next report are chosen near these.
     near: Plate,
-    /// Why no path goes on or begins.
+    /// Why a path cannot continue or begin.
     warning: Option<Warning>,
     order: Option<Order>,
     now: u64,
@@ -89,9 +88,9 @@ impl Robot for Border {
 }
 
 impl Border {
-    /// What the newest sample means for the path.
+    /// Evaluates the newest sample for the path; `now` is ns of the line's clock.
     fn look(&mut self, sample: Sample, now: u64) {
-        // A path that was begun in the tick before is under way, unless the robot has refused it.
+        // A path that began in the previous tick is moving by now, unless the robot has refused it.
         let interrupted = self.path.is_some() && !sample.is_moving;
         (self.sample, self.now, self.order) = (sample, now, None);
         let expressible = || {
@@ -106,7 +105,7 @@ impl Border {
 }
 
 impl Bridge {
-    /// The function has not begun.
+    /// An adapter whose DEPC function has not begun.
     #[must_use]
     pub fn new(limits: Limits, placement: Placement) -> Self {
         Self {
@@ -124,24 +123,24 @@ impl Bridge {
         }
     }
 
-    /// The DEPC function.
+    /// The controller's side of DEPC.
     #[must_use]
     pub const fn controller(&self) -> &Controller {
         &self.controller
     }
 
-    /// The robot's frames.
+    /// The frames of the robot.
     #[must_use]
     pub const fn placement(&self) -> &Placement {
         &self.robot.placement
     }
 
-    /// Prim has commanded the tool frame `exact` (inches, world), which T3I got as `wire`.
+    /// Records that Prim commanded the tool frame `exact` (inches, world), which T3I received rounded, as `wire`.
     pub fn offer(&mut self, wire: &WireFrame, exact: &Frame) {
         self.robot.exact.offer(wire, exact);
     }
 
-    /// The words of where the robot is, if it has them.
+    /// The robot's position as DEPC words; `None` before the first message, or if the pose has no DEPC words.
     #[must_use]
     pub fn feedback(&self) -> Option<Plate> {
         let sample = &self.robot.sample;
@@ -149,7 +148,7 @@ impl Bridge {
         known.then(|| self.robot.placement.words(&sample.feedback, &self.robot.near)).flatten()
     }
 
-    /// What keeps the robot from following, in words.
+    /// Why the robot does not follow, as text for messages; `None` if it does.
     #[must_use]
     pub fn trouble(&self) -> Option<&'static str> {
         match self.robot.sample.link {
@@ -163,11 +162,12 @@ impl Bridge {
         }
     }
 
-    /// One tick: the host's bytes, and its DTR, against the newest sample of the line.
+    /// Executes one tick: passes the host's bytes and its DTR (here `cts`) to the DEPC function, with the newest
+    /// sample.
     pub fn step(&mut self, line: &mut Line, rx: &LinkBytes, cts: bool) -> BridgeOutputs {
         self.robot.look(line.sample(), line.now());
         if matches!(self.robot.sample.link, LinkState::Waiting | LinkState::Standby(_)) {
-            // The robot's program has ended, and with it the function.
+            // The robot's program has ended, so the DEPC function ends too.
             self.controller = Controller::new(*self.controller.limits());
             self.robot.path = None;
             return BridgeOutputs::default();
@@ -179,7 +179,7 @@ impl Bridge {
         let before = self.robot.path;
         let out = self.controller.step(&inputs, &mut self.robot);
         if let (Some((_, to)), None) = (before, &self.robot.order) {
-            // Nothing was commanded: the set point stands.
+            // Without a command, the set point is repeated.
             self.robot.order = Some(Order::Point { at: self.robot.now, to });
         }
         if let Some(order) = &self.robot.order {

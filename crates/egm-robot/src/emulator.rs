@@ -1,12 +1,12 @@
-//! An EGM robot in pose mode, emulated: the controller's states and its control loop after the application
-//! manual (3HAC073318), with the arm of the T3. No controller of ABB was at hand to compare it with.
+//! An emulated EGM robot in pose mode: states and control loop of the controller as in the application manual
+//! (3HAC073318), with the arm of the T3. It has not been compared with a controller of ABB.
 //!
 //! ```text
 //!   speed = k (reference - position) + speedRef, limited to MaxSpeedDeviation, through a low pass, ramped in
 //! ```
 //!
-//! References are poses; the loop is closed on the joints. One message a cycle is read from the queue;
-//! without one the last reference, and its speed, stand.
+//! References are poses; the loop is closed on the joints. Each cycle reads one message from the queue; without a
+//! message, the last reference and its speed stay in effect.
 
 use std::{collections::VecDeque, f64::consts::TAU};
 
@@ -20,25 +20,25 @@ use geometry::kinematics::{HOME_JOINTS, Joints, T3};
 
 use crate::Placement;
 
-/// Cycle of the robot, ns.
+/// Cycle time of the robot, ns.
 pub const CYCLE_NS: u64 = 4_032_000;
-/// The same in seconds.
+/// Cycle time of the robot, s.
 const CYCLE_S: f64 = 0.004_032;
-/// Messages that wait to be read at most.
+/// Greatest number of messages in the queue.
 const MOST_WAITING: usize = 10;
-/// A robot none of whose joints is faster stands in a fine point, rad/s.
+/// The robot is in a fine point if no joint is faster than this, rad/s.
 const FINE: f64 = 1e-4;
-/// `mciConvergenceMet`: joints are nearer than this to their reference, rad.
+/// `mciConvergenceMet` is set if all joints are nearer to their reference than this, rad.
 const CONVERGED: f64 = 1e-4;
 
-/// What a RAPID program and the controller's configuration set.
+/// Settings of the RAPID program and of the controller's configuration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
     /// Proportional gain of the position loop, 1/s: 0 to 20.
     pub gain: f64,
-    /// Corner of the low pass, Hz: 0 to 100, 0 is none.
+    /// Corner frequency of the low pass, Hz: 0 to 100; 0 switches it off.
     pub low_pass: f64,
-    /// Time in which corrections are ramped in, s: 0.005 to 10.
+    /// Time over which corrections are ramped in, s: 0.005 to 10.
     pub ramp_s: f64,
     /// `\MaxSpeedDeviation`: greatest speed of a joint, degrees/s. The controller's default is 1.0.
     pub max_speed_deviation: f64,
@@ -46,12 +46,12 @@ pub struct Tuning {
     pub comm_timeout_s: f64,
     /// "Do Not Restart after Motors Off".
     pub do_not_restart: bool,
-    /// By how much the sequence number grows.
+    /// Increment of the sequence number per message.
     pub seqno_step: u32,
 }
 
 impl Default for Tuning {
-    /// The controller's defaults, except for a speed deviation with which the robot can move: 90 degrees/s.
+    /// The controller's defaults, except a speed deviation of 90 degrees/s, so that the robot can move.
     fn default() -> Self {
         Self {
             gain: 5.0,
@@ -68,18 +68,18 @@ impl Default for Tuning {
 /// Why EGM does not run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stopped {
-    /// The program has not come to the EGM instruction, or was stopped.
+    /// The program has not reached the EGM instruction, or was stopped.
     Program,
     /// An emergency stop.
     Emergency,
     /// No message for `\CommTimeout`: ERR_UDPUC_COMM.
     Communication,
-    /// A target that the joints cannot take: a singularity, a limit, out of reach.
+    /// The joints cannot reach a target: a singularity, a limit, or out of reach.
     Joints,
 }
 
 impl Stopped {
-    /// In words.
+    /// As text for messages.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -91,24 +91,24 @@ impl Stopped {
     }
 }
 
-/// The robot.
+/// The emulated robot.
 #[derive(Clone, Debug)]
 pub struct EgmRobot {
     tuning: Tuning,
     placement: Placement,
     joints: Joints,
-    /// rad/s.
+    /// Joint speeds, rad/s.
     speed: Joints,
-    /// Where the joints are to be, and how fast that moves.
+    /// Target of the joints, rad, and its speed, rad/s.
     reference: Option<(Joints, Joints)>,
     /// `None` while EGM runs.
     stopped: Option<Stopped>,
     motors: bool,
-    /// Waits for a fine point.
+    /// EGM waits for a fine point before it runs.
     starting: bool,
-    /// Seconds since EGM has begun to run.
+    /// Time since EGM began to run, s.
     running_s: f64,
-    /// Seconds since the last message was read.
+    /// Time since the last message was read, s.
     silent_s: f64,
     waiting: VecDeque<Sensor>,
     seqno: u32,
@@ -124,7 +124,7 @@ fn fastest(joints: &Joints) -> f64 {
 }
 
 impl EgmRobot {
-    /// A robot at the T3's HOME, with motors on and its program at the EGM instruction.
+    /// A robot at HOME of the T3, with motors on and its program at the EGM instruction.
     #[must_use]
     pub fn new(tuning: Tuning, placement: Placement) -> Self {
         Self {
@@ -150,32 +150,32 @@ impl EgmRobot {
         &self.joints
     }
 
-    /// Where the tool is.
+    /// Pose of the tool in the work object, mm.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.placement.pose(&T3.forward_plate(&self.joints))
     }
 
-    /// Why EGM does not run.
+    /// Why EGM does not run; `None` while it runs.
     #[must_use]
     pub const fn stopped(&self) -> Option<Stopped> {
         self.stopped
     }
 
-    /// The emergency stop: motors off, brakes on.
+    /// Emergency stop: motors off, brakes on.
     pub fn emergency_stop(&mut self) {
         self.motors = false;
         self.speed = [0.0; 6];
         self.stopped = Some(Stopped::Emergency);
     }
 
-    /// The program is stopped.
+    /// Stops the program.
     pub fn stop(&mut self) {
         self.stopped = self.stopped.or(Some(Stopped::Program));
     }
 
-    /// Motors on, after an emergency stop. With "Do Not Restart after Motors Off" the program waits to be
-    /// started; without it EGM goes on by itself, with its last reference.
+    /// Switches the motors on after an emergency stop. With "Do Not Restart after Motors Off" the program waits for a
+    /// start; without it EGM continues with its last reference.
     pub fn motors_on(&mut self) {
         self.motors = true;
         if self.stopped == Some(Stopped::Emergency) && !self.tuning.do_not_restart {
@@ -184,7 +184,7 @@ impl EgmRobot {
         }
     }
 
-    /// The program is started and comes to the EGM instruction: EGM begins at rest, where the robot is.
+    /// Starts the program, which reaches the EGM instruction: EGM begins at rest, at the robot's position.
     pub fn start(&mut self) {
         if self.motors {
             (self.stopped, self.starting, self.reference) = (None, true, None);
@@ -193,10 +193,10 @@ impl EgmRobot {
         }
     }
 
-    /// A datagram has come.
+    /// Puts a received datagram into the queue.
     ///
     /// # Errors
-    /// What is wrong with it, in words; the robot does not answer.
+    /// The decoding error; the robot does not answer.
     pub fn receive(&mut self, datagram: &[u8]) -> Result<(), egm::Error> {
         let message = Sensor::decode(datagram)?;
         if self.waiting.len() < MOST_WAITING {
@@ -205,7 +205,7 @@ impl EgmRobot {
         Ok(())
     }
 
-    /// A cycle: read a message, move, and say where the robot is.
+    /// Executes a cycle: reads a message, moves, and returns the message with the robot's state.
     pub fn cycle(&mut self) -> Robot {
         self.time_ns = self.time_ns.saturating_add(CYCLE_NS);
         if self.starting && self.stopped.is_none() && fastest(&self.speed) < FINE {
@@ -217,7 +217,7 @@ impl EgmRobot {
             if let Some(message) = message {
                 self.take(&message);
             }
-            // Before its first message the robot waits, as long as it takes.
+            // The robot waits for its first message without a time limit.
             if self.reference.is_some() && self.silent_s >= self.tuning.comm_timeout_s {
                 self.stopped = Some(Stopped::Communication);
             }
@@ -230,7 +230,7 @@ impl EgmRobot {
         self.motors && self.stopped.is_none() && !self.starting
     }
 
-    /// Take over the reference of a message. One without a pose, or a joint message, says nothing here.
+    /// Takes the reference of a message. The emulator ignores a message without a pose, such as a joint message.
     fn take(&mut self, message: &Sensor) {
         let Some(Ok(pose)) = message.planned.and_then(|planned| planned.cartesian).map(|pose| pose.pose())
         else {
@@ -243,7 +243,7 @@ impl EgmRobot {
         }
     }
 
-    /// Joints and their speeds for a pose and its speed.
+    /// Joint angles and joint speeds for a pose and its speed.
     fn joints_for(&self, pose: &Pose, speed: &Twist) -> Option<(Joints, Joints)> {
         let solve = |pose: &Pose, near: &Joints| {
             let joints = T3.inverse(&self.placement.tool_frame(pose), near).ok()?;
@@ -344,7 +344,7 @@ mod tests {
         let mut bench = Bench::new(Tuning { low_pass: 0.0, ramp_s: 0.005, ..Tuning::default() });
         bench.cycles(10);
         bench.target.position[2] += 20.0;
-        // One time constant of 0.2 s leaves 1/e.
+        // After one time constant of 0.2 s the distance is 1/e.
         bench.cycles(50);
         assert!((bench.off() / 20.0 - (-1.0_f64).exp()).abs() < 0.02, "{}", bench.off());
         bench.cycles(800);

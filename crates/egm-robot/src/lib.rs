@@ -1,22 +1,21 @@
-//! An EGM robot in the place of a T3: behind the controller's side of DEPC stands ABB's Externally Guided
-//! Motion.
+//! An EGM robot in the place of a T3: connects the controller's side of DEPC to ABB's Externally Guided Motion.
 //!
 //! ```text
 //!   host (T3 Interface, or any other)
 //!     │ bytes, once a tick of 40 ms
 //!   bridge::Bridge: depc::Controller, which moves ...
 //!     │ orders, at most one a tick            ▲ samples
-//!   line::Line: egm::Host, in a thread of its own, or in simulated time
+//!   line::Line: egm::Host, in its own thread or in simulated time
 //!     │ EgmSensor                              ▲ EgmRobot, every 4 ms
 //!   robot controller, or emulator::EgmRobot
 //! ```
 //!
-//! * [`options`] reads what is typed, `egm:[ADDRESS:]PORT[,OPTION...]`;
-//! * [`placement`]: where the T3's world lies in the robot's work object, from a file;
-//! * [`arm`]: the axes of the robot, from the same file, to know before whether it reaches;
-//! * [`bridge`]: the robot's border;
+//! * [`options`]: parses `egm:[ADDRESS:]PORT[,OPTION...]`;
+//! * [`placement`]: the frames of the robot, which connect the T3's world with its work object, from a file;
+//! * [`arm`]: the kinematics of the robot, from the same file, to check reach and axis speeds beforehand;
+//! * [`bridge`]: the adapter between the DEPC function and the robot;
 //! * [`mod@line`]: the host with a socket ([`udp`]) or with an emulated robot ([`simulated`]);
-//! * [`emulator`]: an EGM robot, with the arm of the T3; [`network`]: what UDP does to datagrams.
+//! * [`emulator`]: an emulated EGM robot with the arm of the T3; [`network`]: simulated faults of UDP.
 
 pub mod arm;
 pub mod bridge;

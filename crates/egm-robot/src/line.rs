@@ -1,35 +1,35 @@
-//! The link to a robot, as the bridge sees it: orders go in, samples come out.
+//! The link between the bridge and a robot: takes orders, gives samples.
 
 use egm::{Error, Host, Pose, Sample};
 
 use crate::{simulated::SimulatedLine, udp::UdpLine};
 
-/// What the bridge asks of the host. Times are nanoseconds of the line's clock.
+/// An order of the bridge to the host. Times are ns of the line's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Order {
-    /// Begin a path at rest.
+    /// Begin a path from rest.
     Begin {
-        /// When.
+        /// Time of the order, ns of the line's clock.
         at: u64,
-        /// Where.
+        /// Start pose of the path.
         from: Pose,
     },
     /// The next point of the path.
     Point {
-        /// When it was commanded.
+        /// Time of the command, ns of the line's clock.
         at: u64,
-        /// The point.
+        /// Target pose.
         to: Pose,
     },
     /// Come to rest.
     Stop {
-        /// When.
+        /// Time of the order, ns of the line's clock.
         at: u64,
     },
 }
 
 impl Order {
-    /// Do as ordered. What the host refuses shows in its samples.
+    /// Passes the order to the host. The samples show whether the host refused it.
     pub fn carry_out(&self, host: &mut Host) -> Result<(), Error> {
         match self {
             Self::Begin { at, from } => host.begin(*at, from),
@@ -42,27 +42,28 @@ impl Order {
     }
 }
 
-/// What the host knows after a message, with the times of that message.
+/// State of the host after a message, with the times of that message.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
-    /// What is known.
+    /// State of the host.
     pub sample: Sample,
-    /// From the message before to this one, ns; `None` without one.
+    /// Time since the previous message, ns; `None` if there is none.
     pub cycle: Option<u64>,
-    /// From the message to its answer, ns.
+    /// Time from the message to its answer, ns.
     pub answered: u64,
 }
 
-/// The link to a robot.
+/// The link to a robot: real or emulated.
 pub enum Line {
-    /// Over UDP, with a thread of its own.
+    /// Over UDP, with its own thread.
     Udp(Box<UdpLine>),
     /// To an emulated robot, in simulated time.
     Simulated(Box<SimulatedLine>),
 }
 
 impl Line {
-    /// The time of this line for a tick that begins now, ns. A simulated line is where it was advanced to.
+    /// The time of the line's clock for a tick that begins now, ns. The clock of a simulated line stands still between
+    /// calls of [`Self::advance`].
     #[must_use]
     pub fn now(&self) -> u64 {
         match self {
@@ -71,7 +72,7 @@ impl Line {
         }
     }
 
-    /// Give an order.
+    /// Gives an order to the host.
     pub fn order(&mut self, order: &Order) {
         match self {
             Self::Udp(line) => line.order(order),
@@ -79,14 +80,14 @@ impl Line {
         }
     }
 
-    /// Let simulated time pass, ns; real time passes by itself.
+    /// Advances simulated time, ns; has no effect on a UDP line.
     pub fn advance(&mut self, by: u64) {
         if let Self::Simulated(line) = self {
             line.advance(by);
         }
     }
 
-    /// What has come since the last call, each message once.
+    /// Calls `take` once for each report since the last call.
     pub fn reports(&mut self, take: impl FnMut(&Report)) {
         match self {
             Self::Udp(line) => line.reports(take),
@@ -94,7 +95,7 @@ impl Line {
         }
     }
 
-    /// What was known last.
+    /// The newest sample.
     #[must_use]
     pub fn sample(&self) -> Sample {
         match self {

@@ -1,30 +1,30 @@
-//! What UDP may do to datagrams, by chance and by seed: lose, double, delay, and let one overtake another.
+//! Faults of a UDP network, random with a seed: loss, duplication, delay, and reordering of datagrams.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// How bad the network is, in each direction.
+/// Fault rates of the network, for each direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quality {
-    /// Percent of the datagrams that are lost.
+    /// Datagrams lost, percent.
     pub loss: f64,
-    /// Percent that come twice.
+    /// Datagrams that arrive twice, percent.
     pub double: f64,
-    /// Percent that are overtaken: they come 10 ms later.
+    /// Datagrams delayed by 10 ms more, so that others overtake them, percent.
     pub reorder: f64,
-    /// Every datagram takes so long, ms.
+    /// Delay of every datagram, ms.
     pub delay_ms: f64,
-    /// And up to so much longer, ms, at random; of its own a datagram overtakes others by it.
+    /// Jitter, ms: up to this much random extra delay per datagram; datagrams can overtake each other.
     pub jitter_ms: f64,
-    /// No datagram arrives from this time, s.
+    /// Start of a time in which every datagram is lost, s.
     pub silent_at_s: f64,
-    /// For so long, s.
+    /// Length of that time, s.
     pub silent_for_s: f64,
 }
 
-/// How much later a datagram comes that is overtaken, ms.
+/// Extra delay of a datagram that is to be overtaken, ms.
 const OVERTAKEN_MS: f64 = 10.0;
-/// Datagrams under way at most; beyond that the network loses them.
+/// Greatest number of datagrams in transit; the network loses any beyond it.
 const MOST_UNDER_WAY: usize = 256;
 
 /// One direction of the network.
@@ -32,7 +32,7 @@ const MOST_UNDER_WAY: usize = 256;
 pub struct Network {
     quality: Quality,
     dice: ChaCha8Rng,
-    /// When each arrives, in the order in which they were sent.
+    /// Arrival time, ns, and datagram, in the order of sending.
     under_way: Vec<(u64, Vec<u8>)>,
 }
 
@@ -42,17 +42,17 @@ fn nanoseconds(ms: f64) -> u64 {
 }
 
 impl Network {
-    /// A network without datagrams.
+    /// A network with no datagrams in transit.
     #[must_use]
     pub fn new(quality: Quality, seed: u64) -> Self {
         Self { quality, dice: ChaCha8Rng::seed_from_u64(seed), under_way: Vec::new() }
     }
 
-    /// A datagram is sent at `now`, ns.
+    /// Sends a datagram at the time `now`, ns.
     pub fn send(&mut self, now: u64, datagram: &[u8]) {
         let from = nanoseconds(self.quality.silent_at_s * 1e3);
         let silent = from..from.saturating_add(nanoseconds(self.quality.silent_for_s * 1e3));
-        // The same number of throws for each datagram, so that one quality does not shift the others' chances.
+        // Every datagram draws the same number of random numbers: a change of one rate does not affect the others.
         let [lost, double, overtaken] = [self.quality.loss, self.quality.double, self.quality.reorder]
             .map(|percent| self.chance(percent));
         let delays = [self.delay(overtaken), self.delay(overtaken)];
@@ -66,13 +66,13 @@ impl Network {
         }
     }
 
-    /// When the next datagram arrives.
+    /// Arrival time of the next datagram, ns.
     #[must_use]
     pub fn next(&self) -> Option<u64> {
         self.under_way.iter().map(|(at, _)| *at).min()
     }
 
-    /// The next datagram that has arrived by `now`, and when.
+    /// Takes the next datagram that has arrived by `now`, with its arrival time, ns.
     pub fn arrived(&mut self, now: u64) -> Option<(u64, Vec<u8>)> {
         let next = self.next().filter(|at| *at <= now)?;
         let place = self.under_way.iter().position(|(at, _)| *at == next)?;
@@ -88,7 +88,7 @@ impl Network {
         self.part() * 100.0 < percent
     }
 
-    /// A number from 0 to 1.
+    /// A random number in [0, 1).
     fn part(&mut self) -> f64 {
         // 53 random bits make the fraction of an f64.
         (self.dice.next_u64() >> 11) as f64 / (1_u64 << 53) as f64

@@ -1,4 +1,4 @@
-//! `egm:[ADDRESS:]PORT[,OPTION...]` and `egm:sim[,OPTION...]`, as a person types them.
+//! The command-line forms `egm:[ADDRESS:]PORT[,OPTION...]` and `egm:sim[,OPTION...]`.
 
 use std::{
     net::{IpAddr, Ipv4Addr, SocketAddr},
@@ -19,43 +19,43 @@ use crate::{
     simulated::SimulatedLine,
 };
 
-/// Directory of the robots' files in the data directory.
+/// Subdirectory of the data directory with the files of the robots.
 const ROBOTS: &str = "robots";
-/// Least and greatest slack, ms.
+/// Permitted slack, ms.
 const SLACK_MS: RangeInclusive<u64> = 0..=200;
 
-/// Where the robot is.
+/// How a robot is connected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Peer {
-    /// It sends to this address, or an emulator does.
+    /// Over UDP: a robot or an emulator sends to this address.
     Udp(SocketAddr),
-    /// An emulated one in this process, in simulated time.
+    /// Emulated in this process, in simulated time.
     Simulated,
 }
 
-/// A robot with EGM.
+/// Options of an EGM robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EgmOptions {
-    /// Where it is.
+    /// How the robot is connected.
     pub peer: Peer,
-    /// `robot=NAME|FILE`: its frames, a file or a name in `data/robots`.
+    /// `robot=NAME|FILE`: the frames of the robot, from a file or by a name in `data/robots`.
     pub robot: Option<String>,
-    /// `from=ADDRESS`: only datagrams from there count.
+    /// `from=ADDRESS`: accept datagrams from this address only.
     pub from: Option<IpAddr>,
-    /// `speed-ref=on|off`: give the speed of the target with it.
+    /// `speed-ref=on|off`: send the speed of the target with the target.
     pub speed_ref: bool,
-    /// `slack=MS`: by how much a tick may be late.
+    /// `slack=MS`: how late a tick may be, ms.
     pub slack_ms: u64,
-    /// Of an emulated robot: what its program sets.
+    /// Emulated robot only: settings of its program.
     pub tuning: Tuning,
-    /// Of an emulated robot: the network to it.
+    /// Emulated robot only: the network to it.
     pub quality: Quality,
-    /// Of an emulated robot: seed of the network.
+    /// Emulated robot only: seed of the network.
     pub seed: u64,
 }
 
 impl EgmOptions {
-    /// A robot with nothing set.
+    /// A robot with all options at their defaults.
     #[must_use]
     pub fn new(peer: Peer) -> Self {
         Self {
@@ -70,10 +70,10 @@ impl EgmOptions {
         }
     }
 
-    /// A robot to emulate, as it is typed after `egm:`; without an address it sends to this machine.
+    /// Parses the text after `egm:` for an emulator. Without an address, the emulator sends to this machine.
     ///
     /// # Errors
-    /// What was expected, and what was found.
+    /// What was expected and what was found, as text for messages.
     pub fn to_emulate(text: &str) -> Result<Self, String> {
         let (place, options) = text.split_once(',').unwrap_or((text, ""));
         let mut emulated = Self::parse(place, Ipv4Addr::LOCALHOST)?;
@@ -87,7 +87,7 @@ impl EgmOptions {
         Ok(emulated)
     }
 
-    /// A robot, as it is typed after `egm:`. `address` stands for an address that is not named.
+    /// Parses the text after `egm:`. `address` is used if the text names none.
     fn parse(text: &str, address: Ipv4Addr) -> Result<Self, String> {
         let mut parts = text.split(',');
         let place = parts.next().unwrap_or_default();
@@ -126,7 +126,7 @@ impl EgmOptions {
         Ok(())
     }
 
-    /// The numbers of an emulated robot: name, place, range.
+    /// The numeric options of an emulated robot: name, variable, range.
     fn numbers(&mut self) -> [(&'static str, &mut f64, RangeInclusive<f64>); 12] {
         let (tuning, quality) = (&mut self.tuning, &mut self.quality);
         [
@@ -145,7 +145,7 @@ impl EgmOptions {
         ]
     }
 
-    /// An option of the emulated robot.
+    /// Sets an option of the emulated robot.
     fn emulate(&mut self, name: &str, value: &str) -> Result<(), String> {
         match name {
             "do-not-restart" => self.tuning.do_not_restart = switch(name, value)?,
@@ -167,7 +167,7 @@ impl EgmOptions {
         Ok(())
     }
 
-    /// All options that are not as [`EgmOptions::new`] has them, with their values.
+    /// All options that differ from [`EgmOptions::new`], with their values as text.
     fn set_options(&self) -> Vec<(&'static str, String)> {
         let word = |on: bool| if on { "on" } else { "off" }.to_owned();
         let (mut own, mut new) = (self.clone(), Self::new(self.peer));
@@ -185,16 +185,16 @@ impl EgmOptions {
         set
     }
 
-    /// The robot's frames.
+    /// The frames of the robot.
     ///
     /// # Errors
-    /// [`PlacementError`].
+    /// [`PlacementError`] if the file cannot be used.
     pub fn placement(&self, data: &Path) -> Result<Placement, PlacementError> {
         let Some(robot) = &self.robot else { return Ok(Placement::default()) };
         RobotFile::load(&robot_path(robot, data)).map(|file| file.placement)
     }
 
-    /// How the host behaves.
+    /// Settings of the host.
     #[must_use]
     pub fn settings(&self, placement: &Placement) -> Settings {
         let mut settings = Settings::new(placement.limits());
@@ -204,7 +204,7 @@ impl EgmOptions {
         settings
     }
 
-    /// An emulated robot, with the network to it.
+    /// An emulated robot, and the network to it, in simulated time.
     #[must_use]
     pub fn simulated(&self, placement: &Placement) -> SimulatedLine {
         let robot = EgmRobot::new(self.tuning, *placement);
@@ -212,14 +212,14 @@ impl EgmOptions {
         SimulatedLine::new(self.settings(placement), robot, to_host, to_robot)
     }
 
-    /// The network to the host, and the one to the robot.
+    /// The network to the host, and the network to the robot.
     #[must_use]
     pub fn networks(&self) -> [Network; 2] {
         [0, 1].map(|direction| Network::new(self.quality, self.seed.wrapping_mul(2).wrapping_add(direction)))
     }
 }
 
-/// The file of a robot: of that name in `data/robots`, or else that path.
+/// The path of a robot's file: the file of that name in `data/robots` if it exists, else `robot` as a path.
 #[must_use]
 pub fn robot_path(robot: &str, data: &Path) -> PathBuf {
     let named = data.join(ROBOTS).join(robot).with_added_extension("toml");
@@ -237,14 +237,14 @@ fn switch(name: &str, value: &str) -> Result<bool, String> {
 impl FromStr for EgmOptions {
     type Err = String;
 
-    /// To listen for a robot.
+    /// Parses the options of a robot to listen for.
     fn from_str(text: &str) -> Result<Self, String> {
         Self::parse(text, Ipv4Addr::UNSPECIFIED)
     }
 }
 
 impl std::fmt::Display for EgmOptions {
-    /// As a person would type it.
+    /// The form that [`FromStr`] parses.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.peer {
             Peer::Udp(address) => write!(f, "egm:{address}"),

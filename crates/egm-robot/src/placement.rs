@@ -1,5 +1,5 @@
-//! Where the T3's world lies in the robot's work object, and its end plate in the robot's tool: from a file
-//! such as `data/robots/same.toml`, which may describe the robot's arm too.
+//! The frames of a robot: the T3's world in the robot's work object, and the robot's tool in the T3's end plate. They
+//! come from a file such as `data/robots/same.toml`, which can also describe the robot's arm.
 
 use std::path::{Path, PathBuf};
 
@@ -18,15 +18,15 @@ use serde::Deserialize;
 
 use crate::arm::{Arm, ArmText};
 
-/// Millimetres of an inch.
+/// Millimetres per inch.
 const MM_PER_IN: f64 = 25.4;
-/// Limits of DEPC (A 2.3) in mm/s and rad/s. A position may be a rounded one and the next exact: 0.01 in and
-/// 0.01 degree more a period of 40 ms, on either side.
+/// Limits of DEPC (A 2.3) in mm/s and rad/s. One position can be rounded and the next exact, so each end of a 40 ms
+/// period adds 0.01 in and 0.01 degree.
 const SPEED: f64 = (14.0 + 0.5) * MM_PER_IN;
 /// See [`SPEED`]: each of three angles may turn by 1.0 rad/s.
 const TURN: f64 = 1.75;
 
-/// Lengths in mm, angles in degrees, and quaternions, of which a component may be very small.
+/// Messages about the file: lengths in mm, angles in degrees, and quaternions, whose components can be very small.
 pub(crate) const KIND: FileKind = FileKind {
     whole: "the file",
     syntax: "robot.syntax",
@@ -36,35 +36,35 @@ pub(crate) const KIND: FileKind = FileKind {
     magnitudes: [0.0, 1e6],
 };
 
-/// Why a file cannot be used.
+/// Errors of a robot's file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlacementError {
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error("the robot's frames {} cannot be read: {source}", path.display())]
     Read {
-        /// Which.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// It is not what was expected.
+    /// The contents are not as expected.
     #[error("the robot's file cannot be used: {}", .0.in_line())]
     Text(Box<Diagnostics>),
 }
 
-/// A pose as the file has it.
+/// A pose in the file.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Place {
-    /// mm.
+    /// Position, mm.
     position: [f64; 3],
-    /// w, x, y, z.
+    /// Unit quaternion w, x, y, z.
     orientation: [f64; 4],
 }
 
 impl Place {
-    /// The pose of the table `name`; what is wrong with it goes to `problems`.
+    /// The pose of the table `name`; adds its errors to `problems`.
     pub(crate) fn pose(&self, name: &str, problems: &mut Vec<Problem>) -> Option<Pose> {
         let pose = Pose::new(self.position, self.orientation);
         if pose.is_err() {
@@ -76,7 +76,7 @@ impl Place {
     }
 }
 
-/// The work space as the file has it, mm in the work object.
+/// The work space in the file, mm in the work object.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Space {
@@ -93,20 +93,20 @@ struct Text {
     arm: Option<ArmText>,
 }
 
-/// What a file says of a robot.
+/// Contents of a robot's file.
 #[derive(Clone, Debug)]
 pub struct RobotFile {
-    /// Its frames.
+    /// The frames of the robot.
     pub placement: Placement,
-    /// Its arm, if the file has one.
+    /// The arm of the robot, if the file describes it.
     pub arm: Option<Arm>,
 }
 
 impl RobotFile {
-    /// Read a file.
+    /// Reads a robot's file.
     ///
     /// # Errors
-    /// [`PlacementError`].
+    /// [`PlacementError`] if the file cannot be read or used.
     pub fn load(path: &Path) -> Result<Self, PlacementError> {
         let text = files::read_text(path)
             .map_err(|source| PlacementError::Read { path: path.to_owned(), source })?;
@@ -114,10 +114,10 @@ impl RobotFile {
         Self::from_toml(&source).map_err(|report| PlacementError::Text(Box::new(report)))
     }
 
-    /// Read the text of a file.
+    /// Parses the text of a robot's file.
     ///
     /// # Errors
-    /// All that is wrong, and where.
+    /// All problems of the text, with their places.
     pub fn from_toml(source: &Source) -> Result<Self, Diagnostics> {
         let mut file = None;
         Document::load(source, KIND, |text: &Text, stand_ins, problems| {
@@ -133,24 +133,24 @@ impl RobotFile {
     }
 }
 
-/// A text as the file of a robot.
+/// The text as the source of a robot's file.
 #[cfg(test)]
 pub(crate) fn source(text: &str) -> Source {
     Source { name: "robot.toml".to_owned(), text: text.into() }
 }
 
-/// The frames of a robot.
+/// The frames of a robot, and the limits of its targets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// The T3's world in the work object.
+    /// Pose of the T3's world in the work object.
     world: Pose,
-    /// The robot's tool in the T3's end plate.
+    /// Pose of the robot's tool in the T3's end plate.
     tool: Pose,
     limits: Limits,
 }
 
 impl Default for Placement {
-    /// The work object is the T3's world, the tool its end plate.
+    /// The work object coincides with the T3's world, and the tool with its end plate.
     fn default() -> Self {
         Self { world: Pose::IDENTITY, tool: Pose::IDENTITY, limits: Limits::of_speed(SPEED, TURN) }
     }
@@ -168,7 +168,7 @@ impl Placement {
             }
         }
         let (world, tool) = (world?, tool?);
-        // The tool turns about the end plate.
+        // The tool point turns about the end plate, so a rotation adds to its speed.
         let speed = SPEED + TURN * pose::norm(&tool.position);
         let mut limits = Limits::of_speed(speed, TURN);
         if let Some(Space { low, high }) = text.space {
@@ -177,13 +177,13 @@ impl Placement {
         Some(Self { world, tool, limits })
     }
 
-    /// What points and targets are checked against.
+    /// The limits that points and targets are checked against.
     #[must_use]
     pub const fn limits(&self) -> Limits {
         self.limits
     }
 
-    /// The robot's tool in its work object, for the T3's end plate (inches, world).
+    /// Pose of the robot's tool in its work object, mm, for an end-plate frame (inches, world).
     #[must_use]
     pub fn pose(&self, plate: &Frame) -> Pose {
         let turn = rotation_vector(&plate.rotation);
@@ -192,13 +192,13 @@ impl Placement {
         self.world.compose(&plate).compose(&self.tool)
     }
 
-    /// The T3's end plate in the T3's world, for the robot's tool in its work object.
+    /// Pose of the T3's end plate in the T3's world, mm, for a pose of the robot's tool in its work object.
     #[must_use]
     pub fn plate_pose(&self, pose: &Pose) -> Pose {
         self.world.inverse().compose(pose).compose(&self.tool.inverse())
     }
 
-    /// The same in inches.
+    /// As [`Self::plate_pose`], in inches.
     #[must_use]
     pub fn plate_frame(&self, pose: &Pose) -> Frame {
         let plate = self.plate_pose(pose);
@@ -208,13 +208,13 @@ impl Placement {
         }
     }
 
-    /// The T3's tool frame (inches, world), for the robot's tool in its work object.
+    /// The T3's tool frame (inches, world) for a pose of the robot's tool in its work object.
     #[must_use]
     pub fn tool_frame(&self, pose: &Pose) -> Frame {
         self.plate_frame(pose).shifted(Vector::new(T3.plate_to_tool, 0.0, 0.0))
     }
 
-    /// The words of a pose, with D and R near those of `near`; `None` where the line has no words.
+    /// DEPC words of a pose, with D and R near those of `near`; `None` if DEPC cannot express the pose.
     #[must_use]
     pub fn words(&self, pose: &Pose, near: &Plate) -> Option<Plate> {
         let words = Plate::from_frame(&self.plate_frame(pose), near).ok()?;
@@ -249,7 +249,7 @@ mod tests {
         let home = T3.forward_plate(&HOME_JOINTS);
         let pose = Placement::default().pose(&home);
         assert!((pose.position[1] + 62.93 * 25.4).abs() < 0.3, "{pose:?}");
-        // Turned by 90 degrees about z, y becomes -x, and the world lies 1200 mm in front.
+        // Turned by 90 degrees about z, y becomes -x; the world lies 1200 mm in front.
         let placed =
             RobotFile::from_toml(&source(&TEXT.replace("100.0", "0.0"))).unwrap().placement.pose(&home);
         assert!((placed.position[0] - (1200.0 + 62.93 * 25.4)).abs() < 0.3, "{placed:?}");

@@ -1,4 +1,4 @@
-//! The host and an emulated robot in simulated time, with a network between them.
+//! The host and an emulated robot in simulated time, connected by a simulated network.
 
 use egm::{Host, Sample, host::Settings, message::MOST_BYTES};
 
@@ -8,10 +8,10 @@ use crate::{
     network::Network,
 };
 
-/// Reports that are kept between two calls: more than a tick has cycles.
+/// Greatest number of reports kept between two calls: more than the robot has cycles in a tick.
 const MOST_REPORTS: usize = 64;
 
-/// The line.
+/// The link to an emulated robot.
 pub struct SimulatedLine {
     host: Host,
     robot: EgmRobot,
@@ -32,7 +32,7 @@ impl SimulatedLine {
         Self { host, robot, to_host, to_robot, now: 0, next_cycle: CYCLE_NS, reports, heard: None }
     }
 
-    /// The robot, to press its buttons.
+    /// The emulated robot, for example to stop it.
     pub const fn robot(&mut self) -> &mut EgmRobot {
         &mut self.robot
     }
@@ -46,7 +46,7 @@ impl SimulatedLine {
     }
 
     pub(crate) fn order(&mut self, order: &Order) {
-        // What is refused shows in the samples.
+        // The samples show whether the host refused the order.
         let _ = order.carry_out(&mut self.host);
     }
 
@@ -55,7 +55,7 @@ impl SimulatedLine {
         self.reports.clear();
     }
 
-    /// Let time pass, ns: cycles and datagrams in the order of their times.
+    /// Advances the time, ns: executes cycles and delivers datagrams in the order of their times.
     pub(crate) fn advance(&mut self, by: u64) {
         let end = self.now.saturating_add(by);
         loop {
@@ -81,7 +81,7 @@ impl SimulatedLine {
 
     fn cycle(&mut self) {
         let mut buffer = [0; MOST_BYTES];
-        // The buffer holds the longest message.
+        // The buffer has room for the longest message.
         if let Ok(datagram) = self.robot.cycle().encode(&mut buffer) {
             self.to_host.send(self.now, datagram);
         }
@@ -89,7 +89,7 @@ impl SimulatedLine {
 
     fn deliver_to_robot(&mut self) {
         if let Some((_, datagram)) = self.to_robot.arrived(self.now) {
-            // Only what the host has written arrives here.
+            // Only messages of the host arrive here, which are valid.
             let _ = self.robot.receive(&datagram);
         }
     }

@@ -1,5 +1,5 @@
-//! The host behind a UDP socket, in a thread of its own: it answers each datagram as it comes. Orders and
-//! reports go through bounded rings, so that neither thread waits for the other.
+//! The host with a UDP socket in its own thread: it answers each datagram when it arrives. Orders and reports go
+//! through bounded ring buffers, so that neither thread waits for the other.
 
 use std::{
     io::ErrorKind,
@@ -17,16 +17,16 @@ use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::line::{Order, Report};
 
-/// Orders under way: several ticks' worth.
+/// Capacity of the ring of orders: several ticks.
 const MOST_ORDERS: usize = 16;
-/// Reports under way: a second's worth.
+/// Capacity of the ring of reports: one second.
 const MOST_REPORTS: usize = 256;
-/// How long the thread waits for a datagram before it looks for orders and for the time.
+/// Longest wait for a datagram before the thread checks for orders and for the time.
 const WAIT: Duration = Duration::from_millis(4);
-/// No datagram of EGM is longer.
+/// Longest datagram of EGM, bytes.
 const MOST_RECEIVED: usize = 2048;
 
-/// Why the line cannot be opened.
+/// Errors of opening the line.
 #[derive(Debug, thiserror::Error)]
 #[error("EGM cannot listen at UDP {address}: {source}")]
 pub struct UdpError {
@@ -34,13 +34,13 @@ pub struct UdpError {
     source: std::io::Error,
 }
 
-/// The line.
+/// The link to a robot over UDP.
 pub struct UdpLine {
     origin: Instant,
     orders: Producer<Order>,
     reports: Consumer<Report>,
     sample: Sample,
-    /// Datagrams of others than the robot.
+    /// Number of datagrams from other senders than the robot.
     strangers: Arc<AtomicU64>,
     stop: Arc<AtomicBool>,
     address: SocketAddr,
@@ -48,11 +48,11 @@ pub struct UdpLine {
 }
 
 impl UdpLine {
-    /// Listen at `address`; with `peer` only datagrams from there count. `prepare` is called in the thread
-    /// before its first datagram, to ask for real-time scheduling.
+    /// Listens at `address`. With `peer`, only datagrams from that address are accepted. The thread calls `prepare`
+    /// before its first datagram, for example to request real-time scheduling.
     ///
     /// # Errors
-    /// [`UdpError`].
+    /// [`UdpError`] if the socket cannot be opened.
     pub fn open(
         address: SocketAddr,
         peer: Option<IpAddr>,
@@ -94,13 +94,13 @@ impl UdpLine {
         Ok(Self { origin, orders, reports, sample, strangers, stop, address, thread: Some(thread) })
     }
 
-    /// Where the line listens.
+    /// The address on which the line listens.
     #[must_use]
     pub const fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// Datagrams that came from elsewhere than the robot, and were not looked at.
+    /// Number of ignored datagrams from other senders than the robot.
     #[must_use]
     pub fn strangers(&self) -> u64 {
         self.strangers.load(Ordering::Relaxed)
@@ -114,7 +114,7 @@ impl UdpLine {
         self.sample
     }
 
-    /// A full ring means that the thread stands still; the order is lost, and with it the path ends.
+    /// A full ring means that the thread has stopped: the order is lost, and the path ends.
     pub(crate) fn order(&mut self, order: &Order) {
         let _ = self.orders.push(*order);
     }
@@ -131,7 +131,7 @@ impl Drop for UdpLine {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has said so.
+            // A thread that panicked has already reported it.
             let _ = thread.join();
         }
     }
@@ -141,7 +141,7 @@ fn nanoseconds(origin: Instant) -> u64 {
     u64::try_from(origin.elapsed().as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// What the thread works with.
+/// State of the thread.
 struct Worker {
     socket: UdpSocket,
     origin: Instant,
@@ -149,11 +149,11 @@ struct Worker {
     orders: Consumer<Order>,
     reports: Producer<Report>,
     allowed: Option<IpAddr>,
-    /// The robot: the sender of the first datagram that is a message.
+    /// Address of the robot: the sender of the first valid message.
     robot: Option<SocketAddr>,
     strangers: Arc<AtomicU64>,
     heard: Option<u64>,
-    /// The loss of the robot was reported.
+    /// The loss of the robot has been reported.
     lost: bool,
 }
 
@@ -163,13 +163,13 @@ impl Worker {
         let received = self.socket.recv_from(&mut datagram);
         let now = nanoseconds(self.origin);
         while let Ok(order) = self.orders.pop() {
-            // What is refused shows in the samples.
+            // The samples show whether the host refused the order.
             let _ = order.carry_out(&mut self.host);
         }
         match received {
             Ok((length, sender)) => self.answer(now, datagram.get(..length).unwrap_or_default(), sender),
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
-            // An earlier answer found nobody: the robot has ended. The next datagram may come at any time.
+            // An earlier answer was refused because the robot's program has ended. A new datagram can come at any time.
             Err(error) if error.kind() == ErrorKind::ConnectionRefused => {}
             Err(_) => thread::sleep(WAIT),
         }
@@ -192,11 +192,11 @@ impl Worker {
         let mut buffer = [0; MOST_BYTES];
         let Ok(Some(answer)) = self.host.receive(now, datagram, &mut buffer) else { return };
         self.robot = Some(sender);
-        // An answer that cannot be sent is one that is lost.
+        // An answer that cannot be sent counts as a lost datagram.
         let _ = self.socket.send_to(answer, sender);
         let answered = nanoseconds(self.origin).saturating_sub(now);
         let cycle = self.heard.replace(now).map(|before| now.saturating_sub(before));
-        // Without room the newest report is left out; the next tick brings newer ones.
+        // If the ring is full, the newest report is dropped; the next tick brings newer ones.
         let _ = self.reports.push(Report { sample: self.host.sample(), cycle, answered });
     }
 }

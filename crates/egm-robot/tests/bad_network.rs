@@ -1,15 +1,15 @@
-//! Whatever the network does by seed, loss, doubling, reordering, jitter, silence: no message asks for a jump, and
-//! the robot comes to rest at a place that the host knows.
+//! For every kind of network fault (loss, duplication, reordering, jitter, silence), no message asks for a jump, and
+//! the robot comes to rest at a position that the host knows.
 
 use egm::{LinkState, Pose, Sample, Twist, pose::norm};
 use egm_robot::{EgmOptions, Line, Order, Placement};
 use proptest::prelude::*;
 
 const TICK: u64 = 40_000_000;
-/// The longest gap after which a target is given that does not depend on where the robot is.
+/// Longest gap between messages, s, after which targets do not depend on the robot's position.
 const GAP_S: f64 = 0.060;
 
-/// How the tool is to swing: mm and rad to both sides, 1/s.
+/// A swinging motion of the tool: amplitudes in mm and rad, angular frequency in 1/s.
 #[derive(Clone, Copy, Debug)]
 struct Swing {
     linear: [f64; 3],
@@ -20,22 +20,22 @@ struct Swing {
 const WIDE: Swing = Swing { linear: [40.0, 0.0, 20.0], angular: [0.0, 0.1, 0.0], rate: 3.0 };
 
 impl Swing {
-    /// At rest at 0 s.
+    /// Pose after `seconds`; at rest at 0 s.
     fn at(&self, start: &Pose, seconds: f64) -> Pose {
         let part = 1.0 - (self.rate * seconds).cos();
         start.moved(&Twist { linear: self.linear, angular: self.angular }.scaled(part))
     }
 }
 
-/// What is commanded, and what has come of it.
+/// The commanded motion and its results.
 struct Bench {
     line: Line,
     placement: Placement,
     swing: Swing,
-    /// Where the path has begun, and its points.
+    /// Start of the path, and the number of its points.
     path: Option<(Pose, u32)>,
     begun: u32,
-    /// Of the message before.
+    /// Sample of the previous message.
     last: Option<Sample>,
     travelled: f64,
     messages: u32,
@@ -49,7 +49,7 @@ impl Bench {
         Self { line, placement, swing, path: None, begun: 0, last: None, travelled: 0.0, messages: 0 }
     }
 
-    /// The next point, or the beginning of a path where one can begin.
+    /// Orders the next point, or begins a path if one can begin.
     fn command(&mut self) {
         let (at, sample) = (self.line.now(), self.line.sample());
         let order = match (&mut self.path, sample.start) {
@@ -67,7 +67,7 @@ impl Bench {
         self.line.order(&order);
     }
 
-    /// A tick: every message of it is looked at.
+    /// Executes a tick and checks every message of it.
     fn tick(&mut self) {
         self.line.advance(TICK);
         let limits = self.placement.limits();
@@ -83,7 +83,7 @@ impl Bench {
             *travelled += way;
             let (off, twisted) = now.target.distance(&now.feedback);
             if off < 1e-6 && twisted < 1e-6 {
-                // It is asked to stay where it is.
+                // The target is the robot's own position.
                 return;
             }
             assert!(way <= limits.speed * seconds + 1e-6, "{way} mm in {seconds} s");
@@ -132,9 +132,9 @@ proptest! {
     #[test]
     fn no_network_makes_a_jump(network in network(), swing in swing()) {
         let mut bench = Bench::new(&network, swing);
-        // Longer than the longest silence, and what is begun again after it.
+        // Longer than the longest silence and the path that follows it.
         bench.run(250);
-        // Nothing more is commanded: it comes to rest, where the host says.
+        // Without further orders, the robot comes to rest where the host says.
         for _ in 0..100 {
             bench.tick();
         }
@@ -146,14 +146,14 @@ proptest! {
                 let (off, turned) = start.distance(&sample.feedback);
                 prop_assert!(off < 0.5 && turned < 0.005, "{off} mm, {turned} rad");
             }
-            // It has waited in vain, and says so.
+            // The robot has timed out and reports it.
             LinkState::Standby(_) => prop_assert!(network.contains("silent") && network.contains("timeout=1,")),
             other => prop_assert!(false, "{other:?}"),
         }
     }
 }
 
-/// The property above would hold for a host that never moves, and for one that is always interrupted.
+/// Control: the property above also holds for a host that never moves, or that is always interrupted.
 #[test]
 fn a_good_network_interrupts_nothing() {
     let mut bench = Bench::new("", WIDE);
@@ -162,7 +162,7 @@ fn a_good_network_interrupts_nothing() {
     assert_eq!(bench.line.sample().counters.interrupted, 0);
 }
 
-/// Silence below the limit of 3 ticks: the path goes on, since the robot kept its speed.
+/// After a silence shorter than 3 ticks the path continues, because the robot kept its speed.
 #[test]
 fn a_short_silence_interrupts_nothing() {
     for at in ["2.0", "2.1", "2.3", "2.5", "2.7"] {
@@ -172,7 +172,7 @@ fn a_short_silence_interrupts_nothing() {
     }
 }
 
-/// Silence beyond it ends the path; when the robot is heard again, a path begins where it is.
+/// A longer silence ends the path; when messages arrive again, a new path begins at the robot's position.
 #[test]
 fn a_long_silence_ends_the_path_and_the_next_begins_where_the_robot_is() {
     for during in ["0.15", "0.5", "2", "5"] {

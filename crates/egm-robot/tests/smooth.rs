@@ -1,4 +1,4 @@
-//! What the spline makes of Prim's points: one every 40 ms becomes a target every 4.032 ms.
+//! Smoothness of the spline through Prim's points: one point every 40 ms becomes a target every 4.032 ms.
 
 use egm::{
     Limits, Pose,
@@ -11,7 +11,7 @@ use levels::prim::motion::{Motion, limits::Limits as MotionLimits};
 const TICK: u64 = 40_000_000;
 const CYCLE: u64 = 4_032_000;
 
-/// The points of a motion of Prim, mm: 30 in at 12 in/s, and around a corner without a stop.
+/// Points of a motion of Prim, mm: 30 in at 12 in/s, and around a corner without a stop.
 fn points() -> Vec<Vector> {
     let start = Frame::identity();
     let mut motion = Motion::at_rest(&start);
@@ -27,7 +27,7 @@ fn points() -> Vec<Vector> {
     points
 }
 
-/// Greatest jerk, mm/s³: the third difference of targets every 4.032 ms.
+/// Greatest jerk, mm/s³: third difference of the targets every 4.032 ms.
 fn greatest_jerk(targets: &[Vector]) -> f64 {
     let cycle = CYCLE as f64 / 1e9;
     let third = |four: &[Vector]| {
@@ -37,7 +37,7 @@ fn greatest_jerk(targets: &[Vector]) -> f64 {
     targets.windows(4).map(third).fold(0.0, f64::max)
 }
 
-/// Targets on the straight lines between the points.
+/// Targets on straight lines between the points, for comparison.
 fn straight(points: &[Vector]) -> Vec<Vector> {
     (0..)
         .map_while(|cycle: u64| {

@@ -1,4 +1,4 @@
-//! Errors of datagrams and targets: small, `Copy`, with what was expected and what was found.
+//! Errors of datagrams and targets: small, `Copy`, with the expected and the found value.
 
 use core::fmt;
 
@@ -9,7 +9,7 @@ pub enum Error {
     Truncated,
     /// A variable-length integer has more than ten bytes.
     LongVarint,
-    /// Field number 0, or one beyond 2^29 - 1.
+    /// The field number is 0 or greater than 2^29 - 1.
     BadField {
         /// Field number found.
         number: u64,
@@ -21,42 +21,42 @@ pub enum Error {
         /// Wire type found.
         found: u8,
     },
-    /// A repeated field has more values than fit.
+    /// A repeated field has too many values.
     TooMany {
-        /// The most that are taken.
+        /// Greatest number of values.
         most: usize,
     },
-    /// A field is missing that the schema, or the pose mode, requires.
+    /// A field is missing that the schema or the pose mode requires.
     Missing {
         /// Name of the field, with its path.
         field: &'static str,
     },
-    /// The message is of another type.
+    /// The message is of another type than expected.
     BadType {
         /// `mtype` expected.
         expected: u32,
         /// `mtype` found.
         found: u32,
     },
-    /// A number is infinite, not a number, or the quaternion is not a rotation.
+    /// A number is infinite or NaN, or the quaternion is not a rotation.
     NotAPose,
     /// The buffer is too small for the message.
     NoRoom,
-    /// A point is farther from the one before than the limits allow in a period.
+    /// A point is farther from the previous one than the limits allow in a period.
     TooFast {
-        /// mm/s that it would take.
+        /// Speed needed, mm/s.
         speed: f64,
-        /// rad/s that it would take.
+        /// Angular speed needed, rad/s.
         turn: f64,
     },
-    /// A point is outside of the work space.
+    /// A point is outside the work space.
     Outside {
-        /// 0, 1, 2 for x, y, z.
+        /// Axis: 0, 1, 2 for x, y, z.
         axis: usize,
-        /// The coordinate, mm.
+        /// Coordinate of the point, mm.
         found: f64,
     },
-    /// There is no room for a further point.
+    /// The queue of points is full.
     Full,
     /// The robot does not follow, or no path has begun.
     NotReady,

@@ -18,7 +18,7 @@ pub struct Settings {
     pub silence: u64,
     /// Gap between two messages after which the path continues only if the robot has kept up with it, ns.
     pub gap: u64,
-    /// Send the speed of the target, too.
+    /// Send the speed of the target with the target.
     pub speed_ref: bool,
     /// A path can begin only if the robot is within this distance of its rest position, mm.
     pub tolerance: f64,
@@ -42,46 +42,46 @@ impl Settings {
     }
 }
 
-/// Counters.
+/// Numbers of events since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// New messages of the robot.
+    /// New messages from the robot.
     pub received: u64,
-    /// Messages that were old when they came.
+    /// Messages that arrived out of order or twice.
     pub old: u64,
-    /// Datagrams that were refused.
+    /// Datagrams that are not valid messages.
     pub refused: u64,
     /// Targets sent.
     pub sent: u64,
-    /// Points taken.
+    /// Points accepted.
     pub points: u64,
-    /// Motions that were ended because no point, or no message, came in time.
+    /// Motions that ended because no point or no message came in time.
     pub interrupted: u64,
-    /// Targets that were not sent because they were beyond the limits.
+    /// Targets that were not sent because they exceeded the limits.
     pub beyond: u64,
 }
 
-/// State after a message, or after a time without one.
+/// State of the host after a message, or after a time without one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
-    /// When the last message came, ns.
+    /// Arrival time of the last message, ns.
     pub heard: u64,
     /// State of the link.
     pub link: LinkState,
-    /// Pose of the robot.
+    /// Pose of the robot, mm.
     pub feedback: Pose,
     /// The last target.
     pub target: Pose,
-    /// Its speed.
+    /// Speed of the last target.
     pub speed: Twist,
-    /// Points are taken: a path was begun and is not interrupted.
+    /// True while a path is moving: the host accepts points.
     pub is_moving: bool,
-    /// Pose at which a path may begin; `None` while the robot does not follow, has not come to rest, or is not at its
-    /// target.
+    /// Pose at which a path may begin or continue; `None` while the robot does not follow, is not at its target, or is
+    /// stopping.
     pub start: Option<Pose>,
-    /// Utilization of the robot by the motion, percent, if it sends it.
+    /// Utilization of the robot by the motion, percent; `None` if the robot does not send it.
     pub utilization: Option<f64>,
-    /// Counters.
+    /// Numbers of events since the start.
     pub counters: Counters,
 }
 
@@ -91,7 +91,7 @@ struct Sent {
     at: u64,
     pose: Pose,
     speed: Twist,
-    /// How far the robot was behind, mm and rad.
+    /// Distance of the robot from this target at the time of sending, mm and rad.
     lag: (f64, f64),
 }
 
@@ -107,7 +107,7 @@ pub struct Host {
     path: Path,
     feedback: Pose,
     utilization: Option<f64>,
-    /// The last target of the robot that follows.
+    /// The last target, while the robot follows.
     sent: Option<Sent>,
     seqno: u32,
     counters: Counters,
@@ -129,11 +129,11 @@ impl Host {
         }
     }
 
-    /// A datagram has come at `now`. Send the returned answer, at the end of `buffer`, at once to the sender; an old
-    /// message gets none, because the robot reads one answer a cycle.
+    /// Handles a datagram that arrived at `now`, ns. The caller must send the returned answer, at the end of `buffer`,
+    /// to the sender at once. An old message gets no answer, because the robot reads one answer per cycle.
     ///
     /// # Errors
-    /// [`Error`] if it is not a message of a robot; then only a counter has changed.
+    /// [`Error`] if the datagram is not a message of a robot; then only a counter changes.
     pub fn receive<'a>(
         &mut self,
         now: u64,
@@ -152,14 +152,14 @@ impl Host {
         self.counters.received = self.counters.received.saturating_add(1);
         (self.feedback, self.utilization) = (feedback, message.utilization_rate);
         if self.session.state() != LinkState::Running || before != LinkState::Running {
-            // A robot that does not follow is asked to stay where it is, and one that begins to follow too.
+            // The target of a robot that does not follow, or just begins to, is its own position.
             self.rest_at_feedback();
         }
         let target = self.target(now);
         if self.session.state() == LinkState::Running {
             self.sent = Some(target);
         }
-        // Numbers and times of messages wrap around.
+        // Sequence numbers and times of messages wrap around.
         self.seqno = self.seqno.wrapping_add(1);
         let tm = u32::try_from((now / 1_000_000) & u64::from(u32::MAX)).unwrap_or_default();
         let speed = Some(&target.speed).filter(|_| self.settings.speed_ref);
@@ -168,7 +168,7 @@ impl Host {
         Ok(Some(answer))
     }
 
-    /// Time passes without a message.
+    /// Handles the passage of time without a message, up to `now`, ns.
     pub fn poll(&mut self, now: u64) {
         self.session.poll(now, self.settings.silence);
         if self.session.state() == LinkState::Lost && self.sent.is_some() {
@@ -177,7 +177,7 @@ impl Host {
         }
     }
 
-    /// Begin a path at rest at `from`, the start of the last [`Sample`].
+    /// Begins a path from rest at `from`, which must be the start pose of the last [`Sample`]; `at` is the time, ns.
     ///
     /// # Errors
     /// [`Error::NotReady`] if a path cannot begin there now.
@@ -192,10 +192,10 @@ impl Host {
         Ok(())
     }
 
-    /// The next point, which came at `at`. A refused point ends the path.
+    /// Takes the next point of the path, which arrived at `at`, ns. A refused point ends the path.
     ///
     /// # Errors
-    /// [`Error`] if the point cannot be taken.
+    /// [`Error`] if the point cannot be accepted.
     pub fn push(&mut self, at: u64, point: &Pose) -> Result<(), Error> {
         let pushed = self.path.push(at, point, &self.settings.limits);
         match pushed {
@@ -205,7 +205,7 @@ impl Host {
         pushed
     }
 
-    /// Come to rest along the path's tangent.
+    /// Brings the target to rest along the path's tangent, from `now`, ns.
     pub fn stop(&mut self, now: u64) {
         if self.path.motion() != Motion::Moving {
             return;
@@ -235,7 +235,7 @@ impl Host {
         }
     }
 
-    /// The target at `now`, within the limits of the one before.
+    /// The target at `now`, ns, within the limits from the previous one.
     fn target(&mut self, now: u64) -> Sent {
         let Some(sent) = self.sent else {
             let (pose, speed) = self.path.target(now);
@@ -263,8 +263,9 @@ impl Host {
         Sent { at, pose, speed, lag: pose.distance(&self.feedback) }
     }
 
-    /// After a gap: without messages a robot goes on with its last speed reference. The distance of the next target
-    /// from it may be at most its earlier lag plus the distance that the limits allow in the longest permitted gap.
+    /// Check after a gap: without messages a robot continues with its last speed reference. The distance of the next
+    /// target from the robot may be at most its earlier lag plus the distance that the limits allow in the longest
+    /// permitted gap.
     fn has_kept_up(&self, sent: &Sent, target: &Pose) -> bool {
         let (way, turn) = target.distance(&self.feedback);
         let (Limits { speed, turn: rate, .. }, gap) = (self.settings.limits, seconds(self.settings.gap));
@@ -280,7 +281,7 @@ impl Host {
         self.counters.interrupted = self.counters.interrupted.saturating_add(1);
     }
 
-    /// Pose at which a path may begin or continue: its last point, or the target at rest if the robot is there.
+    /// Pose at which a path may begin or continue: its last point, or the resting target if the robot is there.
     fn start(&self) -> Option<Pose> {
         match self.path.motion() {
             Motion::Moving => Some(self.path.last_point()),

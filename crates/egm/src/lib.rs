@@ -11,16 +11,15 @@
 //!                           robot controller
 //! ```
 //!
-//! * [`message`]: the messages of `egm.proto`, one a file; decoding checks what the schema requires;
+//! * [`message`]: the messages of `egm.proto`, one per file; decoding checks what the schema requires;
 //! * [`wire`]: their protocol-buffer encoding;
 //! * [`pose`]: positions in mm, unit quaternions, and computations with them;
 //! * [`session`]: whether the robot is connected and follows, and which messages are new;
-//! * [`spline`], [`path`]: from points to a target at any time, smooth to the second derivative;
+//! * [`spline`], [`path`]: compute a target for any time from the points, smooth to the second derivative;
 //! * [`limits`]: limits of every target;
-//! * [`host`]: the host made of these.
+//! * [`host`]: the host, made of these modules.
 //!
-//! Times are nanoseconds of one monotonic clock, positions millimetres, speeds mm/s and rad/s; only messages have
-//! degrees.
+//! Times are ns of one monotonic clock, positions mm, speeds mm/s and rad/s; only messages use degrees.
 
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]

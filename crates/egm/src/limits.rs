@@ -2,7 +2,7 @@
 
 use crate::{Error, Pose, pose::norm};
 
-/// Part by which rounding may exceed a limit.
+/// Relative tolerance of the limits, for rounding errors.
 const ROUNDING: f64 = 1e-6;
 
 /// Limits of targets.
@@ -10,23 +10,23 @@ const ROUNDING: f64 = 1e-6;
 pub struct Limits {
     /// Greatest speed of the tool, mm/s.
     pub speed: f64,
-    /// Greatest speed of its rotation, rad/s.
+    /// Greatest angular speed of the tool, rad/s.
     pub turn: f64,
     /// Least and greatest coordinates of the tool in the work object, mm.
     pub space: [[f64; 3]; 2],
 }
 
 impl Limits {
-    /// Limits of speed, and none of space.
+    /// Limits of speed only; the work space is unlimited.
     #[must_use]
     pub const fn of_speed(speed: f64, turn: f64) -> Self {
         Self { speed, turn, space: [[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]] }
     }
 
-    /// Check that the tool may move from `from` to `to` in so many seconds.
+    /// Checks that the tool may move from `from` to `to` in the given time, seconds.
     ///
     /// # Errors
-    /// [`Error::TooFast`], [`Error::Outside`].
+    /// [`Error::TooFast`] or [`Error::Outside`].
     pub fn check(&self, from: &Pose, to: &Pose, seconds: f64) -> Result<(), Error> {
         let way = from.way_to(to);
         let (speed, turn) = (norm(&way.linear) / seconds, norm(&way.angular) / seconds);

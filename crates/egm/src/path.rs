@@ -1,8 +1,8 @@
-//! The target at any time: points come one a period, targets are asked for every 4 ms.
+//! Computes the target at any time: points arrive once per period, and the robot requests targets every 4 ms.
 //!
-//! Targets are a function of *time*, not of the number of requests: there are 9.92 cycles of the robot in a period of
-//! 40 ms. The segment on which the target is needs the newest point, so the target lags one period behind a robot that
-//! reaches a point one period after the point came, plus `slack`, the time by which points may be late.
+//! Targets are a function of *time*, not of the number of requests: a period of 40 ms has 9.92 cycles of the robot. A
+//! segment of the spline needs the newest point, so the target is one period behind a robot that reaches a point one
+//! period after its arrival, plus `slack`, by which points may be late.
 //!
 //! ```text
 //!            begin                   no point in time, or stop
@@ -11,7 +11,7 @@
 //!     └───────────────────────────────────────────────────────────────┘ after `stop`
 //! ```
 //!
-//! Without a point in time the segment is finished; then the speed goes to zero along the tangent, within a fixed time,
+//! If no point comes in time, the segment is finished; then the speed falls to zero along the tangent in a fixed time,
 //! with an acceleration that begins and ends at zero. A later motion begins at rest.
 
 use crate::{
@@ -20,17 +20,17 @@ use crate::{
     spline,
 };
 
-/// Points that may wait for their segment.
+/// Greatest number of points that wait for their segment.
 const MOST_WAITING: usize = 4;
 
-/// Times of a path, nanoseconds.
+/// Times of a path, ns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Times {
-    /// Between two points.
+    /// Time between two points.
     pub period: u64,
     /// Time by which a point may be late.
     pub slack: u64,
-    /// Time in which the speed goes to zero if no point comes.
+    /// Time in which the speed falls to zero if no point comes.
     pub stop: u64,
 }
 
@@ -46,31 +46,31 @@ impl Default for Times {
 pub enum Motion {
     /// The target is at rest.
     Still(Pose),
-    /// Points come.
+    /// The target follows the points.
     Moving,
-    /// The speed goes to zero along the tangent.
+    /// The speed falls to zero along the tangent.
     Stopping {
         /// Pose at the start of the stop.
         from: Pose,
-        /// Speed at its start.
+        /// Speed at the start of the stop.
         speed: Twist,
-        /// Its start, ns.
+        /// Time of the start of the stop, ns.
         since: u64,
     },
 }
 
-/// A path.
+/// A path through points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Path {
     times: Times,
     motion: Motion,
-    /// The last four points, those of the segment.
+    /// The four points of the segment, the newest last.
     window: [Pose; 4],
-    /// When the segment begins.
+    /// Start of the segment, ns.
     segment: u64,
-    /// When the path was begun.
+    /// Start of the path, ns.
     begun: u64,
-    /// Points since.
+    /// Number of points since the start.
     count: u64,
     /// Points of later segments; the first `waiting` are valid.
     queue: [Pose; MOST_WAITING],
@@ -95,30 +95,31 @@ impl Path {
         self.motion
     }
 
-    /// The last point that was taken.
+    /// The last accepted point.
     #[must_use]
     pub fn last_point(&self) -> Pose {
         let [.., last] = self.window;
         self.waiting.checked_sub(1).and_then(|at| self.queue.get(at)).copied().unwrap_or(last)
     }
 
-    /// Rest at `at`, at once.
+    /// Stops the target at `at` immediately.
     pub const fn hold(&mut self, at: Pose) {
         *self = Self::new(self.times, at);
     }
 
-    /// Begin at rest at `from`; the first point is due a period after `at`.
+    /// Begins a path at `at`, ns, from rest at `from`; the first point is due one period after `at`.
     pub const fn begin(&mut self, at: u64, from: Pose) {
         let segment = at.saturating_add(self.times.slack);
         let still = Self::new(self.times, from);
         *self = Self { motion: Motion::Moving, begun: at, segment, ..still };
     }
 
-    /// The next point, which came at `at`.
+    /// Takes the next point, which arrived at `at`, ns.
     ///
     /// # Errors
-    /// [`Error::NotReady`] if the path does not move, or if the point came more than half a period before or
-    /// after its time; [`Error::Full`]; [`Error::TooFast`] or [`Error::Outside`] beyond the limits.
+    /// [`Error::NotReady`] if the path is not moving, or if the point arrived more than half a period before or after
+    /// its time; [`Error::Full`] if too many points wait; [`Error::TooFast`] or [`Error::Outside`] if the point exceeds
+    /// the limits.
     pub fn push(&mut self, at: u64, point: &Pose, limits: &Limits) -> Result<(), Error> {
         if self.motion != Motion::Moving {
             return Err(Error::NotReady);
@@ -134,7 +135,7 @@ impl Path {
         Ok(())
     }
 
-    /// Target and speed at `now`; `now` must not decrease.
+    /// Target and speed at `now`, ns; `now` must not decrease.
     pub fn target(&mut self, now: u64) -> (Pose, Twist) {
         while self.motion == Motion::Moving && now >= self.segment.saturating_add(self.times.period) {
             self.segment = self.segment.saturating_add(self.times.period);
@@ -156,7 +157,7 @@ impl Path {
         }
     }
 
-    /// Come to rest along the tangent, from a target that was given with a speed at `since`.
+    /// Stops along the tangent, beginning with a pose and a speed at the time `since`, ns.
     pub const fn stop(&mut self, since: u64, from: Pose, speed: Twist) {
         self.hold(from);
         self.motion = Motion::Stopping { from, speed, since };
@@ -172,7 +173,7 @@ impl Path {
         true
     }
 
-    /// The speed falls with the parts `s` of the time as (1 - s)^2 (1 + 2 s).
+    /// The speed falls as (1 - s)^2 (1 + 2 s), where `s` is the elapsed part of the stopping time.
     fn stopping(&mut self, from: &Pose, speed: &Twist, elapsed: u64) -> (Pose, Twist) {
         let stop = seconds(self.times.stop);
         let s = (seconds(elapsed) / stop).min(1.0);
@@ -198,7 +199,7 @@ mod tests {
         Pose { position: [x, 0.0, 0.0], ..Pose::IDENTITY }
     }
 
-    /// A path along x, 10 mm a period, for so many points.
+    /// A path along x with the given number of points, 10 mm apart.
     fn moving(points: u32) -> Path {
         let mut path = Path::new(Times::default(), at(0.0));
         path.begin(0, at(0.0));
@@ -213,7 +214,7 @@ mod tests {
     #[test]
     fn a_steady_path_is_one_period_and_the_slack_behind() {
         let mut path = moving(10);
-        // At 400 ms point 10 came, for 440 ms: 100 mm. The target is there 50 ms later.
+        // Point 10 arrived at 400 ms, for 440 ms, and lies at 100 mm. The target is there 50 ms later.
         let (pose, speed) = path.target(449 * MS);
         assert!((pose.position[0] - 90.0 + 0.25).abs() < 1e-9, "{pose:?}");
         assert!((speed.linear[0] - 250.0).abs() < 1e-9, "{speed:?}");
@@ -242,7 +243,7 @@ mod tests {
             last = (pose, speed);
         }
         assert_eq!(path.motion(), Motion::Still(last.0));
-        // The segment ended at 90 mm; 250 mm/s for half of 100 ms are 12.5 mm more.
+        // The segment ends at 90 mm; 250 mm/s times half of 100 ms adds 12.5 mm.
         assert!((last.0.position[0] - 102.5).abs() < 1e-9, "{last:?}");
         assert_eq!(
             path.push(700 * MS, &at(110.0), &LIMITS),

@@ -22,9 +22,9 @@ pub struct Pose {
 /// Speed of a frame, in the axes of the frame that it moves in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Twist {
-    /// Of the origin, mm/s.
+    /// Linear speed of the origin, mm/s.
     pub linear: Vector,
-    /// About the origin, rad/s.
+    /// Angular speed, rad/s.
     pub angular: Vector,
 }
 
@@ -35,13 +35,13 @@ impl Default for Pose {
 }
 
 impl Pose {
-    /// No displacement.
+    /// The identity: no displacement.
     pub const IDENTITY: Self = Self { position: [0.0; 3], orientation: [1.0, 0.0, 0.0, 0.0] };
 
-    /// A pose; its quaternion is normalized.
+    /// A pose; normalizes the quaternion.
     ///
     /// # Errors
-    /// [`Error::NotAPose`] if a number is not finite or the quaternion's length is not 1 within a hundredth.
+    /// [`Error::NotAPose`] if a number is not finite, or if the quaternion's length differs from 1 by more than 0.01.
     pub fn new(position: Vector, orientation: Quaternion) -> Result<Self, Error> {
         let length = libm::sqrt(orientation.iter().map(|v| v * v).sum());
         let unit = (length - 1.0).abs() <= UNIT_TOLERANCE;
@@ -51,7 +51,7 @@ impl Pose {
         Ok(Self { position, orientation: orientation.map(|v| v / length) })
     }
 
-    /// `inner`, given in this frame, in the coordinates of this frame's parent.
+    /// Transforms `inner` from this frame's coordinates to the coordinates of this frame's parent.
     #[must_use]
     pub fn compose(&self, inner: &Self) -> Self {
         Self {
@@ -67,14 +67,14 @@ impl Pose {
         Self { position: rotate(&orientation, &scaled(&self.position, -1.0)), orientation }
     }
 
-    /// The displacement from this pose to another: mm, and radians about one axis, the shorter rotation.
+    /// The displacement from this pose to another: mm, and the rotation vector of the shorter rotation, rad.
     #[must_use]
     pub fn way_to(&self, other: &Self) -> Twist {
         let turn = product(&other.orientation, &conjugate(&self.orientation));
         Twist { linear: subtract(&other.position, &self.position), angular: rotation_vector(&turn) }
     }
 
-    /// The pose after a displacement: position moved, orientation turned in the outer axes.
+    /// The pose after a displacement: position moved, orientation rotated about the axes of the outer frame.
     #[must_use]
     pub fn moved(&self, way: &Twist) -> Self {
         Self {
@@ -92,7 +92,7 @@ impl Pose {
 }
 
 impl Twist {
-    /// Both parts times `factor`.
+    /// Both parts multiplied by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self { linear: scaled(&self.linear, factor), angular: scaled(&self.angular, factor) }
@@ -106,13 +106,13 @@ pub fn add(a: &Vector, b: &Vector) -> Vector {
     [ax + bx, ay + by, az + bz]
 }
 
-/// The first vector less the second.
+/// The first vector minus the second.
 #[must_use]
 pub fn subtract(a: &Vector, b: &Vector) -> Vector {
     add(a, &scaled(b, -1.0))
 }
 
-/// A vector times a number.
+/// A vector multiplied by a number.
 #[must_use]
 pub fn scaled(v: &Vector, factor: f64) -> Vector {
     v.map(|value| value * factor)
@@ -125,7 +125,7 @@ pub fn norm(v: &Vector) -> f64 {
     libm::sqrt(x * x + y * y + z * z)
 }
 
-/// The rotation `a` after the rotation `b`.
+/// The rotation `b` followed by the rotation `a`.
 #[must_use]
 pub fn product(a: &Quaternion, b: &Quaternion) -> Quaternion {
     let ([aw, ax, ay, az], [bw, bx, by, bz]) = (a, b);
@@ -144,7 +144,7 @@ pub fn conjugate(q: &Quaternion) -> Quaternion {
     [w, -x, -y, -z]
 }
 
-/// A vector, rotated.
+/// The vector `v` rotated by `q`.
 #[must_use]
 pub fn rotate(q: &Quaternion, v: &Vector) -> Vector {
     let [x, y, z] = *v;
@@ -152,18 +152,18 @@ pub fn rotate(q: &Quaternion, v: &Vector) -> Vector {
     [x, y, z]
 }
 
-/// Axis times angle in radians of the shorter rotation.
+/// The rotation vector of the shorter rotation: axis times angle in radians.
 #[must_use]
 pub fn rotation_vector(q: &Quaternion) -> Vector {
     let [w, x, y, z] = if q.first().is_some_and(|w| *w < 0.0) { q.map(|v| -v) } else { *q };
     let axis = [x, y, z];
     let sine = norm(&axis);
-    // Below this the angle is its sine to the last digit.
+    // For smaller angles the sine equals the angle in `f64`.
     let factor = if sine > 1e-12 { 2.0 * libm::atan2(sine, w) / sine } else { 2.0 };
     scaled(&axis, factor)
 }
 
-/// The rotation by axis times angle in radians.
+/// The rotation of a rotation vector: axis times angle in radians.
 #[must_use]
 pub fn from_rotation_vector(v: &Vector) -> Quaternion {
     let angle = norm(v);
@@ -172,7 +172,7 @@ pub fn from_rotation_vector(v: &Vector) -> Quaternion {
     [libm::cos(angle / 2.0), x, y, z]
 }
 
-/// The rotation by `x`, then `y`, then `z` degrees about the fixed axes x, y, z: ABB's Euler angles ZYX.
+/// The rotation by `x`, then `y`, then `z` degrees about the fixed axes x, y, z: ABB's ZYX Euler angles.
 #[must_use]
 pub fn from_euler(euler: Vector) -> Quaternion {
     let [x, y, z] = euler.map(f64::to_radians);
@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn euler_angles_turn_about_x_first() {
-        // x by 90 degrees takes y to z, then z by 90 degrees leaves it.
+        // The rotation by 90 degrees about x turns y to z, and the rotation about z does not change that.
         let q = from_euler([90.0, 0.0, 90.0]);
         let y = rotate(&q, &[0.0, 1.0, 0.0]);
         assert!(norm(&subtract(&y, &[0.0, 0.0, 1.0])) < 1e-12, "{y:?}");

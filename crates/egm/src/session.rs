@@ -1,12 +1,12 @@
 //! The session: whether the robot is connected and follows, and which of its messages are new.
 //!
-//! EGM has no connection: the robot starts and stops sending, and lost messages are not detected. So the state follows
-//! from the received messages and their times.
+//! EGM has no connections: the robot starts and stops sending, and lost messages are not detected. The state therefore
+//! follows from the received messages and their arrival times.
 
 use crate::message::{MciState, MotorState, RapidState, Robot};
 
-/// A sequence number smaller by at most this is an old message; a still smaller one means that the robot has restarted
-/// its count.
+/// A sequence number that is smaller by at most this belongs to an old message; a still smaller one means that the
+/// robot has restarted its count.
 const WINDOW: u32 = 250;
 
 /// State of the link.
@@ -20,14 +20,14 @@ const WINDOW: u32 = 250;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LinkState {
-    /// No message has come yet.
+    /// No message has arrived yet.
     #[default]
     Waiting,
-    /// Messages come; the robot does not follow.
+    /// Messages arrive, but the robot does not follow.
     Standby(Hindrance),
     /// The robot follows its targets.
     Running,
-    /// No message has come for too long.
+    /// No message has arrived for too long.
     Lost,
 }
 
@@ -47,7 +47,7 @@ pub enum Hindrance {
 }
 
 impl Hindrance {
-    /// As text.
+    /// As text for messages.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -65,7 +65,7 @@ impl Hindrance {
 pub enum Arrival {
     /// New.
     New,
-    /// A duplicate, or older than the last one: it is not answered.
+    /// A duplicate, or older than the last message; it gets no answer.
     Old,
 }
 
@@ -84,15 +84,15 @@ impl Session {
         self.state
     }
 
-    /// When the last new message came.
+    /// Arrival time of the last new message, ns.
     #[must_use]
     pub const fn heard(&self) -> u64 {
         self.heard
     }
 
-    /// A message with its number has come at `now`.
+    /// Takes a message with its sequence number, which arrived at `now`, ns.
     pub fn accept(&mut self, now: u64, seqno: u32, message: &Robot) -> Arrival {
-        // Of a robot that was lost, only the very last message is an old one.
+        // After the robot was lost, only a repetition of its last message is old.
         let window = if self.state == LinkState::Lost { 0 } else { WINDOW };
         if self.last.is_some_and(|last| last.wrapping_sub(seqno) <= window) {
             return Arrival::Old;
@@ -102,7 +102,7 @@ impl Session {
         Arrival::New
     }
 
-    /// Time passes: after `silence` nanoseconds without a new message the robot is lost.
+    /// Changes to `Lost` after `silence` ns without a new message.
     pub fn poll(&mut self, now: u64, silence: u64) {
         let waits = matches!(self.state, LinkState::Waiting | LinkState::Lost);
         if !waits && now.saturating_sub(self.heard) >= silence {

@@ -1,9 +1,9 @@
-//! A uniform cubic B-spline of poses: four points, one a period, define the segment between the middle two.
+//! A uniform cubic B-spline of poses: four points, one per period, define the segment between the middle two.
 //!
-//! It is continuous to the second derivative and stays in the hull of its points. It does not pass through them, except
-//! where points repeat: after three equal points it rests exactly there. In its cumulative form each basis function
-//! weighs a step from one point to the next, so that orientations can be treated the same way: each factor is a slerp
-//! by that part of the step.
+//! The spline is continuous to the second derivative and stays in the convex hull of its points. It does not pass
+//! through them, except where points repeat: after three equal points it rests exactly there. In the cumulative form
+//! each basis function weights the step from one point to the next, so that orientations can be treated like positions:
+//! each factor is a slerp by that part of the step.
 
 use crate::pose::{Pose, Twist, add, from_rotation_vector, product, rotate, scaled};
 
@@ -17,13 +17,13 @@ fn basis(u: f64) -> [f64; 3] {
     ]
 }
 
-/// Their derivatives.
+/// The derivatives of the basis functions with respect to `u`.
 fn slope(u: f64) -> [f64; 3] {
     let square = u * u;
     [(1.0 - u) * (1.0 - u) / 2.0, (1.0 + 2.0 * u - 2.0 * square) / 2.0, square / 2.0]
 }
 
-/// Pose and speed of the segment of `points` at `u`, 0 to 1; a period is `seconds` long.
+/// Pose and speed in the segment of `points` at `u`, 0 to 1; `seconds` is the length of a period.
 #[must_use]
 pub fn evaluate(points: &[Pose; 4], u: f64, seconds: f64) -> (Pose, Twist) {
     let [first, second, third, fourth] = points;
@@ -72,7 +72,7 @@ mod tests {
             prop_assert!(way < 1e-9 && turn < 1e-9, "{way} mm, {turn} rad");
             let speed = left_speed.way(&right_speed);
             prop_assert!(speed < 1e-7, "{speed}");
-            // Accelerations from within both segments.
+            // Accelerations on both sides of the knot, each from within its segment.
             let h = 1e-4;
             let change = |points: &[Pose; 4], from: f64, to: f64| {
                 let (a, b) = (evaluate(points, from, 0.04).1, evaluate(points, to, 0.04).1);

@@ -1,8 +1,8 @@
 //! The part of protocol-buffer encoding that `egm.proto` needs: a reader and a writer over byte slices.
 //!
-//! The writer works from the end of its buffer to the front. A message that contains a message needs the length of the
-//! inner one first; when written backwards, the inner one is written already, so no length is computed twice. So a
-//! message writes its fields in reverse order, and they end up in ascending order.
+//! The writer works from the end of its buffer to the front. The encoding of a nested message begins with its length;
+//! when written backwards, the nested message is already there, so that its length is known. Each message therefore
+//! writes its fields in reverse order, and they end up in ascending order.
 
 use crate::Error;
 
@@ -10,7 +10,7 @@ use crate::Error;
 pub const VARINT: u8 = 0;
 /// Wire type of eight bytes, little-endian: doubles.
 pub const FIXED64: u8 = 1;
-/// Wire type of a length and so many bytes.
+/// Wire type of a length followed by that number of bytes.
 pub const BYTES: u8 = 2;
 /// Wire type of four bytes.
 pub const FIXED32: u8 = 5;
@@ -33,9 +33,9 @@ pub enum Value<'a> {
 /// A field: its number and its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field<'a> {
-    /// Its number in the schema.
+    /// Number in the schema.
     pub number: u32,
-    /// Its value.
+    /// Value of the field.
     pub value: Value<'a>,
 }
 
@@ -50,10 +50,10 @@ impl<'a> Field<'a> {
         Error::BadWireType { field: self.number, found }
     }
 
-    /// The value as an integer of 64 bits.
+    /// The value as a 64-bit integer.
     ///
     /// # Errors
-    /// [`Error::BadWireType`].
+    /// [`Error::BadWireType`] for another wire type.
     pub fn uint64(&self) -> Result<u64, Error> {
         if let Value::Varint(value) = self.value { Ok(value) } else { Err(self.wrong()) }
     }
@@ -61,16 +61,16 @@ impl<'a> Field<'a> {
     /// The low 32 bits of an integer, as protocol buffers define it for `uint32` and enums.
     ///
     /// # Errors
-    /// [`Error::BadWireType`].
+    /// [`Error::BadWireType`] for another wire type.
     pub fn uint32(&self) -> Result<u32, Error> {
         let [a, b, c, d, ..] = self.uint64()?.to_le_bytes();
         Ok(u32::from_le_bytes([a, b, c, d]))
     }
 
-    /// The value as a flag.
+    /// The value as a boolean.
     ///
     /// # Errors
-    /// [`Error::BadWireType`].
+    /// [`Error::BadWireType`] for another wire type.
     pub fn flag(&self) -> Result<bool, Error> {
         Ok(self.uint64()? != 0)
     }
@@ -78,40 +78,40 @@ impl<'a> Field<'a> {
     /// The value as a double.
     ///
     /// # Errors
-    /// [`Error::BadWireType`].
+    /// [`Error::BadWireType`] for another wire type.
     pub fn double(&self) -> Result<f64, Error> {
         if let Value::Fixed64(bits) = self.value { Ok(f64::from_bits(bits)) } else { Err(self.wrong()) }
     }
 
-    /// The fields of the message that is the value.
+    /// The fields of the message in the value.
     ///
     /// # Errors
-    /// [`Error::BadWireType`].
+    /// [`Error::BadWireType`] for another wire type.
     pub fn message(&self) -> Result<Reader<'a>, Error> {
         if let Value::Bytes(bytes) = self.value { Ok(Reader::new(bytes)) } else { Err(self.wrong()) }
     }
 }
 
-/// The fields of a message, in their order.
+/// Reads the fields of a message in order.
 #[derive(Clone, Debug)]
 pub struct Reader<'a> {
     rest: &'a [u8],
 }
 
 impl<'a> Reader<'a> {
-    /// The fields of `bytes`.
+    /// A reader of the fields in `bytes`.
     #[must_use]
     pub const fn new(bytes: &'a [u8]) -> Self {
         Self { rest: bytes }
     }
 
-    /// True if all has been read.
+    /// Returns true at the end of the bytes.
     #[must_use]
     pub const fn is_at_end(&self) -> bool {
         self.rest.is_empty()
     }
 
-    /// The next field; `None` at the end.
+    /// Reads the next field; `None` at the end.
     ///
     /// # Errors
     /// [`Error`] if the bytes are not a field.
@@ -139,10 +139,10 @@ impl<'a> Reader<'a> {
         Ok(Some(Field { number, value }))
     }
 
-    /// The next double of packed values; `None` at the end.
+    /// Reads the next double of packed values; `None` at the end.
     ///
     /// # Errors
-    /// [`Error::Truncated`].
+    /// [`Error::Truncated`] if fewer than eight bytes are left.
     pub fn next_double(&mut self) -> Result<Option<f64>, Error> {
         if self.is_at_end() { Ok(None) } else { self.fixed64().map(|bits| Some(f64::from_bits(bits))) }
     }
@@ -168,7 +168,7 @@ impl<'a> Reader<'a> {
         for shift in (0..64).step_by(7) {
             let [byte] = self.array()?;
             let bits = u64::from(byte & 0x7F);
-            // The tenth byte holds the last bit only.
+            // The tenth byte holds only the last bit.
             if shift == 63 && byte > 1 {
                 return Err(Error::LongVarint);
             }
@@ -185,54 +185,54 @@ impl<'a> Reader<'a> {
 #[derive(Debug)]
 pub struct Writer<'a> {
     buffer: &'a mut [u8],
-    /// Where the written bytes begin.
+    /// Offset of the first written byte.
     start: usize,
 }
 
 impl<'a> Writer<'a> {
-    /// Nothing is written yet.
+    /// A writer that has written nothing.
     #[must_use]
     pub const fn new(buffer: &'a mut [u8]) -> Self {
         let start = buffer.len();
         Self { buffer, start }
     }
 
-    /// What was written.
+    /// The written bytes.
     #[must_use]
     pub fn finish(self) -> &'a [u8] {
         self.buffer.get(self.start..).unwrap_or_default()
     }
 
-    /// An integer field.
+    /// Writes an integer field.
     ///
     /// # Errors
-    /// [`Error::NoRoom`], as all of these.
+    /// [`Error::NoRoom`] if the buffer is too small.
     pub fn uint(&mut self, number: u32, value: u64) -> Result<(), Error> {
         self.varint(value)?;
         self.key(number, VARINT)
     }
 
-    /// A flag.
+    /// Writes a boolean field.
     ///
     /// # Errors
-    /// [`Error::NoRoom`].
+    /// [`Error::NoRoom`] if the buffer is too small.
     pub fn flag(&mut self, number: u32, value: bool) -> Result<(), Error> {
         self.uint(number, u64::from(value))
     }
 
-    /// A double.
+    /// Writes a double field.
     ///
     /// # Errors
-    /// [`Error::NoRoom`].
+    /// [`Error::NoRoom`] if the buffer is too small.
     pub fn double(&mut self, number: u32, value: f64) -> Result<(), Error> {
         self.bytes(&value.to_le_bytes())?;
         self.key(number, FIXED64)
     }
 
-    /// A message, whose fields `fields` writes in reverse order.
+    /// Writes a message field; `fields` must write the fields of the message in reverse order.
     ///
     /// # Errors
-    /// [`Error::NoRoom`].
+    /// [`Error::NoRoom`] if the buffer is too small.
     pub fn message(
         &mut self,
         number: u32,

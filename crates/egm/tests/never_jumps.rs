@@ -1,5 +1,5 @@
-//! Whatever comes, and whenever: no target is farther from the one before than the limits allow, or it is the
-//! place where the robot itself is.
+//! For every sequence of events, each target is within the limits from the previous one, or it is the robot's own
+//! position.
 
 use egm::{
     Hindrance, Host, Limits, LinkState, Pose, Twist,
@@ -15,26 +15,26 @@ const LIMITS: Limits = Limits::of_speed(400.0, 1.2);
 const MS: u64 = 1_000_000;
 const CYCLE: u64 = 4_032_000;
 
-/// What happens next.
+/// An event of the test.
 #[derive(Clone, Debug)]
 enum Event {
-    /// So many cycles pass; of each that many in a hundred messages are lost.
+    /// This number of cycles passes; `lost` is the percentage of lost messages.
     Cycles { count: u16, lost: u8 },
     /// Time passes without a message, ms.
     Silence(u16),
-    /// The last message comes again.
+    /// The last message arrives again.
     Double,
-    /// The robot is pushed elsewhere.
+    /// The robot is moved to another position.
     Pushed([f64; 3]),
     /// The robot's states change.
     States(u8),
-    /// A path begins where the sample says, or somewhere.
+    /// A path begins at the sample's start pose, or at another pose.
     Begin { astray: bool },
-    /// The next point is this much further than the one before, mm and rad.
+    /// The next point, relative to the previous one, mm and rad.
     Point([f64; 3], [f64; 3]),
     /// The path is stopped.
     Stop,
-    /// Bytes that are no message.
+    /// Bytes that are not a message.
     Garbage(Vec<u8>),
 }
 
@@ -54,14 +54,14 @@ fn event() -> impl Strategy<Value = Event> {
     ]
 }
 
-/// A host with a robot that is exactly where its target was, one message ago.
+/// A host, and a robot that is exactly at the target of the previous message.
 struct Bench {
     host: Host,
     now: u64,
     seqno: u32,
     states: u8,
     at: Pose,
-    /// When the last target was sent, what it was, and how far the robot was from it, mm.
+    /// The last target: time of sending, pose, and distance of the robot from it, mm.
     before: Option<(u64, Pose, f64)>,
     point: Pose,
     datagram: Vec<u8>,
@@ -169,7 +169,7 @@ impl Bench {
                 self.point = from;
             }
             Event::Point(way, turn) => {
-                // A period between two points, as a ladder has it.
+                // Points are one period apart, as in a control ladder.
                 for _ in 0..10 {
                     self.now += 4 * MS;
                     self.message();
@@ -204,7 +204,7 @@ proptest! {
     }
 }
 
-/// The property above would hold for a host that never moves.
+/// Control: the property above would also hold for a host that never moves.
 #[test]
 fn a_robot_that_follows_is_moved() {
     let mut bench = Bench::new(1);
@@ -256,7 +256,7 @@ fn a_robot_that_stops_following_is_begun_with_where_it_is() {
     assert_eq!(bench.host.sample().start.map(|start| start.position[2]), Some(-30.0));
 }
 
-/// 100 ms in which points come and messages do not, at 350 mm/s; the robot moves by so many mm meanwhile.
+/// 100 ms with points but without messages, at 350 mm/s; meanwhile the robot moves by `moved` mm.
 fn after_a_gap(moved: f64) -> u64 {
     let mut bench = Bench::new(1);
     bench.message();

@@ -1,4 +1,4 @@
-//! A message costs no heap: an allocator counts.
+//! Checks with a counting allocator that handling a message does not allocate.
 
 use counting_alloc::{Counting, Section, allocations, is_installed};
 use egm::{

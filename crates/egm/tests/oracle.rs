@@ -1,4 +1,4 @@
-//! The codec against another one: the same schema, written down once more for `prost`.
+//! Compares the codec with an independent one: the same schema, written again for `prost`.
 
 use egm::{
     Error,
@@ -10,7 +10,7 @@ use egm::{
 use proptest::{collection::vec, option, prelude::*};
 use prost::Message;
 
-/// `egm.proto`, as far as the host needs it.
+/// The part of `egm.proto` that the host needs.
 mod proto {
     use prost::Message;
 
@@ -171,7 +171,7 @@ mod proto {
     }
 }
 
-/// Our messages in the words of the oracle.
+/// Converts this crate's messages to those of `prost`.
 mod same {
     use super::*;
 
@@ -343,7 +343,8 @@ proptest! {
         prop_assert_eq!(Sensor::decode(&oracle), Ok(answer));
     }
 
-    /// Bytes flipped, cut and joined: what we accept the oracle accepts, and reads the same.
+    /// Bytes are flipped, cut and joined: `prost` accepts everything that this crate accepts, and decodes the same
+    /// values.
     #[test]
     fn what_we_accept_the_oracle_reads_the_same(
         first in robot(),
@@ -393,7 +394,7 @@ proptest! {
     }
 }
 
-/// Bytes of a message, worked out by hand.
+/// The bytes of a message, computed by hand.
 #[test]
 fn a_target_is_these_bytes() {
     let pose = egm::Pose { position: [1.0, 2.0, -2.0], ..egm::Pose::IDENTITY };
@@ -415,7 +416,7 @@ fn a_target_is_these_bytes() {
 
 #[test]
 fn required_fields_are_required() {
-    // prost fills what is missing with zeros: a position without z would be one at the floor.
+    // `prost` replaces missing numbers by zeros: a position without z would then be at z = 0.
     for (bytes, field) in [
         (&[0x12, 0x04, 0x12, 0x02, 0x0A, 0x00][..], "pos.x, y, z"),
         (&[0x12, 0x04, 0x12, 0x02, 0x12, 0x00], "orient.u0 to u3"),

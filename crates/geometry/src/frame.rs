@@ -63,7 +63,7 @@ impl Frame {
         Self { position: self.position, rotation: self.rotation * turn }
     }
 
-    /// `inner`, given in this frame, in the coordinates that this frame is given in.
+    /// Transforms `inner` from this frame's coordinates to the coordinates of this frame's parent: `self * inner`.
     #[must_use]
     #[inline]
     pub fn compose(&self, inner: &Self) -> Self {
@@ -73,7 +73,7 @@ impl Frame {
         }
     }
 
-    /// The frame that undoes this one: `f.compose(&f.inverse())` is the identity.
+    /// The inverse transform: `f.compose(&f.inverse())` is the identity.
     #[must_use]
     #[inline]
     pub fn inverse(&self) -> Self {
@@ -81,7 +81,7 @@ impl Frame {
         Self { position: rotation * -self.position, rotation }
     }
 
-    /// How far `other` is away: inches of the origin, radians of the orientation.
+    /// Distance to `other`: inches between the origins, radians between the orientations.
     #[must_use]
     #[inline]
     pub fn distance(&self, other: &Self) -> Distance {
@@ -104,16 +104,16 @@ impl Frame {
 pub struct Distance {
     /// Between the origins, inches.
     pub inches: f64,
-    /// Between the orientations, radians about one axis.
+    /// Between the orientations: angle of the single rotation that turns one into the other, radians.
     pub radians: f64,
 }
 
-/// Inches that count as much as a radian of rotation, so that the DEPC limits of 14 in/s and 1.0 rad/s (A
-/// 2.3) are one.
+/// Inches of translation that weigh as much as one radian of rotation: the ratio of the DEPC limits 14 in/s and 1.0
+/// rad/s (A 2.3), so that one limit serves both.
 pub const INCHES_PER_RADIAN: f64 = 14.0;
 
 impl Distance {
-    /// The larger of the translation and of the rotation at [`INCHES_PER_RADIAN`], inches.
+    /// The larger of the translation and the rotation times [`INCHES_PER_RADIAN`], inches.
     #[must_use]
     #[inline]
     pub fn path(&self) -> f64 {
@@ -130,7 +130,7 @@ pub fn norm(v: &Vector) -> f64 {
 
 /// The rotation vector (axis times angle in radians, angle up to pi) of a rotation.
 ///
-/// Stays exact for small angles and at half a turn, where the trace alone loses its digits.
+/// Accurate for small angles and near half a turn, where the arc cosine of the trace loses digits.
 #[must_use]
 #[inline]
 pub fn rotation_vector(rotation: &Rotation) -> Vector {
@@ -160,7 +160,7 @@ pub fn rotation_vector(rotation: &Rotation) -> Vector {
     if length > 0.0 { longest * (angle / length) } else { Vector::zeros() }
 }
 
-/// The rotation by `v`: axis times angle in radians.
+/// The rotation of a rotation vector: `v` is the axis times the angle in radians.
 #[must_use]
 #[inline]
 pub fn rotation_by(v: &Vector) -> Rotation {
@@ -172,7 +172,7 @@ pub fn rotation_by(v: &Vector) -> Rotation {
     }
 }
 
-/// The rotation with tool X along `x` and tool Y as near to `y` as it can be (Gram-Schmidt, X kept).
+/// The rotation with tool X along `x` and tool Y as near to `y` as possible (Gram-Schmidt; X is kept).
 ///
 /// `None` if the two are parallel or one of them is zero.
 #[must_use]

@@ -1,9 +1,10 @@
-//! The T3 arm in closed form: joint angles to tool frame and back.
+//! Forward and inverse kinematics of the T3 arm in closed form.
 //!
-//! Base, shoulder, elbow, pitch, yaw, roll. Shoulder, elbow and pitch axes are parallel and horizontal, yaw
-//! is perpendicular to pitch, roll runs along the gripper and meets the yaw axis. The wrist is not spherical
-//! (`pitch_to_yaw`), yet three parallel axes and a roll that meets yaw leave a closed form. HOME (IV.3.3)
-//! proves the upper arm and the sum of the rest; the split of the rest is ASSUMED (SPECNOTES).
+//! Joints: base, shoulder, elbow, pitch, yaw, roll. The axes of shoulder, elbow and pitch are parallel and horizontal,
+//! yaw is perpendicular to pitch, and roll runs along the gripper and intersects the yaw axis. The wrist is not
+//! spherical (`pitch_to_yaw`), but three parallel axes and a roll axis that intersects yaw still give a closed form.
+//! HOME (IV.3.3) determines the upper arm and the sum of the other lengths; how that sum is split is ASSUMED
+//! (SPECNOTES).
 
 use core::{f64::consts::PI, fmt};
 
@@ -17,7 +18,7 @@ pub type Joints = [f64; 6];
 /// Names of the joints, in order.
 pub const JOINT_NAMES: [&str; 6] = ["base", "shoulder", "elbow", "pitch", "yaw", "roll"];
 
-/// Lengths of the arm in inches, limits in radians.
+/// Link lengths in inches, joint limits in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
     /// Shoulder to elbow.
@@ -34,7 +35,7 @@ pub struct Arm {
     pub limits: [(f64, f64); 6],
 }
 
-/// Degrees to radians in a constant.
+/// Converts degrees to radians in constants.
 #[inline]
 const fn deg(degrees: f64) -> f64 {
     degrees * (PI / 180.0)
@@ -60,22 +61,22 @@ pub const T3: Arm = Arm {
 /// Joint angles at HOME (IV.3.3 step 9), radians.
 pub const HOME_JOINTS: Joints = [deg(-90.0), deg(45.0), deg(-90.0), 0.0, 0.0, 0.0];
 
-/// Why a frame has no joint angles.
+/// Errors of the inverse kinematics: why no joint angles reach a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ReachError {
-    /// The gripper axis is parallel to the pitch axis: the controller's error P9P.
+    /// The gripper axis is parallel to the pitch axis: error P9P of the T3's controller.
     WristSingularity,
-    /// The wrist would be farther from the shoulder than the arm is long.
+    /// The wrist would be beyond the reach of the stretched arm.
     TooFar {
         /// Inches beyond the reach.
         by: f64,
     },
-    /// The wrist would be nearer to the shoulder than the folded arm.
+    /// The wrist would be nearer to the shoulder than the folded arm allows.
     TooNear {
-        /// Inches short of the least reach.
+        /// Inches missing to the least reach.
         by: f64,
     },
-    /// Not a number.
+    /// A coordinate is NaN or infinite.
     NotFinite,
 }
 
@@ -95,10 +96,10 @@ impl fmt::Display for ReachError {
 
 impl core::error::Error for ReachError {}
 
-/// A joint outside its limits, or the nearest to one.
+/// The joint that is nearest to a limit or farthest beyond one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margin {
-    /// Joint from 0.
+    /// Index of the joint, from 0.
     pub joint: usize,
     /// Radians to the nearer limit; negative if beyond it.
     pub radians: f64,
@@ -112,7 +113,7 @@ impl Arm {
         self.frame_at(joints, self.yaw_to_plate + self.plate_to_tool)
     }
 
-    /// End-plate frame at the given joint angles: what DEPC speaks of (VI.1).
+    /// End-plate frame at the given joint angles: the frame that DEPC commands and reports (VI.1).
     #[must_use]
     #[inline]
     pub fn forward_plate(&self, joints: &Joints) -> Frame {
@@ -141,8 +142,8 @@ impl Arm {
         Frame { position, rotation }
     }
 
-    /// Joint angles for a tool frame: arm in front, yaw within 90 degrees, elbow up. `near` gives the base
-    /// angle where it is free, and the turn of base and roll.
+    /// Joint angles, radians, for a tool frame (inches, world): arm in front, yaw within 90 degrees, elbow up. `near`
+    /// supplies the base angle where it is undetermined, and the turn of base and roll.
     ///
     /// Limits are not checked; see [`Arm::margin`].
     ///
@@ -203,7 +204,7 @@ impl Arm {
         ])
     }
 
-    /// The joint that is nearest to a limit, and by how much.
+    /// The joint with the least margin to its limits.
     #[must_use]
     #[inline]
     pub fn margin(&self, joints: &Joints) -> Margin {
@@ -217,7 +218,7 @@ impl Arm {
         least
     }
 
-    /// The angles with each joint turned by whole turns into its limits where that is possible.
+    /// The same angles with whole turns added, so that each joint lies within its limits where possible.
     #[must_use]
     #[inline]
     pub fn within_limits(&self, joints: &Joints) -> Joints {
@@ -229,13 +230,13 @@ impl Arm {
     }
 }
 
-/// `angle` in (-pi, pi].
+/// `angle` reduced to (-pi, pi].
 #[inline]
 fn wrapped(angle: f64) -> f64 {
     turned_near(angle, 0.0)
 }
 
-/// `angle` plus the whole turns that bring it nearest to `near`.
+/// `angle` plus the whole turns that bring it nearest to `near`, radians.
 #[must_use]
 #[inline]
 pub fn turned_near(angle: f64, near: f64) -> f64 {

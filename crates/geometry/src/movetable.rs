@@ -1,5 +1,4 @@
-//! Movetables: up to eight translations and rotations, each in the frame that the lines before it made
-//! (VII.2).
+//! Movetables: up to eight translations and rotations, each in the frame that results from the lines before it (VII.2).
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -11,7 +10,7 @@ use crate::{
     units::{inches, radians},
 };
 
-/// Lines of a movetable at most (VII.2).
+/// Greatest number of lines in a movetable (VII.2).
 pub const MAX_LINES: usize = 8;
 
 /// Coordinate systems of Table VII.1.
@@ -37,10 +36,10 @@ pub enum System {
     Roll,
 }
 
-/// A line of a movetable: 0.01 in or 0.01 degree.
+/// A line of a movetable: values in 0.01 in or 0.01 degree.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct MovetableLine {
-    /// In which coordinates.
+    /// Coordinate system of the values.
     pub system: System,
     /// x, y, z; or pitch, yaw; or roll.
     pub values: [i32; 3],
@@ -101,9 +100,9 @@ impl Movetable {
         self.lines.iter().fold(*frame, |f, line| line.apply(&f))
     }
 
-    /// The frame that becomes `frame` when this movetable is applied to it.
+    /// The inverse of [`Self::apply`]: the frame that `apply` turns into `frame`.
     ///
-    /// A camera that stands at `view = table.apply(&place)` looks at `place = table.unapply(&view)`.
+    /// A camera at `view = table.apply(&place)` looks at `place = table.unapply(&view)`.
     #[must_use]
     #[inline]
     pub fn unapply(&self, frame: &Frame) -> Frame {
@@ -112,7 +111,7 @@ impl Movetable {
 }
 
 impl MovetableLine {
-    /// The frame that becomes `frame` when this line is applied to it.
+    /// The inverse of `apply`: the frame that this line turns into `frame`.
     #[must_use]
     #[inline]
     fn unapply(&self, frame: &Frame) -> Frame {
@@ -133,8 +132,8 @@ impl MovetableLine {
     }
 }
 
-/// Straight down with tool Y along world -Y, as over a tray that the robot faces along -X; a frame for tests
-/// and examples.
+/// A tool frame that points straight down, tool Y along world -Y, as over a tray in direction -X of the robot; for
+/// tests and examples.
 #[must_use]
 #[inline]
 pub fn straight_down(position: Vector) -> Frame {

@@ -12,7 +12,7 @@ use crate::{
 /// Length of the vectors wrist to tool and tool to finger: 3000 counts (IV.3.3 step 11).
 pub const POINT_DISTANCE: f64 = 30.0;
 
-/// A pose as a form gives it: three points in world coordinates, hundredths of an inch (VII.1).
+/// A pose as task data gives it: three points in world coordinates, hundredths of an inch (VII.1).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Pose {
     /// A point on the axis of the end effector.
@@ -35,10 +35,10 @@ pub struct WireFrame {
     pub tool_to_finger: [i32; 3],
 }
 
-/// Why nine integers are not a pose.
+/// Errors of converting nine integers to a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PoseError {
-    /// Wrist and tool point, or tool and finger point, coincide, or the three stand on a line.
+    /// Wrist and tool point, or tool and finger point, coincide, or all three points lie on a line.
     NoDirection,
 }
 
@@ -74,7 +74,7 @@ impl Pose {
         }
     }
 
-    /// The frame: tool point kept, X from wrist to tool, Y towards the finger point made square to X.
+    /// The frame of the pose: tool point kept, X from wrist to tool, Y perpendicular to X towards the finger point.
     ///
     /// # Errors
     /// [`PoseError::NoDirection`] if the points do not span a frame.
@@ -85,10 +85,10 @@ impl Pose {
         Ok(Frame { position: tool, rotation })
     }
 
-    /// How far the two directions are from square, radians (positive if the angle is wider than 90 degrees).
+    /// How far the angle between the two directions differs from 90 degrees, radians (positive if it is wider).
     ///
     /// # Errors
-    /// [`PoseError::NoDirection`] if a direction is missing.
+    /// [`PoseError::NoDirection`] if two of the points coincide.
     #[inline]
     pub fn off_square(&self) -> Result<f64, PoseError> {
         let x = vector(self.tool) - vector(self.wrist);
@@ -114,7 +114,7 @@ impl WireFrame {
         }
     }
 
-    /// The frame.
+    /// The frame: tool point in inches, and the rotation of the two vectors.
     ///
     /// # Errors
     /// [`PoseError::NoDirection`] if the vectors do not span a frame.

@@ -1,11 +1,11 @@
-//! The manual's integers and the controller's inches and radians, converted in this one place
+//! Conversions between the manual's integers and the controller's inches and radians. No other module converts them
 //! (docs/design/units.md "Manual").
 
 use core::f64::consts::PI;
 
-/// Hundredths of an inch in an inch (VII.1).
+/// Hundredths of an inch per inch (VII.1).
 const PER_INCH: f64 = 100.0;
-/// Hundredths of a degree in half a turn (VII.2).
+/// Hundredths of a degree per half turn (VII.2).
 const PER_HALF_TURN: f64 = 18_000.0;
 
 /// Inches from hundredths of an inch.
@@ -15,7 +15,7 @@ pub fn inches(hundredths: i32) -> f64 {
     f64::from(hundredths) / PER_INCH
 }
 
-/// Hundredths of an inch from inches, rounded to the nearest, away from zero at a half, saturating.
+/// Hundredths of an inch from inches, rounded to the nearest (halves away from zero), saturating.
 #[must_use]
 #[inline]
 pub fn hundredths(inches: f64) -> i32 {
@@ -36,7 +36,7 @@ pub fn hundredths_of_degree(radians: f64) -> i32 {
     rounded(radians * (PER_HALF_TURN / PI))
 }
 
-/// The nearest integer, away from zero at a half; saturates, and is 0 for what is not a number.
+/// The nearest integer (halves away from zero); saturates, and NaN gives 0.
 #[must_use]
 #[expect(
     clippy::as_conversions,

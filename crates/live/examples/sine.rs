@@ -1,5 +1,5 @@
-//! One value over a WebSocket to Foxglove or Lichtblick, 25 times a second for ten seconds.
-//! `cargo run --release -p live --example sine`, then open a connection to the address that it prints, and plot
+//! Sends one value over a WebSocket to Foxglove or Lichtblick, 25 times a second for ten seconds.
+//! Run `cargo run --release -p live --example sine`, open a connection to the address that it prints, and plot
 //! `/wave.height`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]

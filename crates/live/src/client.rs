@@ -23,20 +23,20 @@ use crate::{
     session::{Action, Rights, Session},
 };
 
-/// How long a thread sleeps when there is nothing to do: a quarter of a tick.
+/// Sleep of a thread with nothing to do: a quarter of a tick.
 const IDLE: Duration = Duration::from_millis(10);
-/// From one ping to the next.
+/// Interval between pings.
 const PING: Duration = Duration::from_secs(1);
-/// How long the end of a connection may take.
+/// Time limit for closing a connection.
 const FAREWELL: Duration = Duration::from_millis(500);
-/// From one count of dropped messages to the next.
+/// Interval between reports of the number of dropped messages.
 const COUNT: Duration = Duration::from_secs(5);
-/// Most messages of a client that are read before messages are written.
+/// Greatest number of a client's messages read before messages are written.
 const READS: usize = 16;
-/// Most items that are written before messages of the client are read.
+/// Greatest number of items written before messages of the client are read.
 const WRITES: usize = 512;
 
-/// A connection. During the handshake it waits for bytes up to a time limit, and then fails; after it, it never waits.
+/// A connection. During the handshake, reads wait up to a time limit and then fail; afterwards they never wait.
 pub struct Connection {
     stream: TcpStream,
     until: Option<Instant>,
@@ -82,9 +82,9 @@ impl Write for Connection {
 /// Why a session ends.
 #[derive(Debug)]
 enum End {
-    /// The client has disconnected, or reads nothing.
+    /// The client has disconnected, or it reads nothing.
     Gone,
-    /// It is closed with a reason.
+    /// The server closes the session with a code and a reason.
     Told(CloseCode, String),
 }
 
@@ -106,7 +106,7 @@ impl From<Error> for End {
     }
 }
 
-/// A client whose handshake is done.
+/// A client after its handshake.
 pub struct Client {
     socket: WebSocket<Connection>,
     feed: Feed,
@@ -114,17 +114,17 @@ pub struct Client {
     session: Session,
     /// Access to the run for requests.
     access: Option<Access>,
-    /// The session with the run, from the first request on.
+    /// The operator session with the run; `None` before the first request.
     operator: Option<Operator>,
-    /// Name of that session.
+    /// Name of the operator session.
     name: Name,
-    /// How long it may read nothing.
+    /// Time after which a client that reads nothing is disconnected.
     patience: Duration,
     /// Number and time of the last ping.
     ping: (u64, Instant),
-    /// Number of the last ping that was answered, and when.
+    /// Number of the last answered ping, and the time of its answer.
     pong: (u64, Instant),
-    /// Number of dropped messages that it was sent last, and when.
+    /// Number of dropped messages that was last sent to the client, and the time of sending.
     dropped: (u64, Instant),
 }
 
@@ -154,7 +154,7 @@ impl Client {
         }
     }
 
-    /// Serve the client until it disconnects or the feed is over. `first` is sent first.
+    /// Serves the client until it disconnects or the feed is over. `first` holds the first messages to send.
     pub fn run(mut self, mut first: Vec<String>) {
         first.extend(self.session.services());
         if let Err(End::Told(code, reason)) = self.serve(first) {
@@ -179,7 +179,7 @@ impl Client {
         }
     }
 
-    /// Read messages of the client; true if there may be more.
+    /// Reads messages of the client; returns true if more may be waiting.
     fn listen(&mut self) -> Result<bool, End> {
         for _ in 0..READS {
             let actions = match self.socket.read() {
@@ -197,7 +197,7 @@ impl Client {
                 self.act(action)?;
             }
         }
-        // The answers must not pile up.
+        // Send the answers before more requests are read, so that they do not accumulate.
         self.flush()
     }
 
@@ -224,7 +224,7 @@ impl Client {
         Ok(())
     }
 
-    /// Send a request to the run as an operator. It answers between two ticks.
+    /// Sends a request to the run as an operator, and waits for the answer, which the run gives between two ticks.
     fn ask(&mut self, line: &str) -> Result<String, String> {
         let access = self.access.as_ref().ok_or("this run accepts no requests")?;
         let mut operator = match self.operator.take() {
@@ -232,14 +232,14 @@ impl Client {
             None => Operator::connect(&access.socket, &self.name).map_err(|error| error.to_string())?,
         };
         let answer = operator.ask(line);
-        // After any other error the session is over: the next request begins a new one.
+        // After any other error the session has ended: the next request begins a new one.
         if matches!(answer, Ok(_) | Err(ClientError::Line { .. } | ClientError::Silent)) {
             self.operator = Some(operator);
         }
         answer.map_err(|error| error.to_string())?
     }
 
-    /// Send queued items to the client; true if there may be more.
+    /// Sends queued items to the client; returns true if more may be waiting.
     fn speak(&mut self) -> Result<bool, End> {
         for _ in 0..WRITES {
             let Some(item) = self.queue.pop() else {
@@ -260,7 +260,7 @@ impl Client {
         self.flush()
     }
 
-    /// Check that the client still answers, and send it the number of dropped messages.
+    /// Checks that the client still answers pings, and sends it the number of dropped messages.
     fn look_after(&mut self) -> Result<(), End> {
         if self.pong.1.elapsed() > self.patience {
             return Err(End::Gone);
@@ -281,7 +281,7 @@ impl Client {
         Ok(())
     }
 
-    /// It has read everything up to a ping.
+    /// Records the answer to a ping: the client has read everything up to it.
     fn answered(&mut self, number: &[u8]) {
         let number = number.try_into().map_or(0, u64::from_le_bytes);
         if (self.pong.0..=self.ping.0).contains(&number) && number != self.pong.0 {
@@ -289,19 +289,19 @@ impl Client {
         }
     }
 
-    /// Write a message; false if the client does not take it at once.
+    /// Writes a message; returns false if the client does not take it at once.
     fn write(&mut self, message: Message) -> Result<bool, End> {
         taken(self.socket.write(message))
     }
 
-    /// True if the client has taken everything.
+    /// Flushes; returns true if the client has taken everything.
     fn flush(&mut self) -> Result<bool, End> {
         taken(self.socket.flush())
     }
 
-    /// Close with a reason, and wait a little until the client has read it.
+    /// Closes the session with a reason, and waits briefly until the client has read it.
     fn close(mut self, code: CloseCode, reason: String) {
-        // The reason has 123 bytes at most.
+        // A reason has at most 123 bytes (RFC 6455, 5.5).
         let mut reason = reason;
         while reason.len() > 123 {
             reason.pop();
@@ -325,7 +325,7 @@ impl Drop for Client {
     }
 }
 
-/// False if writing would have to wait: the message is kept.
+/// Returns false if the write would block; the message is kept.
 fn taken(written: tungstenite::Result<()>) -> Result<bool, End> {
     match written {
         Ok(()) => Ok(true),

@@ -44,21 +44,21 @@ pub struct Access {
 pub struct Token(String);
 
 impl Token {
-    /// A token of 128 random bits.
+    /// A new token of 128 random bits.
     ///
     /// # Errors
-    /// [`NoRandom`](crate::NoRandom).
+    /// [`NoRandom`](crate::NoRandom) if the operating system supplies no random numbers.
     pub fn random() -> Result<Self, crate::NoRandom> {
         crate::protocol::random_word().map(Self)
     }
 
-    /// The token as text, for the person who may command.
+    /// The token as text, to show to the person who may command.
     #[must_use]
     pub fn reveal(&self) -> &str {
         &self.0
     }
 
-    /// True for the right token. The comparison takes the same time for every token of this length.
+    /// Returns true for the right token. The comparison takes the same time for every token of this length.
     #[must_use]
     pub fn is(&self, given: &str) -> bool {
         let differences = self.0.bytes().zip(given.bytes()).map(|(own, given)| own ^ given);
@@ -75,7 +75,7 @@ impl std::fmt::Debug for Token {
 /// A request that a viewer can make.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Service {
-    /// Its name.
+    /// Name of the service.
     pub name: &'static str,
     /// The line for the run; `None` if the viewer gives it.
     pub line: Option<&'static str>,
@@ -95,14 +95,14 @@ pub const SERVICES: [Service; 9] = [
 ];
 
 impl Service {
-    /// The service of a number.
+    /// The service with a number, counted from 1.
     #[must_use]
     pub fn of(number: u32) -> Option<Self> {
         let place = usize::try_from(number).ok()?.checked_sub(1)?;
         SERVICES.get(place).copied()
     }
 
-    /// As it is advertised, with JSON schemas of request and response.
+    /// The advertisement of the service, with JSON schemas of request and response.
     #[must_use]
     pub fn advertised(self, number: u32) -> Value {
         let text = |what: &str| json!({ "type": "string", "description": what });

@@ -1,7 +1,7 @@
 //! The messages for clients: channels, the newest message of each, and a queue per client.
 //!
-//! A client that subscribes gets the newest message of the channel at once, with the present time, also if that was
-//! sent once at the start of the run. Of transforms it gets those of all links.
+//! A client that subscribes receives the newest message of the channel at once, with the present time, even if that
+//! message was sent only once, at the start of the run. For transforms it receives those of all links.
 
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -15,9 +15,9 @@ use crate::{
     protocol,
 };
 
-/// Messages that wait for a client at most.
+/// Greatest number of messages in a client's queue.
 pub const QUEUE: usize = 4096;
-/// Bytes that wait for a client at most, beside a message that is longer.
+/// Greatest number of bytes in a client's queue; a single longer message is accepted.
 pub const QUEUE_BYTES: usize = 8 << 20;
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -31,7 +31,7 @@ pub struct Feed(Arc<Mutex<Inner>>);
 #[derive(Debug, Default)]
 struct Inner {
     channels: BTreeMap<u16, Known>,
-    /// Time of the newest message, nanoseconds.
+    /// Time of the newest message, ns.
     now: u64,
     queues: Vec<Arc<Queue>>,
     is_over: bool,
@@ -40,12 +40,12 @@ struct Inner {
 /// A channel.
 #[derive(Debug)]
 struct Known {
-    /// As it is advertised.
+    /// Text of its advertisement.
     advertised: String,
     newest: Newest,
 }
 
-/// What a new subscriber gets.
+/// The newest data of a channel, which a new subscriber receives.
 #[derive(Debug)]
 enum Newest {
     Nothing,
@@ -64,13 +64,13 @@ impl Newest {
 }
 
 impl Feed {
-    /// The tap for a log: the feed is over when it is dropped.
+    /// The tap that the log writes to. Dropping it ends the feed.
     #[must_use]
     pub fn tap(&self) -> Box<dyn Tap> {
         Box::new(Tapped(self.clone()))
     }
 
-    /// A new client: its queue, and the channels to advertise to it first.
+    /// Adds a client; returns its queue and the channels to advertise to it first.
     #[must_use]
     pub fn join(&self) -> (Arc<Queue>, String) {
         let mut inner = lock(&self.0);
@@ -80,18 +80,18 @@ impl Feed {
         (queue, protocol::advertise(inner.channels.values().map(|known| known.advertised.as_str())))
     }
 
-    /// A client has disconnected.
+    /// Removes a client that has disconnected.
     pub fn leave(&self, queue: &Arc<Queue>) {
         lock(&self.0).queues.retain(|known| !Arc::ptr_eq(known, queue));
     }
 
-    /// True if there is a channel of this number.
+    /// Returns true if a channel with this number exists.
     #[must_use]
     pub fn has(&self, channel: u16) -> bool {
         lock(&self.0).channels.contains_key(&channel)
     }
 
-    /// Send messages of a channel to a client from now on, the newest one first.
+    /// Sends the messages of a channel to a client from now on, beginning with the newest one.
     pub fn subscribe(&self, queue: &Queue, channel: u16, subscription: u32) {
         let inner = lock(&self.0);
         let mut waiting = lock(&queue.0);
@@ -101,19 +101,19 @@ impl Feed {
         }
     }
 
-    /// How many clients there are.
+    /// Number of clients.
     #[must_use]
     pub fn viewers(&self) -> usize {
         lock(&self.0).queues.len()
     }
 
-    /// True if a client has subscribed to anything.
+    /// Returns true if a client has subscribed to a channel.
     #[must_use]
     pub fn is_watched(&self) -> bool {
         lock(&self.0).queues.iter().any(|queue| !lock(&queue.0).subscriptions.is_empty())
     }
 
-    /// Nothing more comes.
+    /// Ends the feed.
     pub fn finish(&self) {
         let mut inner = lock(&self.0);
         inner.is_over = true;
@@ -121,7 +121,7 @@ impl Feed {
     }
 }
 
-/// The log's end of a feed.
+/// The tap of a feed.
 struct Tapped(Feed);
 
 impl Tap for Tapped {
@@ -165,18 +165,18 @@ impl Drop for Tapped {
     }
 }
 
-/// Something for a client.
+/// An item of a client's queue.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Item {
-    /// A text of the protocol.
+    /// A text message of the protocol.
     Text(Arc<str>),
-    /// The present time, nanoseconds.
+    /// The present time, ns.
     Time(u64),
-    /// A message.
+    /// A message of a channel.
     Message {
-        /// The client's number.
+        /// The client's number of the subscription.
         subscription: u32,
-        /// Nanoseconds.
+        /// Time of the message, ns.
         time: u64,
         /// The message as in the log.
         data: Arc<[u8]>,
@@ -202,13 +202,13 @@ pub struct Queue(Mutex<Waiting>);
 
 #[derive(Debug, Default)]
 struct Waiting {
-    /// The client's numbers by channel.
+    /// The client's subscription numbers by channel.
     subscriptions: BTreeMap<u16, u32>,
     /// Items that are never dropped: new channels, and one message per subscription.
     first: VecDeque<Item>,
     /// Items that can be dropped, the oldest first.
     later: VecDeque<Item>,
-    /// Bytes of `later`.
+    /// Number of bytes in `later`.
     bytes: usize,
     dropped: u64,
     is_over: bool,
@@ -229,7 +229,7 @@ impl Waiting {
 }
 
 impl Queue {
-    /// The next item.
+    /// Takes the next item.
     #[must_use]
     pub fn pop(&self) -> Option<Item> {
         let mut waiting = lock(&self.0);
@@ -241,7 +241,7 @@ impl Queue {
         })
     }
 
-    /// Send no more messages of a channel.
+    /// Stops sending the messages of a channel, and removes those in the queue.
     pub fn unsubscribe(&self, channel: u16) {
         let mut waiting = lock(&self.0);
         let Some(subscription) = waiting.subscriptions.remove(&channel) else { return };
@@ -256,7 +256,7 @@ impl Queue {
         lock(&self.0).dropped
     }
 
-    /// The feed is over, and the queue is empty.
+    /// Returns true if the feed is over and the queue is empty.
     #[must_use]
     pub fn is_over(&self) -> bool {
         let waiting = lock(&self.0);

@@ -1,29 +1,29 @@
-//! The newest place of each link, from messages that contain only links that have moved.
+//! Keeps the newest pose of each link, from messages that contain only the links that have moved.
 //!
-//! `foxglove.FrameTransforms` has transforms as field 1, each with its link, `child_frame_id`, as field 3. A
-//! viewer that begins in the middle needs all of them.
+//! `foxglove.FrameTransforms` has transforms as field 1; field 3 of a transform, `child_frame_id`, names its link. A
+//! viewer that connects during the run needs the transforms of all links.
 
 use std::collections::BTreeMap;
 
 use record::proto::wire::{self, Fields, Value};
 
-/// Schema of the messages that are assembled here.
+/// Schema of the assembled messages.
 pub const SCHEMA: &str = "foxglove.FrameTransforms";
-/// Most bytes of one transform; a longer field is not a transform.
+/// Greatest length of a transform, bytes; a longer field is not a transform.
 const LONGEST: usize = 4096;
-/// Links at most.
+/// Greatest number of links.
 const LINKS: usize = 4096;
 
-/// The bytes of the transforms, in the order in which their links first came.
+/// Encoded transforms, in the order of the first message of each link.
 #[derive(Debug, Default)]
 pub struct Frames {
     transforms: Vec<Vec<u8>>,
-    /// Where the transform of a link is.
+    /// Index of each link's transform.
     places: BTreeMap<Vec<u8>, usize>,
 }
 
 impl Frames {
-    /// Add the transforms of a message.
+    /// Takes the transforms of a message.
     pub fn add(&mut self, message: &[u8]) {
         for field in Fields(message) {
             let (1, Value::Bytes(transform)) = field else { continue };
@@ -38,7 +38,7 @@ impl Frames {
         }
     }
 
-    /// A message with all of them.
+    /// A message with the transforms of all links.
     pub fn message(&self) -> Vec<u8> {
         let mut message = Vec::new();
         self.transforms.iter().for_each(|transform| wire::bytes(1, transform, &mut message));
@@ -46,7 +46,7 @@ impl Frames {
     }
 }
 
-/// The link of a transform.
+/// Name of the link of a transform.
 fn link(transform: &[u8]) -> Option<&[u8]> {
     Fields(transform).find_map(|field| match field {
         (3, Value::Bytes(link)) => Some(link),

@@ -1,7 +1,7 @@
-//! Web pages that may connect.
+//! Origins of the web pages that may connect.
 //!
-//! A browser sends the origin of the page with each WebSocket. Without a check any page open on the machine could watch
-//! and command the robot.
+//! A browser sends the origin of the page with each WebSocket request. Without a check, any page open on the machine
+//! could watch and command the robot.
 
 use std::{fmt, str::FromStr};
 
@@ -9,19 +9,19 @@ use std::{fmt, str::FromStr};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin(String);
 
-/// A text that is not an origin.
+/// Error of a text that is not an origin.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("SCHEME://HOST or SCHEME://HOST:PORT was expected, such as http://localhost:8080; found {0}")]
 pub struct OriginError(String);
 
 impl Origin {
-    /// Foxglove in the browser.
+    /// The origin of Foxglove in the browser.
     #[must_use]
     pub fn foxglove() -> Self {
         Self("https://app.foxglove.dev".to_owned())
     }
 
-    /// True if the header of a browser has this origin, in upper or lower case.
+    /// Returns true if a browser's header has this origin, in upper or lower case.
     #[must_use]
     pub fn is(&self, header: &[u8]) -> bool {
         self.0.as_bytes().eq_ignore_ascii_case(header)
@@ -44,7 +44,7 @@ impl FromStr for Origin {
             let place = host.chars().all(|c| c.is_ascii_alphanumeric() || ".-:[]_".contains(c));
             word && place && (!host.is_empty() || scheme == "file")
         };
-        // A page's address ends with a slash, its origin does not.
+        // The address of a page ends with a slash, an origin does not.
         let bare = if text.ends_with("://") { text } else { text.strip_suffix('/').unwrap_or(text) };
         match bare.split_once("://") {
             Some(parts) if legal(parts) => Ok(Self(bare.to_owned())),

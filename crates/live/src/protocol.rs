@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 /// The subprotocols, the preferred one first.
 pub const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
-/// Encodings of schemas that are not text; JSON has them as base64.
+/// Schema encodings that are binary; JSON contains these schemas as base64.
 const BINARY_SCHEMAS: [&str; 2] = ["protobuf", "flatbuffer"];
 
 /// Operation codes of binary messages to the client.
@@ -31,28 +31,28 @@ mod from_client {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "op", rename_all = "camelCase")]
 pub enum Request {
-    /// Send messages of channels.
+    /// Subscribe to channels.
     Subscribe {
-        /// Which.
+        /// The channels.
         subscriptions: Vec<Subscription>,
     },
-    /// Send no more of them.
+    /// End subscriptions.
     #[serde(rename_all = "camelCase")]
     Unsubscribe {
-        /// By the client's numbers.
+        /// The client's numbers of the subscriptions.
         subscription_ids: Vec<u32>,
     },
     /// Ask for the values of parameters.
     #[serde(rename_all = "camelCase")]
     GetParameters {
-        /// Their names; all if there is none.
+        /// Names of the parameters; an empty list means all.
         parameter_names: Vec<String>,
         /// Repeated in the answer.
         id: Option<String>,
     },
     /// Change parameters.
     SetParameters {
-        /// Which.
+        /// The parameters with their new values.
         parameters: Vec<Parameter>,
         /// Repeated in the answer.
         id: Option<String>,
@@ -60,13 +60,13 @@ pub enum Request {
     /// Send parameters when they change.
     #[serde(rename_all = "camelCase")]
     SubscribeParameterUpdates {
-        /// Their names; all if there is none.
+        /// Names of the parameters; an empty list means all.
         parameter_names: Vec<String>,
     },
-    /// No longer send them.
+    /// Stop sending changed parameters.
     #[serde(rename_all = "camelCase")]
     UnsubscribeParameterUpdates {
-        /// Their names; all if there is none.
+        /// Names of the parameters; an empty list means all.
         parameter_names: Vec<String>,
     },
 }
@@ -74,28 +74,28 @@ pub enum Request {
 /// A parameter with its value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
-    /// Its name.
+    /// Name of the parameter.
     pub name: String,
-    /// Null if it has none.
+    /// Value; null if the parameter has none.
     #[serde(default)]
     pub value: Value,
 }
 
-/// A service is called.
+/// A call of a service.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ServiceCall {
-    /// The service.
+    /// Number of the service.
     pub service: u32,
     /// The client's number of the call.
     pub call: u32,
     /// Encoding of the payload.
     pub encoding: String,
-    /// The request.
+    /// The encoded request.
     pub payload: Vec<u8>,
 }
 
 impl ServiceCall {
-    /// Read a binary message; `None` if it is not a service call.
+    /// Decodes a binary message; `None` if it is not a service call.
     #[must_use]
     pub fn read(bytes: &[u8]) -> Option<Self> {
         let (code, mut rest) = bytes.split_first()?;
@@ -116,7 +116,7 @@ impl ServiceCall {
     }
 }
 
-/// The answer to a call.
+/// The binary message that answers a service call.
 #[must_use]
 pub fn service_response(service: u32, call: u32, payload: &Value) -> Vec<u8> {
     const ENCODING: &[u8; 4] = b"json";
@@ -129,19 +129,19 @@ pub fn service_response(service: u32, call: u32, payload: &Value) -> Vec<u8> {
     bytes
 }
 
-/// A call was not carried out.
+/// The message that a service call failed.
 #[must_use]
 pub fn service_failure(service: u32, call: u32, why: &str) -> String {
     json!({ "op": "serviceCallFailure", "serviceId": service, "callId": call, "message": why }).to_string()
 }
 
-/// The message that names services.
+/// The message that advertises services.
 #[must_use]
 pub fn advertise_services(services: &[Value]) -> String {
     json!({ "op": "advertiseServices", "services": services }).to_string()
 }
 
-/// Values of parameters.
+/// The message with values of parameters.
 #[must_use]
 pub fn parameter_values(parameters: &[Parameter], id: Option<&str>) -> String {
     match id {
@@ -151,66 +151,66 @@ pub fn parameter_values(parameters: &[Parameter], id: Option<&str>) -> String {
     .to_string()
 }
 
-/// A channel that a client wants to see.
+/// A client's subscription to a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Subscription {
-    /// The client's number for it.
+    /// The client's number of the subscription.
     pub id: u32,
-    /// The channel.
+    /// Number of the channel.
     pub channel_id: u64,
 }
 
 /// Severity of a status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StatusLevel {
-    /// It does not harm.
+    /// A problem that changes nothing.
     Warning,
-    /// Something was not done.
+    /// A request was not executed.
     Error,
 }
 
-/// The system has no random numbers.
+/// Error: the operating system supplies no random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the system gives no random numbers: {0}")]
 pub struct NoRandom(#[from] getrandom::Error);
 
-/// A word of 128 random bits.
+/// A word of 128 random bits, in hexadecimal.
 ///
 /// # Errors
-/// [`NoRandom`].
+/// [`NoRandom`] if the operating system supplies no random numbers.
 pub fn random_word() -> Result<String, NoRandom> {
     let mut bits = [0; 16];
     getrandom::fill(&mut bits)?;
     Ok(HEXLOWER.encode(&bits))
 }
 
-/// The server's facts, the first message to a client.
+/// Facts about the server: the first message to a client.
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ServerInfo {
-    /// Shown to the person.
+    /// Name of the server, shown by the viewer.
     pub name: String,
-    /// Capabilities for the client.
+    /// Capabilities of the server.
     pub capabilities: Vec<&'static str>,
-    /// Encodings of service calls.
+    /// Supported encodings of service calls.
     pub supported_encodings: Vec<&'static str>,
-    /// Further facts.
+    /// Further facts, by name.
     pub metadata: BTreeMap<String, String>,
-    /// Different for each run.
+    /// Identifier of the session, different for each run.
     pub session_id: String,
 }
 
 impl ServerInfo {
-    /// With a session id that no other one has.
+    /// Facts with a new session identifier.
     ///
     /// # Errors
-    /// [`NoRandom`] if the system has no random numbers.
+    /// [`NoRandom`] if the operating system supplies no random numbers.
     pub fn new() -> Result<Self, NoRandom> {
         Ok(Self { session_id: random_word()?, ..Self::default() })
     }
 
-    /// The message.
+    /// The `serverInfo` message.
     #[must_use]
     pub fn encode(&self) -> String {
         let mut message = json!(self);
@@ -221,7 +221,7 @@ impl ServerInfo {
     }
 }
 
-/// A channel in a message of [`advertise`].
+/// A channel as JSON, for [`advertise`].
 #[must_use]
 pub fn channel(id: u16, channel: &Channel<'_>) -> String {
     let schema = if BINARY_SCHEMAS.contains(&channel.schema_encoding) {
@@ -240,14 +240,14 @@ pub fn channel(id: u16, channel: &Channel<'_>) -> String {
     .to_string()
 }
 
-/// The message that names channels.
+/// The message that advertises channels.
 #[must_use]
 pub fn advertise<'a>(channels: impl Iterator<Item = &'a str>) -> String {
     let channels: Vec<&str> = channels.collect();
     format!(r#"{{"op":"advertise","channels":[{}]}}"#, channels.join(","))
 }
 
-/// A message for the person at the viewer. A later status with the same `id` replaces it.
+/// A status message, which the viewer shows. A later status with the same `id` replaces it.
 #[must_use]
 pub fn status(level: StatusLevel, message: &str, id: Option<&str>) -> String {
     let level = match level {
@@ -261,7 +261,7 @@ pub fn status(level: StatusLevel, message: &str, id: Option<&str>) -> String {
     .to_string()
 }
 
-/// A message of a subscribed channel, with its time in nanoseconds.
+/// The binary message with data of a subscribed channel; `time` is in ns.
 #[must_use]
 pub fn message(subscription: u32, time: u64, data: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(data.len().saturating_add(13));
@@ -272,7 +272,7 @@ pub fn message(subscription: u32, time: u64, data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The present time of the run, in nanoseconds.
+/// The binary message with the present time of the run, ns.
 #[must_use]
 pub fn time(time: u64) -> Vec<u8> {
     let mut bytes = vec![to_client::TIME];

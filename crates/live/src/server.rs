@@ -1,4 +1,4 @@
-//! Lets viewers on this machine connect.
+//! A server on this machine for viewers.
 
 use std::{
     io::{self, Write as _},
@@ -27,31 +27,31 @@ use crate::{
     protocol::{SUBPROTOCOLS, ServerInfo},
 };
 
-/// The port that viewers try first.
+/// Default port of the viewers.
 pub const PORT: u16 = 8765;
-/// Clients at a time.
+/// Greatest number of connected clients.
 pub const CLIENTS: usize = 16;
-/// Bytes of a client's message at most.
+/// Greatest length of a client's message, bytes.
 pub const MESSAGE: usize = 64 * 1024;
-/// How long a client may read nothing.
+/// Time after which a client that reads nothing is disconnected.
 pub const PATIENCE: Duration = Duration::from_secs(5);
-/// How long a handshake may take.
+/// Time limit of a handshake.
 const HANDSHAKE: Duration = Duration::from_secs(3);
-/// How long clients may read the rest at the end.
+/// Time at the end in which clients can still read.
 const LAST: Duration = Duration::from_secs(2);
-/// How long to wait after a connection that could not be accepted.
+/// Pause after a connection that could not be accepted.
 const AGAIN: Duration = Duration::from_millis(100);
 
-/// What to serve, and to whom.
+/// Options of the server.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Pages that may connect, besides Foxglove's.
+    /// Origins of web pages that may connect, besides Foxglove's.
     pub origins: Vec<Origin>,
-    /// First message to clients.
+    /// The first message to clients.
     pub info: ServerInfo,
-    /// How long a client may read nothing.
+    /// Time after which a client that reads nothing is disconnected.
     pub patience: Duration,
-    /// The velocity knob, if there is one.
+    /// The velocity knob; `None` if there is none.
     pub knob: Option<Knob>,
     /// Access for requests; `None` if the run accepts none.
     pub access: Option<Access>,
@@ -64,21 +64,21 @@ impl Default for Options {
     }
 }
 
-/// A port on 127.0.0.1 that is taken. Clients that connect wait for a [`Server`].
+/// A bound port on 127.0.0.1. Clients that connect wait until a [`Server`] starts.
 #[derive(Debug)]
 pub struct Port(TcpListener);
 
 impl Port {
-    /// Take a port; 0 for any that is free.
+    /// Binds a port; 0 chooses a free one.
     ///
     /// # Errors
-    /// Why the port cannot be used.
+    /// The error of the operating system if the port is not available.
     pub fn take(port: u16) -> io::Result<Self> {
         TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map(Self)
     }
 }
 
-/// Serves a feed until it is dropped. At the end clients can read the rest for at most two seconds.
+/// Serves a feed until it is dropped. Clients can then read the rest for at most two seconds.
 #[derive(Debug)]
 pub struct Server {
     address: SocketAddr,
@@ -89,10 +89,10 @@ pub struct Server {
 }
 
 impl Server {
-    /// Serve clients that connect to a [`Port`]. The threads inherit the priority of the caller.
+    /// Serves the clients that connect to a [`Port`]. The threads inherit the priority of the caller.
     ///
     /// # Errors
-    /// Why the thread cannot be started.
+    /// The error of the operating system if the thread cannot start.
     pub fn start(port: Port, mut options: Options, feed: Feed) -> io::Result<Self> {
         let info = &mut options.info;
         info.capabilities.push("time");
@@ -118,7 +118,7 @@ impl Server {
         Ok(Self { address, feed, stop, open, thread: Some(thread) })
     }
 
-    /// Where it listens.
+    /// The address on which the server listens.
     #[must_use]
     pub const fn address(&self) -> SocketAddr {
         self.address
@@ -129,7 +129,7 @@ impl Drop for Server {
     fn drop(&mut self) {
         self.feed.finish();
         self.stop.store(true, Ordering::Relaxed);
-        // The thread sees `stop` with the next connection.
+        // The thread checks `stop` at the next connection.
         if TcpStream::connect(self.address).is_ok() {
             let _ = self.thread.take().map(JoinHandle::join);
         }
@@ -147,7 +147,7 @@ struct Accept {
     feed: Feed,
     stop: Arc<AtomicBool>,
     open: Arc<AtomicUsize>,
-    /// Clients so far.
+    /// Number of clients so far.
     clients: u64,
 }
 
@@ -160,7 +160,8 @@ impl Accept {
             }
             match accepted {
                 Ok((stream, _)) => self.admit(stream),
-                // A client that has left again, or no more files: neither is a reason to end.
+                // The client has already disconnected, or no more files can be opened: the server continues in both
+                // cases.
                 Err(_) => thread::sleep(AGAIN),
             }
         }
@@ -174,7 +175,7 @@ impl Accept {
         self.clients = self.clients.saturating_add(1);
         let Ok(name) = format!("viewer-{}", self.clients).parse() else { return };
         let (options, feed, open) = (self.options.clone(), self.feed.clone(), Open(self.open.clone()));
-        // If the thread cannot be started, the client sees the end of its connection.
+        // If the thread cannot start, the connection is closed.
         let _ = thread::Builder::new().name("live client".into()).spawn(move || {
             let _open = open;
             serve(stream, &options, feed, name);
@@ -182,7 +183,7 @@ impl Accept {
     }
 }
 
-/// Counts a client until it is dropped.
+/// Counts an open connection until it is dropped.
 struct Open(Arc<AtomicUsize>);
 
 impl Drop for Open {
@@ -191,12 +192,12 @@ impl Drop for Open {
     }
 }
 
-/// There is no room for another client.
+/// Refuses a client because too many are connected.
 fn refuse(mut stream: TcpStream) {
     let why = format!("{CLIENTS} viewers are connected: close one first\n");
     let head = "HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nContent-Type: text/plain";
     let answer = format!("{head}\r\nContent-Length: {}\r\n\r\n{why}", why.len());
-    // It is small and fits, or the client does without.
+    // The answer is small and usually fits; otherwise the client gets none.
     if stream.set_nonblocking(true).is_ok() {
         let _ = stream.write(answer.as_bytes());
     }
@@ -215,7 +216,7 @@ fn serve(stream: TcpStream, options: &Options, feed: Feed, name: Name) {
     Client::new(socket, feed, queue, options, name).run(vec![options.info.encode(), channels]);
 }
 
-/// Checks the origin of a client, and agrees on a subprotocol.
+/// Checks the origin of a client, and chooses the subprotocol.
 struct Handshake<'a>(&'a [Origin]);
 
 impl Callback for Handshake<'_> {
@@ -236,7 +237,7 @@ impl Callback for Handshake<'_> {
     }
 }
 
-/// Programs have no origin, pages of a browser always have one.
+/// Checks the origin header: pages in a browser always send one, programs do not.
 fn check_origin(headers: &HeaderMap, origins: &[Origin]) -> Result<(), (StatusCode, String)> {
     let foxglove = Origin::foxglove();
     let is_allowed =
@@ -253,7 +254,7 @@ fn check_origin(headers: &HeaderMap, origins: &[Origin]) -> Result<(), (StatusCo
     }
 }
 
-/// The subprotocol that both sides know.
+/// The preferred subprotocol among those that the client offers.
 fn agree(headers: &HeaderMap) -> Result<&'static str, (StatusCode, String)> {
     let asked = headers.get_all(header::SEC_WEBSOCKET_PROTOCOL).iter();
     let asked: Vec<&str> =

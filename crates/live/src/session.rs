@@ -1,6 +1,6 @@
 //! The session of one client, without I/O: its requests and the actions that follow.
 //!
-//! A wrong message is answered with a status and changes nothing; after too many the client is disconnected.
+//! The answer to an invalid message is a status, and nothing changes; after too many, the client is disconnected.
 
 use std::collections::BTreeMap;
 
@@ -12,39 +12,39 @@ use crate::{
     protocol::{self, Parameter, Request, ServiceCall, StatusLevel, Subscription},
 };
 
-/// Subscriptions at a time.
+/// Greatest number of subscriptions of a client.
 pub const SUBSCRIPTIONS: usize = 512;
-/// Wrong messages after which a client is disconnected.
+/// Number of invalid messages after which a client is disconnected.
 pub const MISTAKES: u32 = 32;
-/// The parameter that is the velocity knob, 0 to 1000.
+/// The parameter for the velocity knob, 0 to 1000.
 pub const VELOCITY: &str = "/operator/velocity";
-/// The parameter that takes the token, and shows only whether it was accepted.
+/// The parameter for the token. Its value shows only whether the token was accepted.
 pub const TOKEN: &str = "/operator/token";
-/// Full speed of the knob.
+/// Knob position for full speed.
 const FULL: u16 = 1000;
-/// Characters of a client's message that are quoted in the answer.
+/// Number of characters of a client's message that the answer quotes.
 const QUOTED: usize = 60;
-/// Why there are no requests.
+/// Answer to a request if the run accepts none.
 const NO_REQUESTS: &str =
     "this run accepts no requests of viewers: it needs --clock real and an operator (docs/operator.md)";
-/// Why a request was not sent.
+/// Answer to a request without a valid token.
 const NO_TOKEN: &str = "the token that the run has printed was expected";
 
-/// An action for a client.
+/// An action that follows from a client's message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Send text.
+    /// Send a text message.
     Text(String),
-    /// Send bytes.
+    /// Send a binary message.
     Bytes(Vec<u8>),
-    /// Send the messages of a channel, the newest one first.
+    /// Send the messages of a channel, beginning with the newest one.
     Subscribe {
         /// The channel.
         channel: u16,
-        /// The client's number for it.
+        /// The client's number of the subscription.
         subscription: u32,
     },
-    /// Send no more of them.
+    /// Stop sending the messages of a channel.
     Unsubscribe {
         /// The channel.
         channel: u16,
@@ -53,55 +53,55 @@ pub enum Action {
     Ask {
         /// The line for the operator's socket.
         line: String,
-        /// The request of the client that the answer belongs to.
+        /// The client's request that the answer belongs to.
         reply: Reply,
     },
-    /// Disconnect.
+    /// Disconnect the client, with this reason.
     Close(String),
 }
 
-/// A request of the client that waits for an answer of the run.
+/// A client's request that waits for an answer of the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// A service was called.
+    /// A call of a service.
     Call {
-        /// The service.
+        /// Number of the service.
         service: u32,
         /// The client's number of the call.
         call: u32,
     },
-    /// The knob was turned.
+    /// A change of the knob.
     Knob {
-        /// To what.
+        /// The new position.
         velocity: u16,
-        /// The client's name of the request.
+        /// The client's identifier of the request.
         id: Option<String>,
     },
 }
 
-/// What a session may use.
+/// What a session may do.
 #[derive(Clone, Debug, Default)]
 pub struct Rights {
-    /// The velocity knob; a log that is played has none.
+    /// The velocity knob; `None` if a log is played.
     pub knob: Option<Knob>,
     /// The token that a request must contain; `None` if the run accepts no requests.
     pub token: Option<Token>,
 }
 
-/// State of a client.
+/// The state of one client's session.
 #[derive(Debug, Default)]
 pub struct Session {
     rights: Rights,
-    /// Channels by the client's numbers.
+    /// Channels by the client's subscription numbers.
     subscriptions: BTreeMap<u32, u16>,
-    /// The token was given as a parameter.
+    /// True if the client has set the token as a parameter.
     has_token: bool,
-    /// The position of the knob that was sent last; `None` if the client has not subscribed to it.
+    /// The knob position sent last; `None` if the client has not subscribed to it.
     knob: Option<u16>,
     mistakes: u32,
 }
 
-/// The payload of a call.
+/// The decoded payload of a service call.
 #[derive(Deserialize)]
 struct Payload {
     #[serde(default)]
@@ -111,7 +111,7 @@ struct Payload {
 }
 
 impl Session {
-    /// A client that has asked for nothing yet.
+    /// The session of a new client.
     #[must_use]
     pub fn new(rights: Rights) -> Self {
         Self { rights, ..Self::default() }
@@ -126,7 +126,7 @@ impl Session {
         Some(protocol::advertise_services(&services))
     }
 
-    /// A text has come. `is_known` tells whether there is a channel of a number.
+    /// Handles a text message. `is_known` returns true if a channel with the given number exists.
     pub fn text(&mut self, text: &str, is_known: impl Fn(u16) -> bool) -> Vec<Action> {
         match serde_json::from_str(text) {
             Ok(Request::Subscribe { subscriptions }) => {
@@ -153,7 +153,7 @@ impl Session {
         }
     }
 
-    /// Bytes have come.
+    /// Handles a binary message.
     pub fn binary(&mut self, bytes: &[u8]) -> Vec<Action> {
         match (ServiceCall::read(bytes), bytes.first()) {
             (Some(call), _) => self.call(&call),
@@ -164,7 +164,7 @@ impl Session {
         }
     }
 
-    /// The run has answered.
+    /// Handles the run's answer to a request.
     #[must_use]
     pub fn answered(&mut self, reply: Reply, verdict: Result<String, String>) -> Vec<Action> {
         match (reply, verdict) {
@@ -187,14 +187,14 @@ impl Session {
         }
     }
 
-    /// The message to send if the knob was turned since the last one.
+    /// The message to send if the knob has moved since the last one.
     pub fn knob(&mut self) -> Option<String> {
         let (seen, now) = (self.knob?, self.rights.knob.as_ref()?.get());
         self.knob = Some(now);
         (seen != now).then(|| self.parameters(&[VELOCITY.to_owned()], None))
     }
 
-    /// The parameters of some names, or all.
+    /// The message with the parameters of the given names; an empty list means all.
     fn parameters(&self, names: &[String], id: Option<&str>) -> String {
         let knob = self.rights.knob.as_ref().map(|knob| (VELOCITY, json!(knob.get())));
         let accepted = if self.has_token { "accepted" } else { "" };
@@ -244,7 +244,7 @@ impl Session {
         }
     }
 
-    /// The line for the run of a call, or why it is refused.
+    /// The line for the run that a call stands for, or why the call is refused.
     fn line(&self, asked: &ServiceCall) -> Result<String, String> {
         let token = self.rights.token.as_ref().ok_or(NO_REQUESTS)?;
         let wanted =
@@ -291,13 +291,13 @@ impl Session {
         }
     }
 
-    /// Something that cannot be done.
+    /// Reports an invalid message to the client.
     fn wrong(&mut self, why: &str) -> Vec<Action> {
         let status = Action::Text(protocol::status(StatusLevel::Error, why, None));
         self.counted(why).map_or_else(|| vec![status], |close| vec![close])
     }
 
-    /// Count a mistake: after too many the session ends.
+    /// Counts an invalid message; returns the action to disconnect after too many.
     fn counted(&mut self, why: &str) -> Option<Action> {
         self.mistakes = self.mistakes.saturating_add(1);
         let close = || Action::Close(format!("{MISTAKES} wrong messages, at last: {why}"));
@@ -305,18 +305,18 @@ impl Session {
     }
 }
 
-/// An empty list means all.
+/// Returns true if a list of names contains `name`, or is empty.
 fn is_wanted(names: &[String], name: &str) -> bool {
     names.is_empty() || names.iter().any(|wanted| wanted == name)
 }
 
-/// A position of the knob; viewers may send it as a decimal number.
+/// Parses a knob position; viewers may send it as a decimal number.
 fn knob(value: &Value) -> Option<u16> {
     let number = value.as_f64()?;
     (0..=FULL).find(|velocity| f64::from(*velocity) == number)
 }
 
-/// The beginning of a client's message, without control characters.
+/// The first [`QUOTED`] characters of a client's message, without control characters.
 fn quoted(text: &str) -> String {
     let plain = |c: char| if c.is_control() { ' ' } else { c };
     let start: String = text.chars().take(QUOTED).map(plain).collect();

@@ -1,4 +1,4 @@
-//! A server with clients, over real sockets: who may connect, what is refused, who is disconnected.
+//! Tests a server and its clients over real sockets: who may connect, what is refused, who is disconnected.
 
 use std::{
     io::{ErrorKind, Read, Write},
@@ -33,7 +33,7 @@ fn serve(options: Options) -> (Server, Box<dyn Tap>) {
     (Server::start(Port::take(0).unwrap(), options, feed).unwrap(), tap)
 }
 
-/// Try a handshake; the status and body of a refusal.
+/// Tries a handshake; returns status and body of a refusal.
 fn try_connect(
     address: SocketAddr,
     origin: Option<&str>,
@@ -63,7 +63,7 @@ fn try_connect(
     }
 }
 
-/// A client that has read who serves and which channels there are.
+/// A client that has read the server's facts and the list of channels.
 fn connect(address: SocketAddr) -> WebSocket<TcpStream> {
     let mut socket = try_connect(address, None, "foxglove.sdk.v1").unwrap();
     assert_eq!(text(&mut socket)["op"], "serverInfo");
@@ -71,7 +71,7 @@ fn connect(address: SocketAddr) -> WebSocket<TcpStream> {
     socket
 }
 
-/// The next message that is no ping.
+/// The next message except pings.
 fn next(socket: &mut WebSocket<TcpStream>) -> Result<Message, Error> {
     loop {
         let message = socket.read()?;
@@ -89,7 +89,7 @@ fn say(socket: &mut WebSocket<TcpStream>, message: Value) {
     socket.send(Message::text(message.to_string())).unwrap();
 }
 
-/// The code with which the server closes.
+/// The close code that the server sends.
 fn close_code(socket: &mut WebSocket<TcpStream>) -> CloseCode {
     loop {
         match socket.read() {
@@ -162,7 +162,7 @@ fn wrong_messages_are_answered_and_end_the_session_at_last() {
         assert_eq!((&status["op"], &status["level"]), (&json!("status"), &json!(2)), "{status}");
     }
     for _ in 0..40 {
-        // The server may have closed in the meantime.
+        // The server may already have closed the connection.
         let _ = socket.send(Message::binary(vec![1]));
     }
     assert_eq!(close_code(&mut socket), CloseCode::Policy);
@@ -172,10 +172,10 @@ fn wrong_messages_are_answered_and_end_the_session_at_last() {
 fn messages_that_are_too_long_and_frames_that_are_none_close_the_connection() {
     let (server, _tap) = serve(Options::default());
     let mut socket = connect(server.address());
-    // The server closes before it has read all of it.
+    // The server closes the connection before it has read all of the message.
     let _ = socket.send(Message::text(" ".repeat(70_000)));
     assert_eq!(close_code(&mut socket), CloseCode::Size);
-    // Reserved bits and codes, no mask, half a frame, text that is no text.
+    // Reserved bits and codes, no mask, half a frame, text that is not UTF-8.
     let frames: [&[u8]; 5] = [
         &[0xff; 64],
         &[0x81, 0x02, b'h', b'i'],
@@ -193,7 +193,7 @@ fn messages_that_are_too_long_and_frames_that_are_none_close_the_connection() {
     connect(server.address());
 }
 
-/// The server ends a connection.
+/// Checks that the server ends a connection.
 fn ends(stream: &mut TcpStream) {
     let mut rest = Vec::new();
     if let Err(error) = stream.read_to_end(&mut rest) {
@@ -244,7 +244,7 @@ fn clients_that_take_nothing_are_disconnected_and_others_stay() {
     let subscribe = json!({ "op": "subscribe", "subscriptions": [{ "id": 1, "channelId": 1 }] });
     say(&mut reader, subscribe.clone());
     let mut silent: Vec<_> = (0..10).map(|_| connect(server.address())).collect();
-    // Half of them do not even have much to take.
+    // Half of these clients subscribe to nothing.
     silent.iter_mut().skip(5).for_each(|socket| say(socket, subscribe.clone()));
     let reading = thread::spawn(move || {
         let is_message = |message: &Message| message.is_binary() && message.len() > 9;

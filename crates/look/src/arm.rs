@@ -1,6 +1,7 @@
-//! The T3: base column, turret, upper arm, forearm, wrist.
+//! Meshes of the T3: base column, turret, upper arm, forearm, wrist.
 //!
-//! Each link covers the round body with which it collides ([`plant::bodies`]); hydraulics, hoses and bolts are around it.
+//! Each mesh covers the cylinder that the collision model uses for its link ([`plant::bodies`]); hydraulics, hoses and
+//! bolts lie outside it.
 
 use core::f64::consts::TAU;
 
@@ -16,14 +17,14 @@ use crate::{
     mesh::{Mesh, ROUND, SMALL, count, rounded},
 };
 
-/// What stands over the body with which a link collides, in: no more than a coat of paint.
+/// Distance of the mesh's surface from the collision body of a link, in: as thin as a coat of paint.
 const COAT: f64 = 0.15;
-/// Thickness of the plates of a fork, in.
+/// Thickness of the plates of a fork joint, in.
 const CHEEK: f64 = 1.8;
-/// Gap between a fork and what turns in it, in.
+/// Gap between a fork and the part that turns in it, in.
 const PLAY: f64 = 0.4;
 
-/// The links of the arm.
+/// The models of the arm's links.
 #[must_use]
 pub fn models(cell: &CellDescription) -> Vec<Model> {
     let (radius, half) = turret(cell);
@@ -38,7 +39,7 @@ pub fn models(cell: &CellDescription) -> Vec<Model> {
     ]
 }
 
-/// The column under the turret: the block of the description, with a flange at its foot and a ring on its top.
+/// The column under the turret: the block of the description, with a flange at the bottom and a ring on top.
 #[must_use]
 pub fn base(block: &Block) -> Mesh {
     let mut mesh = Mesh::default();
@@ -69,7 +70,7 @@ pub fn base(block: &Block) -> Mesh {
         }
         mesh.add(&turn, &side);
     }
-    // Oil comes in from behind.
+    // Hydraulic lines come in from behind.
     for across in [-6.0, -2.0, 2.0] {
         mesh.rod(
             Bright,
@@ -92,7 +93,7 @@ fn turret_mesh(radius: f64, half: f64) -> Mesh {
         [(0.0, coat), (2.0 * half, coat), (2.0 * half + 0.8, coat - 0.8), (2.0 * half + 1.2, coat - 3.0)];
     mesh.lathe(Orange, [0.0, 0.0, -half], [0.0, 0.0, half], ROUND, &drum);
     mesh.rod(Charcoal, [0.0, 0.0, half + 1.0], [0.0, 0.0, half + 2.2], 4.0, 0.4, ROUND);
-    // The shoulder's axle, with a rotary actuator at either end.
+    // The axle of the shoulder, with a rotary actuator at each end.
     let out = coat + PLAY + CHEEK;
     for side in [-1.0, 1.0] {
         let y = |distance: f64| [0.0, side * distance, 0.0];
@@ -104,7 +105,7 @@ fn turret_mesh(radius: f64, half: f64) -> Mesh {
             let (x, z) = (3.9 * libm::cos(angle), 3.9 * libm::sin(angle));
             mesh.rod(Bright, [x, side * (out + 3.5), z], [x, side * (out + 4.0), z], 0.35, 0.0, 6);
         }
-        // A hydraulic cylinder at the back carries the weight of the arm.
+        // A hydraulic cylinder at the back balances the weight of the arm.
         let (back, aside) = (-coat - 1.4, 4.2 * side);
         mesh.rod(Charcoal, [back, aside, -half + 2.0], [back, aside, half - 4.0], 2.0, 0.3, ROUND);
         mesh.rod(Cream, [back, aside, -half + 3.6], [back, aside, -half + 6.4], 2.08, 0.1, ROUND);
@@ -126,7 +127,7 @@ fn turret_mesh(radius: f64, half: f64) -> Mesh {
     mesh
 }
 
-/// The two plates of a fork about Y: round behind, `reach` long, as high as what they carry.
+/// Adds the two plates of a fork whose axis is Y: round at the back, `reach` long, `2 * high` high at the front.
 fn fork(mesh: &mut Mesh, inner: f64, hub: f64, reach: f64, high: f64) {
     const POINTS: usize = 14;
     let from = TAU * 0.21;
@@ -134,7 +135,7 @@ fn fork(mesh: &mut Mesh, inner: f64, hub: f64, reach: f64, high: f64) {
         let angle = from + (TAU - 2.0 * from) * count(i) / count(POINTS);
         (hub * libm::cos(angle), hub * libm::sin(angle))
     });
-    // Counter-clockwise in x and z seen from -Y, where the frame's z points.
+    // Counter-clockwise in x and z as seen from -Y, the direction of the frame's z.
     let outline: Vec<(f64, f64)> = round.chain([(reach, -high), (reach, high)]).collect();
     let upright = Frame {
         position: Vector::zeros(),
@@ -177,7 +178,7 @@ fn upper_arm(turret: f64, radius: f64) -> Mesh {
         mesh.cuboid(Cream, [front + 7.0, low, -3.4], [elbow - 8.5, high, 3.4], 0.25);
         lettering(&mut mesh, front + 10.0, y, side);
     }
-    // The elbow's cylinder lies on the arm.
+    // The cylinder of the elbow lies on the upper arm.
     let z = r + 3.4;
     for (x, high) in [(front + 2.5, 4.6), (elbow - 3.0, 4.6)] {
         mesh.cuboid(Charcoal, [x - 1.5, -1.6, r - 0.5], [x + 1.5, 1.6, r + high], 0.4);
@@ -201,9 +202,9 @@ fn upper_arm(turret: f64, radius: f64) -> Mesh {
     mesh
 }
 
-/// "T3", to be read from the side that it is on.
+/// The letters "T3", readable from the side of the arm that they are on.
 fn lettering(mesh: &mut Mesh, x: f64, y: f64, side: f64) {
-    // Bars: from and to along the line of writing, and upwards.
+    // Bars: start and end along the direction of writing, lower and upper edge.
     const T: [[f64; 4]; 2] = [[0.0, 3.6, 3.4, 4.4], [1.3, 2.3, 0.0, 3.6]];
     const THREE: [[f64; 4]; 4] =
         [[4.6, 7.8, 3.4, 4.4], [5.2, 7.8, 1.7, 2.7], [4.6, 7.8, 0.0, 1.0], [6.9, 7.9, 0.2, 4.2]];
@@ -256,7 +257,7 @@ fn forearm(upper: f64, radius: f64) -> Mesh {
     mesh
 }
 
-/// What pitches: hubs beside the end of the forearm, and a yoke with the yaw axis.
+/// The link that pitches: hubs beside the end of the forearm, and a yoke with the yaw axis.
 fn wrist_pitch(forearm: f64, radius: f64) -> Mesh {
     let mut mesh = Mesh::default();
     let out = forearm + COAT;
@@ -287,7 +288,7 @@ fn wrist_yaw(radius: f64) -> Mesh {
     mesh
 }
 
-/// What rolls: round to the end plate, with the hoses of the gripper.
+/// The link that rolls: a round body up to the end plate, with the hoses of the gripper.
 fn end_plate(radius: f64) -> Mesh {
     let mut mesh = Mesh::default();
     let r = radius + 0.06;

@@ -1,8 +1,8 @@
-//! What the camera on the wrist saw, with what vision found in it, as a small picture.
+//! Draws what the wrist camera saw, with the answer of the vision system, as a small picture.
 //!
-//! The picture is a drawing of the faces that vision worked on ([`plant::camera::Subject`]): Y of the tool to the left, Z up. The
-//! outline of the part that it answered for is green if it was recognised and yellow if not; a cross is where it said that the
-//! middle is, with a line along which the fingers move. A red border: it saw nothing.
+//! The picture shows the faces that vision evaluated ([`plant::camera::Subject`]), tool Y to the left and tool Z up.
+//! The outline of the part in the answer is green if vision recognised it and yellow if not. A cross marks the centroid
+//! that vision answered, with a line in the direction of the fingers' motion. A red border: vision saw nothing.
 
 use geometry::frame::Vector;
 use interfaces::device::{VisionResponse, VisionStatus};
@@ -14,23 +14,23 @@ use plant::{
 
 use crate::png::Picture;
 
-/// Pixels across and down.
+/// Width and height of the picture, pixels.
 const SIZE: usize = 160;
-/// Colours: the tray, eleven greys from dark to bright, then those of the marks.
+/// Palette: index 0 is the background, 1 to 11 are greys from dark to bright, then the colours of the marks.
 const GREYS: u8 = 11;
 const FOUND: u8 = GREYS + 1;
 const DOUBT: u8 = GREYS + 2;
 const NOTHING: u8 = GREYS + 3;
 
-/// A picture that is being drawn.
+/// The picture during drawing.
 struct Canvas {
     pixels: Vec<u8>,
-    /// Half the width of the field of view, as a share of the distance.
+    /// Half the width of the field of view, divided by the distance.
     widest: f64,
 }
 
 impl Canvas {
-    /// Where a point in camera axes stands, pixels.
+    /// Projects a point in camera axes to pixels.
     fn place(&self, point: &Vector) -> [f64; 2] {
         let half = SIZE as f64 / 2.0;
         let scale = half / (self.widest * point.x.max(1e-3));
@@ -44,7 +44,7 @@ impl Canvas {
         }
     }
 
-    /// A line two pixels thick.
+    /// Draws a line two pixels thick.
     fn line(&mut self, [ax, ay]: [f64; 2], [bx, by]: [f64; 2], colour: u8) {
         let steps = ((bx - ax).abs().max((by - ay).abs()).min(4.0 * SIZE as f64) * 2.0) as usize + 1;
         for step in 0..=steps {
@@ -54,7 +54,7 @@ impl Canvas {
         }
     }
 
-    /// What is seen of a face: each field of its raster as closely set points.
+    /// Draws a face: each cell of its raster that the camera sees, as dense points.
     fn face(&mut self, subject: &Subject) {
         const FINE: usize = 12;
         let colour = 1 + (subject.reflectance().clamp(0.0, 1.0) * f64::from(GREYS - 1)).round() as u8;
@@ -75,7 +75,7 @@ impl Canvas {
     }
 }
 
-/// The picture of an answer as a PNG file: `subjects` is what the camera saw when it was asked.
+/// The picture of an answer as a PNG file. `subjects` are the faces that the camera saw at the time of the request.
 #[must_use]
 pub fn draw(camera: &Camera, subjects: &[Subject], answer: &VisionResponse) -> Vec<u8> {
     let widest = camera.view / inches(camera.reference_range_mm / 1000.0);
@@ -106,7 +106,7 @@ pub fn draw(camera: &Camera, subjects: &[Subject], answer: &VisionResponse) -> V
     Picture { width: SIZE, pixels: canvas.pixels }.png(&palette)
 }
 
-/// The centroid of an answer, and the direction in which the fingers close.
+/// Draws the centroid of an answer and the direction in which the fingers close.
 fn cross(canvas: &mut Canvas, subject: &Subject, answer: &VisionResponse, colour: u8) {
     const ARM: f64 = 7.0;
     let hundredths = |value: i32| f64::from(value) / 100.0;

@@ -1,6 +1,6 @@
-//! glTF 2.0 in one binary file: a mesh with a primitive for each material.
+//! Writes a mesh as a binary glTF 2.0 file (GLB), with one primitive for each material.
 //!
-//! glTF measures in metres and has Y up; the link's X, Y, Z are written as X, Z, -Y.
+//! glTF measures in metres with Y up: the link's (X, Y, Z) is written as (X, Z, -Y).
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
@@ -8,9 +8,9 @@ use geometry::frame::Vector;
 
 use crate::{material::Material, mesh::Mesh};
 
-/// Metres of an inch.
+/// Metres per inch.
 const INCH: f64 = 0.0254;
-/// `glTF`, `JSON` and `BIN` as glTF counts letters.
+/// The magic words `glTF`, `JSON` and `BIN` of the file and its chunks.
 const MAGIC: [&[u8; 4]; 3] = [b"glTF", b"JSON", b"BIN\0"];
 
 /// Vertices and triangles of one material.
@@ -32,9 +32,9 @@ impl Surface {
     }
 }
 
-/// A vector as glTF has it.
+/// A vector in glTF's axes, multiplied by `scale`.
 fn y_up(v: &Vector, scale: f64) -> [f32; 3] {
-    // Steps of 10 um, and no negative zeros: what is equal is written alike.
+    // Rounded to 10 um and without negative zeros, so that equal vectors have equal bytes.
     [v.x, v.z, -v.y].map(|value| ((value * scale * 1e5).round() / 1e5 + 0.0) as f32)
 }
 
@@ -123,7 +123,7 @@ fn pad(bytes: &mut Vec<u8>, with: u8) {
     bytes.resize(bytes.len().next_multiple_of(4), with);
 }
 
-/// Least and greatest coordinates, which glTF asks for.
+/// Least and greatest coordinates as JSON, which glTF requires.
 fn bounds(vertices: &[[f32; 6]]) -> String {
     let fold = |start: f32, choose: fn(f32, f32) -> f32| {
         let mut of = [start; 3];

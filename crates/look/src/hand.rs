@@ -1,7 +1,7 @@
-//! What the arm wears: quick change with its camera, grippers with their fingers; and the hand of the pedestal.
+//! Meshes of the end effectors: quick change with its camera, grippers with their fingers, and the pedestal's hand.
 //!
-//! Bodies and fingers have the faces of the boxes with which they collide; ribs, rails and hoses are on the sides that
-//! touch nothing.
+//! The faces of bodies and fingers coincide with the boxes of the collision model; ribs, rails and hoses are on sides
+//! that touch nothing.
 
 use core::f64::consts::TAU;
 
@@ -21,10 +21,10 @@ use crate::{
     mesh::{Mesh, ROUND, SMALL, count},
 };
 
-/// Edges that hardly show, in: what is gripped lies against the faces beside them.
+/// Small chamfer, in: gripped parts lie against the adjacent faces.
 const EDGE: f64 = 0.03;
 
-/// Quick change, grippers, pedestal's hand.
+/// The models of the quick change, the grippers and the pedestal's hand.
 #[must_use]
 pub fn models(cell: &CellDescription) -> Vec<Model> {
     let grippers = &cell.gripper;
@@ -50,7 +50,7 @@ pub fn models(cell: &CellDescription) -> Vec<Model> {
     models
 }
 
-/// The A plate, and the camera that looks past the gripper.
+/// The A plate of the quick change, and the camera, which looks past the gripper.
 fn quick_change(cell: &CellDescription) -> Mesh {
     let mut mesh = Mesh::default();
     let change = &cell.quick_change;
@@ -91,7 +91,7 @@ fn quick_change(cell: &CellDescription) -> Mesh {
     mesh
 }
 
-/// B plate, body and ears, with the rails of the fingers and an air cylinder on either side.
+/// B plate, body and ears of a gripper, with the rails of the fingers and an air cylinder on each side.
 fn robot_gripper(cell: &CellDescription, gripper: &Gripper, mark: Material) -> Mesh {
     let mut mesh = Mesh::default();
     let (change, plate) = (&cell.quick_change, gripper.plate());
@@ -104,7 +104,7 @@ fn robot_gripper(cell: &CellDescription, gripper: &Gripper, mark: Material) -> M
     let [back, front] = [-1.0, 1.0].map(|side| body.0.position.x + side * body.1.x / 2.0);
     let [wide, high] = [body.1.y / 2.0, body.1.z / 2.0];
     for side in [-1.0, 1.0] {
-        // Rails, and the mark of what this gripper is for.
+        // Rails, and the coloured mark that tells the grippers apart.
         mesh.rod(Bright, [front, -wide + 0.3, side * 1.3], [front, wide - 0.3, side * 1.3], 0.22, 0.0, SMALL);
         let [low, top] = if side > 0.0 { [high - 0.02, high + 0.06] } else { [-high - 0.06, 0.02 - high] };
         mesh.cuboid(mark, [back + 0.5, -wide + 0.6, low], [back + 1.5, wide - 0.6, top], 0.0);
@@ -123,7 +123,7 @@ fn robot_gripper(cell: &CellDescription, gripper: &Gripper, mark: Material) -> M
     mesh
 }
 
-/// A finger in its own frame: a bar with a pad on the face that grips, a rib on the other, a carriage at its root.
+/// A finger in its own frame: a bar with a pad on the gripping face, a rib on the other, a carriage at its root.
 fn finger(gripper: &Gripper, side: f64, mark: Material) -> Mesh {
     let mut mesh = Mesh::default();
     let [length, thick, wide] = gripper.fingers;
@@ -142,7 +142,7 @@ fn finger(gripper: &Gripper, side: f64, mark: Material) -> Mesh {
     slab(Steel, [root + 0.8, root + 1.8], outer - 0.05, outer + 0.55, z * 0.4, 0.0);
     slab(Steel, [root + 1.7, root + 2.6], outer - 0.05, outer + 0.28, z * 0.4, 0.0);
     if let Some(groove) = gripper.groove {
-        // Where the V is ground into the pad.
+        // The V groove in the pad.
         let x = tip + groove;
         slab(Bright, [x - 0.3, x + 0.3], inner - 0.005, inner + 0.1, z, 0.0);
         slab(Rubber, [x - 0.06, x + 0.06], inner - 0.01, inner + 0.1, z, 0.0);
@@ -150,7 +150,7 @@ fn finger(gripper: &Gripper, side: f64, mark: Material) -> Mesh {
     mesh
 }
 
-/// Palm on a turning disc; X points up.
+/// The pedestal's hand: a palm on a rotary table; X points up.
 fn pedestal_hand(hand: &Gripper) -> Mesh {
     let mut mesh = Mesh::default();
     let (place, size) = palm(hand);

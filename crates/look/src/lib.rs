@@ -1,10 +1,10 @@
-//! What the cell looks like: a mesh for each link, made in code from the description of the cell.
+//! Visual meshes of the cell: one for each link, generated from the description of the cell.
 //!
-//! [`models`] makes glTF files of parametric solids. They are for eyes only: the physics has its own bodies
-//! ([`plant::bodies`], [`plant::scene`]), and each mesh covers the bodies of its link, so that nobody sees a gap where the
-//! physics has contact. [`labels`] says the names of the things that matter, [`camera`] draws what vision saw.
+//! [`models`] makes parametric solids, which become glTF files. They are for display only: the physics has its own
+//! bodies ([`plant::bodies`], [`plant::scene`]). Each mesh covers the bodies of its link, so that contacts of the
+//! physics show no gap. [`labels`] lists the names to display, [`camera`] draws what vision saw.
 //!
-//! The same description gives the same bytes. Lengths are inches until [`glb`] writes metres.
+//! The same description gives the same bytes. Lengths are inches; [`glb`] converts to metres.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
@@ -28,7 +28,7 @@ use plant::{
 
 pub use mesh::Mesh;
 
-/// Frame of what stands still.
+/// Frame of everything that does not move.
 const WORLD: &str = "world";
 /// Blocks of the furniture that belong to the link of the vise.
 const VISE: [&str; 2] = ["vise_body", "fixed_jaw"];
@@ -36,22 +36,22 @@ const VISE: [&str; 2] = ["vise_body", "fixed_jaw"];
 /// A mesh, and the frame in which it is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
-    /// Its name: that of its link, or of a group of things that stand still.
+    /// Name of the link, or of a group of fixed things.
     pub name: String,
-    /// The link that it moves with; `world` for what stands still.
+    /// Name of the link that it moves with; `world` for fixed things.
     pub frame: String,
-    /// Its solids, in the coordinates of the frame.
+    /// The solids, in the coordinates of the frame, inches.
     pub mesh: Mesh,
 }
 
 impl Model {
-    /// The look of a link.
+    /// The model of a link.
     #[must_use]
     pub fn new(link: &str, mesh: Mesh) -> Self {
         Self { name: link.into(), frame: link.into(), mesh }
     }
 
-    /// The look of what stands still, in world coordinates.
+    /// The model of a group of fixed things, in world coordinates.
     #[must_use]
     pub fn standing(name: &str, mesh: Mesh) -> Self {
         Self { name: name.into(), frame: WORLD.into(), mesh }
@@ -64,18 +64,18 @@ impl Model {
     }
 }
 
-/// A name beside a thing.
+/// A text label beside an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
-    /// What is written.
+    /// The text.
     pub text: String,
-    /// The link that it moves with.
+    /// Name of the link that it moves with.
     pub frame: &'static str,
-    /// Where, in the frame, in.
+    /// Position in the frame, inches.
     pub position: [f64; 3],
 }
 
-/// The look of the cell with its parts: names of their links, and their kinds. The description has been validated.
+/// The models of the cell and its parts, which are given by link name and type. The description must be validated.
 #[must_use]
 pub fn models(cell: &CellDescription, parts: &[(String, &PartType)]) -> Vec<Model> {
     let furniture = furniture(cell);
@@ -89,7 +89,7 @@ pub fn models(cell: &CellDescription, parts: &[(String, &PartType)]) -> Vec<Mode
     models
 }
 
-/// Names of the things that matter.
+/// Labels of the important objects.
 #[must_use]
 pub fn labels(cell: &CellDescription) -> Vec<Label> {
     let label = |text: &str, frame, position| Label { text: text.into(), frame, position };
@@ -100,13 +100,13 @@ pub fn labels(cell: &CellDescription) -> Vec<Label> {
     };
     let mut labels = vec![label("T3", "turret", [0.0, 0.0, 2.0 * cell.robot.upper_arm_radius + 6.0])];
     for (tray, number) in cell.tray.iter().zip(1..) {
-        // One above the other: they stand side by side.
+        // At different heights, because the trays stand side by side.
         let ([x, y], up) = (tray.centre, 7.0 * f64::from(number));
         labels.push(label(&format!("tray {}", tray.unit), WORLD, [x, y, tray.floor + up]));
     }
     let [_, _, up] = cell.vise.jaw;
     labels.push(label("vise", "vise", [cell.vise.jaw[0], 0.0, 2.0 * up]));
-    // One above the other: they stand side by side.
+    // At different heights, because these stand side by side.
     labels.extend(above("machining centre", "machine_column", 18.0));
     labels.extend(above("tool drum", "tool_drum", 8.0));
     let [x, y, z] = cell.pedestal.position;

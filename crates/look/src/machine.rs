@@ -1,4 +1,4 @@
-//! The machining centre around pallet, column and drum of the description, and the vise on it.
+//! Meshes of the machining centre, built around pallet, column and drum of the description, and of the vise on it.
 
 use core::f64::consts::TAU;
 
@@ -26,7 +26,7 @@ pub fn vise(cell: &CellDescription, blocks: &[&Block]) -> [Model; 2] {
     let vise = &cell.vise;
     let ([front, back], [right, left]) = (vise.body_x, vise.body_y);
     let ledge = -vise.jaw[2];
-    // Ways on which the jaw slides, the spindle that moves it, its motor behind, and a name plate in front.
+    // Ways for the jaw, the spindle that moves it, its motor at the back, and a name plate in front.
     for x in [front + 0.5, back - 1.1] {
         body.cuboid(Bright, [x, right + 0.2, ledge - 0.1], [x + 0.6, left - 0.2, ledge + 0.02], 0.0);
     }
@@ -54,7 +54,7 @@ pub fn vise(cell: &CellDescription, blocks: &[&Block]) -> [Model; 2] {
     [Model::new("vise", body), Model::new("movable_jaw", jaw)]
 }
 
-/// The pallet: a bed with slots in its top, in the block's frame.
+/// The pallet: a bed with slots in its top; coordinates of the block's frame.
 #[must_use]
 pub fn pallet(block: &Block) -> Mesh {
     let mut mesh = Mesh::default();
@@ -71,7 +71,8 @@ pub fn pallet(block: &Block) -> Mesh {
     mesh
 }
 
-/// The column with the spindle head, whose front looks to -X at the height of `spindle` over the middle, in the block's frame.
+/// The column with the spindle head, which faces -X at the height `spindle` above the block's middle, inches;
+/// coordinates of the block's frame.
 #[must_use]
 pub fn column(block: &Block, spindle: f64) -> Mesh {
     let mut mesh = Mesh::default();
@@ -95,14 +96,14 @@ pub fn column(block: &Block, spindle: f64) -> Mesh {
     mesh.lathe(Steel, [-x - 6.4, 0.0, spindle], [-x - 20.0, 0.0, spindle], ROUND, &nose);
     mesh.rod(Rubber, [-x - 11.0, 0.0, spindle], [-x - 11.3, 0.0, spindle], 1.3, 0.0, ROUND);
     mesh.rod(Gold, [-x - 11.0, 0.0, spindle], [-x - 13.2, 0.0, spindle], 0.55, 0.1, SMALL);
-    // A window and the lamp that says what the machine does.
+    // A window, and the lamp that shows the machine's state.
     mesh.cuboid(Rubber, [-x - 0.5, y - 12.0, 2.0], [-x + 0.2, y - 3.0, 22.0], 0.4);
     for (step, lamp) in [Green, Yellow, Red].into_iter().enumerate() {
         let up = z + 3.0 + 2.6 * count(step);
         mesh.rod(lamp, [0.0, -y + 6.0, up], [0.0, -y + 6.0, up + 2.5], 1.3, 0.2, ROUND);
     }
     mesh.rod(Charcoal, [0.0, -y + 6.0, z - 0.2], [0.0, -y + 6.0, z + 3.2], 0.6, 0.0, SMALL);
-    // The operator's panel on an arm, at the side that is open.
+    // The operator's panel on an arm, at the open side.
     mesh.rod(Charcoal, [-4.0, -y + 0.2, 24.0], [-4.0, -y - 8.0, 24.0], 0.9, 0.2, SMALL);
     mesh.cuboid(Charcoal, [-5.5, -y - 16.0, 2.0], [-2.5, -y - 3.0, 22.0], 0.6);
     mesh.cuboid(Light, [-5.7, -y - 14.5, 12.0], [-5.3, -y - 4.5, 20.0], 0.1);
@@ -115,8 +116,8 @@ pub fn column(block: &Block, spindle: f64) -> Mesh {
     mesh
 }
 
-/// The tool drum: the block of the description with a disc of pockets before it, one of them where tools are exchanged.
-/// `exchange` is that place in the block's frame.
+/// The tool drum: the block of the description with a disc of tool pockets in front. `exchange` is the pocket where
+/// tools are exchanged, inches in the block's frame.
 #[must_use]
 pub fn drum(block: &Block, exchange: [f64; 3]) -> Mesh {
     const POCKETS: usize = 9;

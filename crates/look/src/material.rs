@@ -1,11 +1,11 @@
-//! What things are made of: a few colours that part them at a glance.
+//! Materials: a few colours that are easy to tell apart.
 
 /// A material of the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Material {
-    /// The robot's castings.
+    /// Castings of the robot.
     Orange,
-    /// Castings beside them.
+    /// Covers and panels.
     Cream,
     /// Motors, plates, gripper bodies.
     Charcoal,
@@ -17,17 +17,17 @@ pub enum Material {
     Bright,
     /// The machine tool.
     White,
-    /// Its doors and skirts.
+    /// Doors and skirts of the machine tool.
     Petrol,
     /// Trays.
     Blue,
-    /// Rims and lines of trays.
+    /// Rims of the trays and lines on them.
     PaleBlue,
     /// Benches and stands.
     Slate,
-    /// Their tops.
+    /// Tops of the benches.
     Maple,
-    /// Holsters, and what must not be run into.
+    /// Holsters and warning marks.
     Yellow,
     /// The floor.
     Concrete,
@@ -47,7 +47,7 @@ pub enum Material {
     Light,
 }
 
-/// Colour as it is seen, share of metal, roughness, light that it gives.
+/// sRGB colour, metallic factor, roughness factor, emission.
 struct Look {
     colour: u32,
     metal: f64,
@@ -83,7 +83,7 @@ impl Material {
         Look { colour, metal, rough, light }
     }
 
-    /// Its name.
+    /// Name of the material.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -111,18 +111,18 @@ impl Material {
         }
     }
 
-    /// Its colour as the screen shows it: red, green, blue from 0 to 1.
+    /// sRGB colour: red, green, blue from 0 to 1.
     #[must_use]
     pub fn colour(self) -> [f64; 3] {
         let Look { colour, .. } = self.look();
         [16, 8, 0].map(|shift| f64::from(colour >> shift & 0xFF) / 255.0)
     }
 
-    /// The material as glTF has it.
+    /// The material as glTF's JSON.
     #[must_use]
     pub fn gltf(self) -> String {
         let Look { metal, rough, light, .. } = self.look();
-        // From the screen's brightness to light, as in sRGB.
+        // From sRGB values to linear light, which glTF uses.
         let linear = |value: f64| {
             let light =
                 if value <= 0.04045 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) };

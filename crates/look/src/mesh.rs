@@ -1,7 +1,7 @@
-//! Closed solids of triangles, in inches, and how they are put together.
+//! Closed solids of triangles, in inches, and the functions that build them.
 //!
-//! A [`Mesh`] is a heap of pieces. Each piece is closed and has one material, and may reach into others. Nearly all
-//! pieces are lofts: rings of as many points each, joined by quadrangles, with a cap at either end.
+//! A [`Mesh`] is a collection of pieces. Each piece is closed and has one material; pieces may overlap. Nearly all
+//! pieces are lofts: rings with equal numbers of points, joined by quadrangles, with a cap at each end.
 
 use core::f64::consts::{PI, TAU};
 
@@ -9,34 +9,34 @@ use geometry::frame::{Frame, Rotation, Vector};
 
 use crate::material::Material;
 
-/// Faces that meet at a smaller angle than this are shaded as one surface, the larger ones counting for more: the cosine of
-/// 63 degrees. A broken edge then looks round and costs few vertices.
+/// Faces that meet at a smaller angle than this are shaded as one smooth surface, weighted by area: the cosine of 63
+/// degrees. A chamfered edge then looks round and needs few vertices.
 const CREASE: f64 = 0.454;
-/// Points of a circle that can be seen to be round.
+/// Points of a circle large enough to show its corners.
 pub const ROUND: usize = 24;
 /// Points of a small circle.
 pub const SMALL: usize = 10;
 
-/// A corner of a triangle.
+/// A corner of a triangle, with its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
-    /// Where it is, in.
+    /// Position, inches.
     pub position: Vector,
-    /// The normal of the surface there.
+    /// Normal of the surface at the corner.
     pub normal: Vector,
 }
 
 /// A closed surface of one material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// What it is made of.
+    /// Material of the surface.
     pub material: Material,
-    /// Its triangles, counter-clockwise seen from outside.
+    /// Triangles, counter-clockwise as seen from outside, inches.
     pub triangles: Vec<[Vector; 3]>,
 }
 
 impl Piece {
-    /// The corners of the triangles with normals: surfaces that meet in a crease have their own.
+    /// The corners of the triangles with their normals; surfaces that meet at a crease get separate normals.
     #[must_use]
     pub fn corners(&self) -> Vec<[Corner; 3]> {
         let key = |point: &Vector| point.map(|value| (value * 1e4).round());
@@ -75,7 +75,7 @@ impl Piece {
     }
 }
 
-/// Across a triangle, as long as twice its area.
+/// Normal of a triangle; its length is twice the triangle's area.
 fn doubled_area([a, b, c]: &[Vector; 3]) -> Vector {
     (b - a).cross(&(c - a))
 }
@@ -92,19 +92,19 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Its pieces.
+    /// The pieces.
     #[must_use]
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
-    /// How many triangles it has.
+    /// Number of triangles.
     #[must_use]
     pub fn triangles(&self) -> usize {
         self.pieces.iter().map(|piece| piece.triangles.len()).sum()
     }
 
-    /// Add another one that is given in `frame`.
+    /// Adds another mesh that is given in `frame`.
     pub fn add(&mut self, frame: &Frame, other: &Self) {
         let at = |point: &Vector| frame.shifted(*point).position;
         self.pieces.extend(other.pieces.iter().map(|piece| Piece {
@@ -113,8 +113,8 @@ impl Mesh {
         }));
     }
 
-    /// Rings of equally many points, joined, with a cap on the first and the last one. The rings turn
-    /// counter-clockwise seen against the direction in which they follow each other, and each is convex.
+    /// Adds a loft: rings with equal numbers of points, joined, with a cap on the first and the last. Each ring is
+    /// convex and counter-clockwise as seen from the rings that follow it.
     pub fn loft(&mut self, material: Material, rings: &[Vec<Vector>]) {
         let mut triangles = Vec::new();
         let mut face = |a: Vector, b: Vector, c: Vector| {
@@ -138,7 +138,7 @@ impl Mesh {
         self.pieces.push(Piece { material, triangles });
     }
 
-    /// A box from corner to corner, its edges broken by `chamfer`.
+    /// Adds a box between two corners, with chamfered edges.
     pub fn cuboid(&mut self, material: Material, low: [f64; 3], high: [f64; 3], chamfer: f64) {
         let c = (0..3).map(|i| (high[i] - low[i]) / 4.0).fold(chamfer, f64::min);
         let ring = |z: f64, inset: f64| {
@@ -169,15 +169,15 @@ impl Mesh {
         self.loft(material, &rings);
     }
 
-    /// A box around a middle.
+    /// Adds a box by its middle and size.
     pub fn block(&mut self, material: Material, middle: [f64; 3], size: [f64; 3], chamfer: f64) {
         let low = [0, 1, 2].map(|i| middle[i] - size[i] / 2.0);
         let high = [0, 1, 2].map(|i| middle[i] + size[i] / 2.0);
         self.cuboid(material, low, high, chamfer);
     }
 
-    /// What turns about the line from `from` in the direction `to`: radii at distances along it. The polygon of
-    /// `points` corners lies around the circle, so that the solid is never thinner than asked for.
+    /// Adds a solid of revolution about the line from `from` towards `to`: pairs of distance along the line and radius.
+    /// The polygon of `points` corners circumscribes the circle, so that the solid is nowhere thinner than requested.
     pub fn lathe(
         &mut self,
         material: Material,
@@ -201,7 +201,7 @@ impl Mesh {
         self.loft(material, &rings);
     }
 
-    /// A cylinder from one point to another, its edges broken by `chamfer`.
+    /// Adds a cylinder from one point to another, with chamfered edges.
     pub fn rod(
         &mut self,
         material: Material,
@@ -218,7 +218,7 @@ impl Mesh {
         self.lathe(material, from, to, points, profile);
     }
 
-    /// A hose through points: a smooth curve.
+    /// Adds a hose: a smooth curve through the given points.
     pub fn hose(&mut self, material: Material, through: &[[f64; 3]], radius: f64) {
         const STEPS: usize = 5;
         const POINTS: usize = 7;
@@ -227,7 +227,7 @@ impl Mesh {
         let mut path = Vec::new();
         for i in 0..knots.len().saturating_sub(1) {
             let [a, b, c, d] = [knot(i, 2), knot(i, 1), knot(i + 1, 1), knot(i + 2, 1)];
-            // Catmull and Rom's spline.
+            // Catmull-Rom spline.
             path.extend((0..STEPS).map(|step| {
                 let t = count(step) / count(STEPS);
                 (b * 2.0
@@ -241,7 +241,7 @@ impl Mesh {
         let mut side = Vector::zeros();
         let rings = (0..path.len()).map(|i| {
             let along = unit(&(path[(i + 1).min(path.len() - 1)] - path[i.saturating_sub(1)]));
-            // Carried along without turning about the hose.
+            // The cross section is carried along without twist about the hose.
             side -= along * side.dot(&along);
             side = if side.norm_squared() < 1e-6 { across(&along).0 } else { unit(&side) };
             let up = along.cross(&side);
@@ -255,7 +255,7 @@ impl Mesh {
         self.loft(material, &rings);
     }
 
-    /// A plate: a convex polygon, counter-clockwise in x and y of `frame`, from one height to another.
+    /// Adds a plate: a convex polygon, counter-clockwise in x and y of `frame`, between two heights.
     pub fn plate(&mut self, material: Material, frame: &Frame, outline: &[(f64, f64)], from: f64, to: f64) {
         let ring =
             |z: f64| outline.iter().map(|(x, y)| frame.shifted(Vector::new(*x, *y, z)).position).collect();
@@ -263,20 +263,20 @@ impl Mesh {
     }
 }
 
-/// A small number, exactly.
+/// A small count as `f64`, exact.
 #[must_use]
 pub fn count(n: usize) -> f64 {
     u32::try_from(n).map_or(f64::MAX, f64::from)
 }
 
-/// Two directions across an axis: with it they are right-handed.
+/// Two unit vectors perpendicular to an axis; the axis and the two form a right-handed system.
 fn across(axis: &Vector) -> (Vector, Vector) {
     let other = if axis.x.abs() < 0.9 { Vector::x() } else { Vector::y() };
     let first = unit(&axis.cross(&other));
     (first, axis.cross(&first))
 }
 
-/// A rectangle with round corners, half as wide and high as given, as a ring at `x` that looks along +X.
+/// A rectangle with rounded corners, from its half width and half height, as a ring in the plane `x` that faces +X.
 #[must_use]
 pub fn rounded(x: f64, half: [f64; 2], radius: f64) -> Vec<Vector> {
     const STEPS: usize = 5;
@@ -292,7 +292,7 @@ pub fn rounded(x: f64, half: [f64; 2], radius: f64) -> Vec<Vector> {
     corners.into_iter().enumerate().flat_map(corner).collect()
 }
 
-/// A frame at a place, turned about +Z by degrees.
+/// A frame at a position, rotated about +Z by `degrees`.
 #[must_use]
 pub fn standing(position: [f64; 3], degrees: f64) -> Frame {
     Frame {

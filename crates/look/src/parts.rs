@@ -1,4 +1,4 @@
-//! Parts and tools: the bodies with which they collide, coloured by kind.
+//! Meshes of parts and tools: the bodies of the collision model, coloured by kind.
 
 use plant::{
     description::PartType,
@@ -13,10 +13,10 @@ use crate::{
     mesh::{Mesh, ROUND, SMALL},
 };
 
-/// Edges of a part, in.
+/// Chamfer of a part's edges, in.
 const EDGE: f64 = 0.03;
 
-/// The colour of a kind of part: that of its family.
+/// The colour of a kind of part: the colour of its family.
 #[must_use]
 pub fn colour(kind: &PartType) -> Material {
     match Family::of(kind) {
@@ -27,7 +27,7 @@ pub fn colour(kind: &PartType) -> Material {
     }
 }
 
-/// A part in its own frame: its middle at the origin, X down as it lies, Z along it.
+/// A part in its own frame: origin at its middle, X down as the part lies, Z along it.
 #[must_use]
 pub fn mesh(kind: &PartType) -> Mesh {
     let mut mesh = Mesh::default();
@@ -42,7 +42,7 @@ pub fn mesh(kind: &PartType) -> Mesh {
         mesh.rod(material, at(-half), at(half), radius, EDGE, ROUND);
         return mesh;
     }
-    // A tool in its holder: the flange and a ring in the colour of tools, the cutter ahead of it.
+    // A tool in its holder: the flange with a ring in the colour of tools, and the cutter in front.
     mesh.rod(Steel, at(-half), at(half), radius, EDGE, ROUND);
     mesh.rod(material, at(-half + 0.5), at(-half + 1.3), radius + 0.02, 0.0, ROUND);
     mesh.rod(Bright, at(half - 0.9), at(half - 0.6), radius + 0.015, 0.0, ROUND);

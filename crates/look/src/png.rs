@@ -1,34 +1,34 @@
-//! Small pictures as PNG: a palette, and deflate with fixed codes that knows two kinds of repetition, within a row and of the
-//! row above. That is all that a drawn picture needs.
+//! Writes small pictures as PNG: with a palette, and deflate with fixed codes and matches at two distances only: the
+//! previous byte and the row above. This is enough for drawn pictures.
 
-/// Longest match of deflate.
+/// Longest match that deflate can encode.
 const LONGEST: usize = 258;
-/// Longest match whose code has no extra bits, but for [`LONGEST`].
+/// Longest match whose code has no extra bits, except [`LONGEST`].
 const PLAIN: usize = 10;
 
 /// A picture of at most 144 colours.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Pixels across.
+    /// Width, pixels.
     pub width: usize,
-    /// Numbers of colours, row by row from the top.
+    /// Palette indices, row by row from the top.
     pub pixels: Vec<u8>,
 }
 
 impl Picture {
-    /// The file. `palette` has red, green, blue of each colour; the width is from 128 to 191 pixels.
+    /// The picture as a PNG file. `palette` has red, green, blue of each colour; the width must be 128 to 191 pixels.
     #[must_use]
     pub fn png(&self, palette: &[[u8; 3]]) -> Vec<u8> {
         let mut raw = Vec::with_capacity(self.pixels.len() + self.pixels.len() / self.width.max(1));
         for row in self.pixels.chunks(self.width) {
-            // No filter.
+            // Filter type 0: none.
             raw.push(0);
             raw.extend_from_slice(row);
         }
         let height = self.pixels.len() / self.width.max(1);
         let mut head = Vec::new();
         [self.width, height].iter().for_each(|size| head.extend_from_slice(&(*size as u32).to_be_bytes()));
-        // Eight bits, palette, deflate, adaptive filters, not interlaced.
+        // Bit depth 8, palette colour, deflate, adaptive filtering, no interlace.
         head.extend_from_slice(&[8, 3, 0, 0, 0]);
         let mut file = b"\x89PNG\r\n\x1a\n".to_vec();
         chunk(b"IHDR", &head, &mut file);
@@ -62,7 +62,7 @@ fn adler32(bytes: &[u8]) -> u32 {
     b << 16 | a
 }
 
-/// Bits, the first in the lowest place of a byte.
+/// A bit writer; the first bit goes to the lowest place of a byte.
 #[derive(Default)]
 struct Bits {
     bytes: Vec<u8>,
@@ -80,21 +80,21 @@ impl Bits {
         self.used = (self.used + 1) % 8;
     }
 
-    /// A number, its lowest bit first.
+    /// Writes a number, lowest bit first.
     fn number(&mut self, value: u32, bits: u32) {
         (0..bits).for_each(|at| self.bit(value >> at));
     }
 
-    /// A code, its highest bit first.
+    /// Writes a Huffman code, highest bit first.
     fn code(&mut self, value: u32, bits: u32) {
         (0..bits).rev().for_each(|at| self.bit(value >> at));
     }
 }
 
-/// Data as zlib has it; `stride` from 129 to 192 is the distance of what is above.
+/// Compresses `raw` to a zlib stream; `stride`, 129 to 192, is the distance in bytes to the row above.
 fn zlib(raw: &[u8], stride: usize) -> Vec<u8> {
     let mut bits = Bits::default();
-    // The last block, with fixed codes.
+    // The last block, with fixed Huffman codes.
     bits.number(1, 1);
     bits.number(1, 2);
     let mut at = 0;
@@ -139,7 +139,7 @@ fn zlib(raw: &[u8], stride: usize) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// What [`zlib`] packed.
+    /// Decompresses the output of [`zlib`].
     fn unpacked(data: &[u8]) -> Vec<u8> {
         let body = &data[2..data.len() - 4];
         let mut at = 0;

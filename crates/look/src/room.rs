@@ -1,6 +1,6 @@
-//! What stands: floor, fence, benches, trays, holsters, and the cabinets behind the robot.
+//! Meshes of fixed things: floor, fence, benches, trays, holsters, and the cabinets behind the robot.
 //!
-//! Every block of the description is covered by its own box. What else is here stands where the arm cannot reach.
+//! The mesh of a block contains the block's own box. All other meshes are out of the arm's reach.
 
 use geometry::frame::{Frame, Vector};
 use plant::{CellDescription, description::Kind, scene::Block};
@@ -14,18 +14,18 @@ use crate::{
     mesh::{Mesh, ROUND, SMALL, count},
 };
 
-/// Edges of what parts lie on and lean against, in.
+/// Chamfer of surfaces that parts lie on or lean against, in.
 const EDGE: f64 = 0.03;
-/// Edges of what nothing should touch, in.
+/// Chamfer of surfaces that nothing should touch, in.
 const BEVEL: f64 = 0.25;
-/// What a cover stands over the body under it, in: two faces in one plane would flicker.
+/// Height of a cover above the body under it, in: two faces in one plane would flicker.
 const PAINT: f64 = 0.015;
-/// Height of the spindle over the top of the jaws, in.
+/// Height of the spindle above the top of the jaws, in.
 const SPINDLE: f64 = 10.0;
-/// Shares of half the floor that the fence leaves to the left, to the right, behind and in front.
+/// The fenced area, as shares of half the floor: left, right, back and front border.
 const YARD: [f64; 4] = [-0.68, 0.92, 0.44, -0.78];
 
-/// What stands still, by groups that can be switched off: all in world coordinates.
+/// The models of the fixed things in world coordinates, in groups that a viewer can hide.
 #[must_use]
 pub fn models(cell: &CellDescription, blocks: &[&Block]) -> Vec<Model> {
     const GROUPS: [&str; 7] = ["floor", "fence", "base", "machine", "trays", "benches", "holsters"];
@@ -55,7 +55,7 @@ pub fn models(cell: &CellDescription, blocks: &[&Block]) -> Vec<Model> {
     named.map(|(name, mesh)| Model::standing(name, mesh)).collect()
 }
 
-/// The group of a block, and what it looks like in its own frame.
+/// The group of a block, and its mesh in its own frame.
 fn look(cell: &CellDescription, block: &Block) -> (&'static str, Mesh) {
     let boxed = |material, edge| {
         let mut mesh = Mesh::default();
@@ -90,7 +90,7 @@ fn look(cell: &CellDescription, block: &Block) -> (&'static str, Mesh) {
     }
 }
 
-/// A piece of a tray; on its floor lines between the sectors.
+/// A block of a tray; the floor has lines between the sectors.
 fn tray(block: &Block, floor: bool) -> Mesh {
     let mut mesh = Mesh::default();
     let [x, y, z] = (block.size / 2.0).into();
@@ -105,7 +105,7 @@ fn tray(block: &Block, floor: bool) -> Mesh {
     mesh
 }
 
-/// A block on the pallet to which work is clamped.
+/// The block on the pallet that work is clamped to.
 fn tower(block: &Block) -> Mesh {
     let mut mesh = Mesh::default();
     let [x, y, z] = (block.size / 2.0).into();
@@ -178,20 +178,20 @@ fn stand(block: &Block) -> Mesh {
     mesh
 }
 
-/// A post from the floor up to what would float without it.
+/// Adds a post from the floor up to an object that would otherwise float.
 fn post(mesh: &mut Mesh, under: &Vector, floor: f64) {
     mesh.rod(Slate, [under.x, under.y, floor], [under.x, under.y, under.z], 1.6, 0.0, ROUND);
     mesh.rod(Charcoal, [under.x, under.y, floor], [under.x, under.y, floor + 0.8], 4.2, 0.2, ROUND);
 }
 
-/// The yard's borders on a floor: left, right, back, front.
+/// Borders of the fenced area on a floor: left, right, back, front, inches.
 fn yard(floor: &Block) -> [f64; 4] {
     let (middle, half) = (floor.frame.position, floor.size / 2.0);
     let at = |share: f64, axis: usize| middle[axis] + share * half[axis];
     [at(YARD[0], 0), at(YARD[1], 0), at(YARD[2], 1), at(YARD[3], 1)]
 }
 
-/// Lines on the floor: the border of the yard, and a hatched strip where people come in.
+/// Lines on the floor: the border of the fenced area, and a hatched strip at the entrance.
 fn paint(mesh: &mut Mesh, floor: &Block, top: f64) {
     let [left, right, back, front] = yard(floor);
     let high = top + 0.08;
@@ -218,7 +218,7 @@ fn paint(mesh: &mut Mesh, floor: &Block, top: f64) {
     }
 }
 
-/// Fence behind and on the left, a light curtain in front; on the right stands the machine.
+/// Fence at the back and on the left, light curtain in front; the machine closes the right side.
 fn fence(mesh: &mut Mesh, floor: &Block, top: f64) {
     const HIGH: f64 = 66.0;
     let [left, right, back, front] = yard(floor);
@@ -258,7 +258,7 @@ fn fence(mesh: &mut Mesh, floor: &Block, top: f64) {
     }
 }
 
-/// Behind the robot, where its base does not turn to: the controller and the hydraulic power unit.
+/// Behind the robot, out of the base's range: the controller and the hydraulic power unit.
 fn cabinets(mesh: &mut Mesh, base: &Block, top: f64) {
     let [x, y] = [base.frame.position.x, base.frame.position.y + base.size.y / 2.0 + 26.0];
     let mut at = Mesh::default();

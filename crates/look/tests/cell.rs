@@ -1,4 +1,4 @@
-//! The looks of the shipped cell: they cover what collides, they are glTF, and they are small.
+//! Tests the meshes of the shipped cell: they cover the collision bodies, are valid glTF, and are small.
 
 use std::{collections::BTreeMap, f64::consts::TAU};
 
@@ -15,7 +15,7 @@ use plant::{
 };
 use rapier3d_f64::prelude::{Pose, TypedShape};
 
-/// A point that lies this far inside a body must be inside its look, in: edges are broken by less.
+/// A point this far inside a collision body must be inside its mesh, in; chamfers are smaller.
 const DEPTH: f64 = 0.05;
 
 fn description() -> CellDescription {
@@ -33,7 +33,7 @@ fn cell(description: &CellDescription) -> Cell {
     cell
 }
 
-/// Where every link is, in the world.
+/// The frame of each link in the world.
 fn frames(cell: &Cell) -> BTreeMap<String, Frame> {
     let mut frames = BTreeMap::from([("world".to_owned(), Frame::identity())]);
     for link in cell.links().into_iter().chain(cell.fixed_links()) {
@@ -45,7 +45,7 @@ fn frames(cell: &Cell) -> BTreeMap<String, Frame> {
     frames
 }
 
-/// A closed surface in the world, with the box around it.
+/// A closed surface in world coordinates, with its bounding box.
 struct Solid {
     triangles: Vec<[Vector; 3]>,
     low: Vector,
@@ -68,7 +68,7 @@ fn solids(models: &[Model], frames: &BTreeMap<String, Frame>) -> Vec<Solid> {
 }
 
 impl Solid {
-    /// How often the surface goes around a point: the solid angles of its triangles (van Oosterom and Strackee).
+    /// Winding number of the surface about a point, from the solid angles of its triangles (van Oosterom and Strackee).
     fn winding(&self, point: &Vector) -> f64 {
         if (0..3).any(|i| point[i] < self.low[i] || point[i] > self.high[i]) {
             return 0.0;
@@ -83,7 +83,7 @@ impl Solid {
     }
 }
 
-/// Points just inside the surface of a body, in.
+/// Points slightly inside the surface of a body, inches.
 fn skin(body: &Body) -> Vec<Vector> {
     const STEPS: [f64; 5] = [-0.9, -0.45, 0.0, 0.45, 0.9];
     let mut points = Vec::new();
@@ -182,7 +182,7 @@ fn each_look_belongs_to_a_link_and_has_closed_surfaces() {
         assert!(models.iter().any(|model| model.frame == link), "{link} has no look");
     }
     for (solid, at) in solids(&models, &frames).iter().zip(0..) {
-        // Every edge is run through as often one way as the other.
+        // Each edge occurs equally often in both directions.
         let mut edges: BTreeMap<[[i64; 3]; 2], i64> = BTreeMap::new();
         let key = |point: &Vector| [0, 1, 2].map(|i| (point[i] * 1e5).round() as i64);
         for [a, b, c] in &solid.triangles {

@@ -1,4 +1,4 @@
-//! A run that counts its ticks, and an operator who asks it: both sides of a session in one process.
+//! A run that counts its ticks, and an operator that sends requests: both sides of a session in one process.
 //! `cargo run --release -p operator --example session`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Ok([client.ask("tick")?, client.ask("dance")?])
     });
 
-    // The run: between two ticks it takes what has come, and never waits for anybody.
+    // The run: handles the received events between two ticks, without waiting.
     for tick in 1.. {
         while let Some(given) = listener.try_next() {
             println!("tick {tick}: {} from {}", given.event, given.source);

@@ -1,4 +1,4 @@
-//! The side of a console or a script.
+//! The client's side of a session: a console or a script.
 
 use std::{
     any::Any,
@@ -10,36 +10,36 @@ use std::{
 
 use crate::protocol::{self, Answer, GREETING, LINE, Lines, Name, ProtocolError};
 
-/// A run answers between two ticks; a second is 25 of them.
+/// Time limit for an answer: the run answers between two ticks, and a second has 25.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Why a run cannot be reached, or a request cannot be made.
+/// Errors of a session with a run.
 #[derive(Debug, thiserror::Error)]
 pub enum ClientError {
-    /// The run does not let operators connect.
+    /// The run does not accept operators.
     #[error(
         "no operator can connect to the run: {0}; it must run on the 40 ms grid, with --operator owner, as the same user"
     )]
     Unreachable(#[source] io::Error),
-    /// The connection is lost.
+    /// The connection has broken.
     #[error("the connection to the run is lost: {0}")]
     Lost(#[from] io::Error),
     /// The run has ended the session.
     #[error("the run has ended the session")]
     Ended,
-    /// The run has ended the session, and says why.
+    /// The run has refused or ended the session, with a reason.
     #[error("the run has ended the session: {0}")]
     Refused(String),
-    /// The answer is not from a run.
+    /// The answer does not follow the protocol: the other side is not a run.
     #[error(transparent)]
     Protocol(#[from] ProtocolError),
-    /// The run does not answer.
+    /// The run has not answered in time.
     #[error("the run has not answered within {} s", PATIENCE.as_secs())]
     Silent,
-    /// A line that cannot be sent.
+    /// The line is empty, too long, or has characters that are not printable.
     #[error("a line of 1 to {} printable bytes was expected, found {found}", LINE - 11)]
     Line {
-        /// Bytes of the line.
+        /// Length found, bytes.
         found: usize,
     },
 }
@@ -51,23 +51,23 @@ pub struct Client {
     lines: Lines,
     number: u32,
     run: String,
-    /// What carries the stream to another machine: it ends after it.
+    /// Keeps the transport of the stream to another machine open; dropped after the stream.
     _carrier: Option<Box<dyn Any + Send>>,
 }
 
 impl Client {
-    /// Begin a session under a name.
+    /// Begins a session under a name.
     ///
     /// # Errors
-    /// [`ClientError`].
+    /// [`ClientError`] if the run cannot be reached or refuses the session.
     pub fn connect(path: &Path, name: &Name) -> Result<Self, ClientError> {
         Self::begin(UnixStream::connect(path).map_err(ClientError::Unreachable)?, None, name)
     }
 
-    /// Begin a session over a stream to a run elsewhere, and keep what carries it until the session is over.
+    /// Begins a session over a stream to a remote run, and keeps its transport `carrier` open until the session ends.
     ///
     /// # Errors
-    /// [`ClientError`].
+    /// [`ClientError`] if the run cannot be reached or refuses the session.
     pub fn over(stream: UnixStream, carrier: impl Any + Send, name: &Name) -> Result<Self, ClientError> {
         Self::begin(stream, Some(Box::new(carrier)), name)
     }
@@ -80,7 +80,7 @@ impl Client {
         stream.set_write_timeout(Some(PATIENCE))?;
         let mut client =
             Self { stream, lines: Lines::default(), number: 0, run: String::new(), _carrier: carrier };
-        // A run that refuses at once may have closed the connection by now; what it has said can still be read.
+        // A run that refuses at once can already have closed the connection; its reason can still be read.
         let sent = client.write(&format!("hello {name}\n"));
         let said = client.wait_for_line(Instant::now() + PATIENCE);
         let greeting = said.map_err(|error| sent.err().unwrap_or(error))?;
@@ -100,13 +100,13 @@ impl Client {
         &self.run
     }
 
-    /// Send a request; its number comes back with the answer.
+    /// Sends a request; returns its number, which the answer repeats.
     ///
     /// # Errors
-    /// [`ClientError`].
+    /// [`ClientError`] if the line is invalid or the connection is lost.
     pub fn send(&mut self, line: &str) -> Result<u32, ClientError> {
         let line = line.trim();
-        // Ten digits and a blank stand before it.
+        // A number of up to ten digits and a blank precede the line.
         if line.is_empty() || line.len() > LINE - 11 || line.chars().any(char::is_control) {
             return Err(ClientError::Line { found: line.len() });
         }
@@ -115,18 +115,18 @@ impl Client {
         Ok(self.number)
     }
 
-    /// Say that the operator is still there.
+    /// Sends an empty line, which shows that the operator is still present.
     ///
     /// # Errors
-    /// [`ClientError`].
+    /// [`ClientError`] if the connection is lost.
     pub fn keep_alive(&mut self) -> Result<(), ClientError> {
         self.write("\n")
     }
 
-    /// An answer, if one has come.
+    /// Returns an answer if one has arrived. Does not wait.
     ///
     /// # Errors
-    /// [`ClientError`]; a run that has ended is one.
+    /// [`ClientError`] if the connection is lost or the run has ended.
     pub fn poll(&mut self) -> Result<Option<Answer>, ClientError> {
         self.stream.set_nonblocking(true)?;
         let read = self.read();
@@ -140,10 +140,10 @@ impl Client {
         }
     }
 
-    /// Send a request and wait for its answer.
+    /// Sends a request and waits for its answer.
     ///
     /// # Errors
-    /// [`ClientError`]. That the run refuses the request is no error here.
+    /// [`ClientError`] if there is no answer. A refusal by the run is not an error; it is the inner result.
     pub fn ask(&mut self, line: &str) -> Result<Result<String, String>, ClientError> {
         let number = self.send(line)?;
         let deadline = Instant::now() + PATIENCE;
@@ -158,7 +158,7 @@ impl Client {
 
     fn answer(&self, line: &str) -> Result<Answer, ClientError> {
         match protocol::answer(line)? {
-            // Requests are counted from 1.
+            // Requests are numbered from 1.
             Answer { number: 0, verdict: Err(why) } => Err(ClientError::Refused(why)),
             answer => Ok(answer),
         }
@@ -168,7 +168,7 @@ impl Client {
         Ok(self.stream.write_all(line.as_bytes())?)
     }
 
-    /// Read what has arrived; false at the end of the session.
+    /// Reads the bytes that have arrived; returns false at the end of the session.
     fn read(&mut self) -> io::Result<bool> {
         let mut bytes = [0; 512];
         let count = self.stream.read(&mut bytes)?;

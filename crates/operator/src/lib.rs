@@ -6,7 +6,7 @@
 //! ```
 //!
 //! * [`protocol`]: the lines of a session, without I/O;
-//! * [`Listener`]: the side of the run, one thread a session; its [`Entrance`] is for a network;
+//! * [`Listener`]: the run's side, with one thread per session; its [`Entrance`] admits operators from a network;
 //! * [`Client`]: the side of a console or a script.
 //!
 //! The run defines the meaning of the lines.

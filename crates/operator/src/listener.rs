@@ -1,4 +1,4 @@
-//! The side of the run.
+//! The run's side of the sessions.
 
 use std::{
     fs, io,
@@ -24,26 +24,26 @@ use rustix::{
 
 use crate::protocol::{self, Answer, Event, GREETING, Lines, Name, ProtocolError, SILENCE};
 
-/// Sessions at a time.
+/// Greatest number of open sessions.
 const SESSIONS: usize = 8;
-/// Events that wait for the next tick. A session that sends more waits.
+/// Number of events that can wait for the next tick. A session that sends more is blocked.
 const QUEUE: usize = 64;
-/// Time limit for the first line of a session, with its name.
+/// Time limit for the first line of a session, which contains its name.
 const HELLO: Duration = Duration::from_secs(2);
 
-/// An event of a session, as the run gets it.
+/// An event of a session, as delivered to the run.
 #[derive(Debug)]
 pub struct Given {
-    /// Who.
+    /// Name of the session.
     pub source: Name,
-    /// What.
+    /// The event.
     pub event: Event,
-    /// Where the answer to a request goes.
+    /// Number of the request and stream for its answer; `None` if the event is not a request.
     reply: Option<(u32, Arc<UnixStream>)>,
 }
 
 impl Given {
-    /// Answer the request, if it is one. This does not wait: a session that does not take its answers ends.
+    /// Answers the request, if the event is one. Does not wait: a session that does not read its answers is ended.
     pub fn answer(self, verdict: Result<String, String>) {
         let Some((number, stream)) = self.reply else { return };
         let line = format!("{}\n", Answer { number, verdict });
@@ -53,21 +53,21 @@ impl Given {
     }
 }
 
-/// Lets operators connect to a run, until it is dropped.
+/// Accepts operators of a run until it is dropped.
 pub struct Listener {
     path: PathBuf,
     events: Receiver<Given>,
     sessions: Arc<Sessions>,
 }
 
-/// The sessions that are open.
+/// The streams of the open sessions.
 type Streams = Mutex<Vec<Arc<UnixStream>>>;
 
 impl Listener {
-    /// Listen at a path, which only this user may use. Its directory must be this user's alone.
+    /// Listens at a path, with access for this user only. Its directory must belong to this user alone.
     ///
     /// # Errors
-    /// If the socket or the thread cannot be made.
+    /// The error of the operating system if the socket or the thread cannot be created.
     pub fn start(path: &Path, run: &str) -> io::Result<Self> {
         let socket = UnixListener::bind(path)?;
         fs::set_permissions(path, fs::Permissions::from_mode(0o600))?;
@@ -85,19 +85,19 @@ impl Listener {
         Ok(Self { path: path.to_owned(), events, sessions })
     }
 
-    /// Where operators of a network come in.
+    /// The entrance for operators from a network.
     #[must_use]
     pub fn entrance(&self) -> Entrance {
         Entrance { sessions: Arc::clone(&self.sessions) }
     }
 
-    /// The next event, if one has come.
+    /// Returns the next event if there is one. Does not wait.
     #[must_use]
     pub fn try_next(&self) -> Option<Given> {
         self.events.try_recv().ok()
     }
 
-    /// Where it listens.
+    /// Path of the socket.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -108,7 +108,7 @@ impl Drop for Listener {
     fn drop(&mut self) {
         self.sessions.stop.store(true, Ordering::Relaxed);
         lock(&self.sessions.streams).iter().for_each(|stream| end(stream));
-        // The thread sees `stop` with the next connection.
+        // The thread checks `stop` at the next connection.
         let _ = UnixStream::connect(&self.path);
         let _ = fs::remove_file(&self.path);
     }
@@ -118,29 +118,29 @@ fn lock(streams: &Streams) -> std::sync::MutexGuard<'_, Vec<Arc<UnixStream>>> {
     streams.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Send a line whole and at once, or not at all.
+/// Sends a line completely without waiting, or fails.
 fn say(stream: &UnixStream, line: &str) -> io::Result<()> {
     let sent = send(stream, line.as_bytes(), SendFlags::DONTWAIT | SendFlags::NOSIGNAL)?;
     if sent == line.len() { Ok(()) } else { Err(io::ErrorKind::WriteZero.into()) }
 }
 
-/// End reading and writing; the stream may be closed already.
+/// Ends reading and writing; the stream may already be closed.
 fn end(stream: &UnixStream) {
     let _ = stream.shutdown(std::net::Shutdown::Both);
 }
 
-/// Opens sessions for operators that were authenticated otherwise than by their user, as by a certificate.
+/// Opens sessions for operators that were authenticated by other means than their user, for example by a certificate.
 #[derive(Clone)]
 pub struct Entrance {
     sessions: Arc<Sessions>,
 }
 
 impl Entrance {
-    /// Begin a session, and return the other end of its stream. In the log its name begins with `netN.`, N counted from
-    /// 1, so that no other session has the same name.
+    /// Begins a session and returns the other end of its stream. The run sees its name with the prefix `netN.`, N
+    /// counted from 1, so that no two sessions have the same name.
     ///
     /// # Errors
-    /// What the system says, or that the run is over.
+    /// The error of the operating system, or an error if the run is over.
     pub fn enter(&self) -> io::Result<UnixStream> {
         if self.sessions.stop.load(Ordering::Relaxed) {
             return Err(io::Error::other("the run is over"));
@@ -158,25 +158,25 @@ struct Sessions {
     sender: SyncSender<Given>,
     stop: AtomicBool,
     streams: Streams,
-    /// How many are open.
+    /// Number of open sessions.
     open: AtomicUsize,
-    /// How many have come by an entrance.
+    /// Number of sessions begun through an entrance.
     entered: AtomicU32,
 }
 
 impl Sessions {
-    /// The thread that lets sessions in.
+    /// Accepts sessions; runs in its own thread.
     fn accept(self: Arc<Self>, socket: &UnixListener) {
         for stream in socket.incoming() {
             if self.stop.load(Ordering::Relaxed) {
                 return;
             }
-            // A client that has left again is no reason to refuse the next one.
+            // A client that disconnects early must not stop the listener.
             let Ok(stream) = stream else {
                 thread::sleep(SILENCE);
                 continue;
             };
-            // If the thread cannot be started, the client sees the end of its session.
+            // If the thread cannot start, the session is closed.
             let stream = Arc::new(stream);
             let _ = match check_user(&stream) {
                 Ok(()) => self.admit(stream, String::new()),
@@ -211,12 +211,12 @@ impl Sessions {
     }
 }
 
-/// A line without a number: no request is answered by it.
+/// An answer with number 0, which belongs to no request.
 fn refusal(why: &str) -> String {
     format!("{}\n", Answer { number: 0, verdict: Err(why.to_owned()) })
 }
 
-/// Refuse a session of another user.
+/// Refuses sessions of other users.
 fn check_user(stream: &UnixStream) -> io::Result<()> {
     let (expected, found) = (geteuid(), sockopt::socket_peercred(stream)?.uid);
     if expected == found {
@@ -226,21 +226,21 @@ fn check_user(stream: &UnixStream) -> io::Result<()> {
     Err(io::Error::new(io::ErrorKind::PermissionDenied, why))
 }
 
-/// A session, in a thread of its own.
+/// A session, which runs in its own thread.
 struct Session {
     stream: Arc<UnixStream>,
     lines: Lines,
     sender: SyncSender<Given>,
     greeting: String,
-    /// What stands in front of its name.
+    /// Prefix of the session's name.
     origin: String,
 }
 
 /// Why a session ends.
 enum End {
-    /// It or the run has ended.
+    /// The client or the run has ended the session.
     Closed,
-    /// It has broken the protocol.
+    /// The client has violated the protocol.
     Wrong(ProtocolError),
 }
 
@@ -259,7 +259,7 @@ impl Session {
             ended
         });
         if let End::Wrong(why) = end_of_session {
-            // The client may have gone.
+            // The client may already have disconnected.
             let _ = say(&self.stream, &refusal(&why.to_string()));
         }
         end(&self.stream);
@@ -294,7 +294,7 @@ impl Session {
         }
     }
 
-    /// The next line. `silent` is called when nothing has come within the time limit.
+    /// Reads the next line. Calls `silent` whenever nothing has arrived within the time limit.
     fn line(&mut self, mut silent: impl FnMut() -> Result<(), End>) -> Result<String, End> {
         let mut bytes = [0; 512];
         loop {

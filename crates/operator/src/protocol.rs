@@ -1,26 +1,26 @@
-//! The lines of a session.
+//! The lines of a session, as text.
 //!
 //! | direction | line | meaning |
 //! |---|---|---|
 //! | to the run | `hello NAME` | first line: name of the operator, 1 to 24 letters, digits, `-`, `_` and `.` |
 //! | to the run | `NUMBER LINE` | a request; the number comes back with its answer |
-//! | to the run | an empty line | the operator is still there |
+//! | to the run | an empty line | the operator is still present |
 //! | from the run | `rcs-operator 1 RUN` | answer to `hello` |
-//! | from the run | `NUMBER ok TEXT` | the request was carried out in the tick that TEXT begins with |
-//! | from the run | `NUMBER refused TEXT` | it was not, and why |
+//! | from the run | `NUMBER ok TEXT` | the request was executed in the tick that TEXT begins with |
+//! | from the run | `NUMBER refused TEXT` | the request was refused; TEXT is the reason |
 //!
 //! A line ends with a line feed and has at most [`LINE`] bytes of printable UTF-8 before it. A line that breaks these
 //! rules ends the session.
 
 use std::{fmt, str::FromStr, time::Duration};
 
-/// Bytes of a line without its end.
+/// Greatest length of a line without its line feed, bytes.
 pub const LINE: usize = 240;
 /// First word of the run's first line, and the version of the protocol.
 pub const GREETING: &str = "rcs-operator 1";
-/// A session that holds a stick or a button has to send something in this time, or both are released.
+/// A session that holds a stick or a button must send something within this time, or both are released.
 pub const SILENCE: Duration = Duration::from_millis(250);
-/// Bytes of a name.
+/// Greatest length of a name, bytes.
 const NAME: usize = 24;
 
 /// The name of a session.
@@ -34,7 +34,7 @@ impl Name {
         &self.0
     }
 
-    /// The name with where it comes from in front, legal characters of one byte, cut to its length.
+    /// The name with the prefix `origin`, truncated to the greatest length; all characters of a name are ASCII.
     pub(crate) fn from(self, origin: &str) -> Self {
         let mut whole = format!("{origin}{self}");
         whole.truncate(NAME);
@@ -48,7 +48,7 @@ impl fmt::Display for Name {
     }
 }
 
-/// A name that is not allowed.
+/// Error of a name that is not allowed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the name of an operator has 1 to {NAME} letters, digits, -, _ and .; found {0:?}")]
 pub struct NameError(String);
@@ -70,17 +70,17 @@ impl FromStr for Name {
 /// An event of a session.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// It begins.
+    /// The session has begun.
     Connected,
-    /// It sends a line.
+    /// The session has sent a line.
     Line(String),
-    /// Nothing has come for [`SILENCE`].
+    /// Nothing has arrived for [`SILENCE`].
     Silent,
-    /// It ends.
+    /// The session has ended.
     Disconnected,
 }
 
-/// Text in a log of events that are not lines; no line of a session begins like this.
+/// Log texts of the events that are not lines; no line of a session begins like these.
 const CONNECTED: &str = "(connected)";
 const SILENT: &str = "(silent)";
 const DISCONNECTED: &str = "(disconnected)";
@@ -112,7 +112,7 @@ impl From<&str> for Event {
 pub struct Answer {
     /// Number of the request.
     pub number: u32,
-    /// If it was carried out: the tick and a text; else why not.
+    /// Tick and text if the request was executed, else the reason of the refusal.
     pub verdict: Result<String, String>,
 }
 
@@ -122,48 +122,48 @@ impl fmt::Display for Answer {
             Ok(text) => ("ok", text),
             Err(text) => ("refused", text),
         };
-        // A refusal may quote what was said, and a report may have several lines.
+        // A refusal can quote received text, and a report can have several lines.
         let text = text.replace(|c: char| c.is_control(), " ");
         write!(f, "{} {word} {}", self.number, text.trim_end())
     }
 }
 
-/// Why a line breaks the protocol.
+/// Violations of the protocol.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProtocolError {
-    /// The first line must be the name of the session.
+    /// The first line is not `hello NAME`.
     #[error("hello NAME was expected as the first line; found {0:?}")]
     NoHello(String),
-    /// Its name is not allowed.
+    /// The name of the session is not allowed.
     #[error(transparent)]
     Name(#[from] NameError),
-    /// A request without a number, or without words.
+    /// A request has no number or no text.
     #[error("a number and a line were expected, as in `7 stop`; found {0:?}")]
     NoRequest(String),
-    /// A line that does not end.
+    /// A line is too long or does not end.
     #[error("a line of at most {LINE} bytes was expected")]
     TooLong,
-    /// Bytes that are no text.
+    /// A line is not printable UTF-8.
     #[error("printable UTF-8 was expected")]
     NoText,
-    /// An answer of another program.
+    /// An answer does not have the form of a run's answer.
     #[error("an answer of a run was expected; found {0:?}")]
     NoAnswer(String),
 }
 
-/// The name of a session, from its first line.
+/// Parses the first line of a session; returns its name.
 ///
 /// # Errors
-/// [`ProtocolError`].
+/// [`ProtocolError`] if the line is not `hello NAME`, or the name is not allowed.
 pub fn hello(line: &str) -> Result<Name, ProtocolError> {
     let name = line.strip_prefix("hello ").ok_or_else(|| ProtocolError::NoHello(line.to_owned()))?;
     Ok(name.parse()?)
 }
 
-/// A request with its number; none if the line only says that the operator is there.
+/// Parses a request; returns its number and text, or `None` for an empty line.
 ///
 /// # Errors
-/// [`ProtocolError::NoRequest`].
+/// [`ProtocolError::NoRequest`] if number or text is missing.
 pub fn request(line: &str) -> Result<Option<(u32, &str)>, ProtocolError> {
     if line.is_empty() {
         return Ok(None);
@@ -175,10 +175,10 @@ pub fn request(line: &str) -> Result<Option<(u32, &str)>, ProtocolError> {
         .ok_or_else(|| ProtocolError::NoRequest(line.to_owned()))
 }
 
-/// An answer.
+/// Parses an answer.
 ///
 /// # Errors
-/// [`ProtocolError::NoAnswer`].
+/// [`ProtocolError::NoAnswer`] if the line is not an answer.
 pub fn answer(line: &str) -> Result<Answer, ProtocolError> {
     let unknown = || ProtocolError::NoAnswer(line.to_owned());
     let mut words = line.splitn(3, ' ');
@@ -193,22 +193,22 @@ pub fn answer(line: &str) -> Result<Answer, ProtocolError> {
     Ok(Answer { number, verdict })
 }
 
-/// Cuts a stream of bytes into lines.
+/// Splits a stream of bytes into lines.
 #[derive(Debug, Default)]
 pub struct Lines {
     bytes: Vec<u8>,
 }
 
 impl Lines {
-    /// More bytes of the stream.
+    /// Adds bytes of the stream.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// The next whole line, without its end; none if it has not come yet.
+    /// Returns the next complete line without its line feed; `None` if there is none yet.
     ///
     /// # Errors
-    /// [`ProtocolError::TooLong`], [`ProtocolError::NoText`]: the stream cannot be read on.
+    /// [`ProtocolError::TooLong`] or [`ProtocolError::NoText`]; the rest of the stream cannot be read then.
     pub fn next_line(&mut self) -> Result<Option<String>, ProtocolError> {
         let end = self.bytes.iter().position(|byte| *byte == b'\n');
         if end.unwrap_or(self.bytes.len()) > LINE {

@@ -1,4 +1,4 @@
-//! Sessions over a real socket, kind and hostile ones.
+//! Tests sessions over a real socket, with correct and with hostile clients.
 
 use std::{
     io::{Read as _, Write as _},
@@ -28,7 +28,7 @@ impl Bench {
         Client::connect(&self.path, &name.parse().unwrap()).unwrap()
     }
 
-    /// The next event, which comes within two seconds.
+    /// Waits up to two seconds for the next event.
     fn next(&self) -> Given {
         let started = Instant::now();
         loop {
@@ -46,7 +46,7 @@ impl Bench {
         given
     }
 
-    /// What the run says to a client that does not keep to the protocol, after its greeting.
+    /// The run's answer, after its greeting, to a client that violates the protocol.
     fn said_to(&self, bytes: &[u8]) -> String {
         let mut stream = UnixStream::connect(&self.path).unwrap();
         stream.write_all(bytes).unwrap();
@@ -106,7 +106,7 @@ fn what_breaks_the_protocol_ends_its_session_and_no_other() {
         let said = bench.said_to(bytes);
         assert!(said.contains(why), "{said}");
     }
-    // A session that never says who it is.
+    // A session that never sends its name.
     assert!(bench.said_to(b"").contains("hello NAME was expected"));
     good.send("stop").unwrap();
     loop {
@@ -125,7 +125,7 @@ fn a_client_that_takes_no_answers_does_not_hold_the_run_up() {
     bench.expect("deaf", Event::Connected);
     let started = Instant::now();
     loop {
-        // The session may have been ended.
+        // The session may already have been ended.
         let _ = stream.write_all(b"1 stop\n");
         let given = bench.next();
         if given.event == Event::Disconnected {

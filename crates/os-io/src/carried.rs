@@ -1,7 +1,7 @@
-//! Files that a program carries in itself.
+//! Files that are built into a program.
 //!
-//! A program that was installed runs in any directory: what it needs to read comes with it. A path that begins with
-//! [`PREFIX`] names such a file, for example `shipped:data/cell.toml`; [`files`](crate::files) reads it as any other.
+//! An installed program runs in any directory, so the files that it needs are built into it. A path that begins with
+//! [`PREFIX`] names such a file, for example `shipped:data/cell.toml`; [`files`](crate::files) reads it like any other.
 
 use std::{
     collections::BTreeSet,
@@ -10,31 +10,31 @@ use std::{
     sync::OnceLock,
 };
 
-/// What the path of a carried file begins with.
+/// Prefix of the path of a built-in file.
 pub const PREFIX: &str = "shipped:";
 
-/// A file that the program carries.
+/// A file that is built into the program.
 #[derive(Clone, Copy, Debug)]
 pub struct Carried {
-    /// Its path, without the prefix.
+    /// Path of the file, without the prefix.
     pub path: &'static str,
-    /// What is in it.
+    /// Contents of the file.
     pub bytes: &'static [u8],
 }
 
 static CARRIED: OnceLock<&'static [Carried]> = OnceLock::new();
 
-/// Make files readable under [`PREFIX`], for the whole process. The first call counts.
+/// Makes `files` readable under [`PREFIX`] in the whole process. Later calls have no effect.
 pub fn carry(files: &'static [Carried]) {
     let _ = CARRIED.set(files);
 }
 
-/// The path of a carried file or directory without the prefix; none if the path is one of the file system.
+/// Removes the prefix from the path of a built-in file or directory; `None` for a path of the file system.
 pub(crate) fn inside(path: &Path) -> Option<&str> {
     path.to_str()?.strip_prefix(PREFIX)
 }
 
-/// The bytes of a carried file.
+/// The bytes of a built-in file.
 pub(crate) fn read(path: &str) -> io::Result<&'static [u8]> {
     let found = all().iter().find(|file| file.path == path).map(|file| file.bytes);
     found.ok_or_else(|| {
@@ -43,7 +43,7 @@ pub(crate) fn read(path: &str) -> io::Result<&'static [u8]> {
     })
 }
 
-/// What is directly in a carried directory, with the prefix; none if there is nothing.
+/// Paths, with the prefix, of the entries of a built-in directory; empty if there are none.
 pub(crate) fn list(directory: &str) -> Vec<PathBuf> {
     let below = |file: &Carried| Path::new(file.path).strip_prefix(directory).ok();
     let first = |rest: &'static Path| rest.components().next();

@@ -1,51 +1,51 @@
-//! Lines on standard output and standard error. Nothing here panics.
+//! Writes lines to standard output and standard error. Nothing here panics.
 //!
-//! | for | call | if the reader has gone | if the write fails otherwise |
+//! | for | call | if the reader has closed the pipe | if the write fails otherwise |
 //! |---|---|---|---|
 //! | a message | [`stderr_line!`](crate::stderr_line) | lost | lost |
-//! | a line of a process that goes on working | [`stdout_line!`](crate::stdout_line) | lost | lost |
-//! | the answer of a tool, the result of a run | [`answer`] | no error: it has read enough | an error |
+//! | a line of a process that continues | [`stdout_line!`](crate::stdout_line) | lost | lost |
+//! | the answer of a tool, the result of a run | [`answer`] | no error: the reader has read enough | an error |
 
 use std::{
     fmt::Arguments,
     io::{self, ErrorKind, Write},
 };
 
-/// Write a formatted line to standard error. A line that cannot be written is lost.
+/// Writes a formatted line to standard error. If the write fails, the line is lost.
 #[macro_export]
 macro_rules! stderr_line {
     ($($message:tt)*) => { $crate::console::stderr_line(::std::format_args!($($message)*)) };
 }
 
-/// Write a formatted line to standard output. A line that cannot be written is lost: the process goes on working.
+/// Writes a formatted line to standard output. If the write fails, the line is lost and the process continues.
 #[macro_export]
 macro_rules! stdout_line {
     ($($message:tt)*) => { $crate::console::stdout_line(::std::format_args!($($message)*)) };
 }
 
-/// What [`stderr_line!`](crate::stderr_line) calls.
+/// Function behind [`stderr_line!`](crate::stderr_line).
 pub fn stderr_line(message: Arguments<'_>) {
-    // There is no other place to report it to.
+    // Nowhere is left to report the error to.
     let _ = line(&mut io::stderr().lock(), message);
 }
 
-/// What [`stdout_line!`](crate::stdout_line) calls.
+/// Function behind [`stdout_line!`](crate::stdout_line).
 pub fn stdout_line(message: Arguments<'_>) {
     let mut out = io::stdout().lock();
-    // The line is lost, as the documentation of the macro says.
+    // An error loses the line, as the documentation of the macro says.
     let _ = line(&mut out, message).and_then(|()| out.flush());
 }
 
-/// Write text to standard output, all of it. A reader that has closed the pipe, such as `head`, is no error.
+/// Writes the whole text to standard output. A reader that closes the pipe early, such as `head`, is no error.
 ///
 /// # Errors
-/// What the system says, for example that the disk is full.
+/// The error of the operating system, for example a full disk.
 pub fn answer(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     answered(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
-/// One call of `write` a line: lines of several processes on one terminal do not mix.
+/// Writes a line with one call of `write`, so that lines of several processes on one terminal do not mix.
 fn line(out: &mut impl Write, message: Arguments<'_>) -> io::Result<()> {
     out.write_all(format!("{message}\n").as_bytes())
 }
@@ -61,7 +61,7 @@ fn answered(written: io::Result<()>) -> io::Result<()> {
 mod tests {
     use super::*;
 
-    /// Counts the calls.
+    /// Records each call of `write`.
     struct Calls(Vec<Vec<u8>>);
 
     impl Write for Calls {

@@ -1,8 +1,8 @@
-//! Reading files that a person or another program names.
+//! Reads files that a person or another program names.
 //!
-//! A FIFO keeps a reader waiting until another program writes into it, a terminal until a key is pressed, and
-//! `/dev/zero` has no end. So only regular files are read, and no more of them than the reader can use. Files that the
-//! program carries in itself ([`carried`]) are read likewise.
+//! A FIFO blocks its reader until another program writes to it, a terminal blocks until a key is pressed, and
+//! `/dev/zero` never ends. Therefore only regular files are read, up to a limit of size. Files that are built into the
+//! program ([`carried`]) are read in the same way.
 
 use std::{
     fs::{self, File, FileType, OpenOptions},
@@ -15,15 +15,14 @@ use rustix::fs::OFlags;
 
 use crate::carried;
 
-/// Largest text that a program reads, bytes: task data, jobs, cell descriptions and fault plans have some kilobytes.
+/// Greatest length of a text file, bytes: task data, jobs, cell descriptions and fault plans have some kilobytes.
 pub const TEXT: u64 = 16 << 20;
 
-/// Read a regular file of at most `limit` bytes. Returns at once whatever `path` is.
+/// Reads a regular file of at most `limit` bytes. Never blocks, whatever `path` names.
 ///
 /// # Errors
-/// [`ErrorKind::InvalidInput`] with the kind that was found if it is no regular file,
-/// [`ErrorKind::FileTooLarge`] if it is larger, [`ErrorKind::OutOfMemory`] if there is no memory for it; else
-/// what the system says.
+/// [`ErrorKind::InvalidInput`] with the kind found if `path` is no regular file, [`ErrorKind::FileTooLarge`] if the
+/// file is longer than `limit`, [`ErrorKind::OutOfMemory`] if memory is short; else the error of the operating system.
 pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     if let Some(inside) = carried::inside(path) {
         let bytes = carried::read(inside)?;
@@ -34,7 +33,7 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let length = file.metadata()?.len();
     let mut bytes = Vec::new();
     if length <= limit {
-        // One byte more: a file can grow while it is read.
+        // One byte more than the limit: the file can grow during the read.
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
     }
     within(bytes.len().max(usize::try_from(length).unwrap_or(usize::MAX)), limit)?;
@@ -49,19 +48,19 @@ fn within(length: usize, limit: u64) -> io::Result<()> {
     Err(io::Error::new(ErrorKind::FileTooLarge, why))
 }
 
-/// Whether a path names a directory.
+/// Returns true if a path names a directory.
 #[must_use]
 pub fn is_directory(path: &Path) -> bool {
     carried::inside(path).map_or_else(|| path.is_dir(), |inside| !carried::list(inside).is_empty())
 }
 
-/// Whether a path names a regular file.
+/// Returns true if a path names a regular file.
 #[must_use]
 pub fn is_file(path: &Path) -> bool {
     carried::inside(path).map_or_else(|| path.is_file(), |inside| carried::read(inside).is_ok())
 }
 
-/// Whether a path below a directory still lies in it when all symbolic links are followed.
+/// Returns true if `path` lies in `directory` after all symbolic links are resolved.
 #[must_use]
 pub fn lies_in(path: &Path, directory: &Path) -> bool {
     if carried::inside(directory).is_some() {
@@ -71,10 +70,10 @@ pub fn lies_in(path: &Path, directory: &Path) -> bool {
     real.is_ok_and(|(path, directory)| path.starts_with(directory))
 }
 
-/// The paths of what is in a directory, sorted.
+/// Paths of the entries of a directory, sorted.
 ///
 /// # Errors
-/// What the system says; [`ErrorKind::NotFound`] if the program carries nothing there.
+/// The error of the operating system; [`ErrorKind::NotFound`] if no such directory is built in.
 pub fn list(directory: &Path) -> io::Result<Vec<PathBuf>> {
     let mut paths = match carried::inside(directory) {
         Some(inside) => carried::list(inside),
@@ -87,8 +86,8 @@ pub fn list(directory: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Read a regular file of at most [`TEXT`] bytes of UTF-8, with or without a byte order mark; lines end with
-/// LF, CR LF or CR.
+/// Reads a regular file of at most [`TEXT`] bytes of UTF-8, with or without a byte order mark; lines end with LF, CR LF
+/// or CR.
 ///
 /// # Errors
 /// As [`read`], and [`ErrorKind::InvalidData`] with the first line that is not UTF-8.
@@ -103,12 +102,12 @@ pub fn read_text(path: &Path) -> io::Result<String> {
     Ok(if text.contains('\n') { text.to_owned() } else { text.replace('\r', "\n") })
 }
 
-/// Open a regular file for reading.
+/// Opens a regular file for reading.
 ///
 /// # Errors
 /// As [`read`].
 pub fn open(path: &Path) -> io::Result<File> {
-    // To open some devices has an effect, so the kind is asked for first; then again, because it may have changed.
+    // Opening some devices has side effects, so the kind is checked first, and again afterwards, because it can change.
     expect_regular(fs::metadata(path)?.file_type())?;
     let flags = OFlags::NONBLOCK | OFlags::NOCTTY;
     let file = OpenOptions::new().read(true).custom_flags(flags.bits().cast_signed()).open(path)?;
@@ -116,7 +115,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Open a regular file for writing, and make it if it is not there. What is in it stays.
+/// Opens a regular file for writing and creates it if it does not exist. Does not truncate it.
 ///
 /// # Errors
 /// As [`read`].
@@ -134,10 +133,10 @@ pub fn create(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Refuse what is no regular file.
+/// Returns an error for everything but a regular file.
 ///
 /// # Errors
-/// [`ErrorKind::InvalidInput`] with the kind that was found.
+/// [`ErrorKind::InvalidInput`] with the kind found.
 pub fn expect_regular(kind: FileType) -> io::Result<()> {
     let found = match kind {
         kind if kind.is_file() => return Ok(()),
@@ -207,10 +206,10 @@ mod tests {
         let path = place.path().join("large");
         fs::write(&path, [0; 101]).unwrap();
         assert_eq!(why(&path), "a file of at most 100 bytes was expected, found 101 bytes");
-        // A file with a hole takes no room on the disk, and must take none in memory.
+        // A sparse file takes no room on the disk and must take none in memory.
         File::create(&path).unwrap().set_len(1 << 36).unwrap();
         assert_eq!(read(&path, TEXT).unwrap_err().kind(), ErrorKind::FileTooLarge);
-        // The kernel says of its files that they are empty.
+        // The kernel reports a length of 0 for files in `/proc`.
         assert_eq!(read(Path::new("/proc/self/maps"), 10).unwrap_err().kind(), ErrorKind::FileTooLarge);
     }
 

@@ -1,9 +1,9 @@
-//! Standard output, standard error and files, as the programs use them.
+//! Standard output, standard error and files for the programs of this project.
 //!
-//! A terminal can be closed, a pipe can lose its reader, a disk can be full. `println!` and `eprintln!` panic
-//! then, and a panic ends a run in the middle of a motion. All programs write through [`console`], which does
-//! not panic; clippy denies the macros of the standard library elsewhere. All readers of files that a person
-//! names go through [`files`].
+//! A terminal can be closed, a pipe can lose its reader, a disk can be full. In these cases `println!` and `eprintln!`
+//! panic, and a panic would end a run in the middle of a motion. All programs write through [`console`], which does not
+//! panic; clippy denies the macros of the standard library elsewhere. Everything that reads a file named by a person
+//! uses [`files`].
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! How long `rcs-run check` walks: all ways of all shipped jobs, and all segments of the stored trajectories.
+//! Measures the check of `rcs-run check`: all paths of the shipped jobs, and all segments of the stored trajectories.
 
 #![expect(missing_docs, reason = "criterion_group! makes a public function without a doc comment")]
 

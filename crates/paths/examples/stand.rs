@@ -1,4 +1,4 @@
-//! Whether the robot can stand at a pose of the task data, and 40 in below it:
+//! Checks whether the robot can stand at a pose of the task data, and 40 in below it:
 //! `cargo run --release -p paths --example stand`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]

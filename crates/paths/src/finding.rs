@@ -1,4 +1,4 @@
-//! Results of a flight: its segments and its findings.
+//! The results of a simulated flight: its segments and its findings.
 
 use serde::Serialize;
 
@@ -9,41 +9,41 @@ use crate::{plan::Phase, survey::Passing};
 pub struct Finding {
     /// `path.joint`, `path.contact`, `path.link`, `path.grip`, `path.place` or `path.margin`.
     pub code: &'static str,
-    /// An error: the motion fails or collides; otherwise a warning that it comes near to that.
+    /// True for an error: the motion fails or collides. False for a warning: the motion comes close to that.
     pub error: bool,
-    /// Line of the job, from 1.
+    /// Line number in the job, from 1.
     pub line: u32,
-    /// The problem, where, and by how much.
+    /// Description of the problem: what, where, and by how much.
     pub message: String,
-    /// What to do.
+    /// Suggested remedy.
     pub help: Option<String>,
-    /// Key of equal findings in other walks.
+    /// Identifies the same finding in other walks.
     #[serde(skip)]
     pub key: String,
-    /// Of two equal findings the deeper one is kept.
+    /// Severity: of two findings with the same key, the one with the greater value is kept.
     #[serde(skip)]
     pub depth: f64,
 }
 
-/// A flown segment.
+/// A segment of a flight.
 #[derive(Clone, Debug, Serialize)]
 pub struct Segment {
-    /// The point before.
+    /// Name of the previous point.
     pub from: String,
-    /// The point.
+    /// Name of the point at its end.
     pub to: String,
-    /// depart, trajectory, approach or goal.
+    /// Part of the route: depart, trajectory, approach or goal.
     pub part: &'static str,
-    /// The joint that comes nearest to a limit, and how near, degrees.
+    /// Name of the joint that comes nearest to a limit.
     pub joint: &'static str,
-    /// How near, degrees.
+    /// Margin of that joint, degrees.
     pub margin_deg: f64,
-    /// The closest passing.
+    /// The closest approach of an obstacle; `None` if none comes within the reported distance.
     pub nearest: Option<Passing>,
 }
 
 impl Segment {
-    /// Keep the smaller margins and clearances of this and another flight.
+    /// Keeps the smaller margins and clearances of this and another flight of the segment.
     pub fn merge(&mut self, other: &Self) {
         if other.margin_deg < self.margin_deg {
             (self.joint, self.margin_deg) = (other.joint, other.margin_deg);
@@ -55,17 +55,17 @@ impl Segment {
     }
 }
 
-/// A flown phase.
+/// A phase with the results of its flight.
 #[derive(Clone, Debug, Serialize)]
 pub struct Walked {
     /// The phase.
     pub plan: Phase,
-    /// Its segments, as far as they were flown.
+    /// Segments of the phase, up to the end of the flight.
     pub segments: Vec<Segment>,
 }
 
 impl Walked {
-    /// A phase that is not flown.
+    /// A phase without a flight.
     #[must_use]
     pub const fn of(plan: Phase) -> Self {
         Self { plan, segments: Vec::new() }

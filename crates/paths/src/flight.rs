@@ -1,5 +1,5 @@
-//! Simulated motion through points: Prim's motion at full speed, the limits of the link (A 2.3), the T3's joints with
-//! accumulated roll, and its servos with their lag.
+//! Simulates motion through points: the motion of Prim at full speed, the limits of the link (A 2.3), the joints of the
+//! T3 with accumulated roll, and its servos with their lag.
 
 use depc::{
     Limits as LinkLimits, Plate,
@@ -16,13 +16,13 @@ use plant::{arm::Arm, description::Actuators};
 use rcs_core::tick::TICK_S;
 use taskdata::files::TrajPara;
 
-/// Ticks from passing a through point until Prim has the next goal (docs/design/motion.md "Flying on").
+/// Ticks from passing a through point until Prim has its next goal (docs/design/motion.md "Flying on").
 const FLIES_ON: u32 = 2;
-/// Ticks for which Prim wants to see the robot at rest (docs/design/motion.md "Rest").
+/// Ticks for which Prim must see the robot at rest (docs/design/motion.md "Rest").
 const SETTLES: u32 = 3;
 /// Longest motion, ticks: ten minutes.
 const LONGEST: u32 = 15_000;
-/// Most ticks until the servos come to rest.
+/// Greatest number of ticks until the servos come to rest.
 const LAG: u32 = 100;
 
 /// Why a flight ends before its goal.
@@ -30,33 +30,33 @@ const LAG: u32 = 100;
 pub enum Trouble {
     /// The joints cannot reach the position.
     Joints {
-        /// The problem, with the robot controller's name.
+        /// The problem, with the name that the robot controller uses.
         problem: JointProblem,
-        /// The joint from 0 and how far it would be beyond its limit, degrees; `None` if the position is out of reach.
+        /// Joint from 0, and degrees beyond its limit; `None` if the position is out of reach.
         joint: Option<(usize, f64)>,
-        /// The tool point, world, inches.
+        /// Tool point, inches, world.
         at: [f64; 3],
     },
-    /// The position cannot be coded on the link.
+    /// The position cannot be encoded as DEPC words.
     Words,
-    /// A parameter of the motion is not positive: the motion would never end.
+    /// A parameter of the motion is not positive, so that the motion would never end.
     Parameters,
     /// The motion takes longer than ten minutes.
     Endless,
 }
 
-/// Motion of the robot to a point.
+/// Result of the motion to a point.
 #[derive(Clone, Debug)]
 pub struct Flown {
-    /// Ticks from the point before.
+    /// Ticks since the previous point.
     pub ticks: u32,
-    /// Of these, ticks in which the limits of the link have slowed the robot.
+    /// Number of these ticks in which the limits of the link slowed the robot.
     pub held_back: u32,
-    /// The joint that comes nearest to a limit.
+    /// The joint that comes nearest to a limit, with its margin.
     pub margin: Margin,
 }
 
-/// The robot: the last position sent to its controller, and the joint angles of its arm.
+/// The simulated robot: the last position sent to its controller, and the arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robot {
     position: Position,
@@ -65,7 +65,7 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// A robot at rest at joint angles in radians. `None` if its position cannot be coded on the link.
+    /// A robot at rest at the given joint angles, radians; `None` if its position cannot be encoded as DEPC words.
     #[must_use]
     pub fn standing(actuators: &Actuators, joints: &Joints) -> Option<Self> {
         let plate = Plate::from_frame(&T3.forward_plate(joints), &Plate::default()).ok()?;
@@ -79,19 +79,19 @@ impl Robot {
         self.arm.joints()
     }
 
-    /// The tool frame that was commanded last, world, inches.
+    /// The last commanded tool frame, inches, world.
     #[must_use]
     pub fn tool(&self) -> Frame {
         self.position.tool()
     }
 
-    /// Simulate a tick.
+    /// Simulates one tick of the arm, and calls `look` with its joint angles.
     fn tick(&mut self, look: &mut impl FnMut(&Joints)) {
         self.arm.advance(TICK_S, false, &[]);
         look(self.arm.joints());
     }
 
-    /// Move to a point of Prim as T3 Interface does: as fast as the link allows. Returns the ticks needed.
+    /// Moves to a point of Prim as T3 Interface does: as fast as the link allows. Returns the number of ticks.
     fn command(&mut self, point: &Frame, look: &mut impl FnMut(&Joints)) -> Result<u32, Trouble> {
         for ticks in 1..LONGEST {
             let next = step(&self.position, point, &T3, &LinkLimits::NBS).map_err(|_| Trouble::Words)?;
@@ -111,8 +111,9 @@ impl Robot {
         Err(Trouble::Endless)
     }
 
-    /// Move through points to the last one and come to rest. `look` is called each tick with the number of the point
-    /// and the joint angles of the arm.
+    /// Moves through the points to the last one and comes to rest. Calls `look` in each tick with the index of the
+    /// point and the joint angles of the arm, radians. Returns the results for each point, and why the flight ended
+    /// early.
     pub fn fly(
         &mut self,
         points: &[(Frame, TrajPara)],
@@ -163,14 +164,14 @@ impl Robot {
     }
 }
 
-/// The joint that is farthest beyond a limit at an unreachable position, and by how much, degrees.
+/// The joint that is farthest beyond a limit at an unreachable position, from 0, and degrees beyond it.
 fn beyond(plate: &Plate, near: &Joints) -> Option<(usize, f64)> {
     let joints = T3.inverse(&plate.to_tool(&T3), near).ok()?;
     let margin = T3.margin(&joints);
     (margin.radians < 0.0).then(|| (margin.joint, -margin.radians.to_degrees()))
 }
 
-/// Ticks of Prim's motion from rest at a frame to each of some points, without link and arm.
+/// Number of ticks of Prim's motion from rest at a frame to each point, without the limits of link and arm.
 #[must_use]
 pub fn time(start: &Frame, points: &[(Frame, TrajPara)]) -> Vec<u32> {
     let mut motion = Motion::at_rest(start);

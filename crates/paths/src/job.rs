@@ -1,5 +1,5 @@
-//! The lines of a job in their order: every path is flown, and the state of the cell and the held part are updated
-//! after each.
+//! Walks the lines of a job in order: checks the path of each, and then updates the state of the cell and the held
+//! part.
 
 use geometry::kinematics::T3;
 use interfaces::HwsCommand;
@@ -28,7 +28,7 @@ use crate::{
     walk::Walk,
 };
 
-/// What a walk cannot check.
+/// Limits of the check, as text for reports.
 pub const NOT_CHECKED: [&str; 6] = [
     "where a guarded move ends: joints are checked over its whole length, clearances are not",
     "slip of a part in the fingers, and the position of a part that is dropped or pushed",
@@ -37,10 +37,10 @@ pub const NOT_CHECKED: [&str; 6] = [
     "faults of sensors, valves and the link",
     "the lag of the resolvers; the lag of the servos is included",
 ];
-/// Distance within which the robot counts as being at a location point at the start, in.
+/// Greatest distance from a location point at which the robot counts as being there at the start, in.
 const STANDS: f64 = 0.5;
-/// Positions in its sector that are tried for a part delivered at random: x and y in shares of the greatest offset, and
-/// the angle in degrees. Half a turn makes no difference for two fingers.
+/// Positions checked for a part delivered at random in its sector: x and y as shares of the greatest offset, and the
+/// angle in degrees. Rotations by half a turn are equivalent for two fingers.
 const TRIED: [[f64; 3]; 12] = [
     [0.0, 0.0, 22.5],
     [0.0, 0.0, 45.0],
@@ -56,44 +56,44 @@ const TRIED: [[f64; 3]; 12] = [
     [1.0, 1.0, 95.0],
 ];
 
-/// A walked line of a job.
+/// A line of a job with the results of its check.
 #[derive(Clone, Debug, Serialize)]
 pub struct JobLine {
-    /// Line of the file from 1.
+    /// Line number in the file, from 1.
     pub line: u32,
-    /// The line as written.
+    /// Text of the line.
     pub text: String,
-    /// Its phases.
+    /// Phases of the command.
     pub phases: Vec<Walked>,
-    /// The part that the robot holds after it.
+    /// The part that the robot holds after the line.
     pub holds: Option<String>,
-    /// Number of positions and attitudes of a part that were tried.
+    /// Number of positions of the part that were checked.
     pub tried: usize,
 }
 
 impl JobLine {
-    /// Motion alone, ticks.
+    /// Ticks of motion, without waiting times.
     #[must_use]
     pub fn ticks(&self) -> u32 {
         self.phases.iter().map(|phase| phase.plan.ticks()).sum()
     }
 }
 
-/// A walked job.
+/// A job with the results of its check.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct WalkedJob {
     /// Name of the job.
     pub job: String,
-    /// Its lines with commands.
+    /// Lines with commands.
     pub lines: Vec<JobLine>,
     /// Its findings.
     pub findings: Vec<Finding>,
-    /// Parts that were not walked, and why.
+    /// Parts of the job that were not checked, with the reasons.
     pub not_checked: Vec<String>,
 }
 
 impl WalkedJob {
-    /// The least clearance of the job.
+    /// The least clearance in the job.
     #[must_use]
     pub fn nearest(&self) -> Option<&Passing> {
         let segments = self.lines.iter().flat_map(|line| &line.phases).flat_map(|phase| &phase.segments);
@@ -103,8 +103,8 @@ impl WalkedJob {
     }
 }
 
-/// Walk a job. The task data must be sound, and the job checked against them. `known` has flights of other jobs
-/// in the same cell.
+/// Walks a job. The task data must be valid, and the job checked against them. `known` is the cache of flights in the
+/// same cell.
 #[must_use]
 pub fn walk_job(job: &Job, store: &Store, room: &Room, known: &Known) -> WalkedJob {
     let mut walked = WalkedJob { job: job.name.clone(), ..WalkedJob::default() };
@@ -112,7 +112,7 @@ pub fn walk_job(job: &Job, store: &Store, room: &Room, known: &Known) -> WalkedJ
         walked.not_checked.push("the job: the robot does not start at a location point".to_owned());
         return walked;
     };
-    // A command keeps the data with which it began (docs/design/ownership.md "Reload").
+    // A command keeps the data that were loaded when it began (docs/design/ownership.md "Reload").
     let mut loaded = None;
     let mut interrupted = false;
     for line in &job.steps {
@@ -155,7 +155,7 @@ pub fn walk_job(job: &Job, store: &Store, room: &Room, known: &Known) -> WalkedJ
     walked
 }
 
-/// The robot at the start of a run, at its location point.
+/// The state at the start of a run, with the robot at its location point; `None` if it is not at one.
 fn start<'a>(store: &'a Store, room: &'a Room, known: &'a Known) -> Option<State<'a>> {
     let joints = room.cell().robot.start_joints();
     let tool = T3.forward(&joints);
@@ -170,7 +170,7 @@ fn start<'a>(store: &'a Store, room: &'a Room, known: &'a Known) -> Option<State
     Some(State::new(room, known, Walk::new(store, &location), robot))
 }
 
-/// Walk a command; if a part lies at random in its sector, for a range of positions and attitudes.
+/// Walks a command. If its part lies at random in its sector, several positions of the part are checked.
 fn command_line(
     state: &mut State<'_>,
     command: &HwsCommand,
@@ -204,7 +204,7 @@ fn command_line(
                 "with the part {:.2}, {:.2} in from the middle of its sector, turned by {angle:.1} degrees: ",
                 placement[0], placement[1]
             );
-            // The outermost corners are seldom met: what fails only there is no reason to refuse the job.
+            // The outer corners of a sector are improbable, so a failure only there is a warning, not an error.
             let often = x == 0.0 && y == 0.0;
             all.extend(more.into_iter().map(|one| {
                 let (message, error) = (lies.clone() + &one.message, one.error && often);
@@ -225,7 +225,7 @@ fn command_line(
             None => worst.push((number, finding)),
         }
     }
-    // Via points are tried for these alone; what was flown before is known.
+    // Walks the positions with errors again to find via points; the cache supplies the flights already checked.
     for (number, mut one) in tries.into_iter().enumerate() {
         if !worst.iter().any(|(of, finding)| *of == number && finding.error) {
             continue;
@@ -241,7 +241,7 @@ fn command_line(
 }
 
 impl JobLine {
-    /// Keep the smaller margins and clearances of other walks of the same command.
+    /// Keeps the smaller margins and clearances of other walks of the same command.
     fn merge(&mut self, others: &[Walked]) {
         for (phase, other) in self.phases.iter_mut().zip(others) {
             for (segment, other) in phase.segments.iter_mut().zip(&other.segments) {
@@ -251,7 +251,7 @@ impl JobLine {
     }
 }
 
-/// Walk a command: its phases and their findings.
+/// Walks a command; returns its phases and their findings.
 fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding>) {
     let data = *state.walk.data();
     let grips = command.object.and_then(|object| data.obj_grips(&object));
@@ -284,7 +284,7 @@ fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding
     (phases, findings)
 }
 
-/// Apply an action of the workstation. False if the position of the robot is not known afterwards.
+/// Applies an action of the workstation. Returns false if the position of the robot is then unknown.
 fn act(state: &mut State<'_>, action: &Workstation) -> bool {
     match action {
         Workstation::Tray { location, object, offset } => {
@@ -311,16 +311,16 @@ fn act(state: &mut State<'_>, action: &Workstation) -> bool {
     true
 }
 
-/// A part that was delivered anywhere in its sector.
+/// A part delivered at a random position in its sector.
 #[derive(Clone, Debug)]
 pub struct Random {
-    /// Its name.
+    /// Name of the part.
     pub object: Name16,
-    /// The sector.
+    /// Location of the sector.
     pub location: Location,
 }
 
-/// A part by its name and place.
+/// A part of the given name at the given frame; `None` if the cell has no such part.
 #[must_use]
 pub fn placed(room: &Room, object: &Name16, frame: geometry::frame::Frame) -> Option<Placed> {
     let kind = room.cell().part(object.as_str())?.clone();

@@ -1,5 +1,5 @@
-//! A phase is flown as planned, and back as after an interruption (docs/design/recovery.md "On the way"); problems
-//! become findings.
+//! Checks a phase: simulates its motion as planned, and back as after an interruption (docs/design/recovery.md "On the
+//! way"), and converts problems to findings.
 
 use std::sync::Arc;
 
@@ -21,16 +21,16 @@ use crate::{
     steps::Step,
 };
 
-/// Margin of a joint below which there is a warning, degrees.
+/// A joint margin below this gives a warning, degrees.
 pub const LEAST_MARGIN: f64 = 0.5;
 
-/// Greatest distance of the middle of the fingers from that of a part held by the closed jaws of the vise, in
-/// (ASSUMED): the fingers cannot draw the part to their middle, and it slips when the jaws open.
+/// Greatest distance between the middle of the fingers and of a part held by the closed jaws of the vise, in (ASSUMED).
+/// Beyond it the fingers cannot centre the part, and it slips when the jaws open.
 const BESIDE: f64 = 0.015;
 
 impl State<'_> {
-    /// Fly a phase under these commands of E-move and Subtask; `clear`: the positions of other bodies are known, so
-    /// contacts can be checked.
+    /// Checks the motion of a phase under the given commands of E-move and Subtask. Contacts are checked only if
+    /// `clear`: the positions of other bodies are known.
     pub fn fly(&mut self, phase: Phase, commands: [&'static str; 2], clear: bool) -> (Walked, Vec<Finding>) {
         if phase.legs.is_empty() || phase.missing.is_some() {
             return (Walked::of(phase), Vec::new());
@@ -61,7 +61,7 @@ impl State<'_> {
         (Walked { plan: phase, segments }, findings)
     }
 
-    /// Findings of a grasp of a part that the vise holds.
+    /// The finding of a grasp that is off the middle of a part held by the vise.
     pub(crate) fn beside(&self, step: &Step, phase: &Phase) -> Option<Finding> {
         let Step::Fingers { verb: EmoveVerb::GraspObj, object: Some(object), .. } = step else { return None };
         let tool = self.robot.tool();
@@ -143,7 +143,8 @@ impl State<'_> {
                 });
             };
             if let Some(touched) = &seen.touched {
-                // Of a part that is turned the other way the other finger touches.
+                // For a part rotated by half a turn, the other finger touches: the key does not distinguish the
+                // fingers.
                 let mover = touched.mover.trim_start_matches("left_").trim_start_matches("right_");
                 let key = format!("{mover} {}", touched.obstacle);
                 add("path.contact", true, touched.to_string(), key, -touched.clearance_in);
@@ -165,7 +166,7 @@ impl State<'_> {
         findings
     }
 
-    /// The via point of the stored trajectories that would make the path free, if there is one.
+    /// Suggests a via point of the stored trajectories that makes the path free, if there is one.
     fn help(&self, phase: &Phase, failed: &Outcome, clear: bool) -> String {
         let worst = failed.seen.iter().position(|seen| seen.touched.is_some());
         let at = worst.unwrap_or(failed.flown.len().saturating_sub(1));
@@ -193,7 +194,7 @@ impl State<'_> {
     }
 }
 
-/// The via poses of all trajectories.
+/// Names and frames of the via poses of all trajectories.
 fn vias<'a>(data: &TaskData<'a>) -> impl Iterator<Item = (Name10, Frame)> + use<'a> {
     let data = *data;
     let points = data.trajectories.iter().flat_map(move |record| data.path(record.path));
@@ -208,7 +209,7 @@ fn vias<'a>(data: &TaskData<'a>) -> impl Iterator<Item = (Name10, Frame)> + use<
     poses.into_iter()
 }
 
-/// Start, end and entry of each segment.
+/// Name of the start, name of the end, and entry of each segment.
 fn names(phase: &Phase) -> Vec<(String, String, Option<String>)> {
     let starts = [&phase.start].into_iter().chain(phase.legs.iter().map(|leg| &leg.point));
     starts.zip(&phase.legs).map(|(from, leg)| (from.clone(), end(leg), leg.entry.clone())).collect()
@@ -231,7 +232,7 @@ fn segments(phase: &Phase, outcome: &Outcome) -> Vec<Segment> {
     .collect()
 }
 
-/// The way back from the goal to the end of the depart leg: a segment has the slower parameters of its two ends.
+/// The path back from the goal to the end of the depart leg; each segment has the slower parameters of its ends.
 fn backwards(phase: &Phase, departs: usize) -> (Points, Vec<(String, String, Option<String>)>) {
     let legs = &phase.legs;
     let mut list = Vec::new();
@@ -245,7 +246,7 @@ fn backwards(phase: &Phase, departs: usize) -> (Points, Vec<(String, String, Opt
     (Points { list, opens: 0 }, names)
 }
 
-/// Text, key and depth of the finding for a flight that cannot go on.
+/// Text, key and depth of the finding for a flight that ended early.
 pub(crate) fn in_words(trouble: Trouble) -> (String, String, f64) {
     match trouble {
         Trouble::Joints { problem, joint, at: [x, y, z] } => {

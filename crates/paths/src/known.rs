@@ -1,5 +1,5 @@
-//! Cache of checked flights: a flight with the same bodies near it, in another job or with a part elsewhere, is not
-//! flown again.
+//! Cache of checked flights: a flight is not simulated again, in another job or with a part elsewhere, if the bodies
+//! near it are the same.
 
 use std::{
     collections::HashMap,
@@ -20,7 +20,7 @@ use crate::{
     survey::{SIGHT, Seen, Survey},
 };
 
-/// Points, and the index from which the fingers are as open as at the goal.
+/// Points, and the index from which the fingers have the opening of the goal.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Points {
     pub list: Vec<(Frame, TrajPara)>,
@@ -34,20 +34,20 @@ pub(crate) struct Asked {
     pub gripper: Option<u8>,
     pub held: Option<Placed>,
     pub points: Points,
-    /// Opening of the fingers at the start and at the goal, in.
+    /// Opening of the fingers at the start and at the goal, inches.
     pub openings: [f64; 2],
     /// Commands of E-move and Subtask.
     pub commands: [&'static str; 2],
-    /// Commands with which the robot has come to its start.
+    /// Commands of E-move and Subtask that brought the robot to its start.
     pub before: Vec<[&'static str; 2]>,
-    /// Clearances are checked.
+    /// True if clearances are checked.
     pub clear: bool,
-    /// The check ends at the first contact.
+    /// True if the check ends at the first contact.
     pub tries: bool,
 }
 
 impl Asked {
-    /// A hash: equal inputs give equal numbers.
+    /// Hash of the inputs: equal inputs give equal numbers.
     fn number(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         let tool = self.robot.tool().position;
@@ -60,7 +60,7 @@ impl Asked {
     }
 }
 
-/// A flight and its clearances.
+/// Results of a flight: end state, segments, clearances.
 #[derive(Debug)]
 pub(crate) struct Outcome {
     pub robot: Robot,
@@ -75,7 +75,7 @@ impl Outcome {
     }
 }
 
-/// Fly, and check the robot against the bodies of a layout.
+/// Simulates a flight and checks the robot against the bodies of a layout.
 fn fly(asked: &Asked, room: &Room, layout: &Layout, devices: &[Body]) -> (Outcome, Swept) {
     let Asked { points, openings: [opening, at_goal], .. } = asked;
     let mut robot = asked.robot.clone();
@@ -90,7 +90,7 @@ fn fly(asked: &Asked, room: &Room, layout: &Layout, devices: &[Body]) -> (Outcom
         while seen.len() < leg {
             seen.push(survey.take());
         }
-        // Fingers need time: they are taken to be as wide as before on the leg on which they close.
+        // The fingers need time: on the leg on which they close, the check still uses the wider opening.
         if leg > points.opens || (leg == points.opens && at_goal > opening) {
             survey.open(*at_goal);
         }
@@ -102,18 +102,18 @@ fn fly(asked: &Asked, room: &Room, layout: &Layout, devices: &[Body]) -> (Outcom
     (Outcome { robot, flown, seen, trouble }, survey.into_swept())
 }
 
-/// A checked flight.
+/// A flight in the cache.
 #[derive(Debug)]
 struct Flight {
     asked: Asked,
     swept: Swept,
-    /// Bodies near it.
+    /// Bodies near the flight.
     near: Vec<Body>,
     outcome: Arc<Outcome>,
 }
 
 impl Flight {
-    /// True for the same flight with the same bodies near it.
+    /// Returns true for the same flight with the same bodies near it.
     fn answers(&self, asked: &Asked, devices: &[Body]) -> bool {
         let mut near = devices.iter().filter(|body| self.swept.passes(body, SIGHT));
         self.asked == *asked
@@ -122,15 +122,14 @@ impl Flight {
     }
 }
 
-/// The flights in one cell: of one check, or of several whose task data differ.
+/// Cache of the flights in one cell, for one check or for several with different task data.
 #[derive(Debug, Default)]
 pub struct Known {
     flights: Mutex<HashMap<u64, Arc<Mutex<Vec<Flight>>>>>,
 }
 
 impl Known {
-    /// The outcome of a flight in a layout of the cell. If another thread is checking the same flight, this waits for
-    /// it.
+    /// The outcome of a flight in a layout of the cell. Waits if another thread is checking the same flight.
     pub(crate) fn outcome(&self, asked: Asked, room: &Room, layout: &Layout) -> Arc<Outcome> {
         let devices = room.devices(layout);
         let alike = Arc::clone(locked(&self.flights).entry(asked.number()).or_default());
@@ -146,7 +145,7 @@ impl Known {
     }
 }
 
-/// Lock the cache, also after a panic in another thread: entries are always complete.
+/// Locks the cache, even after a panic in another thread: entries are always complete.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

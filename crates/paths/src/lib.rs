@@ -1,16 +1,16 @@
-//! Check of the robot's paths before it moves: the path of a command, a job or a stored route, and whether the robot
-//! can follow it.
+//! Checks the robot's paths before it moves: whether the robot can follow the path of a command, a job or a stored
+//! route, and what it touches.
 //!
 //! ```text
-//!   steps     what Task and Subtask make of a command (V.3, V.4)
-//!   walk      where each step leads: E-move's own route, point by point
-//!   flight    the points as Prim drives them: its motion, the limits of the link, the joints of the T3, its servos
-//!   survey    what arm, gripper and held part touch or pass on the way: the bodies and permits of a run
-//!   known     flights that were looked at, for those that come again
-//!   state     where everything is, and what a step changes
-//!   presence  what has to be where before a step
-//!   judge     a phase flown forth and back: what is wrong with it, and the via point that would help
-//!   job       the lines of a job one after the other, with what stands where and what is held
+//!   steps     the steps that Task and Subtask make of a command (V.3, V.4)
+//!   walk      the path of each step: E-move's own route, point by point
+//!   flight    the motion through the points: Prim's motion, the limits of the link, the joints of the T3, its servos
+//!   survey    contacts and clearances of arm, gripper and held part on the way: the bodies and permits of a run
+//!   known     cache of the flights that were checked
+//!   state     the state of the cell, and how steps change it
+//!   presence  what must be true in the cell before a step
+//!   judge     a phase checked forward and back: its findings, and a via point that helps
+//!   job       the lines of a job in order, with the positions of the parts and the held part
 //!   stored    each segment of the stored trajectories
 //! ```
 //!

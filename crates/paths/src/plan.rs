@@ -5,10 +5,10 @@ use interfaces::emove::EmoveCommand;
 use serde::Serialize;
 use taskdata::files::{Location, TrajPara};
 
-/// Where an entry of the task data is.
+/// An entry of the task data that a path uses.
 #[derive(Clone, Debug, Serialize)]
 pub struct Entry {
-    /// What it is.
+    /// Kind of the entry.
     pub what: &'static str,
     /// File, block and line.
     pub at: String,
@@ -17,13 +17,13 @@ pub struct Entry {
 /// One point of a path.
 #[derive(Clone, Debug, Serialize)]
 pub struct Leg {
-    /// depart, trajectory, approach or goal.
+    /// Part of the route: depart, trajectory, approach or goal.
     pub part: &'static str,
     /// Name of the point.
     pub point: String,
-    /// Tool point in the world, inches.
+    /// Tool point, inches, world.
     pub position_in: [f64; 3],
-    /// Direction of the gripper axis in the world.
+    /// Direction of the gripper axis, world.
     pub axis: [f64; 3],
     /// `acc-fac`.
     pub acc_fac: i32,
@@ -33,21 +33,21 @@ pub struct Leg {
     pub smooth: i32,
     /// `brk-dst`.
     pub brk_dst: i32,
-    /// Ticks from the point before to this one.
+    /// Ticks from the previous point to this one.
     pub ticks: u32,
-    /// The joint that is nearest to a limit there; `None` if the arm cannot reach the pose.
+    /// Name of the joint that is nearest to a limit; `None` if the arm cannot reach the pose.
     pub joint: Option<&'static str>,
-    /// How near, degrees; negative beyond the limit.
+    /// Margin of that joint, degrees; negative beyond the limit.
     pub margin_deg: Option<f64>,
-    /// Where it was entered.
+    /// File, block and line of the point.
     pub entry: Option<String>,
-    /// Where it is: tool frame, world, inches.
+    /// Tool frame, inches, world.
     #[serde(skip)]
     pub frame: Frame,
 }
 
 impl Leg {
-    /// The parameters of the segment that leads to the point.
+    /// Parameters of the segment that ends at the point.
     #[must_use]
     pub const fn parameters(&self) -> TrajPara {
         TrajPara { acc_fac: self.acc_fac, vel_max: self.vel_max, smooth: self.smooth, brk_dst: self.brk_dst }
@@ -61,19 +61,19 @@ pub struct Phase {
     pub what: String,
     /// Opening commanded during the motion, inches.
     pub opening_in: Option<f64>,
-    /// The entries that it was made of.
+    /// The entries of the task data that it uses.
     pub entries: Vec<Entry>,
     /// The points of its path; empty if the robot does not move.
     pub legs: Vec<Leg>,
-    /// Why it cannot be planned.
+    /// Why the phase cannot be planned; `None` if it can.
     pub missing: Option<String>,
-    /// The point from which it starts.
+    /// Name of the point at its start.
     #[serde(skip)]
     pub start: String,
-    /// Where that is: tool frame, world, inches.
+    /// Tool frame at its start, inches, world.
     #[serde(skip)]
     pub from: Frame,
-    /// A sensor ends it, at a position that is not known beforehand.
+    /// True if a sensor ends the motion, at a position that is not known beforehand.
     #[serde(skip)]
     pub guarded: bool,
 }
@@ -94,7 +94,7 @@ impl Phase {
         }
     }
 
-    /// How long it takes.
+    /// Duration of the motion, ticks.
     #[must_use]
     pub fn ticks(&self) -> u32 {
         self.legs.iter().map(|leg| leg.ticks).sum()

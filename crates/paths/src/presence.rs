@@ -1,5 +1,5 @@
-//! Conditions on the cell before a step: a part for the fingers, jaws and drum open for a part that is carried away, a
-//! place for a part that is released.
+//! Checks what must be true in the cell before a step: a part for the fingers, open jaws and drum for a part that is
+//! carried away, support for a part that is released.
 
 use interfaces::emove::EmoveVerb;
 use plant::{
@@ -9,11 +9,12 @@ use plant::{
 
 use crate::{finding::Finding, state::State, steps::Step};
 
-/// Greatest fall of a released part, in (ASSUMED; depart and release points of the shipped data leave 0.15 at most).
+/// Greatest fall of a released part, in (ASSUMED; the depart and release points of the shipped data leave at most
+/// 0.15).
 const DROP: f64 = 0.5;
 
 impl State<'_> {
-    /// What prevents a step although its path is free.
+    /// The problem that prevents a step although its path is free.
     pub(crate) fn hindrance(&self, step: &Step) -> Option<Finding> {
         match *step {
             Step::Go { .. } => self.in_jaws(),
@@ -46,7 +47,7 @@ impl State<'_> {
         Some(Placed { frame: self.robot.tool().compose(&held.frame), ..held.clone() })
     }
 
-    /// The robot would carry away a part that the closed jaws of the vise hold.
+    /// The finding if the robot would carry away a part that the closed jaws of the vise hold.
     fn in_jaws(&self) -> Option<Finding> {
         let part = self.carried()?;
         let (_, closed) = self.room.vise_seat(self.layout.program, &part)?;
@@ -60,7 +61,7 @@ impl State<'_> {
         })
     }
 
-    /// The robot would pull a tool that the drum grips.
+    /// The finding if the robot would pull a tool that the drum grips.
     fn in_drum(&self) -> Option<Finding> {
         self.drum_grips.then(|| {
             finding(
@@ -70,7 +71,7 @@ impl State<'_> {
         })
     }
 
-    /// The robot would release a part with nothing under or around it.
+    /// The finding if the robot would release a part without support.
     fn in_the_air(&self) -> Option<Finding> {
         let part = self.carried().filter(|part| self.room.nest_seat(part).is_none())?;
         let mut movers = self.room.movers(&self.layout, self.robot.joints());

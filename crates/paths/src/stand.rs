@@ -1,5 +1,5 @@
-//! Check of a pose: the joints, the joint that is nearest to a limit, and the obstacle nearest to the robot in the cell
-//! at the start of a run.
+//! Checks a pose: the joint angles, the joint that is nearest to a limit, and the obstacle nearest to the robot in the
+//! cell at the start of a run.
 
 use std::fmt;
 
@@ -17,33 +17,34 @@ use plant::{
 use serde::Serialize;
 use taskdata::files::TaskData;
 
-/// Distance from the arm within which obstacles are reported, inches.
+/// Greatest reported distance of an obstacle from the robot, inches.
 const NEAR: f64 = 12.0;
-/// Most named poses that are shown.
+/// Greatest number of named poses in the answer.
 const NAMED: usize = 3;
 
-/// A pose, and the check of it. Angles are in degrees, lengths in inches.
+/// A checked pose. Angles are in degrees, lengths in inches.
 #[derive(Clone, Debug, Serialize)]
 pub struct Standing {
     /// Wrist, tool and finger point, 0.01 in.
     pub points: [[i32; 3]; 3],
-    /// Angles of the six joints; missing if the arm cannot reach it.
+    /// Angles of the six joints; `None` if the arm cannot reach the pose.
     pub joints: Option<[f64; 6]>,
-    /// Why not.
+    /// Why the arm cannot reach the pose.
     pub unreachable: Option<String>,
-    /// The joint nearest to a limit, and how far it is from it; negative beyond it.
+    /// The joint nearest to a limit, and its margin; negative beyond the limit.
     pub margin: Option<(&'static str, f64)>,
-    /// The obstacle nearest to the robot in the cell at the start of a run, and its distance.
+    /// Part of the robot, nearest obstacle in the cell at the start of a run, and their distance; negative if they
+    /// touch.
     pub clearance: Option<(String, String, f64)>,
-    /// The nearest poses with a name, and how far their tool points are.
+    /// The nearest named poses, with the distances of their tool points.
     pub named: Vec<(String, f64)>,
 }
 
 impl Standing {
-    /// Check a pose.
+    /// Checks a pose.
     ///
     /// # Errors
-    /// A sentence, if the nine numbers are not a pose.
+    /// A sentence for messages if the nine numbers are not a pose.
     pub fn of(pose: &Pose, data: &TaskData<'_>, room: &Room) -> Result<Self, String> {
         let frame = pose.to_frame().map_err(|error| error.to_string())?;
         let (joints, unreachable) = match T3.inverse(&frame, &HOME_JOINTS) {
@@ -55,7 +56,7 @@ impl Standing {
         let clearance = joints.and_then(|joints| {
             let layout: Layout = room.at_start();
             let contacts = room.look(&room.movers(&layout, &joints), &room.devices(&layout), NEAR);
-            // Its own links are always near; they count where they touch.
+            // The robot's own links are always near each other, so they are reported only if they touch.
             let counts = |contact: &Contact| contact.touches() || contact.obstacle_kind != Kind::Arm;
             let nearest =
                 contacts.into_iter().filter(counts).max_by(|one, other| one.depth.total_cmp(&other.depth))?;
@@ -78,7 +79,7 @@ impl Standing {
         })
     }
 
-    /// Whether the robot can be in this pose.
+    /// Returns true if the robot can stand in this pose.
     #[must_use]
     pub fn is_usable(&self) -> bool {
         let touches = |(_, _, inches): &(String, String, f64)| *inches < 0.0;
@@ -97,7 +98,7 @@ impl fmt::Display for Standing {
         }
         if let Some(joints) = self.joints {
             let words = JOINT_NAMES.iter().zip(joints).map(|(name, angle)| {
-                // Adding zero makes a zero of a negative one.
+                // Adding zero converts a negative zero to zero.
                 format!("{name} {:.1}", (angle * 10.0).round() / 10.0 + 0.0)
             });
             writeln!(f, "joints  {} degrees", words.collect::<Vec<_>>().join(", "))?;
@@ -126,7 +127,7 @@ impl fmt::Display for Standing {
     }
 }
 
-/// The form of a pose (VII.1): three lines.
+/// The form of a pose in task data (VII.1): three lines.
 #[must_use]
 pub fn pose_form(name: &str, movetable: &str, pose: &Pose) -> Vec<String> {
     let [wrist, tool, finger] =
@@ -134,8 +135,8 @@ pub fn pose_form(name: &str, movetable: &str, pose: &Pose) -> Vec<String> {
     vec![wrist, tool, format!("{finger}   -pose-   {movetable:<11} {name}")]
 }
 
-/// The lines of a movetable that leads from one frame to another (VII.2): a translation in tool coordinates, a turn about
-/// the tool point, a roll. Lines without effect are left out; the first stays.
+/// The lines of a movetable from one frame to another (VII.2): a translation in tool coordinates, a rotation about the
+/// tool point, a roll. Lines without effect are left out, except the first.
 #[must_use]
 pub fn movetable_between(from: &Frame, to: &Frame) -> Vec<MovetableLine> {
     let back = from.rotation.inverse();
@@ -154,7 +155,7 @@ pub fn movetable_between(from: &Frame, to: &Frame) -> Vec<MovetableLine> {
     std::iter::once(moved).chain(turns).collect()
 }
 
-/// The form of a movetable (VII.2), a line for each of its lines.
+/// The form of a movetable in task data (VII.2), one text line for each of its lines.
 #[must_use]
 pub fn movetable_form(name: &str, lines: &[MovetableLine]) -> Vec<String> {
     let last = lines.len().saturating_sub(1);

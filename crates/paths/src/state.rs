@@ -1,4 +1,4 @@
-//! The state of the cell during a job, and its change by a step.
+//! The state of the cell during a job, and how steps change it.
 
 use geometry::frame::{Frame, Vector, rotation_by};
 use interfaces::emove::EmoveVerb;
@@ -21,7 +21,7 @@ use crate::{
     walk::Walk,
 };
 
-/// Greatest distance of a part from its expected position, in.
+/// Greatest distance of a part from its expected position, in; beyond it the part counts as missing.
 const THERE: f64 = 8.0;
 
 /// The state during a job.
@@ -31,34 +31,34 @@ pub struct State<'a> {
     pub room: &'a Room,
     /// Cache of checked flights.
     pub known: &'a Known,
-    /// Position of the robot in the task data.
+    /// Position of the robot in the task data, and the planning of its paths.
     pub walk: Walk<'a>,
-    /// Position of the arm.
+    /// The simulated robot.
     pub robot: Robot,
-    /// Positions of everything else.
+    /// Positions of all other bodies.
     pub layout: Layout,
     /// The held object, and its grip.
     pub held: Option<(Name16, i32)>,
     /// Parts that were delivered at random positions of their sectors.
     pub random: Vec<Random>,
-    /// A failed flight is tried with further via points.
+    /// True if a failed flight is repeated with additional via points.
     pub advises: bool,
-    /// The robot cannot go on: its controller has stopped.
+    /// True if the robot cannot continue, because its controller has stopped.
     pub stranded: bool,
-    /// Commands with which the robot has come to its position.
+    /// Commands that brought the robot to its position.
     pub before: Vec<[&'static str; 2]>,
-    /// The object that the pedestal has, or is about to have.
+    /// The object that the pedestal holds or is about to receive.
     regrip: Option<Name16>,
-    /// The object and the place of the last motion.
+    /// Object and location of the last motion.
     last: Option<(Name16, Location)>,
-    /// The drum has closed its fingers on a tool.
+    /// True if the drum grips a tool.
     pub(crate) drum_grips: bool,
-    /// Parts that were not at their places, which is reported once, and the parts machined from them.
+    /// Parts that were not at their locations, each reported once, and the parts machined from them.
     pub(crate) lacking: Vec<Name16>,
 }
 
 impl<'a> State<'a> {
-    /// A robot that has started up: its fingers are open.
+    /// The state after the start-up of the robot, with open fingers.
     #[must_use]
     pub fn new(room: &'a Room, known: &'a Known, walk: Walk<'a>, robot: Robot) -> Self {
         let mut layout = room.at_start();
@@ -81,8 +81,8 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Put a part into a sector, or in another position there if it is there already. False if the cell has no such
-    /// place.
+    /// Places a part in a sector; with `again`, moves it to another position there. Returns false if the cell has no
+    /// such location.
     pub fn deliver(&mut self, object: &Name16, at: &Location, aside: [f64; 3], again: bool) -> bool {
         let cell = self.room.cell();
         let Some(kind) = cell.part(object.as_str()) else { return false };
@@ -95,7 +95,7 @@ impl<'a> State<'a> {
         true
     }
 
-    /// The nearest part of a name to a frame.
+    /// Index of the part of this name that is nearest to a frame.
     pub(crate) fn nearest(&self, object: &Name16, frame: &Frame) -> Option<usize> {
         let away = |part: &Placed| (part.frame.position - frame.position).norm();
         let named =
@@ -107,7 +107,7 @@ impl<'a> State<'a> {
             .map(|(index, _)| index)
     }
 
-    /// The jaws of the vise move.
+    /// Moves the jaws of the vise.
     pub fn move_vise(&mut self, opening: ViseOpening, program: Option<&Name16>) {
         let programs = &self.room.cell().vise.program;
         let named = program.and_then(|name| programs.iter().position(|one| one.name == name.as_str()));
@@ -123,7 +123,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// The jaws close on the part between them; a part that nothing else holds moves to its seat.
+    /// Closes the jaws on the part between them; a part that nothing else holds moves to its seat.
     fn clamp(&mut self) {
         let opened = Layout { jaws: self.room.jaws(self.layout.program, Jaws::Open), ..self.layout.clone() };
         if let Some(index) = self.room.in_vise(&opened)
@@ -143,7 +143,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// A part becomes another.
+    /// Replaces a blank by the part machined from it.
     pub fn machine(&mut self, blank: &Name16, part: &Name16) {
         let next = self.room.cell().part(part.as_str());
         let is = |one: &&mut Placed| one.kind.name == blank.as_str();
@@ -158,7 +158,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// A tool is put into the drum.
+    /// Puts a tool into the drum.
     pub fn put_into_drum(&mut self, tool: &Name16) {
         let drum = &self.room.cell().drum;
         if let Some(pose) = drum.pose.frame() {
@@ -168,11 +168,11 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Make a step; `task` is the command of Task that it belongs to.
+    /// Executes a step; `task` is the command of Task that it belongs to.
     pub fn step(&mut self, step: &Step, task: &str) -> (Walked, Vec<Finding>) {
         let hindrance = self.hindrance(step);
         let (walked, mut findings) = self.make(step, task);
-        // What is not there, or held elsewhere, also touches; that need not be said.
+        // A missing or clamped part also causes contacts; only the cause is reported.
         if let Some(hindrance) = hindrance {
             findings = vec![hindrance];
         }
@@ -204,7 +204,7 @@ impl<'a> State<'a> {
                         _ => "INSERT-TOOL",
                     },
                 };
-                // Where the moves end that begin where a guarded one has ended is not known either.
+                // Moves that begin at the end of a guarded move also have an unknown position.
                 let known = !phase.guarded && !matches!(name, "QCD-UP" | "REL-BACK");
                 self.fly(phase, [verb, verb], known)
             }
@@ -221,7 +221,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Changes without motion of the robot.
+    /// Applies the changes of a step without motion of the robot.
     fn stand(&mut self, step: &Step) {
         match *step {
             Step::Fingers { verb: EmoveVerb::GraspObj, object, grip } => {
@@ -236,8 +236,8 @@ impl<'a> State<'a> {
                 self.before = vec![["RELEASE", ""]];
             }
             Step::GraspTool => {
-                // Where the guarded moves have ended is not known: the fingers are taken to be where the drum
-                // has its tools.
+                // The ends of the guarded moves are unknown, so the fingers are assumed to be at the drum's tool
+                // position.
                 let drum = self.room.cell().drum.pose.frame();
                 if let Some((object, drum)) = self.tool_in_drum().zip(drum) {
                     self.grasp(&object, 1, &drum);
@@ -268,7 +268,7 @@ impl<'a> State<'a> {
         Some(Name16::clipped(&part.kind.name))
     }
 
-    /// Take hold of the nearest part of a name with the tool frame at `tool`.
+    /// Grasps the nearest part of this name, with the tool frame at `tool`.
     fn grasp(&mut self, object: &Name16, grip: i32, tool: &Frame) {
         self.held = Some((*object, grip));
         let Some(index) = self.nearest(object, tool) else {
@@ -277,7 +277,7 @@ impl<'a> State<'a> {
         };
         let part = self.layout.parts.remove(index);
         let mut frame = tool.inverse().compose(&part.frame);
-        // The fingers draw it to their middle.
+        // The fingers centre the part between them.
         frame.position.y = 0.0;
         let groove = self.room.worn(&self.layout).and_then(|gripper| gripper.groove);
         if groove.is_none() {
@@ -286,7 +286,7 @@ impl<'a> State<'a> {
         self.layout.held = Some(Placed { frame, ..part });
     }
 
-    /// Release the held part, and open to so many inches, or fully if no opening is given.
+    /// Releases the held part and opens the fingers to `opening`, in, or fully with `None`.
     fn release(&mut self, opening: Option<f64>) {
         self.held = None;
         if let Some(held) = self.layout.held.take() {
@@ -298,7 +298,7 @@ impl<'a> State<'a> {
         self.open(opening.unwrap_or(f64::INFINITY));
     }
 
-    /// The fingers open as far as they can.
+    /// Sets the opening of the fingers, in, within the limits of the gripper.
     fn open(&mut self, opening: f64) {
         if let Some(gripper) = self.room.worn(&self.layout) {
             self.layout.opening = opening.clamp(gripper.opening[0], gripper.opening[1]);
@@ -343,7 +343,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// The camera finds the object that lies where the robot looks.
+    /// Simulates the camera: finds the object at the location that the robot looks at.
     fn locate(&mut self) -> Phase {
         let seen = self.last.and_then(|(object, location)| {
             let part = self.layout.parts.get(self.nearest(&object, &location.frame)?)?;
@@ -357,9 +357,9 @@ impl<'a> State<'a> {
     }
 }
 
-/// The part frame of vision's answer (V.2.1 LOCATE-OBJ): in the plane of the place, at the middle of the part, turned
-/// by no more than a quarter turn so that tool Y lies across its wider side for grip 1, else across the narrower
-/// (VII.7.6).
+/// The part frame that vision answers (V.2.1 LOCATE-OBJ): in the plane of the location, at the middle of the part,
+/// rotated by at most a quarter turn so that tool Y lies across the wider side for grip 1 and across the narrower side
+/// for other grips (VII.7.6).
 fn found(place: &Frame, part: &Placed, grip: i32) -> Frame {
     let aside = part.frame.position - place.position;
     let at = Vector::new(0.0, aside.dot(&place.y()), aside.dot(&place.z()));

@@ -1,58 +1,58 @@
-//! The steps of a command: the commands of E-move that Task and Subtask give, in their order (V.3.1, V.4.1).
+//! The steps of a command: the commands that Task and Subtask give to E-move, in order (V.3.1, V.4.1).
 //!
-//! It is the normal case: the right gripper is attached, no unexpected object is held, and vision finds the object at
-//! its place.
+//! The steps are those of the normal case: the right gripper is attached, no unexpected object is held, and vision
+//! finds the object at its location.
 
 use interfaces::{HwsCommand, emove::EmoveVerb};
 use rcs_core::name::Name16;
 use taskdata::files::{Location, LocptId, LookupError, RefType, TaskData};
 
-/// Where the Active Pedestal holds an object (V.3.1 FIX-GRIP).
+/// Location at which the Active Pedestal holds an object (V.3.1 FIX-GRIP).
 const PEDESTAL: &str = "PEDESTAL";
-/// Where the robot waits while the pedestal turns.
+/// Location at which the robot waits while the pedestal turns.
 const PEDESTAL_SAFE: &str = "PED-SAFE";
-/// Where tools are passed to the drum.
+/// Location at which tools are handed over to the drum.
 const TOOL_TRANSFER: &str = "TOOL-TRNS";
 
-/// One command of E-move, or of a neighbour while the robot stands.
+/// A command of E-move, or of a neighbour while the robot is at rest.
 #[derive(Clone, Copy, Debug)]
 pub enum Step {
     /// The robot moves to a location.
     Go {
         /// The command.
         verb: EmoveVerb,
-        /// The object that decides grip, approach and depart; none for a location as such.
+        /// The object that determines grip, approach and depart; `None` for a location without an object.
         object: Option<Name16>,
-        /// Its grip.
+        /// Grip of the object.
         grip: i32,
-        /// Where.
+        /// Destination.
         location: Location,
     },
-    /// A relative move by its name, at a location.
+    /// A relative move, given by name, at a location.
     Relative {
-        /// The name.
+        /// Name of the move.
         name: &'static str,
-        /// Where.
+        /// Location.
         location: Location,
     },
-    /// The fingers close on an object, or let it go.
+    /// The fingers grasp or release an object.
     Fingers {
         /// GRASP-OBJ or RELEASE.
         verb: EmoveVerb,
         /// The object.
         object: Option<Name16>,
-        /// Its grip.
+        /// Grip of the object.
         grip: i32,
     },
     /// The camera looks for the object.
     Locate,
     /// The Active Pedestal acts.
     Pedestal(PedestalVerb),
-    /// The quick change and the gripper of this end effector id in its holster come together.
+    /// The quick change meets the gripper with this end effector id in its holster.
     Engage(u8),
-    /// The gripper of this end effector id is left in its holster.
+    /// The robot leaves the gripper with this end effector id in its holster.
     Leave(u8),
-    /// The gripper of this end effector id is taken from its holster.
+    /// The robot takes the gripper with this end effector id from its holster.
     Take(u8),
     /// The tool gripper opens around a tool in the drum.
     LetGoTool,
@@ -65,18 +65,18 @@ pub enum Step {
 /// Commands of Subtask to the pedestal (V.3.1 FIX-GRIP).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PedestalVerb {
-    /// It opens its hand and turns its table to receive the object.
+    /// Open the hand, and turn the table to receive the object.
     PreGrip,
-    /// It closes its hand on the object.
+    /// Close the hand on the object.
     Grip,
-    /// It turns the object.
+    /// Turn the object.
     Flip,
-    /// It opens its hand.
+    /// Open the hand.
     Release,
 }
 
 impl PedestalVerb {
-    /// As text.
+    /// As text for messages.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -88,10 +88,10 @@ impl PedestalVerb {
     }
 }
 
-/// The steps of a command; `held` is the object that the robot has, with its grip, if that is known.
+/// The steps of a command; `held` is the object that the robot holds, with its grip, if known.
 ///
 /// # Errors
-/// The unknown location, with the known ones.
+/// [`LookupError`] for an unknown location or object, with the known ones.
 pub fn steps(
     command: &HwsCommand,
     held: Option<(Name16, i32)>,
@@ -161,7 +161,7 @@ impl Maker<'_> {
         self.data.resolve_location(&name, sector, self.command.object.as_ref())
     }
 
-    /// The held object, if it is that of the command.
+    /// The held object with its grip, if it is the object of the command.
     fn held_object(&self) -> Option<(Name16, i32)> {
         self.held.filter(|(object, _)| Some(*object) == self.command.object)
     }
@@ -179,7 +179,7 @@ impl Maker<'_> {
         Ok(Step::Go { verb: EmoveVerb::MovToLoc, object: None, grip: 0, location })
     }
 
-    /// GET-OBJECT: look for it if vision is used there, go to it, grasp it.
+    /// Adds GET-OBJECT: locate the object if vision is used there, move to it, grasp it.
     fn get(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
         let (command, grip) = (self.command, self.command.source_grip);
         if self.held_object().is_some() {
@@ -199,7 +199,7 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// FIX-GRIP, if the grips differ.
+    /// Adds FIX-GRIP if the grips at source and destination differ.
     fn regrip(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
         let from = self.held_object().map_or(self.command.source_grip, |(_, grip)| grip);
         let to = self.command.destination_grip;
@@ -233,8 +233,8 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// POSITION goes to the source, or to the destination if the source is null
-    /// (SPECNOTES.md, contradiction 24).
+    /// Adds POSITION, which goes to the source, or to the destination if the source is null (SPECNOTES.md,
+    /// contradiction 24).
     fn position(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
         let c = self.command;
         let (name, sector, grip) = if c.source.is_none() {
@@ -257,11 +257,11 @@ impl Maker<'_> {
     }
 }
 
-/// GET-ENDEFF (V.3.1): the attached gripper is left in its holster, and the wanted one is taken from its own. End
-/// effector ids; none for a bare robot.
+/// The steps of GET-ENDEFF (V.3.1): leave the attached gripper in its holster, and take the wanted one from its own.
+/// Grippers are given by end effector id; `own` is `None` for a bare robot.
 ///
 /// # Errors
-/// A holster that the task data do not have.
+/// [`LookupError`] if the task data do not have a holster.
 pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<Step>, LookupError> {
     let mut steps = Vec::new();
     if let Some(own) = own {
@@ -277,8 +277,8 @@ pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<
     Ok(steps)
 }
 
-/// The motion to the holster of a gripper, with grip 1 for an attached gripper and 2 for a bare robot, and its location
-/// (VII.7.3).
+/// The motion to the holster of a gripper and its location (VII.7.3); grip 1 is for an attached gripper, grip 2 for a
+/// bare robot.
 fn to_holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<(Step, Location), LookupError> {
     let object = Name16::clipped(&format!("GRIPPER-{id}"));
     let unknown = LookupError::UnknownObject { name: object };

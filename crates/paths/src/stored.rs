@@ -1,7 +1,7 @@
-//! Each segment of the stored trajectories once, forth and back, with the fingers wide open and nothing between them.
+//! Checks each segment of the stored trajectories once, forward and back, with open and empty fingers.
 //!
-//! A segment leads from one pose or location point to the next, whatever the objects at its ends; those are
-//! walked with the jobs.
+//! A segment leads from one pose or location point to the next. Approach and depart of objects depend on the object and
+//! are checked with the jobs.
 
 use std::collections::HashSet;
 
@@ -27,22 +27,22 @@ use crate::{
 /// A finding of a segment.
 #[derive(Clone, Debug)]
 pub struct StoredFinding {
-    /// Where its end is entered.
+    /// File, block and line of the segment's end.
     pub at: At,
-    /// The problem, where, and by how much.
+    /// Description of the problem: what, where, and by how much.
     pub message: String,
 }
 
-/// Result of the stored routes.
+/// Results of the check of the stored trajectories.
 #[derive(Clone, Debug, Default)]
 pub struct Stored {
-    /// Segments that were walked, each forth and back.
+    /// Number of checked segments, each forward and back.
     pub segments: usize,
-    /// Their findings.
+    /// Findings of the segments.
     pub findings: Vec<StoredFinding>,
 }
 
-/// A point that does not depend on the destination.
+/// A point whose pose does not depend on the destination.
 struct Fixed {
     name: String,
     frame: Frame,
@@ -50,7 +50,8 @@ struct Fixed {
     at: At,
 }
 
-/// Walk the segments of all trajectories. The task data must be sound. `known` has flights in the same cell.
+/// Checks the segments of all trajectories. The task data must be valid. `known` is the cache of flights in the same
+/// cell.
 #[must_use]
 pub fn walk_stored(store: &Store, room: &Room, known: &Known) -> Stored {
     let data = store.view();
@@ -91,10 +92,10 @@ pub fn walk_stored(store: &Store, room: &Room, known: &Known) -> Stored {
     stored
 }
 
-/// The fastest parameters, which those of a point replace.
+/// The fastest parameters, used where a point has none of its own.
 const FREE: TrajPara = TrajPara { acc_fac: 4, vel_max: 100, smooth: 8, brk_dst: 0 };
 
-/// The end of a trajectory, if it is a location point: the last point of its depart, or the first of its approach.
+/// The end of a trajectory if it is a location point: the last point of its depart, or the first of its approach.
 fn end_of(data: &TaskData<'_>, end: Reference, direction: Direction, at: At) -> Option<Fixed> {
     let id = (end.kind == RefType::LocationPoint).then(|| LocptId::new(end.number))?;
     let (point, place) = (data.locpt(id)?, data.place_of(id));
@@ -116,7 +117,7 @@ fn fixed(data: &TaskData<'_>, point: &PathPoint, at: At) -> Option<Fixed> {
     Some(Fixed { name: name.to_string(), frame, parameters, at })
 }
 
-/// The finding of a straight segment, if any.
+/// The finding of a straight segment; `None` if there is none.
 fn segment(room: &Room, known: &Known, from: &Frame, to: &Frame, parameters: TrajPara) -> Option<String> {
     let joints = T3.within_limits(&T3.inverse(from, &HOME_JOINTS).ok()?);
     let robot = Robot::standing(&Actuators::from(&room.cell().robot), &joints)?;
@@ -129,7 +130,7 @@ fn segment(room: &Room, known: &Known, from: &Frame, to: &Frame, parameters: Tra
         held: None,
         points: Points { list: vec![(*to, parameters)], opens: 0 },
         openings: [opening, opening],
-        // What touches at its ends does so by the approaches there.
+        // Without commands no contact is permitted: contacts at the ends of a segment belong to the approaches there.
         commands: ["", ""],
         before: Vec::new(),
         clear: true,

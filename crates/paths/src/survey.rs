@@ -1,5 +1,5 @@
-//! Contacts and clearances of arm, gripper and held part on a flight, checked by the permits of the cell description as
-//! in a run.
+//! Finds contacts and clearances of arm, gripper and held part during a flight, with the contact permits of the cell
+//! description, as in a run.
 
 use std::{collections::BTreeMap, fmt};
 
@@ -12,30 +12,32 @@ use plant::{
 };
 use serde::Serialize;
 
-/// Greatest distance that is reported, in.
+/// Greatest reported distance, in.
 pub const MARGIN: f64 = 2.0;
-/// Distance within which pairs are checked, in: a greater one lets more ticks be skipped, but each check takes longer.
+/// Distance within which pairs are checked, in. A greater distance allows skipping more ticks, but makes each check
+/// slower.
 pub(crate) const SIGHT: f64 = 4.0;
-/// A permitted contact has ended at this distance, in.
+/// A permitted contact ends at this distance, in.
 const FREE: f64 = 0.05;
-/// Permitted depth of a held part in the nest or vise that it is put into or taken out of, in (ASSUMED): its position
-/// in the fingers depends on vision.
+/// Additional depth of permitted contacts for a held part in the nest or vise that it is put into or taken from, in
+/// (ASSUMED), because its position in the fingers depends on vision.
 pub const FIT: f64 = 0.02;
-/// Further depth of the fingers in a part that they push, in (ASSUMED): the part lies as it was dropped.
+/// Additional depth of permitted contacts between the fingers and a part that they push, in (ASSUMED), because the part
+/// lies as it was dropped.
 const PUSH_FIT: f64 = 0.05;
-/// How far a point of the robot moves at the most when a joint turns by a radian, in: base to roll.
+/// Greatest displacement of any point of the robot per radian of each joint, in: base to roll.
 const LEVERS: Joints = [105.0, 105.0, 65.0, 30.0, 27.0, 12.0];
 
-/// Two things that touch or pass each other.
+/// Two bodies that touch or pass each other.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Passing {
-    /// What of the robot, or the part that it carries.
+    /// Body of the robot, or the part that it carries.
     pub mover: String,
     /// The obstacle.
     pub obstacle: String,
-    /// How far apart, inches; negative if they touch.
+    /// Distance, inches; negative if they touch.
     pub clearance_in: f64,
-    /// Where, world, inches.
+    /// Position, inches, world.
     pub position_in: [f64; 3],
 }
 
@@ -74,29 +76,29 @@ pub struct Seen {
     pub touched: Option<Passing>,
 }
 
-/// Watches flights while the layout stays as it is.
+/// Surveys flights in a fixed layout.
 #[derive(Debug)]
 pub struct Survey<'a> {
     room: &'a Room,
     layout: Layout,
     devices: &'a [Body],
-    /// Where the robot was checked.
+    /// Volume in which the robot was checked.
     swept: Swept,
     /// Commands of E-move and Subtask.
     commands: [&'static str; 2],
-    /// Depths of permitted contacts by pair.
+    /// Greatest depth of each permitted contact, by pair of bodies.
     allowed: BTreeMap<(String, String), f64>,
     /// Joint angles of the last check.
     at: Joints,
-    /// How far the robot may move from there before the next check, in.
+    /// Displacement of the robot, in, up to which no further check is needed.
     free: f64,
     leg: Option<usize>,
     seen: Seen,
 }
 
 impl<'a> Survey<'a> {
-    /// A survey among the devices of a layout. It begins at joint angles (radians) at which contacts may be permitted
-    /// by the earlier commands with which the robot has come there.
+    /// A survey of a layout with its devices. At the start (joint angles in radians), contacts are permitted as by the
+    /// earlier commands `before` that brought the robot there.
     #[must_use]
     pub fn new(
         room: &'a Room,
@@ -131,32 +133,33 @@ impl<'a> Survey<'a> {
         survey
     }
 
-    /// Result of the motion to a point, which is then reset.
+    /// Returns the result of the motion to a point, and resets it.
     pub fn take(&mut self) -> Seen {
         (self.leg, self.free) = (None, 0.0);
         std::mem::take(&mut self.seen)
     }
 
-    /// A contact on this leg is not permitted.
+    /// Returns true if the motion to the present point has a contact that is not permitted.
     #[must_use]
     pub const fn touches(&self) -> bool {
         self.seen.touched.is_some()
     }
 
-    /// Where the robot was checked.
+    /// The volume in which the robot was checked.
     #[must_use]
     pub fn into_swept(self) -> Swept {
         self.swept
     }
 
-    /// The fingers open or close to so many inches.
+    /// Sets the opening of the fingers, in.
     pub fn open(&mut self, opening: f64) {
         if self.layout.opening != opening {
             (self.layout.opening, self.free) = (opening, 0.0);
         }
     }
 
-    /// Check the robot on its way to a point, unless it cannot have come nearer to anything than before.
+    /// Checks the robot on its way to a point. Skips the check if the robot has moved too little for a smaller
+    /// clearance.
     pub fn look(&mut self, leg: usize, joints: &Joints) {
         let begins = self.leg != Some(leg);
         let moved: f64 = joints
@@ -188,7 +191,7 @@ impl<'a> Survey<'a> {
         (self.at, self.free) = (*joints, least - known.max(0.0));
     }
 
-    /// The contact is permitted, or was permitted and has not ended.
+    /// Returns true if the contact is permitted, or was permitted and has not ended.
     fn permitted(&mut self, contact: &Contact) -> bool {
         let permits = &self.room.cell().contact;
         let most = permits.during(contact.mover(), contact.obstacle(), self.commands);
@@ -208,7 +211,7 @@ impl<'a> Survey<'a> {
         if -contact.depth < MARGIN && nearer(&self.seen.nearest) {
             self.seen.nearest = Some(Passing::from(contact));
         }
-        // How a part lies in the fingers is not known any better.
+        // The position of a part in the fingers is not known more exactly than [`FIT`].
         let sure = contact.mover_kind != Kind::HeldPart || contact.depth > FIT;
         if contact.touches() && sure && nearer(&self.seen.touched) {
             self.seen.touched = Some(Passing::from(contact));

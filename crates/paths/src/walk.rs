@@ -1,5 +1,5 @@
-//! The path of the robot through the steps of a command: each goal and each via point, planned with E-move's routes and
-//! timed with Prim's motion.
+//! Plans the path of the robot through the steps of a command: each goal and each via point, with the routes of E-move
+//! and the times of Prim's motion.
 
 use geometry::{
     frame::Frame,
@@ -37,9 +37,9 @@ use crate::{
     steps::Step,
 };
 
-/// LOCATE-OBJ if the position of the object is not known.
+/// Text of LOCATE-OBJ if the position of the object is unknown.
 const LOCATE: &str = "LOCATE-OBJ: taken to be found in the middle of its place";
-/// Numbers for the changing records of E-move in a route: its start and its goal.
+/// Numbers for the variable records of E-move in a route: its start and its goal.
 const DEPARTURE: u32 = u32::MAX - 1;
 const GOAL: u32 = u32::MAX;
 
@@ -49,24 +49,24 @@ pub struct Walk<'a> {
     store: &'a Store,
     data: TaskData<'a>,
     place: RobotPlace,
-    /// Where the camera has found the object of the next motion.
+    /// The frame of the object that vision has found, for the next motion.
     found: Option<Frame>,
 }
 
 impl<'a> Walk<'a> {
-    /// Begin at a location as such.
+    /// Begins at a location without an object.
     #[must_use]
     pub fn new(store: &'a Store, start: &Location) -> Self {
         let place = robot_at(GoneTo::Location, start, &start.frame);
         Self { store, data: store.view(), place, found: None }
     }
 
-    /// Use other task data from now on.
+    /// Uses other task data from now on.
     pub fn load(&mut self, store: &'a Store) {
         (self.store, self.data) = (store, store.view());
     }
 
-    /// Where the robot is.
+    /// The position of the robot, as E-move keeps it.
     #[must_use]
     pub const fn place(&self) -> &RobotPlace {
         &self.place
@@ -78,14 +78,14 @@ impl<'a> Walk<'a> {
         &self.data
     }
 
-    /// The camera looks for an object that lies at `object` (V.2.1 LOCATE-OBJ): it goes straight over it, and the next
-    /// MOV-TO-OBJ goes there.
+    /// Simulates LOCATE-OBJ (V.2.1) for an object at `object`: the camera moves straight over it, and the next
+    /// MOV-TO-OBJ uses this frame.
     pub fn find(&mut self, object: &Frame, looked_at: &Frame) -> Phase {
         let mut phase =
             Phase { start: self.place.location.to_string(), ..Phase::standing(LOCATE.to_owned()) };
         self.found = Some(*object);
         let Ok(here) = self.place.pose.to_frame() else { return phase };
-        // The camera keeps its attitude: it is moved as far as the object lies beside the middle of the picture.
+        // The camera keeps its orientation and moves by the distance of the object from the middle of the picture.
         let over = Frame { position: here.position + object.position - looked_at.position, ..here };
         let view = self.view_stop();
         if let Some(parameters) = view.filter(|_| over.distance(&here).inches > 0.0) {
@@ -97,8 +97,8 @@ impl<'a> Walk<'a> {
         phase
     }
 
-    /// Make a step; returns its phases, or why it cannot be made. A step that cannot be made also ends at its location,
-    /// so that later steps can be explained.
+    /// Plans a step; the phase contains the reason if it is not possible. The walk then continues from the location of
+    /// the step, so that later steps can be checked too.
     pub fn step(&mut self, step: &Step) -> Phase {
         match *step {
             Step::Go { verb, object, grip, location } => self.go(verb, object, grip, &location),
@@ -159,7 +159,7 @@ impl<'a> Walk<'a> {
         phase
     }
 
-    /// Parameters of the last motion to a view.
+    /// Parameters of the last motion to a view point.
     fn view_stop(&self) -> Option<TrajParaId> {
         let GoneTo::View(ObjectGrip { object, grip }) = self.place.gone_to else { return None };
         let place = place_of(self.place.kind, self.place.record, self.place.array);
@@ -199,7 +199,7 @@ impl<'a> Walk<'a> {
         Ok((goal, route))
     }
 
-    /// The legs of a route with their times, and the entries that it was made of.
+    /// Adds the legs of a route with their times, and the entries of the task data that it uses.
     fn route(&self, phase: &mut Phase, command: &EmoveCommand, goal: &Goal, mut route: Route) {
         let departure = self.place.pose.to_frame().unwrap_or_else(|_| Frame::identity());
         let (depart, between, approach) = (route.depart, route.between, route.approach);
@@ -227,7 +227,7 @@ impl<'a> Walk<'a> {
         phase.opening_in = goal.opening.map(|opening| f64::from(opening) / 100.0);
     }
 
-    /// Part, name and entry of each point of a route but the goal.
+    /// Part, name and entry of each point of a route except the goal.
     fn names(
         &self,
         depart: PathId,
@@ -326,7 +326,7 @@ impl<'a> Walk<'a> {
         self.entry(phase, "pose", &origins.poses, pose);
     }
 
-    /// The entries of grip, view, depart, trajectory and approach.
+    /// Adds the entries of grip, view, depart, trajectory and approach.
     fn path_entries(
         &self,
         phase: &mut Phase,
@@ -372,13 +372,13 @@ fn refusal(verb: EmoveVerb, route: Planning) -> Reason {
     }
 }
 
-/// Hundredths of an inch as inches.
+/// Hundredths of an inch as text in inches.
 #[must_use]
 pub fn inches(hundredths: i32) -> String {
     format!("{:.2}", f64::from(hundredths) / 100.0)
 }
 
-/// The legs with the ticks that each takes.
+/// The legs with the number of ticks of each.
 fn timed(start: &Frame, mut legs: Vec<Leg>) -> Vec<Leg> {
     let points: Vec<_> = legs.iter().map(|leg| (leg.frame, leg.parameters())).collect();
     let ticks = time(start, &points);
@@ -387,7 +387,7 @@ fn timed(start: &Frame, mut legs: Vec<Leg>) -> Vec<Leg> {
     legs
 }
 
-/// Seconds of so many ticks.
+/// Converts ticks to seconds.
 #[must_use]
 pub fn seconds(ticks: u32) -> f64 {
     f64::from(ticks) * TICK_S

@@ -1,4 +1,4 @@
-//! The shipped data: every way of every job can be flown, and passes what it must.
+//! Checks the shipped data: every path of every job is possible, and its clearances are as expected.
 
 use std::{collections::BTreeSet, path::Path};
 
@@ -22,7 +22,7 @@ fn walked(job: &str) -> WalkedJob {
     walk_job(&job, &store, &room, &Known::default())
 }
 
-/// No findings, and all lines walked.
+/// Checks that a job has no findings and all its lines are checked.
 fn sound(job: &str) {
     let walked = walked(job);
     let said: Vec<&str> = walked.findings.iter().map(|one| one.message.as_str()).collect();
@@ -61,7 +61,8 @@ fn stored_routes() {
     assert_eq!(texts, [""; 0]);
 }
 
-/// What is carried along: the bar from the tray to the vise, through the hands of the workstation, and back.
+/// The part that the robot holds after each line: the bar from the tray to the vise, and after machining back to the
+/// tray.
 #[test]
 fn what_is_held_is_carried_along() {
     let walked = walked("linkbar");
@@ -69,7 +70,7 @@ fn what_is_held_is_carried_along() {
     let [blank, bar] = ["LINKBAR1_BH with grip +2", "LINKBAR1 with grip +2"].map(Some);
     assert_eq!(held, [blank, None, None, None, bar, None]);
     assert_eq!(walked.lines[0].tried, 13, "the part lies anywhere in its sector");
-    // The bar goes between the jaws with 0.04 in on each side, and its held body is what is nearest there.
+    // The bar passes between the jaws with 0.04 in on each side; there it is the body with the least clearance.
     let into = walked.lines[0].phases.last().and_then(|phase| phase.segments.last()).unwrap();
     let near = into.nearest.as_ref().unwrap();
     assert_eq!((near.mover.as_str(), near.obstacle.as_str()), ("LINKBAR1_BH", "fixed_jaw"));
@@ -77,7 +78,7 @@ fn what_is_held_is_carried_along() {
     assert!(walked.nearest().is_some_and(|near| near.clearance_in > -0.01));
 }
 
-/// The linkbar out of each sector: what `data/README.md` says of them.
+/// Checks the linkbar job from each sector against the statement in `data/README.md`.
 #[test]
 fn each_sector_is_fit_or_not() {
     let (store, _) = Store::load(data()).unwrap_or_else(|report| panic!("{report}"));
@@ -100,13 +101,13 @@ fn each_sector_is_fit_or_not() {
     assert_eq!(unfit, [("UNIT_2", 3), ("UNIT_2", 4)]);
 }
 
-/// What is loaded counts for the lines after it; in the middle of a command, for the command after that.
+/// Loaded data apply to the lines after it; if loaded during a command, to the next command.
 #[test]
 fn after_load_the_new_data_count() {
     let (store, _) = Store::load(data()).unwrap_or_else(|report| panic!("{report}"));
     let room = Room::new(&CellDescription::load(&data().join("cell.toml")).unwrap());
     let place = tempfile::tempdir().unwrap();
-    // On the way to SAFE is a point in the body of the vise.
+    // A point inside the body of the vise, on the way to SAFE.
     let low = "BLOCK# 1 OFFSET 22000
    3950 -4400 -800
    6950 -4400 -800

@@ -1,4 +1,4 @@
-//! Wrong variants of the shipped data, and what is said of each.
+//! Checks the findings for wrong variants of the shipped data.
 
 use std::{fmt::Write, path::Path};
 
@@ -9,7 +9,7 @@ use paths::{
 use plant::{CellDescription, room::Room};
 use taskdata::load::{Diagnostics, Job, Source, Store, source::read_blocks_under};
 
-/// A mistake: its name, the job that meets it, the file, what stands there, and what stands there instead.
+/// A mistake: its name, a job that it affects, the file, the original text, and its replacement.
 type Variant = (&'static str, &'static str, &'static str, &'static str, &'static str);
 
 const TRAJECTORIES: &str = "trajectories.blk";
@@ -239,7 +239,7 @@ fn first(report: &Diagnostics) -> String {
     report.errors().next().map_or(String::new(), |error| format!("{}: {}", error.place(), error.message()))
 }
 
-/// The job with a mistake in the data; `Err` if the data are refused before any way is walked.
+/// Walks the job with a mistake in the data; `Err` if the data are refused before the check of paths.
 fn walked(variant: &Variant, sources: &[Source], room: &Room) -> Result<WalkedJob, String> {
     let (name, job, file, from, to) = *variant;
     let mut sources = sources.to_vec();

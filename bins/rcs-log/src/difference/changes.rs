@@ -1,5 +1,5 @@
-//! What a person asks first of two runs: which rows decided otherwise, where the robot went another way, what
-//! took another time.
+//! Changes between two runs that matter most: rows that decided differently, motions to other points, and commands with
+//! other durations.
 
 use std::{collections::HashMap, fmt};
 
@@ -16,33 +16,33 @@ use super::{
 };
 use crate::story::{Chronicle, CommandStory};
 
-/// Rows of a process that decided otherwise, or at other times.
+/// A process whose rows fired differently, or at other times.
 #[derive(Debug, Serialize)]
 struct Rows {
     process: String,
-    /// Compared ticks in which another row is in the header.
+    /// Number of compared ticks whose headers name different rows.
     ticks: u64,
-    /// The same rows fired in the same order, at other times.
+    /// True if the same rows fired in the same order, at other times.
     same_order: bool,
-    /// Where the order first differs, or else the times: the tick of both runs, and their rows.
+    /// Tick of both runs where the order first differs, or else the times. `a` and `b` are the rows.
     first: [u64; 2],
     a: String,
     b: String,
 }
 
-/// The robot was commanded elsewhere.
+/// The commanded tool points differ.
 #[derive(Debug, Serialize)]
 struct Motion {
-    /// Ticks in which it was.
+    /// Number of ticks in which they differ.
     ticks: u64,
-    /// The first of them.
+    /// First of these ticks, in both runs.
     first: [u64; 2],
-    /// How far apart at the most, in, and when.
+    /// Greatest distance between the points, in; `at` is its tick in both runs.
     greatest_in: f64,
     at: [u64; 2],
 }
 
-/// A command that took another time, or ended otherwise.
+/// A command with another duration or another end.
 #[derive(Debug, Serialize)]
 struct Time {
     command: String,
@@ -50,21 +50,21 @@ struct Time {
     b: String,
 }
 
-/// How two runs differ, in terms of commands, rows and motions.
+/// Differences between two runs in terms of commands, rows and motions.
 #[derive(Debug, Default, Serialize)]
 pub struct Changes {
     rows: Vec<Rows>,
     motion: Option<Motion>,
-    /// The first tick with other bytes on the link, and how many there are.
+    /// First tick, in both runs, with different bytes on the link, and the number of such ticks.
     link: Option<([u64; 2], u64)>,
     times: Vec<Time>,
 }
 
-/// Ticks of a process in which another row is in the header: how many, and the first.
+/// Ticks of a process whose headers name different rows: their number, the first one, and its rows.
 type Others = Option<(u64, [u64; 2], [Option<Decided>; 2])>;
 
 impl Changes {
-    /// Compare two runs.
+    /// Compares two runs.
     #[must_use]
     pub fn between(a: &Trace, b: &Trace, align: Align) -> Self {
         let of_b: HashMap<Key, &Mark> = b.keys(align).zip(&b.marks).collect();
@@ -91,20 +91,20 @@ impl Changes {
         changes
     }
 
-    /// Nothing differs.
+    /// Returns true if nothing differs.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.rows.is_empty() && self.motion.is_none() && self.link.is_none() && self.times.is_empty()
     }
 
-    /// Processes that decided otherwise, and those that decided the same at other times.
+    /// Number of processes that decided differently, and of those that decided the same at other times.
     #[must_use]
     pub fn deciding(&self) -> (usize, usize) {
         let late = self.rows.iter().filter(|rows| rows.same_order).count();
         (self.rows.len() - late, late)
     }
 
-    /// How far apart the commanded points were at the most, in.
+    /// Greatest distance between the commanded points, in.
     #[must_use]
     pub fn apart(&self) -> f64 {
         self.motion.as_ref().map_or(0.0, |motion| motion.greatest_in)
@@ -122,7 +122,7 @@ impl Changes {
         }
     }
 
-    /// Compare how long each command took, and how it ended.
+    /// Compares the durations and the results of the commands.
     fn times(&mut self, a: &Chronicle, b: &Chronicle) {
         let said = |command: Option<&CommandStory>| {
             command.map_or_else(
@@ -144,11 +144,11 @@ impl Changes {
     }
 }
 
-/// What is different in the rows of a process, by its position; `others` are the ticks with another row.
+/// Differences in the rows of a process, given by its position; `others` are the ticks with another row.
 fn rows(process: usize, others: Others, a: &Trace, b: &Trace) -> Option<Rows> {
     let (was, is) = (a.decisions(process), b.decisions(process));
     let parted = was.iter().zip(&is).position(|((_, was), (_, is))| was != is);
-    // A run that went on for longer has decisions that the other has not.
+    // A longer run has decisions that the other run lacks.
     let parted = parted.or((was.len() != is.len()).then_some(was.len().min(is.len())));
     let (first, decided) = match (parted, others) {
         (None, None) => return None,
@@ -170,7 +170,7 @@ fn rows(process: usize, others: Others, a: &Trace, b: &Trace) -> Option<Rows> {
     Some(Rows { process: info.name.to_owned(), ticks, same_order: parted.is_none(), first, a, b })
 }
 
-/// A tick of both runs.
+/// The tick of both runs as text.
 fn both([a, b]: [u64; 2]) -> String {
     if a == b { format!("tick {a}") } else { format!("ticks {a} and {b}") }
 }

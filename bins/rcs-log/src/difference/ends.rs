@@ -1,4 +1,4 @@
-//! How two runs ended: outcome, duration, closest clearance, contacts, places of the parts.
+//! Compares the ends of two runs: outcome, duration, closest clearance, contacts, positions of the parts.
 
 use std::{collections::BTreeMap, fmt};
 
@@ -7,26 +7,26 @@ use record::Log;
 use runtime::RunOutcome;
 use serde::Serialize;
 
-/// How a run ended.
+/// The end of a run.
 #[derive(Clone, Debug, Default)]
 pub struct End {
-    /// In words; empty if the log has no end.
+    /// Outcome as text; empty if the log is incomplete.
     pub outcome: String,
-    /// Ticks until then.
+    /// Number of ticks of the run.
     pub ticks: u64,
-    /// What else is known of it.
+    /// Other facts about the end, by name.
     facts: BTreeMap<String, String>,
 }
 
 impl End {
-    /// The end of a run.
+    /// The end of a run in this process.
     #[must_use]
     pub fn of_run(outcome: &RunOutcome) -> Self {
         let ticks = outcome.result.ticks + u64::from(outcome.result.ramp_ticks);
         Self { outcome: outcome.ending.text().to_owned(), ticks, facts: outcome.result.facts() }
     }
 
-    /// The end that a log has.
+    /// The end recorded in a log of `ticks` ticks.
     #[must_use]
     pub fn of_log(log: &Log, ticks: u64) -> Self {
         let facts = log.end.clone().unwrap_or_default();
@@ -34,13 +34,13 @@ impl End {
         Self { outcome, ticks, facts }
     }
 
-    /// How long the run took.
+    /// Duration of the run, s.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.ticks as f64 * TICK_S
     }
 
-    /// The closest pass of the robot by what it may not touch; "none" if there was none.
+    /// Least distance between the robot and an obstacle, as text; "none" if there was none.
     #[must_use]
     pub fn clearance(&self) -> &str {
         self.fact("clearance")
@@ -51,7 +51,7 @@ impl End {
     }
 }
 
-/// Something that is different at the end.
+/// A fact that differs at the end.
 #[derive(Debug, Serialize)]
 struct Ended {
     what: &'static str,
@@ -59,12 +59,12 @@ struct Ended {
     b: String,
 }
 
-/// How differently two runs ended.
+/// The differences between the ends of two runs.
 #[derive(Debug, Default, Serialize)]
 pub struct Ends(Vec<Ended>);
 
 impl Ends {
-    /// Compare two ends.
+    /// Compares two ends.
     #[must_use]
     pub fn between(a: &End, b: &End) -> Self {
         let longer = b.seconds() - a.seconds();
@@ -84,7 +84,7 @@ impl Ends {
         Self(said.collect())
     }
 
-    /// The runs ended alike.
+    /// Returns true if the ends do not differ.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.0.is_empty()

@@ -1,7 +1,7 @@
-//! What is different between two runs: the one engine of `diff`, `fork` and `compare`.
+//! Differences between two runs, for `diff`, `fork` and `compare`.
 //!
-//! A [`Trace`] has what is compared of a run, from its log or from the run itself. [`Changes`] says which rows decided
-//! otherwise, where the robot was commanded elsewhere, what took another time; [`Ends`], how else the runs ended.
+//! A [`Trace`] holds the data of a run that are compared, from its log or from the run itself. [`Changes`] lists
+//! changed rows, motions and times; [`Ends`] lists the differences at the end.
 
 mod changes;
 mod ends;
@@ -26,23 +26,23 @@ pub enum Align {
     Command,
 }
 
-/// What is different between two whole runs.
+/// The differences between two whole runs.
 #[derive(Debug, Serialize)]
 pub struct Difference {
-    /// How they ended.
+    /// Differences at the end.
     pub ends: Ends,
-    /// What they did on the way.
+    /// Differences during the run.
     pub changes: Changes,
 }
 
 impl Difference {
-    /// Compare two runs.
+    /// Compares two runs.
     #[must_use]
     pub fn between(a: &Trace, b: &Trace, align: Align) -> Self {
         Self { ends: Ends::between(&a.end, &b.end), changes: Changes::between(a, b, align) }
     }
 
-    /// Nothing is different.
+    /// Returns true if nothing differs.
     #[must_use]
     pub const fn is_none(&self) -> bool {
         self.ends.is_empty() && self.changes.is_empty()

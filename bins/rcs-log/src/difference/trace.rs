@@ -1,4 +1,4 @@
-//! What is compared of a run.
+//! The data of a run that are compared.
 
 use std::path::Path;
 
@@ -12,37 +12,37 @@ use crate::{
     story::{Chronicle, Moment, walk},
 };
 
-/// What belongs together: command and ticks since it began.
+/// Identifies ticks that are compared with each other: command number, and ticks since the command began.
 pub type Key = (u32, u64);
 
-/// What of a tick is compared.
+/// The data of a tick that are compared.
 #[derive(Clone, Debug)]
 pub struct Mark {
     /// The tick.
     pub tick: u64,
-    /// The command that Task has taken.
+    /// Number of the command that Task has taken.
     command: u32,
-    /// Row of each process.
+    /// The row that fired in each process.
     pub rows: [Option<Decided>; PROCESS_COUNT],
-    /// Where the robot was commanded to, world, in.
+    /// Commanded tool point, inches, world.
     pub tool: [f64; 3],
-    /// Bytes that went out on the link.
+    /// Bytes sent on the link.
     pub sent: LinkBytes,
 }
 
-/// What is compared of a run.
+/// The data of a run that are compared.
 #[derive(Default)]
 pub struct Trace {
     /// Its ticks.
     pub marks: Vec<Mark>,
-    /// Its commands.
+    /// Commands of the run.
     pub chronicle: Chronicle,
-    /// How it ended.
+    /// The end of the run.
     pub end: End,
 }
 
 impl Trace {
-    /// Take a tick in.
+    /// Records a tick.
     pub fn note(&mut self, moment: &Moment) {
         self.chronicle.note(moment);
         let mut rows = [None; PROCESS_COUNT];
@@ -69,12 +69,12 @@ impl Trace {
         Ok(trace)
     }
 
-    /// All ticks of a log have been taken in.
+    /// Records the end of the run after all ticks of a log.
     pub fn ended(&mut self, log: &Log) {
         self.end = End::of_log(log, self.marks.last().map_or(0, |mark| mark.tick));
     }
 
-    /// What each tick belongs together with.
+    /// The key of each tick.
     pub fn keys(&self, align: Align) -> impl Iterator<Item = Key> {
         let (mut command, mut since) = (0, 0);
         self.marks.iter().map(move |mark| match align {
@@ -88,7 +88,7 @@ impl Trace {
         })
     }
 
-    /// The rows of a process in the order in which they fired, each with its first tick.
+    /// The rows of a process in the order of firing, each with the first tick of its firing.
     pub fn decisions(&self, process: usize) -> Vec<(u64, Option<Decided>)> {
         let mut decisions: Vec<(u64, Option<Decided>)> = Vec::new();
         for mark in &self.marks {

@@ -1,4 +1,4 @@
-//! Changes of a run as a person writes them, and what becomes of them before anything runs.
+//! Changes of a run: their text form, and their checks before the run begins.
 
 use std::{
     fmt, io,
@@ -16,24 +16,24 @@ use taskdata::load::{Diagnostics, Job, Source, Step, Store, Workstation, job::Jo
 
 use super::datum::{Datum, DatumError, Words};
 
-/// A change.
+/// A change of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Change {
-    /// Another word in the task data.
+    /// Replace a word of the task data.
     Datum(Datum),
-    /// A line before the next one of the job.
+    /// Insert a line before the next line of the job.
     Line(String),
-    /// A command in the place of the next one.
+    /// Execute a command instead of the next one.
     Command(String),
-    /// Another seed of the noise.
+    /// Use another seed of the noise.
     Seed(u64),
-    /// The faults of a file.
+    /// Enable the faults of a file.
     Fault(PathBuf),
-    /// Another value of the cell description.
+    /// Replace a value of the cell description.
     Cell {
-        /// Its place in the file: `vise.friction`.
+        /// Key in the file, such as `vise.friction`.
         key: String,
-        /// As TOML.
+        /// Value as TOML.
         value: String,
     },
 }
@@ -85,74 +85,74 @@ impl fmt::Display for Change {
 /// Why a change is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum RefusedChange {
-    /// The task data have no such word.
+    /// The task data contain no such word.
     #[error(transparent)]
     Datum(#[from] DatumError),
-    /// The task data have errors with it.
+    /// The changed task data have errors.
     #[error("with this change the task data have errors:\n{0}")]
     Data(String),
-    /// The line of the job cannot be read.
+    /// The text is no valid line of a job.
     #[error("this is not a line of a job:\n{0}")]
     Line(String),
-    /// It is not one line of the kind.
+    /// The text is not exactly one line of the expected kind.
     #[error("one {0} was expected, which is no `** load`: `datum` changes task data")]
     NotOne(&'static str),
     /// The file of faults cannot be read.
     #[error("{}: {source}", path.display())]
     Read {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// Nor understood.
+    /// The file of faults has errors.
     #[error("{}", .0.in_line())]
     Faults(Diagnostics),
-    /// There is no such value in the cell description.
+    /// The cell description has no such value.
     #[error("cell.toml has no value {key}: {known}")]
     Key {
-        /// As asked for.
+        /// The key of the change.
         key: String,
-        /// What there is.
+        /// Keys that exist.
         known: String,
     },
-    /// The value is no TOML.
+    /// The value is not valid TOML.
     #[error("{0} is not a TOML value")]
     Value(String),
-    /// The description cannot be used with it.
+    /// The changed cell description is invalid.
     #[error("{0}")]
     Description(String),
 }
 
-/// A change that is refused before anything runs.
+/// A change that is refused before the run begins.
 #[derive(Debug, thiserror::Error)]
 #[error("the change is refused ({what}): {why}")]
 pub struct Refusal {
-    /// The change.
+    /// The change, as text.
     what: String,
-    /// Why.
+    /// The reason.
     why: RefusedChange,
 }
 
-/// What is to be done to a run.
+/// An operation on a run, made from a change.
 pub enum Deed {
-    /// Load these blocks.
+    /// Load these blocks of task data.
     Data(Source),
-    /// Put a line before the next one.
+    /// Insert a line before the next one.
     Line(JobLine),
-    /// Put a command in the place of the next one.
+    /// Execute a command instead of the next one.
     Command(JobLine),
     /// Use another seed.
     Seed(u64),
-    /// Let these faults begin.
+    /// Enable these faults.
     Faults(Box<FaultFile>),
 }
 
 impl Deed {
-    /// Do it.
+    /// Applies the operation to a run; `seed` is the seed of the faults.
     ///
     /// # Errors
-    /// [`ChangeError`].
+    /// [`ChangeError`] if the run refuses the change.
     pub fn apply(self, run: &mut Run, seed: u64) -> Result<(), ChangeError> {
         match self {
             Self::Data(source) => run.change_data(source),
@@ -172,20 +172,20 @@ impl Change {
         Box::new(Refusal { what: self.to_string(), why: why.into() })
     }
 
-    /// The text of a cell description with this change in it.
+    /// Applies a change of the cell description to its text; other changes leave the text as it is.
     ///
     /// # Errors
-    /// [`Refusal`] if there is no such value, or the description cannot be used with it.
+    /// [`Refusal`] if the value does not exist, or the changed description is invalid.
     pub fn described(&self, text: &str) -> Result<String, Box<Refusal>> {
         let Self::Cell { key, value } = self else { return Ok(text.to_owned()) };
         with_value(text, key, value).map_err(|why| self.refused(why))
     }
 }
 
-/// The cell description of a log.
+/// Parses the cell description of a log.
 ///
 /// # Errors
-/// [`Refusal`] if it cannot be used.
+/// [`Refusal`] if the description is invalid.
 pub fn description(text: &str) -> Result<CellDescription, Box<Refusal>> {
     CellDescription::from_toml(text).map_err(|error| {
         let why = RefusedChange::Description(error.to_string());
@@ -193,11 +193,11 @@ pub fn description(text: &str) -> Result<CellDescription, Box<Refusal>> {
     })
 }
 
-/// What the changes come to, with the task data and the cell of the tick. Those of the cell description are not among
-/// them.
+/// Converts changes to operations, with the task data and the cell of the tick. Changes of the cell description are
+/// left out.
 ///
 /// # Errors
-/// [`Refusal`].
+/// [`Refusal`] of the first change that is not possible.
 pub fn deeds(changes: &[Change], store: &Store, cell: &CellDescription) -> Result<Vec<Deed>, Box<Refusal>> {
     let mut words = Words::default();
     let mut deeds = Vec::new();
@@ -215,7 +215,7 @@ pub fn deeds(changes: &[Change], store: &Store, cell: &CellDescription) -> Resul
         };
         deeds.push(deed.map_err(|why| change.refused(why))?);
     }
-    // Words of one entry may be right only together.
+    // Changed words of one entry may be valid only together, so they are checked together.
     if let Some(source) = words.source() {
         if let Err(report) = store.with_blocks(vec![source.clone()]) {
             let why = RefusedChange::Data(report.render(false));
@@ -234,7 +234,7 @@ fn faults(path: &Path, cell: &CellDescription) -> Result<Deed, RefusedChange> {
     Ok(Deed::Faults(Box::new(faults)))
 }
 
-/// The line of a job that a text is.
+/// Parses one line of a job.
 fn line(text: &str, store: &Store) -> Result<JobLine, RefusedChange> {
     let source = Source { name: "--set".to_owned(), text: text.into() };
     let (job, _) =
@@ -256,10 +256,10 @@ fn command(line: JobLine) -> Result<JobLine, RefusedChange> {
     if matches!(line.step, Step::Command(_)) { Ok(line) } else { Err(RefusedChange::NotOne("command")) }
 }
 
-/// The text of a cell description with another value in it.
+/// Replaces a value in the text of a cell description.
 ///
 /// # Errors
-/// [`RefusedChange`] if there is no such value, or the description cannot be used with it.
+/// [`RefusedChange`] if the value does not exist, or the changed description is invalid.
 pub fn with_value(text: &str, key: &str, value: &str) -> Result<String, RefusedChange> {
     let wrong = |error: toml::de::Error| RefusedChange::Description(error.to_string());
     let mut table: toml::Table = text.parse().map_err(wrong)?;
@@ -284,7 +284,7 @@ pub fn with_value(text: &str, key: &str, value: &str) -> Result<String, RefusedC
     Ok(text)
 }
 
-/// The keys that stand where a key leads nowhere.
+/// The error for a key that does not exist, with the keys that exist at this place.
 fn missing(table: &toml::Table, key: &str) -> RefusedChange {
     let mut known: Vec<String> = table.keys().cloned().collect();
     let mut at: Option<&toml::Value> = None;

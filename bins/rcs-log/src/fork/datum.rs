@@ -1,19 +1,19 @@
-//! A word of the task data that is another one: `poses.blk:612:4-6:3+=20`.
+//! A changed word of the task data, written as `poses.blk:612:4-6:3+=20`.
 //!
-//! File, block and line are those that `rcs-log why` names: the file as in the data directory, the line of a block from 0.
-//! Words count from 1.
+//! File, block and line are numbered as `rcs-log why` prints them: the file as in the data directory, the lines of a
+//! block from 0. Words count from 1.
 
 use std::{fmt, str::FromStr};
 
 use taskdata::load::{BlockNumber, Source, Store, source::blocks};
 
-/// Name of the blocks that were changed, among the task data.
+/// Name under which the changed blocks are loaded.
 const NAME: &str = "fork.blk";
 
-/// How a word is written.
+/// The text form of a datum, for messages.
 const EXPECTED: &str = "FILE:BLOCK:LINE[-LINE]:WORD=VALUE was expected, such as poses.blk:612:4-6:3+=20";
 
-/// Another word in some lines of a block.
+/// A change of a word in some lines of a block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Datum {
     file: String,
@@ -23,64 +23,64 @@ pub struct Datum {
     edit: Edit,
 }
 
-/// What becomes of a word.
+/// How a word changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Edit {
-    /// This.
+    /// Replace it by this word.
     Set(String),
-    /// So much more than the number that it is.
+    /// Add this to its number.
     Add(i64),
 }
 
-/// Why a datum cannot be changed.
+/// Errors of changing a datum.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DatumError {
-    /// There is no such file.
+    /// The task data have no such file.
     #[error("the log has no file {file}: it has {known}")]
     File {
-        /// As asked for.
+        /// The file of the change.
         file: String,
-        /// Files that there are.
+        /// Files that exist.
         known: String,
     },
-    /// There is no such block in it.
+    /// The file has no such block.
     #[error("{file} has no block {block}")]
     Block {
         /// The file.
         file: String,
-        /// As asked for.
+        /// The block of the change.
         block: u32,
     },
-    /// There is no such line in it.
+    /// The block has no such line.
     #[error("{block} of {file} has no line {line}: its last is {last}")]
     Line {
         /// The file.
         file: String,
         /// The block.
         block: BlockNumber,
-        /// As asked for.
+        /// The line of the change.
         line: usize,
-        /// The last there.
+        /// Number of the last line.
         last: usize,
     },
-    /// There is no such word in it.
+    /// The line has no such word.
     #[error("line {line} has no word {word}: it is `{text}`")]
     Word {
         /// The line.
         line: usize,
-        /// As asked for.
+        /// The word of the change.
         word: usize,
-        /// The line as it is.
+        /// Text of the line.
         text: String,
     },
-    /// The word is no number.
+    /// The word is not a number.
     #[error("word {word} of line {line} is {found}: += and -= need a whole number")]
     NoNumber {
         /// The line.
         line: usize,
-        /// Which word.
+        /// Number of the word.
         word: usize,
-        /// What it is.
+        /// The word found.
         found: String,
     },
 }
@@ -118,22 +118,22 @@ impl FromStr for Datum {
     }
 }
 
-/// A block that is changed.
+/// A changed block.
 struct Changed {
     file: String,
     number: BlockNumber,
     lines: Vec<String>,
 }
 
-/// Blocks of task data with other words in them.
+/// Blocks of task data with changed words.
 #[derive(Default)]
 pub struct Words(Vec<Changed>);
 
 impl Words {
-    /// Change a word, in task data with all changes so far.
+    /// Changes a word, on top of all changes so far.
     ///
     /// # Errors
-    /// [`DatumError`] if the data have no such word.
+    /// [`DatumError`] if the data have no such word, or `+=` or `-=` finds no number.
     pub fn change(&mut self, store: &Store, datum: &Datum) -> Result<(), DatumError> {
         let known = |changed: &Changed| changed.file == datum.file && changed.number.number == datum.block;
         if let Some(block) = self.0.iter_mut().find(|changed| known(changed)) {
@@ -145,7 +145,7 @@ impl Words {
         Ok(())
     }
 
-    /// All blocks with a change in them, as one source; `None` without a change.
+    /// All changed blocks as one source; `None` without a change.
     #[must_use]
     pub fn source(&self) -> Option<Source> {
         if self.0.is_empty() {
@@ -158,7 +158,7 @@ impl Words {
     }
 }
 
-/// The block of a datum as it stands, the newest of its number.
+/// The block of a datum; of several with its number, the newest.
 fn find(sources: &[Source], datum: &Datum) -> Result<Changed, DatumError> {
     let Datum { file, block, .. } = datum;
     let of_name: Vec<&Source> = sources.iter().filter(|source| source.name == *file).collect();
@@ -192,7 +192,7 @@ impl Datum {
         Ok(())
     }
 
-    /// The line with another word, which takes the blanks before it where it is longer.
+    /// The line with its word replaced; a longer word uses up the blanks before it.
     fn edited(&self, at: usize, line: &str) -> Result<String, DatumError> {
         let missing = || DatumError::Word { line: at, word: self.word, text: line.trim().to_owned() };
         let found = line.split_whitespace().nth(self.word - 1).ok_or_else(missing)?;

@@ -1,4 +1,4 @@
-//! Why a log cannot be forked.
+//! Errors of forking a log.
 
 use std::io;
 
@@ -7,16 +7,16 @@ use runtime::{ChangeError, RepeatError, StartError};
 
 use super::change::Refusal;
 
-/// Why a log cannot be forked.
+/// Errors of forking a log.
 #[derive(Debug, thiserror::Error)]
 pub enum ForkError {
     /// The log does not hold the whole run.
     #[error(transparent)]
     Repeat(#[from] RepeatError),
-    /// Its task data cannot be used.
+    /// The task data of the log are invalid.
     #[error(transparent)]
     Data(#[from] ReplayError),
-    /// It cannot be read.
+    /// The log cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
     /// The run cannot begin.
@@ -25,50 +25,50 @@ pub enum ForkError {
     /// A change is refused.
     #[error(transparent)]
     Refused(#[from] Box<Refusal>),
-    /// The run refuses it.
+    /// The run refuses a change.
     #[error("the change is refused after tick {tick}: {source}")]
     Change {
-        /// The tick.
+        /// The last tick before the change.
         tick: u64,
-        /// Why.
+        /// The reason.
         source: ChangeError,
     },
-    /// The cell is built before the first tick.
+    /// A change of the cell after tick 0: the cell is built before the first tick.
     #[error("cell {0} can be changed before the first tick only, when the cell is built: use --tick 0")]
     CellLater(String),
-    /// No such tick.
+    /// The log has no such tick, or no tick after it.
     #[error("there is nothing to fork after tick {tick}: a tick from 0 to {last} was expected")]
     NoTick {
-        /// As asked for.
+        /// The requested tick.
         tick: u64,
-        /// The one before the last.
+        /// The last possible tick.
         last: u64,
     },
-    /// Nothing went wrong.
+    /// The run has no failure, which `--at-failure` needs.
     #[error("nothing went wrong in this run: name a tick with --tick")]
     NoFailure,
-    /// The log is to be written over.
+    /// The output file is the log itself.
     #[error("the fork would overwrite the log that it comes from: name another file")]
     SameFile,
-    /// The program has changed, or the log does not have all that the run depended on.
+    /// The program has changed, or the log lacks data that the run depended on.
     #[error(
         "this program differs from the log from tick {tick} on: {field} was {was} and is {is}; \
          run the job again with this program, and fork that log"
     )]
     Differs {
-        /// The tick.
+        /// The first tick that differs.
         tick: u64,
-        /// Field of a buffer, or what the cell is like.
+        /// Name of a field of a buffer, or of the cell.
         field: String,
-        /// As recorded.
+        /// Recorded value.
         was: String,
-        /// As computed.
+        /// Computed value.
         is: String,
     },
-    /// The run has ended before.
+    /// The repeated run ends before the log does.
     #[error("this program ends the run at tick {0}, where the log goes on")]
     Over(u64),
-    /// Files of the log cannot be kept meanwhile.
+    /// The attachments of the log cannot be unpacked.
     #[error("the files of the log cannot be unpacked: {0}")]
     Scratch(#[from] io::Error),
 }

@@ -1,8 +1,8 @@
-//! `rcs-log fork`: what would have happened if?
+//! `rcs-log fork`: repeats the run of a log with a change.
 //!
-//! The run of a log is run again from tick 0 with what stands in the log ([`runtime::repeat`]), and each tick is
-//! compared with the log, bit for bit. After a tick something is changed ([`change`]), the run goes on to its end, and
-//! what is different from the log is told ([`crate::difference`]). A run of four minutes takes about a second.
+//! The run of a log is repeated from tick 0 with the job, data and seed of the log ([`runtime::repeat`]), and each tick
+//! is compared with the log, bit for bit. After a given tick the run is changed ([`change`]) and continues to its end.
+//! The answer lists the differences from the log ([`crate::difference`]). A run of four minutes takes about a second.
 
 mod change;
 mod datum;
@@ -60,28 +60,28 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// The answer.
+/// The answer of `fork`.
 #[derive(Debug, Serialize)]
 struct Forked {
     file: String,
     job: String,
-    /// The last tick that is as in the log.
+    /// The last tick before the changes.
     tick: u64,
-    /// The command that the tick stands before, with `--at-failure`.
+    /// With `--at-failure`: the command that the next tick begins.
     before: Option<String>,
     changes: Vec<String>,
-    /// How many times faster than the robot.
+    /// Simulated time divided by computing time.
     times_real_time: f64,
-    /// Outcome of the log and of the fork.
+    /// Outcomes of the log and of the fork.
     outcome: [String; 2],
     seconds: [f64; 2],
-    /// The log of the fork.
+    /// Path of the fork's log.
     log: Option<PathBuf>,
     #[serde(flatten)]
     difference: Difference,
 }
 
-/// Fork a log and print what is different.
+/// Forks a log and prints the differences.
 pub fn fork(arguments: &Arguments) -> Result<ExitCode, Error> {
     let log = open(&arguments.file)?;
     let failed = |source| Error::Fork { path: arguments.file.clone(), source: Box::new(source) };
@@ -114,7 +114,7 @@ pub fn fork(arguments: &Arguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Run the log again up to a tick, change it, and go on to the end.
+/// Repeats the run of the log up to a tick, applies the changes, and continues to the end.
 fn run(log: &Log, arguments: &Arguments, tick: u64) -> Result<Trace, ForkError> {
     let directory = tempfile::Builder::new().prefix("rcs-fork-").tempdir()?;
     let mut config = repeat::unpack(log, directory.path())?;
@@ -150,7 +150,8 @@ fn is_same(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-/// What the changes come to, before anything runs; the cell description of the run is changed here.
+/// Converts the changes to operations before the run begins. Writes a changed cell description into the run's
+/// directory.
 fn prepare(log: &Log, changes: &[Change], tick: u64, config: &RunConfig) -> Result<Vec<Deed>, ForkError> {
     let cell = log.attachment(Attachment::CELL).ok_or(RepeatError::Missing("cell description"))?;
     let mut text = String::from_utf8_lossy(&cell.data).into_owned();

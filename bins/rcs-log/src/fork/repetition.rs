@@ -1,4 +1,4 @@
-//! A run that repeats a log, bit for bit.
+//! A run that repeats a log and compares itself with it, bit for bit.
 
 use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{Plain, plain::Writer, tick::Tick};
@@ -15,7 +15,7 @@ use crate::{difference::Trace, story::Moment};
 pub struct Repetition {
     /// The run.
     pub run: Run,
-    /// What is compared of it later.
+    /// The data that are compared after the run.
     pub trace: Trace,
     before: CommonMemory,
     external: Vec<Leaf>,
@@ -23,7 +23,7 @@ pub struct Repetition {
 }
 
 impl Repetition {
-    /// Before the first tick.
+    /// A repetition before its first tick.
     pub fn new(run: Run) -> Self {
         Self {
             run,
@@ -34,7 +34,7 @@ impl Repetition {
         }
     }
 
-    /// Run a tick; false if the run is over.
+    /// Executes a tick; returns false if the run is over.
     pub fn step(&mut self) -> bool {
         let last = self.run.last_tick();
         let goes_on = self.run.step();
@@ -55,10 +55,10 @@ impl Repetition {
         goes_on
     }
 
-    /// Run to a tick of the log, and compare with it.
+    /// Runs up to a tick of the log and compares it with the log.
     ///
     /// # Errors
-    /// [`ForkError::Differs`], [`ForkError::Over`].
+    /// [`ForkError::Differs`] if a field differs, [`ForkError::Over`] if the run ends before the tick.
     pub fn follow(&mut self, logged: &LoggedTick) -> Result<(), ForkError> {
         let mut cell = 0;
         while self.run.last_tick() < logged.tick {

@@ -1,4 +1,4 @@
-//! What the page shows, taken from a log tick by tick.
+//! Collects the contents of the page from a log, tick by tick.
 
 use std::path::Path;
 
@@ -22,23 +22,23 @@ use crate::{
     why::{History, Told, tell},
 };
 
-/// Levels whose commands have a lane in the timeline: positions in the ladder's list of processes, Task to Prim.
+/// Number of levels with a lane in the timeline: the first processes of the ladder, Task to Prim.
 pub const LANES: usize = 4;
 /// The link whose origin is the tool point.
 const TOOL: &str = "quick_change";
-/// Pictures at most; with more commands, every so many has one.
+/// Greatest number of pictures; with more commands, only every n-th command has a picture.
 const PICTURES: usize = 36;
 
-/// A stretch of ticks in which a level had the same command.
+/// Consecutive ticks in which a level had the same command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stretch {
     /// First tick.
     pub from: u64,
     /// Last tick.
     pub to: u64,
-    /// The command, as people write it; empty for none.
+    /// The command as text; empty for none.
     pub text: String,
-    /// Its steps, each with the tick in which it began.
+    /// Steps of the command, each with its first tick.
     pub steps: Vec<(u64, String)>,
 }
 
@@ -46,65 +46,65 @@ pub struct Stretch {
 pub struct Picture {
     /// The tick.
     pub tick: u64,
-    /// What begins or ends there.
+    /// What begins or ends in the tick.
     pub text: String,
-    /// The drawing.
+    /// The drawing, as SVG.
     pub svg: String,
-    /// Drawings of what is near the tool point, with what they show: of the failure.
+    /// Close-up drawings around the tool point at the failure, with their titles.
     pub near: Vec<(&'static str, String)>,
 }
 
-/// A passage of the robot by something, nearer than any other of the run.
+/// The closest approach of an obstacle to the robot in the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clearance {
     /// The tick.
     pub tick: u64,
-    /// What the log says of it.
+    /// Text of the log about it.
     pub text: String,
 }
 
-/// A run as the page shows it. All series have one value a tick.
+/// The contents of the page. All series have one value per tick.
 #[derive(Default)]
 pub struct Run {
     /// Number of each tick.
     pub ticks: Vec<u64>,
-    /// Names of the lanes, and their stretches.
+    /// Names of the lanes, with their stretches.
     pub lanes: Vec<(&'static str, Vec<Stretch>)>,
     /// Speed of the commanded tool point, in/s.
     pub speed: Vec<f64>,
-    /// Turning of the commanded tool frame, rad/s.
+    /// Angular speed of the commanded tool frame, rad/s.
     pub turning: Vec<f64>,
-    /// Tool point commanded to the robot, inches.
+    /// Commanded tool points, inches.
     pub path: Vec<[f64; 3]>,
     /// Opening of the parts gripper, in.
     pub opening: Vec<f64>,
-    /// Greater force of its fingers, lb.
+    /// The greater of the forces of its fingers, lb.
     pub force: Vec<f64>,
-    /// Force on the tool gripper's sensor, without its bias, lb; 0 while it has no power.
+    /// Force on the tool gripper's sensor without its bias, lb; 0 without power.
     pub tool_force: Vec<f64>,
-    /// NAKs, time-outs, checksum errors and re-starts that the tick added.
+    /// NAKs, time-outs, checksum errors and re-starts in the tick.
     pub link_faults: Vec<u32>,
-    /// Stretches in which the link ran.
+    /// Stretches in which the link was running.
     pub link: Vec<Stretch>,
-    /// Controller part of the tick, microseconds; empty in logs of runs in fast clock.
+    /// Time of the controller part of the tick, us; empty in logs of runs in fast clock.
     pub controller: Vec<f64>,
-    /// Slots of the grid that were skipped.
+    /// Number of skipped slots of the 40 ms grid.
     pub overruns: u64,
-    /// Commands and the failure.
+    /// Commands and the failure of the run.
     pub chronicle: Chronicle,
-    /// The failure with its causes.
+    /// The explained failure.
     pub failure: Option<Told>,
-    /// Warnings and errors of the log.
+    /// Warnings and errors on `/log`.
     pub lines: Vec<(Tick, Level, String, String)>,
-    /// Everything that the log says.
+    /// Number of all lines on `/log`.
     pub all_lines: usize,
-    /// The cell where commands begin, where the failure began, and at the end.
+    /// The cell at the start of commands, at the start of the failure, and at the end.
     pub pictures: Vec<Picture>,
-    /// The closest passage of the robot by something.
+    /// The closest approach of an obstacle.
     pub clearance: Option<Clearance>,
 }
 
-/// Read a log.
+/// Reads a log.
 pub fn gather(log: &Log, path: &Path) -> Result<Run, Error> {
     let names = Ladder::processes().iter().take(LANES).map(|process| (process.name, Vec::new()));
     let mut run = Run { lanes: names.collect(), ..Run::default() };
@@ -138,7 +138,8 @@ impl Run {
             let header = moment.after.header(*process);
             let command = |memory| failure::command(*process, &moment.external.hws, memory);
             let text = command(&moment.after);
-            // A command that was written in this tick is not read yet: the step is that of the one before.
+            // A command written in this tick is read in the next one, so the step still belongs to the previous
+            // command.
             let step =
                 if text == command(&moment.before) { header.step.unwrap_or_default() } else { Name16::EMPTY };
             extend(lane, tick, text, &step);
@@ -158,7 +159,7 @@ impl Run {
         let force =
             [sensor.x, sensor.y, sensor.z].map(axis).into_iter().fold(0.0, |sum: f64, lb| sum.hypot(lb));
         self.tool_force.push(if sensor.valid { force } else { 0.0 });
-        // A re-start that Prim has ordered is no fault.
+        // A re-start ordered by Prim is no fault.
         let restarts = u32::from(!is_restart_ordered(&moment.before));
         let counters = |memory: &CommonMemory| {
             let link = &memory.t3i.status.counters;
@@ -175,7 +176,7 @@ impl Run {
     }
 }
 
-/// Pictures where commands begin, where the failure began, and after the last tick.
+/// Pictures at the start of commands, at the start of the failure, and after the last tick.
 fn pictures(log: &Log, run: &Run) -> Vec<Picture> {
     let Some(urdf) = log.attachment(Attachment::URDF) else { return Vec::new() };
     let commands = &run.chronicle.commands;
@@ -206,14 +207,14 @@ fn pictures(log: &Log, run: &Run) -> Vec<Picture> {
     pictures
 }
 
-/// The tick of a clearance as a run puts it: "... by 0.157 in at tick 1307, during ...".
+/// Parses a clearance text, such as "... by 0.157 in at tick 1307, during ...".
 fn clearance(text: &str) -> Option<Clearance> {
     let (_, rest) = text.split_once("at tick ")?;
     let digits = rest.split(|c: char| !c.is_ascii_digit()).next()?;
     Some(Clearance { tick: digits.parse().ok()?, text: text.to_owned() })
 }
 
-/// Lengthen the last stretch of a lane, or begin a new one.
+/// Extends the last stretch of a lane, or begins a new one.
 fn extend(lane: &mut Vec<Stretch>, tick: u64, text: String, step: &Name16) {
     if lane.last().is_none_or(|last| last.text != text) {
         lane.push(Stretch { from: tick, to: tick, text, steps: Vec::new() });
@@ -225,7 +226,7 @@ fn extend(lane: &mut Vec<Stretch>, tick: u64, text: String, step: &Name16) {
     }
 }
 
-/// Speed in in/s and turning in rad/s between two commanded frames; 0 until there are two.
+/// Speed in in/s and angular speed in rad/s between two commanded frames; 0 if one is missing.
 fn motion(before: &CommonMemory, after: &CommonMemory) -> (f64, f64) {
     let known = |frame: &WireFrame| (*frame != WireFrame::default()).then(|| frame.to_frame().ok()).flatten();
     let (was, is) = (&before.t3i.status, &after.t3i.status);

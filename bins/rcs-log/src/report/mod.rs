@@ -1,6 +1,6 @@
-//! `rcs-log report`: a run on one page of HTML that needs nothing else: why it failed, commands by level over time, speed
-//! against the limits of the link, forces, link, times of the controller, pictures of the cell where commands begin, paths from
-//! above and from the side, and what was worth a line in the log.
+//! `rcs-log report`: a run on one self-contained HTML page: the explained failure, commands by level over time, speed
+//! with the limits of the link, forces, link faults, times of the controller, pictures of the cell at the start of
+//! commands, paths from above and from the side, and the warnings and errors of the log.
 
 mod gather;
 mod page;
@@ -23,7 +23,7 @@ pub struct Arguments {
     pub output: Option<PathBuf>,
 }
 
-/// Write the page of a log.
+/// Writes the page of a log.
 pub fn report(arguments: &Arguments) -> Result<ExitCode, Error> {
     let log = open(&arguments.file)?;
     let run = gather::gather(&log, &arguments.file)?;

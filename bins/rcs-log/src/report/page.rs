@@ -1,4 +1,4 @@
-//! The page as HTML: light, dark and on paper, without anything from elsewhere.
+//! The HTML page, for light and dark screens and for print. It loads nothing from other files.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rcs_core::tick::TICK_S;
@@ -13,7 +13,7 @@ use crate::why::{Link, Told};
 /// Limits of the link (A 2.3): in/s and rad/s.
 const SPEED_LIMIT: f64 = 14.0;
 const TURNING_LIMIT: f64 = 1.0;
-/// What the controller part of a tick may take (docs/design/tick.md "Budget"), microseconds.
+/// Time limit of the controller part of a tick (docs/design/tick.md "Budget"), us.
 const CONTROLLER_LIMIT: f64 = 20.0;
 
 const STYLE: &str = include_str!("style.css");
@@ -64,7 +64,7 @@ fn head(log: &Log, run: &Run, title: &str) -> Markup {
     }
 }
 
-/// The figures that are looked for first.
+/// The most important numbers, at the top of the page.
 fn tiles(log: &Log, run: &Run) -> Markup {
     let seconds = run.ticks.last().copied().unwrap_or_default() as f64 * TICK_S;
     let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
@@ -109,7 +109,7 @@ fn duration(seconds: f64) -> String {
     if whole < 60 { format!("{seconds:.1} s") } else { format!("{} min {:02} s", whole / 60, whole % 60) }
 }
 
-/// The time of a tick, seconds.
+/// Time of a tick, s.
 fn seconds(tick: u64) -> f64 {
     tick as f64 * TICK_S
 }
@@ -305,7 +305,7 @@ fn lines(run: &Run) -> Markup {
     }
 }
 
-/// What it takes to run it again, and what the run says of itself.
+/// The data needed to repeat the run, and the facts that the run recorded.
 fn about(log: &Log) -> Markup {
     let end = log.end.iter().flatten().filter(|(key, _)| !key.starts_with("lost_"));
     let entries = log.run.iter().chain(end).filter(|(_, value)| !value.is_empty());

@@ -1,8 +1,8 @@
-//! Pictures of the cell: the boxes and cylinders of its description, where the log says that they are, drawn as SVG.
+//! Draws the cell as SVG: the boxes and cylinders of its description at the poses in the log.
 //!
-//! The eye looks from the operator's side, to the right and from above, without perspective, so that lengths can be
-//! compared; near a link also straight from above and from the side. Faces turned away are left out, the others are painted
-//! from the farthest to the nearest.
+//! Parallel projection, so that lengths can be compared, seen from the operator's side, from the right and from above.
+//! Close-ups of a link are seen straight from above and from the side. Faces that point away are left out; the others
+//! are painted from the farthest to the nearest.
 
 use std::{collections::HashMap, fmt::Write as _};
 
@@ -11,27 +11,27 @@ use roxmltree::{Document, Node};
 
 /// Size of a picture, pixels.
 const SIZE: [f64; 2] = [560.0, 380.0];
-/// Sides of a cylinder.
+/// Number of sides of a drawn cylinder.
 const SIDES: usize = 14;
-/// From the eye into the picture; and where the light comes from. Unit vectors of the world, roughly.
+/// Viewing direction, into the picture, and direction of the light; approximate unit vectors in the world.
 const EYE: [f64; 3] = [-0.35, 0.80, -0.49];
-/// Straight down: +X to the right, +Y up.
+/// Viewing direction straight down: +X to the right, +Y up.
 pub const FROM_ABOVE: [f64; 3] = [0.0, 0.02, -1.0];
-/// From the operator's side: +X to the right, +Z up.
+/// Viewing direction from the operator's side: +X to the right, +Z up.
 pub const FROM_THE_SIDE: [f64; 3] = [0.0, 1.0, -0.02];
-/// A point that the raised arm does not reach, m: a picture of the whole cell has room for it.
+/// A point above the reach of the raised arm, m: pictures of the whole cell include it.
 const OVER_THE_ARM: [f64; 3] = [0.0, 0.0, 1.35];
-/// Half the width of a picture near a link, m.
+/// Half the width of a close-up, m.
 const NEAR: f64 = 0.55;
 const LIGHT: [f64; 3] = [0.35, -0.55, 0.76];
-/// Links that would hide the others or fill the picture.
+/// Links that would hide others or fill the picture.
 const LEFT_OUT: [&str; 2] = ["floor", "machine_column"];
 
 type Point = [f64; 3];
-/// Depth, colour, and corners in the picture.
+/// Depth, colour, and corners in the picture, m.
 type Face = (f64, String, Vec<[f64; 2]>);
 
-/// A body with its place in its link.
+/// A body with its pose in its link.
 struct Visual {
     at: Transform,
     faces: Vec<Vec<Point>>,
@@ -39,16 +39,16 @@ struct Visual {
     color: Point,
 }
 
-/// The description of the cell, and where its links are.
+/// The description of the cell, and the poses of its links.
 pub struct Scene {
     visuals: Vec<(String, Vec<Visual>)>,
     places: HashMap<String, (String, Transform)>,
-    /// Of all pictures: middle, and pixels a metre.
+    /// Middle and pixels per metre, the same for all pictures of the whole cell.
     view: Option<([f64; 2], f64)>,
 }
 
 impl Scene {
-    /// A scene from a URDF; nothing is anywhere yet. What cannot be read is not drawn.
+    /// A scene from a URDF, without poses. Elements that cannot be parsed are not drawn.
     pub fn new(urdf: &str) -> Self {
         let document = Document::parse(urdf).ok();
         let robot = document.as_ref().map(Document::root_element);
@@ -61,15 +61,15 @@ impl Scene {
         Self { visuals: links.filter_map(link).collect(), places: HashMap::new(), view: None }
     }
 
-    /// Links are somewhere else now.
+    /// Updates the poses of links.
     pub fn place(&mut self, places: Vec<(Link, Transform)>) {
         self.places.extend(places.into_iter().map(|(link, place)| (link.name, (link.parent, place))));
     }
 
-    /// Where a link is in the world; none if the log has not said it, or it has not come into the cell yet.
+    /// The pose of a link in the world; `None` if the log has no pose of it yet.
     fn world(&self, link: &str) -> Option<Transform> {
         let (mut at, mut name) = (Transform::IDENTITY, link);
-        // A chain is not longer than there are links.
+        // A chain of links is not longer than the number of links, so the loop ends even for a cycle.
         for _ in 0..=self.places.len() {
             let Some((parent, place)) = self.places.get(name) else { return (name == "world").then_some(at) };
             at = compose(place, &at);
@@ -78,7 +78,7 @@ impl Scene {
         None
     }
 
-    /// The cell as it stands now.
+    /// Draws the whole cell at the present poses.
     pub fn draw(&mut self) -> String {
         let faces = self.faces(EYE);
         let (right, up) = basis(EYE);
@@ -87,7 +87,7 @@ impl Scene {
         svg(faces, view)
     }
 
-    /// What is near a link as it stands now, seen along a direction; none if the link is nowhere.
+    /// Draws the surroundings of a link along a viewing direction; `None` if its pose is unknown.
     pub fn near(&self, link: &str, eye: Point) -> Option<String> {
         let (right, up) = basis(eye);
         let at = self.world(link)?.position;
@@ -95,7 +95,7 @@ impl Scene {
         Some(svg(self.faces(eye), view))
     }
 
-    /// The faces that are seen along a direction: depth, colour, corners in the picture, m.
+    /// The visible faces along a viewing direction: depth, colour, corners in the picture, m.
     fn faces(&self, eye: Point) -> Vec<Face> {
         let (right, up) = basis(eye);
         let mut faces = Vec::new();
@@ -125,7 +125,7 @@ impl Scene {
     }
 }
 
-/// The faces around a middle, at so many pixels a metre, the farthest first.
+/// An SVG of the faces around a middle at a scale in pixels per metre, the farthest face first.
 fn svg(mut faces: Vec<Face>, (middle, scale): ([f64; 2], f64)) -> String {
     faces.sort_by(|a, b| b.0.total_cmp(&a.0));
     let [width, height] = SIZE;
@@ -156,7 +156,7 @@ fn children<'a, 'input>(node: Node<'a, 'input>, name: &'a str) -> impl Iterator<
     node.children().filter(move |child| child.has_tag_name(name))
 }
 
-/// Numbers of an attribute.
+/// The numbers of an XML attribute.
 fn numbers<const N: usize>(node: Node<'_, '_>, attribute: &str) -> Option<[f64; N]> {
     let numbers = node.attribute(attribute)?.split_whitespace().map(|number| number.parse().ok());
     numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
@@ -182,7 +182,7 @@ fn visual(visual: Node<'_, '_>) -> Option<Visual> {
     Some(Visual { at, faces, color: [red, green, blue] })
 }
 
-/// The faces of a box around the origin, each counter-clockwise from outside.
+/// The faces of a box centred at the origin, each counter-clockwise as seen from outside.
 fn cuboid(size: Point) -> Vec<Vec<Point>> {
     let corner = |x: f64, y: f64, z: f64| [x * size[0] / 2.0, y * size[1] / 2.0, z * size[2] / 2.0];
     let face = |axis: usize, side: f64| {
@@ -196,7 +196,7 @@ fn cuboid(size: Point) -> Vec<Vec<Point>> {
     (0..3).flat_map(|axis| [face(axis, 1.0), face(axis, -1.0)]).collect()
 }
 
-/// The faces of a cylinder along Z.
+/// The faces of a cylinder along Z, centred at the origin.
 fn cylinder(radius: f64, length: f64) -> Vec<Vec<Point>> {
     let at = |side: usize, z: f64| {
         let angle = side as f64 / SIDES as f64 * std::f64::consts::TAU;
@@ -211,7 +211,7 @@ fn cylinder(radius: f64, length: f64) -> Vec<Vec<Point>> {
     faces
 }
 
-/// Fixed axes X, Y, Z as in a URDF: roll, then pitch, then yaw.
+/// Quaternion of a URDF rotation about fixed axes: roll about X, then pitch about Y, then yaw about Z.
 fn quaternion([roll, pitch, yaw]: Point) -> [f64; 4] {
     let [(sr, cr), (sp, cp), (sy, cy)] = [roll, pitch, yaw].map(|angle| (angle / 2.0).sin_cos());
     [
@@ -235,13 +235,13 @@ fn unit(a: Point) -> Point {
     a.map(|value| value / length)
 }
 
-/// Right and up in a picture seen along a direction that is not vertical.
+/// Directions of right and up in a picture along a viewing direction that is not vertical.
 fn basis(eye: Point) -> (Point, Point) {
     let right = unit(cross(eye, [0.0, 0.0, 1.0]));
     (right, unit(cross(right, eye)))
 }
 
-/// Outward normal of a flat face.
+/// Outward normal of a planar face.
 fn normal(corners: &[Point]) -> Point {
     match corners {
         [a, b, c, ..] => {
@@ -264,7 +264,7 @@ fn apply(place: &Transform, point: Point) -> Point {
     std::array::from_fn(|at| place.position[at] + turned[at])
 }
 
-/// The place in the outer frame of what is at `inner` in a frame at `outer`.
+/// The pose `inner`, given in the frame `outer`, in the frame that `outer` is given in.
 fn compose(outer: &Transform, inner: &Transform) -> Transform {
     let ([ax, ay, az, aw], [bx, by, bz, bw]) = (outer.rotation, inner.rotation);
     Transform {
@@ -278,14 +278,14 @@ fn compose(outer: &Transform, inner: &Transform) -> Transform {
     }
 }
 
-/// The colour of a face in the light, as `#rrggbb`.
+/// The shaded colour of a face, as `#rrggbb`.
 fn shade(color: Point, normal: Point) -> String {
     let light = 0.28f64.mul_add(dot(normal, unit(LIGHT)), 0.74);
     let byte = |part: f64| (part * light * 255.0).clamp(0.0, 255.0).round() as u8;
     format!("#{:02x}{:02x}{:02x}", byte(color[0]), byte(color[1]), byte(color[2]))
 }
 
-/// Middle and scale that show all faces, and a point.
+/// Middle and scale at which all faces and one point fit into the picture.
 fn fit(faces: &[Face], point: [f64; 2]) -> ([f64; 2], f64) {
     let (mut least, mut most) = (point, point);
     for corner in faces.iter().flat_map(|(_, _, corners)| corners) {

@@ -1,4 +1,4 @@
-//! Drawings of the page: lanes, curves and paths as SVG. Coordinates are pixels of a drawing [`WIDTH`] wide.
+//! Lanes, curves and paths of the page as SVG. Coordinates are pixels of a drawing [`WIDTH`] wide.
 
 use maud::{Markup, html};
 use rcs_core::tick::TICK_S;
@@ -7,16 +7,16 @@ use super::gather::Stretch;
 
 /// Width of a drawing.
 pub const WIDTH: f64 = 1200.0;
-/// Room for names on the left.
+/// Width of the column for names on the left.
 const LEFT: f64 = 118.0;
 /// Height of a lane.
 const LANE: f64 = 26.0;
-/// Points of a curve at most: more are not seen.
+/// Greatest number of points of a curve; more would not be visible.
 const POINTS: usize = 1200;
-/// Divisions of an axis, about.
+/// Approximate number of divisions of an axis.
 const DIVISIONS: f64 = 10.0;
 
-/// Where a tick stands in a drawing over the whole run.
+/// Horizontal axis of a drawing of the whole run: position of a tick.
 #[derive(Clone, Copy)]
 pub struct TimeAxis {
     first: f64,
@@ -24,7 +24,7 @@ pub struct TimeAxis {
 }
 
 impl TimeAxis {
-    /// The axis of a run from its first to its last tick.
+    /// The axis from the first to the last tick of a run.
     #[must_use]
     pub const fn new(first: u64, last: u64) -> Self {
         Self { first: first as f64, last: last as f64 }
@@ -35,7 +35,7 @@ impl TimeAxis {
         LEFT + share * (WIDTH - LEFT)
     }
 
-    /// Seconds that are worth a line.
+    /// Times of the grid lines, s.
     fn seconds(self) -> Vec<f64> {
         let step = division((self.last - self.first) * TICK_S);
         let first = (self.first * TICK_S / step).ceil();
@@ -55,12 +55,12 @@ fn division(range: f64) -> f64 {
         .unwrap_or(power)
 }
 
-/// A coordinate, to a tenth of a pixel.
+/// A coordinate with one decimal.
 fn px(value: f64) -> String {
     format!("{value:.1}")
 }
 
-/// The seconds below drawings over the whole run.
+/// Time labels in seconds below the drawings.
 #[must_use]
 pub fn scale(axis: TimeAxis) -> Markup {
     html! {
@@ -83,18 +83,18 @@ fn grid(axis: TimeAxis, height: f64) -> Markup {
     }
 }
 
-/// Something that happened in a tick.
+/// An event in a tick.
 pub struct Mark<'a> {
     /// The tick.
     pub tick: u64,
-    /// An error, or only a warning.
+    /// True for an error, false for a warning.
     pub error: bool,
-    /// What it was.
+    /// Description of the event.
     pub text: &'a str,
 }
 
-/// Lanes under one another, a box a stretch; a command in words where it fits, and as a tool tip everywhere. Marks go
-/// through all lanes.
+/// Lanes one above the other, with a box for each stretch. The command is written in the box if it fits, and is always
+/// its tool tip. Marks cross all lanes.
 #[must_use]
 pub fn lanes(lanes: &[(&str, Vec<Stretch>)], marks: &[Mark<'_>], axis: TimeAxis) -> Markup {
     let height = LANE * lanes.len() as f64;
@@ -122,7 +122,7 @@ pub fn lanes(lanes: &[(&str, Vec<Stretch>)], marks: &[Mark<'_>], axis: TimeAxis)
 fn boxed(stretch: &Stretch, top: f64, axis: TimeAxis) -> Markup {
     let (from, to) = (axis.x(stretch.from as f64), axis.x(stretch.to as f64 + 1.0));
     let width = (to - from).max(0.5);
-    // About six pixels a letter.
+    // A letter is about six pixels wide.
     let letters = (width / 6.5) as usize;
     html! {
         g {
@@ -141,7 +141,7 @@ fn boxed(stretch: &Stretch, top: f64, axis: TimeAxis) -> Markup {
     }
 }
 
-/// The same word has the same colour wherever it stands.
+/// Chooses a colour by the first word, so that a command has the same colour everywhere.
 fn color(text: &str) -> usize {
     let word = text.split(' ').next().unwrap_or_default();
     word.bytes().fold(7_usize, |sum, byte| (sum * 31 + usize::from(byte)) % 1009) % 8
@@ -149,17 +149,17 @@ fn color(text: &str) -> usize {
 
 /// A curve over the run.
 pub struct Curve<'a> {
-    /// What is drawn.
+    /// Name of the quantity.
     pub name: &'a str,
-    /// Its unit.
+    /// Unit of the values.
     pub unit: &'a str,
-    /// One value a tick.
+    /// One value per tick.
     pub values: &'a [f64],
-    /// Limit that is drawn as a line.
+    /// Limit, drawn as a line.
     pub limit: Option<f64>,
 }
 
-/// A curve with its scale on the left, and its limit.
+/// Draws a curve with its scale on the left, and its limit.
 #[must_use]
 pub fn curve(curve: &Curve<'_>, ticks: &[u64], axis: TimeAxis) -> Markup {
     const HEIGHT: f64 = 92.0;
@@ -187,7 +187,7 @@ pub fn curve(curve: &Curve<'_>, ticks: &[u64], axis: TimeAxis) -> Markup {
     }
 }
 
-/// At most [`POINTS`] of a series, the greatest of each group: peaks must not be lost.
+/// At most [`POINTS`] of a series: the greatest value of each group, so that peaks remain visible.
 fn thinned(ticks: &[u64], values: &[f64]) -> Vec<(u64, f64)> {
     let step = values.len().div_ceil(POINTS).max(1);
     let greatest = |(ticks, values): (&[u64], &[f64])| {
@@ -201,18 +201,18 @@ fn list(points: &[(f64, f64)]) -> String {
     points.iter().map(|(x, y)| format!("{x:.1},{y:.1} ")).collect()
 }
 
-/// Where the points of a path stand in a square drawing.
+/// Maps points of a path to a square drawing.
 struct Square {
     middle: [f64; 2],
     range: f64,
 }
 
 impl Square {
-    /// Width and height.
+    /// Width and height, pixels.
     const SIZE: f64 = 560.0;
     const MARGIN: f64 = 26.0;
 
-    /// A square that shows all points; none if there is no path.
+    /// A square that shows all points; `None` without points.
     fn around(points: &[[f64; 2]]) -> Option<Self> {
         let (mut least, mut most) = ([f64::MAX; 2], [f64::MIN; 2]);
         for axis in 0..2 {
@@ -230,7 +230,7 @@ impl Square {
         (at(point[0] - self.middle[0]), at(self.middle[1] - point[1]))
     }
 
-    /// Round numbers along an axis of the drawing (0 across, 1 up), each with its place.
+    /// Round numbers along an axis of the drawing (0 horizontal, 1 vertical), each with its position.
     fn divisions(&self, axis: usize) -> Vec<(f64, f64)> {
         let step = division(self.range);
         let value = |index: i32| ((self.middle[axis] / step).round() + f64::from(index)) * step;
@@ -243,8 +243,8 @@ impl Square {
     }
 }
 
-/// A path seen along an axis: `seen` takes the coordinates that are drawn, across and up, from a point. `stops` are
-/// places worth a dot, `ring` one worth a ring, with what is to be said of it.
+/// Draws a path along an axis: `seen` converts a point to its horizontal and vertical coordinate. Each point of `stops`
+/// gets a dot, and `ring` gets a ring with a text.
 #[must_use]
 pub fn path(
     title: &str,
@@ -254,7 +254,7 @@ pub fn path(
     seen: impl Fn(&[f64; 3]) -> [f64; 2],
 ) -> Markup {
     const SIZE: f64 = Square::SIZE;
-    // Before the link runs no frame has been commanded.
+    // No frame is commanded before the link runs.
     let known = |points: &[[f64; 3]]| -> Vec<[f64; 2]> {
         points.iter().filter(|point| **point != [0.0; 3]).map(&seen).collect()
     };

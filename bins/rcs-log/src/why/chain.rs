@@ -1,11 +1,11 @@
-//! The chain of causes behind a failure, walked back over ticks.
+//! Traces a failure back over the ticks to its first cause.
 //!
-//! It begins with the process that bears the reason which arrived at Task. In the tick in which that process
-//! began to report it, a row fired; what the row did not see a tick before is what was new. If a process
-//! below reports a failure by then, or reported anything new in the tick before, it is asked the same for the
-//! tick in which it began to: so the walk goes down and back until no process below has reported anything.
-//! What is left there is a device, a limit, or data. From there the commands lead up again: who commanded it,
-//! when, by which row.
+//! The trace begins with the process that first reported the reason which Task received. A row fired in the tick in
+//! which that process began to report it; the conditions of the row that were not true in the tick before are the news.
+//! If a process below reports a failure at that time, or reported anything new in the tick before, the trace continues
+//! with that process and the tick of its report. It ends at a process with no such report from below: the cause is then
+//! a device, a limit, or data. From this process, the commands are traced upwards: who gave each command, when, and by
+//! which row.
 
 use interfaces::t3i::LinkFault;
 use levels::ladder::{PROCESS_COUNT, ProcessId};
@@ -14,18 +14,18 @@ use serde::Serialize;
 
 use super::history::{Fired, History, condition, info, row_of, row_words};
 
-/// A step of the chain.
+/// A step of the trace.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Link {
     /// The tick.
     pub tick: u64,
-    /// Who.
+    /// Name of the process.
     pub process: String,
-    /// What, and why.
+    /// What it did, and why.
     pub text: String,
 }
 
-/// Where a walk ends: the process and tick of the first cause.
+/// The end of the trace: process and tick of the first cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Root {
     /// The process.
@@ -34,11 +34,11 @@ pub struct Root {
     pub tick: u64,
 }
 
-/// Walk from a report down to where no process below has reported anything. The links come in the order of
-/// the walk: the last one is the first cause.
+/// Traces a report down to a process with no report from below. The links are in the order of the trace: the last one
+/// is the first cause.
 pub fn down(history: &History, process: ProcessId, tick: u64) -> (Root, Vec<Link>) {
     let (mut root, mut links) = (Root { process, tick }, Vec::new());
-    // The ladder has four levels above the link: a longer walk would be a circle.
+    // The ladder has four levels above the link: a longer trace would be a cycle.
     for _ in 0..PROCESS_COUNT {
         links.push(report(history, root));
         match below(history, root) {
@@ -49,8 +49,8 @@ pub fn down(history: &History, process: ProcessId, tick: u64) -> (Root, Vec<Link
     (root, links)
 }
 
-/// Who below gave the row of this tick its news: a neighbour that reports a reason, or that reported anything
-/// new in the tick before.
+/// The process below that made the row of this tick fire: one that reports a failure, or one that reported anything new
+/// in the tick before.
 fn below(history: &History, at: Root) -> Option<Root> {
     let seen = at.tick.checked_sub(1)?;
     let said = |process: ProcessId| Some((process, history.report(process, seen)?));
@@ -60,13 +60,13 @@ fn below(history: &History, at: Root) -> Option<Root> {
     found.map(|(process, report)| Root { process, tick: report.tick })
 }
 
-/// T3I's `no error` is the absence of one.
+/// Returns true if `reason` is a failure. T3I reports `no error` for none, the other processes an empty text.
 pub fn has_failed(process: ProcessId, reason: &str) -> bool {
     let none = if process == ProcessId::T3i { LinkFault::None.text() } else { "" };
     reason != none
 }
 
-/// What a process reported in a tick, by which row, and what was new in it.
+/// The report of a process in a tick, with the row and its news.
 fn report(history: &History, at: Root) -> Link {
     let mut text = match history.report(at.process, at.tick) {
         Some(report) if has_failed(at.process, report.reason) => {
@@ -84,8 +84,8 @@ fn report(history: &History, at: Root) -> Link {
     Link { tick: at.tick, process: info(at.process).name.to_owned(), text }
 }
 
-/// The conditions of a row that the row before did not ask for: what made it fire. Only if it fired for the
-/// first time, and its command is that of the tick before.
+/// The conditions of a row that the previous row does not have: the reasons why it fired. `None` unless it fired for
+/// the first time and under the same command as in the tick before.
 fn news(history: &History, at: Root, fired: &Fired) -> Option<String> {
     if fired.tick != at.tick {
         return None;
@@ -97,22 +97,22 @@ fn news(history: &History, at: Root, fired: &Fired) -> Option<String> {
     }
     let last = history.row(at.process, seen)?;
     let ((table, now), (above, before)) = (row_of(at.process, fired)?, row_of(at.process, last)?);
-    // A table above, which decides now, has passed the decision on before, by a row that no header names.
+    // A table consulted first that decides now had passed the decision on before, by a row that no header names.
     let passed = table.rows.iter().filter(|row| above.name != table.name && row.action == CONSULT);
     let changed = changed(passed.chain([before]), now);
     (!changed.is_empty()).then(|| changed.join(", "))
 }
 
-/// The action of rows that do not decide.
+/// The action of rows that pass the decision on to the next table.
 const CONSULT: &str = "consult";
 
-/// What a row asks for and none of the rows before it. The step is the table's own memory, not news.
+/// Conditions of a row that no row before it has. The step is left out, because it is the table's own state.
 fn changed<'a>(before: impl Iterator<Item = &'a Row>, now: &Row) -> Vec<String> {
     let known: Vec<&Condition> = before.flat_map(|row| row.when).collect();
     now.when.iter().filter(|asked| !known.contains(asked)).map(condition).collect()
 }
 
-/// The commands that led to a process, from the workstation controller down: when each was given, and by which row.
+/// The commands that led to a process, from the workstation controller down, each with its tick and row.
 pub fn commands(history: &History, at: Root) -> Vec<Link> {
     let (mut links, mut next) = (Vec::new(), Some((at.process, at.tick)));
     while let Some((receiver, tick)) = next {
@@ -132,7 +132,7 @@ pub fn commands(history: &History, at: Root) -> Vec<Link> {
     links
 }
 
-/// How the failure went up from a process to Task: who said so when.
+/// How the failure was reported upwards from a process to Task: process and tick of each report.
 pub fn up(history: &History, from: ProcessId, tick: u64) -> Vec<Link> {
     let (mut links, mut at, mut tick) = (Vec::new(), from, tick);
     while let Some(commander) = at.commander() {
@@ -155,7 +155,7 @@ mod tests {
     use interfaces::{CommonMemory, Decided, ExternalInputs, Header, Reason, StatusReport, prim::PrimReport};
     use rcs_core::tick::Tick;
 
-    /// Plays ticks, each changed by a closure.
+    /// The history of ticks, each changed by a closure.
     fn history(changes: &[fn(&mut ExternalInputs, &mut CommonMemory)]) -> History {
         let (mut history, mut external, mut memory) =
             (History::default(), ExternalInputs::default(), CommonMemory::default());
@@ -226,14 +226,14 @@ mod tests {
         assert_eq!(said, [(7, "Subtask".to_owned()), (8, "Task".to_owned())]);
     }
 
-    /// A row of a table of Subtask.
+    /// A row of one of Subtask's tables.
     fn subtask(table: &str, row: u8) -> Decided {
         let tables = levels::subtask::tables::TABLES;
         let at = tables.iter().position(|known| known.name == table).unwrap();
         Decided { table: u8::try_from(at + 1).unwrap(), row }
     }
 
-    /// ORDERED has passed the decision on as long as E-move was busy: that E-move has the order is not new.
+    /// ORDERED passed the decision on while E-move was busy, so the condition that E-move has the order is not news.
     #[test]
     fn a_table_above_tells_what_it_did_not_pass_on() {
         let history = history(&[

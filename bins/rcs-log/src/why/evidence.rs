@@ -1,8 +1,8 @@
-//! What the devices said while a command was carried out: the end of the chain of causes.
+//! The inputs of the devices during a command: the end of a causal chain.
 //!
-//! Switches are told with what they were and when they changed, converters with their range; what never changed is told in
-//! one line, and what is not there at all is left out. A guarded move is told by its sensor: what would have ended it, how near
-//! the reading came, and how far the robot went meanwhile.
+//! A switch is listed with its value and the ticks of its changes, a converter with its range. One line lists all
+//! inputs that never changed, and absent devices are left out. For a guarded move, the evidence is its sensor: the
+//! condition that would have ended the move, how near the reading came to it, and how far the robot moved meanwhile.
 
 use geometry::pose::WireFrame;
 use interfaces::{ExternalInputs, prim::PrimVerb};
@@ -23,28 +23,28 @@ use taskdata::files::{SensorPara, SensorSource};
 
 use crate::story::{Moment, moments};
 
-/// Changes of a switch that are told; a switch that chatters is told by its count.
+/// Greatest number of changes listed for a switch; if there are more, only their number is given.
 const CHANGES: usize = 8;
 
-/// What was found between two ticks.
+/// The findings between two ticks.
 #[derive(Default)]
 pub struct Evidence {
-    /// About the sensor of a guarded move.
+    /// Text about the sensor of a guarded move.
     pub guard: Option<String>,
-    /// About the devices of the process.
+    /// Texts about the devices of the process.
     pub devices: Vec<String>,
 }
 
-/// What one input did.
+/// The values of one input.
 struct Trace {
     leaf: Leaf,
-    /// Ticks of changes with the value from then on.
+    /// Ticks of the changes, each with the new value.
     changes: Vec<(u64, String)>,
     least: u64,
     most: u64,
 }
 
-/// Look at the ticks from `from` to `until`, for a process.
+/// Examines the inputs of a process in the ticks from `from` to `until`.
 pub fn gather(log: &Log, process: ProcessId, from: u64, until: u64) -> Evidence {
     let wanted = |leaf: &Leaf| process.reads().iter().any(|prefix| leaf.path.starts_with(prefix));
     let mut traces: Vec<Trace> = layout::leaves(ExternalInputs::STRUCT)
@@ -72,7 +72,7 @@ pub fn gather(log: &Log, process: ProcessId, from: u64, until: u64) -> Evidence 
     Evidence { guard: guard.tell(travel(&frames)), devices: tell(&traces) }
 }
 
-/// A line for each input that changed, and one for all that did not.
+/// A line for each input that changed, and one line for all others.
 fn tell(traces: &[Trace]) -> Vec<String> {
     let mut lines: Vec<String> = traces.iter().filter_map(Trace::tell).collect();
     let steady: Vec<String> = traces.iter().filter_map(Trace::steady).collect();
@@ -82,7 +82,7 @@ fn tell(traces: &[Trace]) -> Vec<String> {
     lines
 }
 
-/// From the first frame to the last, inches.
+/// Distance between the first and the last frame, inches.
 fn travel(frames: &[WireFrame]) -> f64 {
     let known = |frame: &WireFrame| frame.to_frame().ok();
     match (frames.first().and_then(known), frames.last().and_then(known)) {
@@ -113,7 +113,7 @@ impl Trace {
         self.leaf.path.trim_start_matches("devices.")
     }
 
-    /// Name and value of an input that never changed; none if it was off, or nothing.
+    /// Name and value of an input that never changed; `None` if it was off or zero.
     fn steady(&self) -> Option<String> {
         let value = match (self.is_converter(), self.changes.as_slice()) {
             (true, _) if self.least == self.most => self.least.to_string(),
@@ -124,7 +124,7 @@ impl Trace {
         (!nothing).then(|| format!("{} {value}", self.name()))
     }
 
-    /// What an input did that changed.
+    /// A line about an input that changed; `None` if it did not.
     fn tell(&self) -> Option<String> {
         let name = self.name();
         if self.is_converter() {
@@ -149,9 +149,9 @@ struct Guard {
     sensors: Vec<SensorPara>,
     state: Option<Box<LadderState>>,
     sensor: Option<SensorPara>,
-    /// Number of the command that names it.
+    /// Number of the command that names the sensor.
     number: u32,
-    /// The reading that came nearest to the threshold.
+    /// The reading nearest to the threshold.
     nearest: Option<f64>,
     met: bool,
     is_prim: bool,
@@ -159,7 +159,7 @@ struct Guard {
 
 impl Guard {
     fn new(log: &Log, process: ProcessId) -> Self {
-        // Without task data nothing can be said of thresholds; the failure itself is told all the same.
+        // Without task data the thresholds are unknown; the failure is explained without them.
         let sensors = generations(log).ok().and_then(|mut all| all.pop());
         let sensors = sensors.map_or_else(Vec::new, |store| store.view().sensors.to_vec());
         Self {
@@ -210,7 +210,7 @@ impl Guard {
     }
 }
 
-/// How near a force came to its threshold, or by how much it went beyond.
+/// How near a force came to its threshold, or how far it went beyond, as text.
 fn force_words(sensor: &SensorPara, nearest: f64, way: &str) -> String {
     let (name, threshold) = (sensor_name(sensor), sensor.threshold);
     let unit = if sensor.source == SensorSource::My { "in lb" } else { "lb" };

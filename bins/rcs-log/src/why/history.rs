@@ -1,4 +1,4 @@
-//! What every process did over a whole run, kept by change: its commands, rows and reports.
+//! The history of every process in a run: changes of its commands, rows and reports.
 
 use executive::failure;
 use interfaces::{Decided, Header};
@@ -10,40 +10,40 @@ use rcs_core::{
 
 use crate::story::Moment;
 
-/// A command from the tick on in which it was written.
+/// A command, valid from the tick of its writing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Commanded {
-    /// The tick; the receiver sees it in the next one, Task in this one.
+    /// Tick of writing; the receiver reads it one tick later, Task in the same tick.
     pub tick: u64,
-    /// Its number.
+    /// Number of the command.
     pub number: u32,
-    /// As people write it.
+    /// The command as text.
     pub text: String,
 }
 
-/// A row from the tick on in which it fired first.
+/// A row, valid from the tick in which it first fired.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fired {
     /// The tick.
     pub tick: u64,
-    /// The row.
+    /// Table and row; `None` if no row of a table fired.
     pub decided: Option<Decided>,
-    /// Step of the command after it.
+    /// Step of the command after the row.
     pub step: Option<Name16>,
 }
 
-/// A report from the tick on in which it was written.
+/// A report, valid from the tick of its writing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reported {
     /// The tick.
     pub tick: u64,
-    /// `executing`, `done`, `not-detected` ...
+    /// The report as text: `executing`, `done`, `not-detected` ...
     pub report: &'static str,
-    /// Why it failed; empty if it did not.
+    /// Why the command failed; empty if it did not.
     pub reason: &'static str,
 }
 
-/// The history of a run.
+/// The history of all processes in a run.
 #[derive(Default)]
 pub struct History {
     commands: [Vec<Commanded>; PROCESS_COUNT],
@@ -52,7 +52,7 @@ pub struct History {
 }
 
 impl History {
-    /// Take a tick in.
+    /// Records a tick.
     pub fn note(&mut self, moment: &Moment) {
         let tick = moment.tick.0;
         for process in ProcessId::ALL.iter().copied() {
@@ -79,23 +79,23 @@ impl History {
 
     /// The command that a process had in a tick.
     pub fn command(&self, process: ProcessId, tick: u64) -> Option<&Commanded> {
-        // Every process but Task reads what was written a tick before.
+        // Every process but Task reads commands that were written one tick earlier.
         let written = if process == ProcessId::Task { tick } else { tick.saturating_sub(1) };
         latest(&self.commands[process.position()], written, |command| command.tick)
     }
 
-    /// The row that fired in a process in a tick, and since when it did.
+    /// The row that fired in a process in a tick, with the tick of its first firing.
     pub fn row(&self, process: ProcessId, tick: u64) -> Option<&Fired> {
         latest(&self.rows[process.position()], tick, |fired| fired.tick)
     }
 
-    /// What a process reported in a tick, and since when.
+    /// The report of a process in a tick, with the tick of its writing.
     pub fn report(&self, process: ProcessId, tick: u64) -> Option<&Reported> {
         latest(&self.reports[process.position()], tick, |report| report.tick)
     }
 }
 
-/// The last entry that is not later than a tick.
+/// The last entry at or before a tick.
 fn latest<T>(entries: &[T], tick: u64, tick_of: impl Fn(&T) -> u64) -> Option<&T> {
     let end = entries.partition_point(|entry| tick_of(entry) <= tick);
     entries.get(end.checked_sub(1)?)
@@ -106,24 +106,24 @@ pub fn info(process: ProcessId) -> &'static ProcessInfo {
     &Ladder::processes()[process.position()]
 }
 
-/// Table and row that fired.
+/// The table and row that fired.
 pub fn row_of(process: ProcessId, fired: &Fired) -> Option<(&'static Table, &'static Row)> {
     info(process).row(fired.decided?)
 }
 
-/// What a row asks for, as words: `step is Start`, `gripper is None`.
+/// The conditions of a row as text: `step is Start`, `gripper is None`.
 pub fn conditions(row: &Row) -> Vec<String> {
     let step = (!row.steps.is_empty()).then(|| format!("step is {}", row.steps.join(" or ")));
     step.into_iter().chain(row.when.iter().map(condition)).collect()
 }
 
-/// What a row asks of a variable, as words: `held is Nothing or Other`.
+/// A condition as text: `held is Nothing or Other`.
 pub fn condition(asked: &Condition) -> String {
     format!("{} is {}", asked.variable, asked.values.join(" or "))
 }
 
-/// What a row did, as words: `GraspObj, then Grasping`. A row that fires in any step says in which one it
-/// did: `Wait in step moving`.
+/// Action and next step of a row as text: `GraspObj, then Grasping`. For a row that fires in any step, the text names
+/// the step: `Wait in step moving`.
 pub fn deed(row: &Row, step: &str) -> String {
     let at = if row.steps.is_empty() && row.next.is_none() && !step.is_empty() {
         format!(" in step {step}")
@@ -134,7 +134,7 @@ pub fn deed(row: &Row, step: &str) -> String {
     format!("{}{at}{next}", row.call())
 }
 
-/// Why a row fired, as words: `because step is Start, gripper is None`.
+/// The conditions as a reason: `because step is Start, gripper is None`.
 pub fn because(conditions: &[String]) -> String {
     match conditions {
         [] => "whatever the state".to_owned(),

@@ -1,11 +1,10 @@
-//! `rcs-log why`: why something failed, or what each level did in any tick, and by which row.
+//! `rcs-log why`: explains a failure, or what each level did in a tick, and by which row.
 //!
-//! What went wrong first in the world comes first ([`world`]): a contact, a lost part, a warning of the robot
-//! controller, a line of the workstation that could not be carried out. A failure is told as a chain of
-//! causes across ticks ([`chain`]): the commands that led to the process that failed, each with the row that
-//! gave it; what the devices said while it tried ([`evidence`]); what happened in the cell meanwhile; the
-//! first cause; and how the failure went up to Task. The sources are buffers and rows of the log
-//! ([`history`]), nothing is guessed.
+//! The explanation begins with the first thing that went wrong in the world ([`world`]): a contact, a lost part, a
+//! warning of the robot controller, or a line of the workstation that could not be executed. A failure is explained as
+//! a chain of causes over the ticks ([`chain`]): the commands that led to the failed process, each with its row; the
+//! inputs of the devices during the command ([`evidence`]); events in the cell; the first cause; and how the failure
+//! was reported up to Task. All statements come from buffers and rows of the log ([`history`]); nothing is guessed.
 
 mod chain;
 mod evidence;
@@ -39,13 +38,13 @@ use crate::{
     story::{Chronicle, Moment, open, walk},
 };
 
-/// Lines of the log that are shown before a tick.
+/// Number of log lines shown before a tick.
 const LINES_BEFORE: usize = 12;
-/// Lines about the cell and the link that are told with a failure.
+/// Number of lines about cell and link shown with a failure.
 const LINES_MEANWHILE: usize = 8;
 
-/// Sources of lines about what happened around the robot: the cell, and faults that were injected. They are
-/// written with the tick after the one in which it happened.
+/// Sources of lines about events around the robot: the cell and injected faults. Such a line has the tick after the
+/// event.
 const EVENTS: [&str; 2] = ["cell", FAULT];
 const FAULT: &str = "fault";
 
@@ -61,47 +60,47 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// An explanation.
+/// An explanation of a tick or a failure.
 #[derive(Debug, Serialize)]
 struct Explanation {
     tick: u64,
     seconds: f64,
-    /// What went wrong first in the world, if no tick was asked for.
+    /// What went wrong first in the world; `None` if a tick was requested.
     world: Option<World>,
-    /// The failure that began here, if one was asked for.
+    /// The failure that began in this tick; `None` if a tick was requested.
     failure: Option<Story>,
-    /// How the run ended, where that is not the failure of a process.
+    /// How the run ended, if not by the failure of a process.
     ended: Option<String>,
-    /// What led here: lines of the log, oldest first; in a failure, what happened to cell and link meanwhile.
+    /// Log lines before the tick, oldest first; for a failure, the events of cell and link during the command.
     before: Vec<LineBefore>,
-    /// Each process, from Task down.
+    /// All processes, from Task down.
     levels: Vec<Rung>,
 }
 
 /// A failure with its causes.
 #[derive(Debug, Serialize)]
 pub struct Story {
-    /// Tick in which it began.
+    /// Tick in which the failure began.
     pub tick: u64,
-    /// In one sentence.
+    /// The failure in one sentence.
     pub text: String,
-    /// The commands that led there, from the workstation controller down.
+    /// The commands that led to the failed process, from the workstation controller down.
     pub commands: Vec<Link>,
-    /// From the failure to its first cause.
+    /// The causes, from the failure to the first cause.
     pub causes: Vec<Link>,
-    /// Where no process below had reported anything: process and tick.
+    /// Process and tick of the first cause, in a sentence.
     pub first_cause: String,
-    /// What the devices said while the command was carried out.
+    /// Inputs of the devices during the command.
     pub evidence: Vec<String>,
-    /// How the failure went up to Task.
+    /// How the failure was reported up to Task.
     pub consequences: Vec<Link>,
 }
 
-/// A failure, and from when on what happened in the cell has to do with it.
+/// A failure, and the tick from which events in the cell can be related to it.
 pub struct Told {
     /// The failure.
     pub story: Story,
-    /// Tick of the first command that led there.
+    /// Tick of the first command that led to the failure.
     pub begun: u64,
 }
 
@@ -112,35 +111,35 @@ struct LineBefore {
     text: String,
 }
 
-/// What a process did.
+/// What a process did in a tick.
 #[derive(Debug, Serialize)]
 struct Rung {
     process: String,
     command: String,
-    /// The process was not stepped: dormant, or held.
+    /// The process was not executed, because it was dormant or held.
     held: bool,
-    /// The row is an old one, which fired last in this tick: the process has had nothing to decide since.
+    /// Tick in which the row fired, if it is an earlier one: the process has decided nothing since.
     old: Option<u64>,
-    /// The values of the state variables that the table asks for, when the row fired.
+    /// Values of the state variables of the table when the row fired.
     values: Option<String>,
-    /// Rows of other tables that fired when the process was stepped last, with their values.
+    /// Rows of other tables that fired in the same execution of the process, with their values.
     beside: Vec<String>,
     table: Option<String>,
     row: Option<u8>,
-    /// What the row asks for: its steps and state variables.
+    /// Conditions of the row: its steps and state variables.
     conditions: Vec<String>,
-    /// Action of the row, with what it carries.
+    /// Action of the row, with its parameters.
     action: Option<String>,
-    /// Step to which the row leads, if it changes.
+    /// Next step, if the row changes it.
     next: Option<String>,
     /// Step of the command after the row; empty for none.
     step: String,
-    /// What the row did, as words.
+    /// Action and next step as text.
     #[serde(skip)]
     deed: String,
 }
 
-/// Explain a tick and print it.
+/// Explains a tick and prints the explanation.
 pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
     let log = open(&arguments.file)?;
     let (chronicle, history) = read(&log, &arguments.file)?;
@@ -155,7 +154,7 @@ pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The commands of a log, and what every process did.
+/// Reads the commands of a log and the history of every process.
 fn read(log: &Log, path: &Path) -> Result<(Chronicle, History), Error> {
     let (mut chronicle, mut history) = (Chronicle::default(), History::default());
     walk(log, path, |moment| {
@@ -166,10 +165,10 @@ fn read(log: &Log, path: &Path) -> Result<(Chronicle, History), Error> {
     Ok((chronicle, history))
 }
 
-/// The last command that led to what went wrong first in a log: its tick and what it was; `None` if nothing did.
+/// The last command that led to the first thing that went wrong in a log, with its tick; `None` if nothing did.
 ///
 /// # Errors
-/// [`Error::Read`].
+/// [`Error::Read`] if the log cannot be read.
 pub fn last_command(log: &Log, path: &Path) -> Result<Option<Link>, Error> {
     let (chronicle, history) = read(log, path)?;
     let told = chronicle.failure.and_then(|failure| tell(log, &history, &failure));
@@ -179,7 +178,7 @@ pub fn last_command(log: &Log, path: &Path) -> Result<Option<Link>, Error> {
     Ok(commands.and_then(|mut commands| commands.pop()))
 }
 
-/// A failure that a process began to report in a tick, from its commands to its first cause.
+/// Explains a failure that a process began to report in a tick, from its commands to its first cause.
 pub fn tell(log: &Log, history: &History, failure: &Failure) -> Option<Told> {
     let at = ProcessId::from_text(&failure.process)?;
     let (tick, text) = (failure.tick.0, failure.text.clone());
@@ -199,7 +198,7 @@ pub fn tell(log: &Log, history: &History, failure: &Failure) -> Option<Told> {
     Some(Told { story, begun })
 }
 
-/// Where the walk ended, in a sentence.
+/// The end of the trace, in a sentence.
 fn first_cause(history: &History, root: Root, since: u64, found: &evidence::Evidence) -> String {
     let name = info(root.process).name;
     let seconds = root.tick.saturating_sub(since) as f64 * TICK_S;
@@ -216,7 +215,7 @@ fn first_cause(history: &History, root: Root, since: u64, found: &evidence::Evid
     }
 }
 
-/// The tick that was asked for, or the last one.
+/// The requested tick, or the last one.
 fn find(log: &Log, arguments: &Arguments, tick: Option<u64>) -> Result<Moment, Error> {
     let (mut first, mut last, mut found) = (None, Tick::BEFORE_START, None);
     walk(log, &arguments.file, |moment| {
@@ -259,7 +258,7 @@ fn explain(log: &Log, moment: &Moment, world: Option<World>, told: Option<Told>)
         .lines()
         .filter(|line| line.tick.0 <= moment.tick.0 + u64::from(begun.is_some()))
         .filter(|line| match begun {
-            // Commands and failures are in the chain.
+            // The chain already contains commands and failures.
             Some(begun) => {
                 line.tick.0 >= begun
                     && (EVENTS.contains(&line.source.as_str()) || line.level == Level::Warning)
@@ -332,13 +331,13 @@ impl Explanation {
     }
 }
 
-/// Links under a title; nothing without one.
+/// Links under a title; nothing if there are none.
 fn links(title: &str, links: &[Link], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let line = |Link { tick, process, text }: &Link| format!("tick {tick:>6}  {process} {text}");
     list(title, &links.iter().map(line).collect::<Vec<_>>(), f)
 }
 
-/// Lines under a title; nothing without one.
+/// Lines under a title; nothing if there are none.
 fn list(title: &str, lines: &[String], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     if lines.is_empty() {
         return Ok(());

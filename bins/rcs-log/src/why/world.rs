@@ -1,7 +1,6 @@
-//! What went wrong in the world: the first contact, lost part, or warning of the robot controller, or what
-//! ended the run where no process failed. From there the commands lead up to the workstation controller, each
-//! with the row that gave it, and the row that gave the last one used data: each is told with its file, block
-//! and line.
+//! Finds what went wrong in the world: the first contact, lost part, or warning of the robot controller, or what ended
+//! the run if no process failed. From there the commands are traced up to the workstation controller, each with its
+//! row. The data that the last row used are listed with file, block and line.
 
 use interfaces::{CommonMemory, pose_range};
 use levels::ladder::ProcessId;
@@ -24,19 +23,19 @@ const PARTS_GRIPPER: u8 = 1;
 /// The first thing that went wrong in the world.
 #[derive(Debug, Serialize)]
 pub struct World {
-    /// The tick in which it happened.
+    /// The tick of the event.
     pub tick: u64,
-    /// What.
+    /// Description of the event.
     pub text: String,
-    /// The commands that led there, from the workstation controller down.
+    /// The commands that led to the event, from the workstation controller down.
     pub commands: Vec<Link>,
-    /// The data that the last row used, with their places.
+    /// The data that the last row used, with file, block and line.
     pub data: Vec<String>,
 }
 
-/// What went wrong first; `None` if nothing did.
+/// The first thing that went wrong; `None` if nothing did.
 pub fn first(log: &Log, history: &History) -> Option<World> {
-    // The cell tells with the next tick what happened in one.
+    // The cell reports an event with the tick after it.
     let grave = log.lines().find(|line| line.source == "cell" && line.level == Level::Error);
     let (tick, text, code) = match grave {
         Some(line) => (line.tick.0.saturating_sub(1), line.text, line.code),
@@ -57,8 +56,8 @@ pub fn first(log: &Log, history: &History) -> Option<World> {
     Some(World { tick, text, commands, data })
 }
 
-/// The lowest process whose command did it: the gripper for a part that is lost, T3I for a warning of the
-/// robot controller, Prim for all that moves.
+/// The lowest process whose command caused the event: the gripper for a lost part, T3I for a warning of the robot
+/// controller, Prim for all other motion.
 fn mover(code: &str, memory: &CommonMemory) -> ProcessId {
     let by_parts_gripper = memory.emove.prim.end_effector_id == Some(PARTS_GRIPPER);
     match code {
@@ -68,7 +67,7 @@ fn mover(code: &str, memory: &CommonMemory) -> ProcessId {
     }
 }
 
-/// What the commands in the buffers name, with its file, block and line.
+/// The data that the commands in the buffers name, with file, block and line.
 fn data(store: &Store, process: ProcessId, memory: &CommonMemory) -> Vec<String> {
     let (view, origins) = (store.view(), store.origins());
     let mut told = Vec::new();

@@ -1,41 +1,41 @@
-//! Faults that the vision system plays, at pictures that are told by their number: the same every time.
+//! Faults that the vision system simulates, selected by picture number and therefore repeatable.
 
 use std::{ops::RangeInclusive, str::FromStr};
 
 use interfaces::device::{VisionResponse, VisionStatus};
 use neighbours::vision::{Areas, Ready};
 
-/// What goes wrong with a picture. `off` and `camera-blind` are words of fault files as well (data/README.md).
+/// A fault of one picture. `off` and `camera-blind` are also words of fault files (data/README.md).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// It is not answered.
+    /// The request gets no answer.
     Off,
-    /// Nothing is seen.
+    /// The camera sees nothing.
     CameraBlind,
-    /// What is seen is not recognised.
+    /// The camera sees an object, and recognition fails.
     NotRecognised,
-    /// Another object is recognised than the one that was asked for.
+    /// Vision recognises another object than the requested one.
     AnotherObject,
     /// The answer echoes another request.
     AnotherEcho,
-    /// The answer stands where `vision-ready-input` says "not ready".
+    /// The answer comes while `vision-ready-input` is "not ready".
     InputNotReady,
-    /// From this picture on `vision-ready-output` says "not ready".
+    /// From this picture on, `vision-ready-output` is "not ready".
     OutputNotReady,
-    /// The answer has a status that there is not.
+    /// The answer has an undefined status value.
     Garbled,
-    /// The answer ends too early.
+    /// The answer is too short.
     Truncated,
-    /// The centroid is far outside of the picture.
+    /// The centroid is far outside the picture.
     Outside,
-    /// The angle is beyond a quarter turn.
+    /// The angle is 270 degrees, beyond a quarter turn.
     Turned,
-    /// The connection is cut in the middle of the work, and made again.
+    /// The connection is closed before the answer, and opened again.
     Gone,
 }
 
 impl Kind {
-    /// All, with the words on the command line.
+    /// All kinds with their words on the command line.
     pub const ALL: [(&'static str, Self); 12] = [
         ("off", Self::Off),
         ("camera-blind", Self::CameraBlind),
@@ -51,7 +51,7 @@ impl Kind {
         ("gone", Self::Gone),
     ];
 
-    /// What becomes of an answer; the bytes of the mailbox, `None` if nothing is written.
+    /// Applies the fault to an answer: the areas to write into the mailbox, or `None` to write nothing.
     pub fn spoil(self, areas: Areas) -> Option<Areas> {
         let response = areas.response;
         let done = response.status == VisionStatus::Done;
@@ -73,10 +73,10 @@ impl Kind {
         }
     }
 
-    /// What becomes of the bytes of an answer.
+    /// Applies the fault to the bytes of an answer.
     pub fn garble(self, bytes: &mut Vec<u8>) {
         match self {
-            // The low byte of the status.
+            // Low byte of the status.
             Self::Garbled => bytes[8] = 99,
             Self::Truncated => bytes.truncate(14),
             _ => {}
@@ -87,22 +87,22 @@ impl Kind {
 /// A fault, and the pictures that have it: `N:KIND` or `N-M:KIND`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// Numbers of the pictures that this process is asked for, from 1.
+    /// Numbers of the affected pictures, counted from 1 over all runs.
     pub pictures: RangeInclusive<u32>,
-    /// What goes wrong.
+    /// The kind of the fault.
     pub kind: Kind,
 }
 
-/// A text that is no fault.
+/// Errors of parsing a fault.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FaultError {
-    /// No pictures.
+    /// The numbers of the pictures are missing or wrong.
     #[error("N:KIND or N-M:KIND was expected, with pictures counted from 1, found {0}")]
     Pictures(String),
-    /// No kind of fault.
+    /// The kind of the fault is unknown.
     #[error("{} was expected, found {found}", Kind::ALL.map(|(word, _)| word).join(" or "))]
     Kind {
-        /// The text.
+        /// The word found.
         found: String,
     },
 }
@@ -159,7 +159,7 @@ mod tests {
             let mut bytes = spoiled.unwrap_or(areas).encode().unwrap().to_vec();
             kind.garble(&mut bytes);
             let same = spoiled == Some(areas) && bytes == areas.encode().unwrap();
-            // The two that are made elsewhere: no light, no line.
+            // The faults that are made elsewhere: camera blind, connection closed.
             assert_eq!(same, matches!(kind, Kind::CameraBlind | Kind::Gone), "{word}");
         }
     }

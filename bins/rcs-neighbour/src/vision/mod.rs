@@ -1,5 +1,5 @@
-//! The vision system: the picture analysis of the simulated cell, behind the vision mailbox, for one run
-//! after the other.
+//! The vision system: the picture analysis of the simulated cell behind the vision mailboxes, for one run after the
+//! other.
 
 mod fault;
 
@@ -20,10 +20,10 @@ use plant::{
 pub use self::fault::{Fault, Kind};
 use crate::{Error, Reconnect, cli::VisionArguments, connect, connect_again};
 
-/// The cell description in the data directory.
+/// File of the cell description in the data directory.
 const CELL: &str = "cell.toml";
 
-/// Serve until no run has come for a while.
+/// Serves runs until none connects within the waiting time.
 pub fn serve(arguments: &VisionArguments) -> Result<(), Error> {
     let mut vision = Vision::new(&arguments.data.join(CELL), arguments.fault.clone())?;
     let mut peer = connect(&arguments.controller, Role::Vision)?;
@@ -34,7 +34,7 @@ pub fn serve(arguments: &VisionArguments) -> Result<(), Error> {
             Err(Error::Peer(error)) if error.is_passing() => os_io::stdout_line!("{error}"),
             other => return other,
         }
-        // The line is cut before the next one is made: there is one neighbour of a kind.
+        // The old connection is closed first, because the controller accepts one neighbour of each role.
         drop(peer);
         let Some(next) = connect_again(&arguments.controller, Role::Vision, &mut reconnect)? else {
             return Ok(());
@@ -44,7 +44,7 @@ pub fn serve(arguments: &VisionArguments) -> Result<(), Error> {
     }
 }
 
-/// Answer the requests of a run, until a fault cuts the line.
+/// Answers the requests of a run, until a fault closes the connection.
 fn attend(peer: &mut Peer, vision: &mut Vision) -> Result<(), Error> {
     let mut response_box = Mailbox::initialized(VISION_RESPONSE);
     loop {
@@ -63,21 +63,21 @@ fn attend(peer: &mut Peer, vision: &mut Vision) -> Result<(), Error> {
     }
 }
 
-/// The vision system, between its mailboxes.
+/// The state of the vision system between its mailboxes.
 struct Vision {
     cell: CellDescription,
     faults: Vec<Fault>,
     /// Mailgram number of the request that was read last.
     read: u16,
-    /// A request whose picture has not come yet.
+    /// A request whose picture has not arrived yet.
     request: Option<VisionRequest>,
-    /// The present run's, from its first picture on: that knows the seed.
+    /// Seed and analysis of the present run, known from its first picture.
     analysis: Option<(u64, Analysis)>,
-    /// Pictures of all runs.
+    /// Number of pictures in all runs.
     pictures: u32,
-    /// What is wrong with the present one.
+    /// Fault of the present picture.
     fault: Option<Kind>,
-    /// What was said of it: the answer is said once.
+    /// Status reported last on standard output; each answer is reported once.
     said: VisionStatus,
 }
 
@@ -96,21 +96,21 @@ impl Vision {
         })
     }
 
-    /// Another run, or another connection.
+    /// Resets the state for a new run or a new connection.
     fn forget(&mut self) {
         (self.read, self.request, self.analysis, self.fault) = (0, None, None, None);
         self.said = VisionStatus::Idle;
     }
 
-    /// Read what the controller has written, and begin with a new request when its picture is there. What
-    /// cannot be read is said, and not answered.
+    /// Reads the controller's mailboxes and starts a new request when its picture has arrived. A request or picture
+    /// that cannot be decoded is reported on standard error and not answered.
     fn look(&mut self, requests: &Mailbox, pictures: &Mailbox) -> Result<(), Error> {
         let said = |what: &str, why: &VisionError| {
             os_io::stderr_line!("rcs-neighbour: {what} cannot be read: {why}")
         };
         if requests.mailgram() != self.read {
             self.read = requests.mailgram();
-            // An initialized mailbox holds no request.
+            // A freshly initialized mailbox holds no request.
             let request = (self.read != 0).then(|| request::decode(requests.data()));
             self.request = request.and_then(|read| read.inspect_err(|why| said("a request", why)).ok());
         }
@@ -154,7 +154,7 @@ impl Vision {
         Ok(())
     }
 
-    /// A fault cuts the line now.
+    /// Returns true if a fault closes the connection now.
     fn leaves(&self) -> bool {
         let leaves = self.fault == Some(Kind::Gone);
         if leaves {
@@ -163,7 +163,7 @@ impl Vision {
         leaves
     }
 
-    /// A tick of work; what is to stand in the mailbox, `None` if it stays as it is.
+    /// Executes one tick; returns the bytes for the mailbox, or `None` to leave it unchanged.
     fn work(&mut self) -> Result<Option<Vec<u8>>, Error> {
         let mut areas = Areas { output: Ready::Ready, ..Areas::INITIALIZED };
         if let Some((_, analysis)) = &mut self.analysis {
@@ -182,7 +182,7 @@ impl Vision {
         Ok(Some(bytes))
     }
 
-    /// One line on standard output for every picture.
+    /// Prints one line for every picture.
     fn tell(&self, areas: &Areas) {
         let response = &areas.response;
         let at = |hundredths: i32| f64::from(hundredths) / 100.0;
@@ -202,7 +202,7 @@ impl Vision {
     }
 }
 
-/// What the camera sees of a part.
+/// The view of a part, as the camera sees it.
 fn subject(part: &Part) -> Subject {
     let edges = part.edges.map(|(direction, length)| (Vector::from(direction), length));
     Subject::from_raster(Face { centre: Vector::from(part.centre), edges }, part.reflectance, part.seen)

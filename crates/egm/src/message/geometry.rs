@@ -12,7 +12,7 @@ pub type Orientation = Numbers<4>;
 /// `EgmEuler`: rotations about x, y, z, degrees.
 pub type Euler = Numbers<3>;
 
-/// A message of `N` required doubles, fields 1 to `N`. Missing ones are `None`.
+/// A message of `N` required doubles, fields 1 to `N`. Missing values are `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Numbers<const N: usize>([Option<f64>; N]);
 
@@ -29,7 +29,7 @@ impl<const N: usize> Numbers<N> {
         Self(values.map(Some))
     }
 
-    /// The values; 0 for one that is missing, which a decoded message never has.
+    /// The values; 0 for a missing one, which a decoded message never has.
     #[must_use]
     pub fn values(&self) -> [f64; N] {
         self.0.map(Option::unwrap_or_default)
@@ -60,19 +60,19 @@ impl<const N: usize> Numbers<N> {
     }
 }
 
-/// `EgmPose`.
+/// `EgmPose`: position and orientation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WirePose {
     /// Position, mm.
     pub pos: Option<Cartesian>,
     /// Orientation as a quaternion.
     pub orient: Option<Orientation>,
-    /// Orientation as Euler angles; they count if both are there.
+    /// Orientation as Euler angles; they take precedence over the quaternion.
     pub euler: Option<Euler>,
 }
 
 impl WirePose {
-    /// Position and quaternion of a pose.
+    /// A message with position and quaternion of a pose.
     #[must_use]
     pub fn of(pose: &Pose) -> Self {
         let (pos, orient) = (Cartesian::new(pose.position), Orientation::new(pose.orientation));
@@ -82,7 +82,7 @@ impl WirePose {
     /// The pose, if position and orientation are present and finite.
     ///
     /// # Errors
-    /// [`Error::Missing`], [`Error::NotAPose`].
+    /// [`Error::Missing`] or [`Error::NotAPose`].
     pub fn pose(&self) -> Result<Pose, Error> {
         let position = self.pos.ok_or(Error::Missing { field: "cartesian.pos" })?.values();
         let orientation = match (self.euler, self.orient) {

@@ -1,4 +1,4 @@
-//! `EgmHeader`: number, time and type of a message.
+//! `EgmHeader`: sequence number, time stamp and type of a message.
 
 use crate::{
     Error,
@@ -33,7 +33,7 @@ pub enum MessageType {
 }
 
 impl MessageType {
-    /// Its number in the schema.
+    /// Number of the type in the schema.
     #[must_use]
     pub const fn code(self) -> u32 {
         match self {

@@ -1,8 +1,8 @@
-//! The messages of `egm.proto` (package `abb.egm`, proto2), one a file.
+//! The messages of `egm.proto` (package `abb.egm`, proto2), one per file.
 //!
-//! Each message has three functions: `merge` takes one field (as in protocol buffers, a message that comes twice is
-//! merged, and the last of repeated values counts), `check` finds missing fields at the end, and `write` encodes it.
-//! Unknown fields of a newer schema are skipped. An unknown enum value counts as undefined.
+//! Each message has three functions. `merge` takes one field: as protocol buffers require, a message that occurs twice
+//! is merged, and the last value of a repeated scalar field is used. `check` finds missing fields at the end. `write`
+//! encodes the message. Unknown fields of a newer schema are skipped, and an unknown enum value is undefined.
 
 mod geometry;
 mod header;
@@ -20,5 +20,5 @@ pub use self::{
     values::{MOST_VALUES, Values},
 };
 
-/// Bytes that the longest of the messages needs.
+/// Length of the longest message, bytes.
 pub const MOST_BYTES: usize = 1400;

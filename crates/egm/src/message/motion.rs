@@ -9,15 +9,15 @@ use crate::{
 /// `EgmFeedBack` or `EgmPlanned`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// Joints, degrees.
+    /// Joint angles, degrees.
     pub joints: Option<Values>,
-    /// The tool in the work object.
+    /// Pose of the tool in the work object.
     pub cartesian: Option<WirePose>,
     /// External joints, degrees.
     pub external: Option<Values>,
     /// Time of the sample.
     pub time: Option<Clock>,
-    /// Time of the sample, finer.
+    /// Time of the sample with ns resolution.
     pub timestamp: Option<Timestamp>,
 }
 
@@ -39,7 +39,7 @@ pub struct Timestamp {
     pub nsec: Option<u64>,
 }
 
-/// The two integers of a time.
+/// Merges the two integers of a time.
 fn merge_pair(
     first: &mut Option<u64>,
     second: &mut Option<u64>,
@@ -64,7 +64,7 @@ fn write_pair(number: u32, pair: [Option<u64>; 2], writer: &mut Writer<'_>) -> R
 }
 
 impl Motion {
-    /// A motion with a pose only.
+    /// A motion that contains only a pose.
     #[must_use]
     pub fn at(pose: WirePose) -> Self {
         Self { cartesian: Some(pose), ..Self::default() }

@@ -1,4 +1,4 @@
-//! `EgmRobot`: the message of the robot controller in every cycle.
+//! `EgmRobot`: the message that the robot controller sends in every cycle.
 
 use super::{Header, MessageType, Motion, Values};
 use crate::{
@@ -6,26 +6,26 @@ use crate::{
     wire::{Field, Reader, Writer},
 };
 
-/// `EgmRobot`. Collision information, data from RAPID and torques (fields 12 to 14) are skipped.
+/// `EgmRobot`. Fields 12 to 14 (collision information, data from RAPID, torques) are skipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Robot {
-    /// Number, time, type.
+    /// Sequence number, time stamp and type.
     pub header: Option<Header>,
     /// Present position of the robot.
     pub feedback: Option<Motion>,
     /// Position planned by the controller.
     pub planned: Option<Motion>,
-    /// Power of the motors.
+    /// State of the motors' power.
     pub motor_state: Option<MotorState>,
     /// State of the motion correction.
     pub mci_state: Option<MciState>,
-    /// The convergence criteria of the RAPID program are met.
+    /// True if the convergence criteria of the RAPID program are met.
     pub mci_convergence_met: Option<bool>,
     /// Test signals.
     pub test_signals: Option<Values>,
     /// State of the RAPID program.
     pub rapid_state: Option<RapidState>,
-    /// `measuredForce.fcActive`: force control is active.
+    /// `measuredForce.fcActive`: true if force control is active.
     pub force_active: Option<bool>,
     /// Forces, N, and torques, Nm.
     pub measured_force: Option<Values>,
@@ -35,7 +35,7 @@ pub struct Robot {
     pub move_index: Option<u32>,
 }
 
-/// A message with one required enum of three values.
+/// An enum and the message that contains it as its one required field `state`.
 macro_rules! state {
     ($(#[$doc:meta])* $name:ident { $($(#[$variant_doc:meta])* $variant:ident = $code:literal,)* }) => {
         $(#[$doc])*
@@ -55,7 +55,7 @@ macro_rules! state {
                 }
             }
 
-            /// The required field `state`, before it has come `None`.
+            /// Merges the required field `state` into `value`, which is `None` until the field occurs.
             fn merge(value: &mut Option<Self>, field: &Field<'_>, name: &'static str) -> Result<(), Error> {
                 let mut fields = field.message()?;
                 while let Some(field) = fields.next_field()? {
@@ -66,7 +66,7 @@ macro_rules! state {
                         });
                     }
                 }
-                // A later message of the same field may still bring what is missing here: merged, it is there.
+                // A later occurrence of the same field can supply what is missing here, because occurrences are merged.
                 if value.is_some() { Ok(()) } else { Err(Error::Missing { field: name }) }
             }
 
@@ -90,11 +90,11 @@ state! {
 state! {
     /// `EgmMCIState`: the motion correction interface.
     MciState {
-        /// It has stopped with an error.
+        /// The motion correction has stopped with an error.
         Error = 1,
-        /// It does not run.
+        /// The motion correction is not running.
         Stopped = 2,
-        /// The robot follows.
+        /// The motion correction is running: the robot follows.
         Running = 3,
     }
 }
@@ -104,17 +104,17 @@ state! {
     RapidState {
         /// The program is stopped.
         Stopped = 1,
-        /// It runs.
+        /// The program is running.
         Running = 2,
     }
 }
 
 impl Robot {
-    /// Read a datagram.
+    /// Decodes a datagram.
     ///
     /// # Errors
-    /// [`Error`] if it is not a message, if a field that the schema requires is missing, if it is a message of another
-    /// type, or if it has no sequence number.
+    /// [`Error`] if the datagram is not a message, if a field required by the schema is missing, if the message is of
+    /// another type, or if it has no sequence number.
     pub fn decode(datagram: &[u8]) -> Result<Self, Error> {
         let mut message = Self::default();
         let mut fields = Reader::new(datagram);
@@ -165,10 +165,10 @@ impl Robot {
         Ok(())
     }
 
-    /// Write the message to the end of `buffer`.
+    /// Encodes the message at the end of `buffer`.
     ///
     /// # Errors
-    /// [`Error::NoRoom`]; [`super::MOST_BYTES`] are always enough.
+    /// [`Error::NoRoom`] if `buffer` is too small; [`super::MOST_BYTES`] are always enough.
     pub fn encode<'a>(&self, buffer: &'a mut [u8]) -> Result<&'a [u8], Error> {
         let mut writer = Writer::new(buffer);
         self.write(&mut writer)?;
@@ -199,10 +199,11 @@ impl Robot {
         self.header.as_ref().map_or(Ok(()), |header| writer.message(1, |writer| header.write(writer)))
     }
 
-    /// The fields for the host: sequence number, and pose of the tool in the work object.
+    /// The fields that the host needs: sequence number, and pose of the tool in the work object.
     ///
     /// # Errors
-    /// [`Error::Missing`] if one is missing, [`Error::BadType`] if it is not a message of a robot, [`Error::NotAPose`].
+    /// [`Error::Missing`] if one is missing, [`Error::BadType`] if it is not a message of a robot, [`Error::NotAPose`]
+    /// if the pose is invalid.
     pub fn essentials(&self) -> Result<(u32, Pose), Error> {
         let header = self.header.ok_or(Error::Missing { field: "header" })?;
         let seqno = header.seqno.ok_or(Error::Missing { field: "header.seqno" })?;

@@ -1,4 +1,4 @@
-//! `EgmSensor`: the answer of the host.
+//! `EgmSensor`: the answer of the host to the robot.
 
 use super::{Header, MessageType, Motion, Values, WirePose};
 use crate::{
@@ -6,10 +6,10 @@ use crate::{
     wire::{Reader, Writer},
 };
 
-/// `EgmSensor`. Data to RAPID (field 4) are skipped.
+/// `EgmSensor`. Field 4 (data to RAPID) is skipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sensor {
-    /// Number, time, type.
+    /// Sequence number, time stamp and type.
     pub header: Option<Header>,
     /// Target position of the robot.
     pub planned: Option<Motion>,
@@ -17,26 +17,27 @@ pub struct Sensor {
     pub speed_ref: Option<SpeedRef>,
 }
 
-/// `EgmSpeedRef`.
+/// `EgmSpeedRef`: speeds of joints and tool.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpeedRef {
-    /// Joints, degrees/s.
+    /// Joint speeds, degrees/s.
     pub joints: Option<Values>,
-    /// Tool: mm/s along x, y, z, then degrees/s about x, y, z. ASSUMED order: `egm.proto` does not say it.
+    /// Tool speeds: mm/s along x, y, z, then degrees/s about x, y, z. The order is ASSUMED: `egm.proto` does not define
+    /// it.
     pub cartesians: Option<Values>,
-    /// External joints, degrees/s.
+    /// Speeds of the external joints, degrees/s.
     pub external: Option<Values>,
 }
 
 impl SpeedRef {
-    /// The speed of the tool.
+    /// A message with the speed of the tool.
     #[must_use]
     pub fn of(twist: &Twist) -> Self {
         let ([x, y, z], [a, b, c]) = (twist.linear, twist.angular.map(f64::to_degrees));
         Self { cartesians: Some(Values::of(&[x, y, z, a, b, c])), ..Self::default() }
     }
 
-    /// The speed of the tool; zero without six values.
+    /// The speed of the tool; zero if the message does not have six values.
     #[must_use]
     pub fn twist(&self) -> Twist {
         match self.cartesians.as_ref().map(Values::as_slice) {
@@ -68,7 +69,7 @@ impl SpeedRef {
 }
 
 impl Sensor {
-    /// A target for the tool, optionally with its speed.
+    /// A target pose of the tool, optionally with its speed.
     #[must_use]
     pub fn target(seqno: u32, tm: u32, pose: &Pose, speed: Option<&Twist>) -> Self {
         Self {
@@ -78,10 +79,10 @@ impl Sensor {
         }
     }
 
-    /// Read a datagram.
+    /// Decodes a datagram.
     ///
     /// # Errors
-    /// [`Error`] if it is not a message, or if a required field is missing.
+    /// [`Error`] if the datagram is not a message, or if a required field is missing.
     pub fn decode(datagram: &[u8]) -> Result<Self, Error> {
         let mut message = Self::default();
         let mut fields = Reader::new(datagram);
@@ -97,10 +98,10 @@ impl Sensor {
         Ok(message)
     }
 
-    /// Write the message to the end of `buffer`.
+    /// Encodes the message at the end of `buffer`.
     ///
     /// # Errors
-    /// [`Error::NoRoom`]; [`super::MOST_BYTES`] are always enough.
+    /// [`Error::NoRoom`] if `buffer` is too small; [`super::MOST_BYTES`] are always enough.
     pub fn encode<'a>(&self, buffer: &'a mut [u8]) -> Result<&'a [u8], Error> {
         let mut writer = Writer::new(buffer);
         if let Some(speed) = &self.speed_ref {

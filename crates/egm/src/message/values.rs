@@ -5,7 +5,7 @@ use crate::{
     wire::{Field, Reader, Value, Writer},
 };
 
-/// The most values of a repeated field: six joints, six external joints, six forces, twelve test signals.
+/// Greatest number of values in a repeated field: six joints, six external joints, six forces, twelve test signals.
 pub const MOST_VALUES: usize = 16;
 
 /// Up to [`MOST_VALUES`] doubles.
@@ -16,7 +16,7 @@ pub struct Values {
 }
 
 impl Values {
-    /// The first of `values`, as many as fit.
+    /// The first values of `values`, as many as fit.
     #[must_use]
     pub fn of(values: &[f64]) -> Self {
         let mut all = Self::default();
@@ -38,7 +38,7 @@ impl Values {
         Ok(())
     }
 
-    /// Add the values of a field: one value, or packed ones.
+    /// Adds the values of a field, which is a single value or packed values.
     pub(super) fn take(&mut self, field: &Field<'_>) -> Result<(), Error> {
         if let Value::Bytes(packed) = field.value {
             let mut packed = Reader::new(packed);
@@ -50,7 +50,7 @@ impl Values {
         self.push(field.double()?)
     }
 
-    /// Add the values of a message, which are in its field `number`.
+    /// Adds the values of a message that contains them in its field `number`.
     pub(super) fn merge(&mut self, number: u32, mut fields: Reader<'_>) -> Result<(), Error> {
         while let Some(field) = fields.next_field()? {
             if field.number == number {
@@ -60,7 +60,7 @@ impl Values {
         Ok(())
     }
 
-    /// Write the values as field `number`, each with its own key: `egm.proto` is proto2, and not packed.
+    /// Writes the values as field `number`, each with its own key, because `egm.proto` is proto2 and not packed.
     pub(super) fn write(&self, number: u32, writer: &mut Writer<'_>) -> Result<(), Error> {
         self.as_slice().iter().rev().try_for_each(|value| writer.double(number, *value))
     }
