@@ -100,7 +100,7 @@ pub enum Reason {
     None,
     /// The process was restarted and does not know how far the command had come.
     Restarted,
-    /// A process below does not answer.
+    /// A neighbouring process does not answer.
     NeighbourLost,
     /// The command is not known.
     UnknownCommand,

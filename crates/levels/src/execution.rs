@@ -146,7 +146,7 @@ pub trait Orders: Sized {
     #[must_use]
     fn of_halt(halting: Halting) -> Self {
         match halting {
-            Halting::Stop => Self::STOP,
+            Halting::Stop | Halting::Abandon(_) => Self::STOP,
             Halting::Wait => Self::WAIT,
         }
     }
@@ -249,6 +249,9 @@ impl Execution {
             Verdict::Passed(()) => Ok(course),
             Verdict::Decided(decision) => {
                 self.halt = decision.next;
+                if let Halting::Abandon(reason) = decision.action {
+                    self.fail(reason);
+                }
                 // The header of a restarted process says that it was restarted.
                 if intake == Intake::Asked {
                     self.note(&decision.of(HALT_NUMBER));

@@ -12,8 +12,8 @@
 //! under way too, and its end is reported only when nothing moves any more. If nothing is under way, a
 //! command is accepted in the tick in which it comes.
 
-use interfaces::Reason;
-use rcs_core::{Actions, Plain, Variables, decision_table, handshake::Lower};
+use interfaces::{Header, Reason};
+use rcs_core::{Actions, Plain, Variables, decision_table, handshake::Lower, tick::Tick};
 
 /// The command of a process, for [`HALT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -42,6 +42,23 @@ pub enum BoxState {
     Off,
     /// It is on: the operator has the robot, and nothing is sent.
     On,
+}
+
+/// The process that commands this one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Above {
+    /// It wrote its buffers in the last tick, or is not watched.
+    Live,
+    /// It did not write them: nothing commands this process any more.
+    Lost,
+}
+
+impl Above {
+    /// By the header of its buffers, read in this tick.
+    #[must_use]
+    pub fn of(header: &Header, tick: Tick) -> Self {
+        if header.stamp == tick.previous() { Self::Live } else { Self::Lost }
+    }
 }
 
 /// What the processes below are doing.
@@ -84,6 +101,8 @@ pub struct Replaced {
     pub intake: Intake,
     /// Does it stop what is below by itself?
     pub kind: Kind,
+    /// The process above.
+    pub above: Above,
     /// The joystick box.
     pub joystick: BoxState,
     /// What the processes below are doing.
@@ -97,28 +116,33 @@ pub enum Halting {
     Stop,
     /// Nothing new: they are coming to rest.
     Wait,
+    /// A pause to the processes below, and the command fails.
+    Abandon(Reason),
 }
 
 decision_table! {
     /// HALT: a new command replaces what is under way. It is accepted or refused when the processes below
-    /// have come to rest. What a process had under way before it was restarted is stopped too.
+    /// have come to rest. What a process had under way before it was restarted is stopped too, and so is what
+    /// it has under way when the process above is lost.
     pub HALT: fn halt(enum Halt, Replaced) -> Halting or () {
         any {
             1:  joystick: On                                                    => consult;
-            2:  joystick: Off, intake: Taken                                    => consult;
+            2:  joystick: Off, intake: Taken, above: Live                       => consult;
+            3:  joystick: Off, intake: Taken, above: Lost, below: AtRest | Pausing => consult;
+            4:  joystick: Off, intake: Taken, above: Lost, below: UnderWay      => Abandon(NeighbourLost);
         }
         /// Nothing was told to stop for the sake of a new command.
         Clear {
-            3:  joystick: Off, intake: Asked, kind: Pause                       => consult;
-            4:  joystick: Off, intake: Asked | Adopted, below: AtRest           => consult;
-            5:  joystick: Off, intake: Adopted, below: Pausing                  => consult;
-            6:  joystick: Off, intake: Asked, kind: Other, below: Pausing       => Wait -> Stopping;
-            7:  joystick: Off, intake: Asked | Adopted, below: UnderWay         => Stop -> Stopping;
+            5:  joystick: Off, intake: Asked, kind: Pause                       => consult;
+            6:  joystick: Off, intake: Asked | Adopted, below: AtRest           => consult;
+            7:  joystick: Off, intake: Adopted, below: Pausing                  => consult;
+            8:  joystick: Off, intake: Asked, kind: Other, below: Pausing       => Wait -> Stopping;
+            9:  joystick: Off, intake: Asked | Adopted, below: UnderWay         => Stop -> Stopping;
         }
         /// What is below is coming to rest.
         Stopping {
-            8:  joystick: Off, intake: Asked | Adopted, below: Pausing | UnderWay => Wait;
-            9:  joystick: Off, intake: Asked | Adopted, below: AtRest           => Wait -> Clear;
+            10: joystick: Off, intake: Asked | Adopted, below: Pausing | UnderWay => Wait;
+            11: joystick: Off, intake: Asked | Adopted, below: AtRest           => Wait -> Clear;
         }
     }
 }

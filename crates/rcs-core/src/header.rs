@@ -25,7 +25,7 @@ pub struct Header {
 }
 
 /// A row of a decision table, by number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Plain)]
 pub struct Decided {
     /// The table, from 1 in the order of the process's tables.
     pub table: u8,

@@ -21,7 +21,7 @@ pub struct CampaignArguments {
     pub seed: u64,
     /// Interruptions, separated by commas: pause, pause-twice, refused, replaced, answer-lost, answer-late,
     /// answer-damaged, hold, nudge, away, estop, held or held:PROCESS, restart or restart:PROCESS, fault or fault:FILE,
-    /// none or all; hold+35:pause is hold, and pause 35 ticks after it [with --random: all]
+    /// none or all; with --judge rest also cut, lost or lost:PROCESS; hold+35:pause is hold, and pause 35 ticks after it [with --random: all]
     #[arg(
         long,
         value_name = "KIND",
@@ -45,6 +45,9 @@ pub struct CampaignArguments {
     /// Fork at each tick in which a step or a command number changes, and at the two after it
     #[arg(long)]
     pub changes: bool,
+    /// Fork at the first tick of each state of the control processes: their steps, and the rows that they fired last
+    #[arg(long, conflicts_with_all = ["ticks", "changes", "at", "random"])]
+    pub states: bool,
     /// Fork at these ticks; one tick with one interruption prints the whole branch
     #[arg(long, value_name = "N", value_delimiter = ',', conflicts_with_all = ["ticks", "changes"])]
     pub at: Vec<u64>,

@@ -6,13 +6,17 @@
 //! order, so that both have the same digest. A [`Fork`] is what the next tick depends on; any number of
 //! branches can go on from it, each in its own thread.
 
-use std::sync::Arc;
+use std::{convert::Infallible, sync::Arc};
 
 use depc::fault::{Direction, FaultKind, Injector, Plan, Rule};
-use executive::{course::Course, failure::Watch, generations::is_busy};
+use executive::{
+    course::{Course, Levels},
+    failure::Watch,
+    generations::is_busy,
+};
 use interfaces::{
     CommonMemory, DataBaseCommand, DeviceInputs, DeviceOutputs, ExternalInputs, HwsCommand, OperatorInputs,
-    OutsidePedestal,
+    OutsidePedestal, device::LinkBytes,
 };
 use levels::ladder::{Ladder, ProcessId};
 use neighbours::{
@@ -117,10 +121,34 @@ impl RobotLine {
     }
 }
 
+/// The ladder without the processes that are lost: they write nothing, so that their stamps stay.
+#[derive(Clone)]
+struct Present {
+    ladder: Ladder,
+    processes: Vec<ProcessId>,
+}
+
+impl Levels<TaskData<'_>> for Present {
+    type Error = Infallible;
+
+    fn step(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &TaskData<'_>,
+        after: &mut CommonMemory,
+        observe: &mut dyn FnMut(Option<ProcessId>),
+    ) -> Result<(), Infallible> {
+        self.ladder.step_observed(&self.processes, tick, before, external, data, after, observe);
+        Ok(())
+    }
+}
+
 /// Everything but the cell and the Data System.
 #[derive(Clone)]
 struct Control {
-    course: Course<Ladder>,
+    course: Course<Present>,
     external: ExternalInputs,
     gate: Gate,
     command_box: Mailbox,
@@ -160,7 +188,7 @@ impl<'f> Branch<'f> {
     pub fn start(facility: &'f Facility) -> Result<Self, Error> {
         let cell = Cell::new(&facility.description, facility.seed).map_err(StartError::from)?;
         let control = Control {
-            course: Course::new(Ladder::default()),
+            course: Course::new(Present { ladder: Ladder::default(), processes: ProcessId::ALL.to_vec() }),
             external: ExternalInputs::default(),
             gate: Gate::default(),
             command_box: Mailbox::initialized(HWSC_COMMAND),
@@ -236,7 +264,11 @@ impl<'f> Branch<'f> {
         let data = data(self.facility, control.generation);
         let Ok(()) = control.course.step(&control.external, &data, &mut |_| {});
         control.course.sum_up(&control.external);
-        let outputs = control.course.memory().device_outputs();
+        let mut outputs = control.course.memory().device_outputs();
+        if !control.course.levels().processes.contains(&ProcessId::T3i) {
+            // The frame that it sent last goes out once.
+            outputs.link_tx = LinkBytes::ZERO;
+        }
         control.inputs = control.line.advance(control.course.tick(), &mut self.workstation.cell, &outputs);
         self.observe();
         self.tell_data_system();
@@ -290,7 +322,12 @@ impl<'f> Branch<'f> {
 
     /// A process forgets everything.
     pub fn restart(&mut self, process: ProcessId) {
-        self.control.course.levels_mut().restart(process);
+        self.control.course.levels_mut().ladder.restart(process);
+    }
+
+    /// A process writes nothing from now on.
+    pub fn lose(&mut self, process: ProcessId) {
+        self.control.course.levels_mut().processes.retain(|present| *present != process);
     }
 
     /// The next answer of the robot controller suffers this.
@@ -301,6 +338,17 @@ impl<'f> Branch<'f> {
     /// From now on the line has the faults of a plan.
     pub fn spoil_line(&mut self, plan: &Plan) {
         self.control.line.file = Some(Injector::new(plan));
+    }
+
+    /// The cable to the robot controller is cut: from now on no byte arrives, and DTR of the other end is off.
+    pub fn cut(&mut self) {
+        let from = self.at().0 + 1;
+        let mut plan = Plan::new(0);
+        for kind in [FaultKind::Drop, FaultKind::CtsLow] {
+            // Two rules of different kinds are never refused.
+            let _ = plan.add(Rule::new(kind).window(from, u64::MAX));
+        }
+        self.spoil_line(&plan);
     }
 
     /// The tick that was run last.

@@ -66,6 +66,10 @@ pub enum Kind {
     Held(ProcessId),
     /// A process is restarted.
     Restart(ProcessId),
+    /// A process writes nothing from now on.
+    Lost(ProcessId),
+    /// The cable to the robot controller is cut.
+    Cut,
     /// Emergency stop, and the start-up by the panel.
     Estop,
     /// The faults of a file, for a short time.
@@ -73,7 +77,7 @@ pub enum Kind {
 }
 
 /// Kinds without a parameter, with their names.
-const PLAIN: [(&str, Kind); 12] = [
+const PLAIN: [(&str, Kind); 13] = [
     ("none", Kind::None),
     ("pause", Kind::Pause),
     ("pause-twice", Kind::PauseTwice),
@@ -86,6 +90,7 @@ const PLAIN: [(&str, Kind); 12] = [
     ("nudge", Kind::Nudge),
     ("away", Kind::Away),
     ("estop", Kind::Estop),
+    ("cut", Kind::Cut),
 ];
 /// Processes with a switch on the joystick box.
 const SWITCHES: [(ProcessId, u8); 4] = [
@@ -100,6 +105,7 @@ impl fmt::Display for Kind {
         match self {
             Self::Held(process) => write!(f, "held:{}", word(*process)),
             Self::Restart(process) => write!(f, "restart:{}", word(*process)),
+            Self::Lost(process) => write!(f, "lost:{}", word(*process)),
             Self::Fault(name, _) => write!(f, "fault:{name}"),
             plain => f.write_str(PLAIN.iter().find(|(_, kind)| kind == plain).map_or("", |(name, _)| name)),
         }
@@ -121,7 +127,8 @@ impl Kind {
         let process = |name: &str| ProcessId::ALL.iter().copied().find(|process| word(*process) == name);
         let found = match text.split_once(':') {
             None if text == "all" => {
-                let mut all: Vec<Self> = PLAIN[1..].iter().map(|(_, kind)| kind.clone()).collect();
+                let plain = PLAIN[1..].iter().map(|(_, kind)| kind);
+                let mut all: Vec<Self> = plain.filter(|kind| !kind.is_for_good()).cloned().collect();
                 for word in ["held", "restart", "fault"] {
                     all.extend(Self::named(word, data, cell)?);
                 }
@@ -131,12 +138,14 @@ impl Kind {
                 Some(SWITCHES.iter().map(|(process, _)| Self::Held(*process)).collect())
             }
             None if text == "restart" => Some(ProcessId::ALL.iter().copied().map(Self::Restart).collect()),
+            None if text == "lost" => Some(ProcessId::ALL.iter().copied().map(Self::Lost).collect()),
             None if text == "fault" => Some(faults(data, cell)?),
             None => PLAIN.iter().find(|(name, _)| *name == text).map(|(_, kind)| vec![kind.clone()]),
             Some(("held", name)) => process(name)
                 .filter(|process| SWITCHES.iter().any(|(one, _)| one == process))
                 .map(|process| vec![Self::Held(process)]),
             Some(("restart", name)) => process(name).map(|process| vec![Self::Restart(process)]),
+            Some(("lost", name)) => process(name).map(|process| vec![Self::Lost(process)]),
             Some(("fault", name)) => {
                 fault(&data.join("faults").join(name).with_added_extension("toml"), cell)?
                     .map(|kind| vec![kind])
@@ -158,8 +167,22 @@ impl Kind {
                 | Self::Hold
                 | Self::Held(_)
                 | Self::Restart(_)
+                | Self::Lost(_)
+                | Self::Cut
                 | Self::Fault(..)
         )
+    }
+
+    /// It stops the robot, or takes from it who commands it.
+    #[must_use]
+    pub const fn is_stop(&self) -> bool {
+        matches!(self, Self::Pause | Self::Hold | Self::Estop) || self.is_for_good()
+    }
+
+    /// Nobody takes it back.
+    #[must_use]
+    pub const fn is_for_good(&self) -> bool {
+        matches!(self, Self::Cut | Self::Lost(_))
     }
 
     /// What is done.
@@ -179,6 +202,8 @@ impl Kind {
                 vec![hold(BoxAction::Hold(bit)), Hand::Wait(HELD), hold(BoxAction::Free(bit))]
             }
             Self::Restart(process) => vec![Hand::Restart(*process)],
+            Self::Lost(process) => vec![Hand::Lose(*process)],
+            Self::Cut => vec![Hand::Cut],
             Self::Estop => {
                 let mut hands = vec![Hand::key(Key::Press(EStop::Pedestal)), Hand::Wait(STOPPED)];
                 hands.push(Hand::key(Key::Release(EStop::Pedestal)));
@@ -230,7 +255,9 @@ fn away() -> Vec<Hand> {
 fn words() -> String {
     let plain = PLAIN.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
     let processes = ProcessId::ALL.iter().map(|process| word(*process)).collect::<Vec<_>>().join(", ");
-    format!("{plain}, held[:PROCESS], restart[:PROCESS], fault[:FILE] or all; processes are {processes}")
+    format!(
+        "{plain}, held[:PROCESS], restart[:PROCESS], lost[:PROCESS], fault[:FILE] or all; processes are {processes}"
+    )
 }
 
 /// All files of faults that can be switched on.
@@ -284,6 +311,8 @@ enum Hand {
     Act(WorkstationAction),
     Wait(u64),
     Restart(ProcessId),
+    Lose(ProcessId),
+    Cut,
     Answer(FaultKind),
     Faults(Arc<FaultFile>),
     /// ENTER, if the robot controller shows a warning.
@@ -372,6 +401,8 @@ impl Script {
                         branch.workstation.cell.workstation(&action).err().map(|error| error.to_string());
                 }
                 Hand::Restart(process) => branch.restart(process),
+                Hand::Lose(process) => branch.lose(process),
+                Hand::Cut => branch.cut(),
                 Hand::Answer(kind) => branch.spoil_answer(kind),
                 Hand::Faults(file) => {
                     let from = branch.at().0 + 1;

@@ -18,6 +18,7 @@ mod harm;
 mod interruption;
 mod journal;
 mod markdown;
+mod motion;
 mod operator;
 mod parent;
 mod pool;
@@ -55,7 +56,7 @@ use self::{
     report::CampaignReport,
     rows::RowsFired,
     series::Series,
-    trial::{BranchResult, NoObserver, Procedure, Verdict},
+    trial::{BranchResult, NoObserver, Procedure, Until, Verdict},
 };
 use crate::error::Error;
 
@@ -166,6 +167,12 @@ fn plans(
     }
     let series = arguments.interrupt.iter().map(|text| Series::named(text, data, cell));
     let series = series.collect::<Result<Vec<_>, _>>()?.concat();
+    let stops = |series: &Series| series.interruptions().last().is_some_and(|last| last.kind.is_stop());
+    if let (Until::Rest, Some(other)) = (procedure.until, series.iter().find(|series| !stops(series))) {
+        return Err(Error::Campaign(format!(
+            "--judge rest: expected pause, hold, estop, cut or lost:PROCESS as the last interruption, found {other}"
+        )));
+    }
     let forks = parent.forks(&ticks(arguments));
     if forks.is_empty() {
         let ticks = parent.ticks;
@@ -190,6 +197,7 @@ fn ticks(arguments: &CampaignArguments) -> Ticks {
         _ if !arguments.at.is_empty() => Ticks::At(arguments.at.clone()),
         (Some(every), true) => Ticks::Both(every),
         (None, true) => Ticks::Changes,
+        _ if arguments.states => Ticks::States,
         (every, false) => Ticks::Every(every.unwrap_or(EVERY)),
     }
 }

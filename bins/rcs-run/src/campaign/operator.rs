@@ -53,6 +53,8 @@ pub enum Then {
     Recovery,
     /// The interrupted command at once.
     SameCommand,
+    /// Nothing more.
+    Nothing,
 }
 
 /// What an operator does first when a command was interrupted or has failed.
@@ -357,6 +359,7 @@ impl Commander for Operator<'_> {
                         Then::Recovery => self.recover(tick),
                         Then::SameCommand if self.has_finished => self.next(tick, workstation),
                         Then::SameCommand => self.same(tick),
+                        Then::Nothing => self.doing = Doing::Over,
                     }
                 }
             }

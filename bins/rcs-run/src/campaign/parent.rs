@@ -1,7 +1,9 @@
 //! The undisturbed run: which line of the job goes on in a tick, what the world is like at the end of each, and in which ticks
 //! something changes.
 
-use interfaces::CommonMemory;
+use std::collections::HashSet;
+
+use interfaces::{CommonMemory, Decided};
 use levels::ladder::ProcessId;
 use neighbours::workstation::player::{Hwsc, JobFailure, Progress, TIME_LIMIT};
 use rcs_core::{name::Name16, tick::Tick};
@@ -21,6 +23,8 @@ pub enum Ticks {
     At(Vec<u64>),
     /// Those in which a step or a command number changes, and the two after it.
     Changes,
+    /// The first tick of each state of the control processes: their steps, and the rows that they fired last.
+    States,
     /// Both: every so many, and those in which something changes.
     Both(u64),
 }
@@ -32,6 +36,8 @@ pub struct Parent {
     /// The world at the end of each line.
     worlds: Vec<World>,
     changes: Vec<u64>,
+    /// The first tick of each state of the control processes.
+    states: Vec<u64>,
     /// Ticks of the run.
     pub ticks: u64,
     /// Fingerprint of the run.
@@ -48,6 +54,15 @@ fn steps(memory: &CommonMemory, task: u32) -> Steps {
         (memory.header(*process).step, (*process != ProcessId::T3i).then_some(number))
     };
     ProcessId::ALL.iter().map(step).collect()
+}
+
+/// Of each process its step, and the row that it fired last.
+fn state(memory: &CommonMemory) -> Vec<(Option<Name16>, Option<Decided>)> {
+    let of = |process: &ProcessId| {
+        let header = memory.header(*process);
+        (header.step, header.decided)
+    };
+    ProcessId::ALL.iter().map(of).collect()
 }
 
 /// The emulator of a job before its first tick.
@@ -68,10 +83,12 @@ impl Parent {
             begun: Vec::new(),
             worlds: Vec::new(),
             changes: Vec::new(),
+            states: Vec::new(),
             ticks: 0,
             digest: String::new(),
         };
         let mut before = steps(branch.memory(), 0);
+        let mut known = HashSet::new();
         loop {
             branch.tick(&mut hwsc);
             let tick = branch.at();
@@ -85,6 +102,9 @@ impl Parent {
             if now != before {
                 parent.changes.push(tick.0);
                 before = now;
+            }
+            if known.insert(state(branch.memory())) {
+                parent.states.push(tick.0);
             }
             match hwsc.progress() {
                 Progress::Running => {}
@@ -121,6 +141,7 @@ impl Parent {
             Ticks::Every(step) => every(*step).collect(),
             Ticks::At(ticks) => ticks.iter().copied().filter(|tick| *tick < self.ticks).collect(),
             Ticks::Changes => changes().collect(),
+            Ticks::States => self.states.clone(),
             Ticks::Both(step) => every(*step).chain(changes()).collect(),
         };
         forks.sort_unstable();

@@ -1,5 +1,7 @@
 //! Branches drawn at random, and the smallest series of interruptions that does what a drawn one has done.
 
+use std::iter;
+
 use rand::{Rng, RngExt as _, SeedableRng as _, seq::IndexedRandom as _};
 use rand_chacha::ChaCha8Rng;
 
@@ -8,7 +10,7 @@ use super::{
     parent::{Parent, Ticks},
     pool::Plan,
     series::Series,
-    trial::Procedure,
+    trial::{Procedure, Until},
 };
 
 /// Ticks between two interruptions are drawn up to one of these: at once, within a step, within a command.
@@ -26,19 +28,28 @@ pub struct Draw {
 }
 
 impl Draw {
-    /// The branches. One half begins in ticks in which something changes.
+    /// The branches. One half begins in ticks in which something changes. A stop is put behind the drawn interruptions
+    /// of a branch that is judged at rest.
     #[must_use]
     pub fn plans(&self, parent: &Parent, kinds: &[Kind], procedure: Procedure) -> Vec<Plan> {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let changes = parent.forks(&Ticks::Changes);
-        let groups: Vec<&[Kind]> = kinds.chunk_by(|a, b| word(a) == word(b)).collect();
+        let is_same_word = |a: &Kind, b: &Kind| word(a) == word(b);
+        let (rest, drawn): (bool, Vec<Kind>) = match procedure.until {
+            Until::Rest => (true, kinds.iter().filter(|kind| !kind.is_for_good()).cloned().collect()),
+            Until::Next | Until::Job => (false, kinds.to_vec()),
+        };
+        let groups: Vec<&[Kind]> = drawn.chunk_by(is_same_word).collect();
+        let stops: Vec<Kind> = kinds.iter().filter(|kind| kind.is_stop()).cloned().collect();
+        let stops: Vec<&[Kind]> = stops.chunk_by(is_same_word).collect();
         let mut draw = || {
             let change = changes.choose(&mut random).filter(|_| random.random());
             let at = change.copied().unwrap_or_else(|| random.random_range(1..parent.ticks));
             let mut series = Series::from(kind(&groups, &mut random)?);
-            for _ in 1..random.random_range(1..=self.longest) {
+            let more = random.random_range(1..=self.longest) - 1;
+            for groups in iter::repeat_n(&groups, more).chain(rest.then_some(&stops)) {
                 let most = BETWEEN.choose(&mut random).copied()?;
-                series = series.then(random.random_range(0..=most), kind(&groups, &mut random)?);
+                series = series.then(random.random_range(0..=most), kind(groups, &mut random)?);
             }
             Some(Plan { at, series, procedure })
         };

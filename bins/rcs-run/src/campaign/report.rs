@@ -26,12 +26,16 @@ struct Row {
     stranded: usize,
     apart: usize,
     hurt: usize,
+    /// Most ticks from the interruption to rest, if that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rest_after: Option<u64>,
 }
 
 impl Row {
     fn add(&mut self, result: &BranchResult) {
         self.branches += 1;
         self.without_command += usize::from(!result.met_command);
+        self.rest_after = self.rest_after.max(result.rest_after);
         match result.verdict {
             Verdict::Done => self.done += 1,
             Verdict::Stranded => self.stranded += 1,
@@ -143,7 +147,7 @@ impl<'a> CampaignReport<'a> {
         for row in &self.rows {
             let _ = writeln!(
                 text,
-                "{:<24}{:>9}{:>7}{:>10}{:>6}{:>7}{:>8.1}{:>12}",
+                "{:<24}{:>9}{:>7}{:>10}{:>6}{:>7}{:>8.1}{:>12}{}",
                 row.interruption,
                 row.branches,
                 row.done,
@@ -151,7 +155,9 @@ impl<'a> CampaignReport<'a> {
                 row.hurt,
                 row.apart,
                 row.share(),
-                row.without_command
+                row.without_command,
+                row.rest_after
+                    .map_or_else(String::new, |ticks| format!("  at rest after {ticks} ticks at most"))
             );
         }
         for (verdict, title) in

@@ -284,6 +284,46 @@ fn the_page_lists_the_faults_that_can_be_switched_on() {
     }
 }
 
+/// Ticks in which the robot ramps down from the greatest speed of a job, or fingers finish what they were told: 3 s.
+const STOPS: u64 = 75;
+
+/// Ticks in which gripper and pedestal calibrate themselves after a start, whatever is commanded.
+const CALIBRATED: u64 = 150;
+
+#[test]
+fn every_stop_brings_the_robot_to_rest_from_every_state() {
+    let (facility, parent, _) = empty_move();
+    let procedure = Procedure { until: Until::Rest, ..PROCEDURE };
+    let forks = parent.forks(&Ticks::States);
+    assert!(forks.len() > 20, "{} states", forks.len());
+    for at in forks.into_iter().filter(|at| *at > CALIBRATED) {
+        let fork = pool::fork_at(&facility, at).expect("the run can be forked");
+        for stop in
+            ["pause", "hold", "cut", "lost:task", "lost:subtask", "lost:emove", "lost:prim", "lost:t3i"]
+        {
+            let series = series(&facility, stop);
+            let result = trial::run(&facility, &parent, &fork, &series, procedure, &mut NoObserver);
+            let result = result.expect("the fork goes on");
+            let rest = result.rest_after.expect("it is judged at rest");
+            assert!(result.verdict == Verdict::Done && rest <= STOPS, "{stop} at {at}: {result:?}");
+        }
+    }
+}
+
+#[test]
+fn a_branch_that_is_judged_at_rest_ends_with_a_stop() {
+    let (facility, parent, _) = empty_move();
+    let named = |text| Kind::named(text, Path::new(DATA), &facility.description).expect("it is known");
+    let kinds = [named("all"), named("cut"), named("lost")].concat();
+    let procedure = Procedure { until: Until::Rest, ..PROCEDURE };
+    let plans = Draw { branches: 50, longest: 3, seed: 7 }.plans(&parent, &kinds, procedure);
+    for plan in plans {
+        let (last, others) = plan.series.interruptions().split_last().expect("there are some");
+        assert!(last.kind.is_stop() && !others.is_empty());
+        assert!(others.iter().all(|one| !one.kind.is_for_good()), "{}", plan.series);
+    }
+}
+
 #[test]
 fn forks_are_where_something_changes() {
     let (_, parent, _) = empty_move();

@@ -3,7 +3,7 @@
 use executive::failure;
 use interfaces::HwsCommand;
 use levels::ladder::{Ladder, ProcessId};
-use neighbours::workstation::player::Workstation as _;
+use neighbours::workstation::player::{Workstation as _, pause};
 use rcs_core::{name::Name16, tick::Tick};
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +11,7 @@ use super::{
     branch::{Branch, Facility, Fork},
     harm::{HarmMonitor, World, is_commanded},
     interruption::{Kind, Script},
+    motion::Motion,
     operator::{Operator, Recovery, Then},
     parent::Parent,
     series::Series,
@@ -30,6 +31,8 @@ pub enum Until {
     Next,
     /// At the end of the job
     Job,
+    /// When nothing moves any more: what was interrupted last is a stop, and no command follows it
+    Rest,
 }
 
 /// How branches are run.
@@ -84,6 +87,9 @@ pub struct BranchResult {
     pub ended: Vec<String>,
     /// Last tick of the branch.
     pub until: u64,
+    /// Ticks from the interruption to the last motion, if the branch is judged at rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest_after: Option<u64>,
     /// Fingerprint of the branch.
     pub digest: String,
 }
@@ -126,6 +132,8 @@ struct Trial<'f, 'p> {
     mismatch: Option<(String, String)>,
     /// The operator has moved the robot away with a part that the vise has, too.
     tears: bool,
+    /// Of the last interruption, if the branch is judged at rest.
+    motion: Option<Motion>,
 }
 
 /// Interrupt a fork after its last tick, and see what becomes of it.
@@ -163,6 +171,7 @@ pub fn run(
         ended: Vec::new(),
         mismatch: None,
         tears: false,
+        motion: None,
     };
     Ok(trial.play(doing, observer))
 }
@@ -188,12 +197,15 @@ impl Trial<'_, '_> {
     fn play(mut self, doing: Vec<String>, observer: &mut impl Observer) -> BranchResult {
         let mut script = self.begin(observer);
         loop {
-            if let Some(refused) = script.step(&mut self.branch) {
+            // A stop is not taken back.
+            if self.motion.as_ref().is_none_or(Motion::has_just_begun)
+                && let Some(refused) = script.step(&mut self.branch)
+            {
                 observer.say(self.branch.at(), &format!("the cell refuses: {refused}"));
             }
             let over = script.is_over();
             self.operator.is_waiting = !over;
-            if over && !self.following {
+            if over && !self.following && self.motion.is_none() {
                 self.following = true;
                 // PAUSE is what interrupts, or what an operator begins with who has worked at box or panel.
                 self.operator.pause(self.branch.at());
@@ -207,10 +219,13 @@ impl Trial<'_, '_> {
             self.tears |= self.takes_from_vise();
             self.monitor.look(&self.branch, at_box || (self.tears && self.operator.has_replaced()));
             observer.tick(&self.branch);
+            if let Some(motion) = &mut self.motion {
+                motion.look(&self.branch);
+            }
             if let Some(verdict) = self.verdict(observer) {
                 return self.result(verdict, doing);
             }
-            if over {
+            if over && self.motion.is_none() {
                 let now = self.branch.at();
                 let since = now.since(*self.over.get_or_insert(now));
                 if self.next().is_some_and(|after| since >= after) {
@@ -238,8 +253,11 @@ impl Trial<'_, '_> {
             observer.say(at, &format!("interrupted again: {kind}"));
         }
         self.over = None;
+        if self.until == Until::Rest && self.next().is_none() {
+            self.motion = Some(Motion::from_now(&self.branch));
+        }
         self.goal = match self.until {
-            Until::Job => usize::MAX,
+            Until::Job | Until::Rest => usize::MAX,
             Until::Next => {
                 let steps = self.branch.facility().job.steps.len();
                 let commands = self.operator.current()..=steps;
@@ -250,7 +268,8 @@ impl Trial<'_, '_> {
         };
         // Another place in each branch, the same in each run.
         self.operator.interrupt((kind == Kind::PauseTwice).then_some(1 + at.0 * 37 % 120));
-        self.following = kind.leaves_command();
+        // After a stop nothing is commanded.
+        self.following = kind.leaves_command() && self.motion.is_none();
         self.send(&kind, observer);
         kind.script()
     }
@@ -273,6 +292,7 @@ impl Trial<'_, '_> {
                 (HwsCommand { destination: Some(Name16::clipped(MISSPELT)), ..known }, Then::Recovery)
             }
             Kind::Replaced => (go("HOME"), Then::SameCommand),
+            Kind::Pause if self.motion.is_some() => (pause(), Then::Nothing),
             _ => return,
         };
         observer.say(at, &format!("the operator sends {command}"));
@@ -296,6 +316,9 @@ impl Trial<'_, '_> {
         let worst = self.monitor.worst().map(|harm| (harm.commanded, harm.tick));
         if self.mismatch.is_some() {
             return Some(Verdict::Hurt);
+        }
+        if let Some(motion) = &self.motion {
+            return motion.verdict(worst.map(|(commanded, _)| commanded));
         }
         if let Some((true, tick)) = worst {
             // How deep it gets is worth knowing.
@@ -356,6 +379,7 @@ impl Trial<'_, '_> {
             doing,
             ended: self.ended,
             until: self.branch.at().0,
+            rest_after: self.motion.as_ref().map(Motion::ticks),
             digest: self.branch.digest().to_string(),
         }
     }
@@ -373,6 +397,10 @@ impl Trial<'_, '_> {
                 self.monitor.worst().map_or_else(Default::default, |harm| {
                     (harm.kind.clone(), format!("tick {}: {}{stranded}", harm.tick.0, harm.what))
                 })
+            }
+            Verdict::Stranded if self.motion.is_some() => {
+                let reason = "something still moves after 300 s".to_owned();
+                (reason.clone(), reason)
             }
             Verdict::Stranded => {
                 let reason = match self.operator.stranded() {

@@ -33,7 +33,7 @@ use super::{
 };
 use crate::{
     execution::{Asked, Work},
-    halt::{Below, BoxState, Intake, Kind, Replaced},
+    halt::{Above, Below, BoxState, Intake, Kind, Replaced},
     held::Held,
     places::named,
 };
@@ -139,6 +139,7 @@ impl State {
         Replaced {
             intake: Intake::Taken,
             kind: if watch.pause == Pause::Other { Kind::Other } else { Kind::Pause },
+            above: Above::of(&memory.subtask.header, tick),
             joystick: if robot == Lower::Joystick { BoxState::On } else { BoxState::Off },
             below,
         }

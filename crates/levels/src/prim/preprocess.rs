@@ -23,11 +23,11 @@ use super::{
     sensors::Reading,
     state::{Goal, Standstill, State, Target},
     tables::{
-        Above, Button, Guard, Interface, Kind, Link, Missing, Operator, Passage, Position, Posture, Request,
-        Rest, Samples, Seen, Situation, Switches, Way,
+        Button, Guard, Interface, Kind, Link, Missing, Operator, Passage, Position, Posture, Request, Rest,
+        Samples, Seen, Situation, Switches, Way,
     },
 };
-use crate::{execution::Asked, places::pose_of};
+use crate::{execution::Asked, halt::Above, places::pose_of};
 
 /// Ticks in a row that the robot must rest at the goal (docs/design/motion.md "Rest").
 const SETTLED: u32 = 3;
@@ -61,7 +61,7 @@ impl State {
         let (goal, rest) = self.ends(inputs, posture, resolvers);
         let situation = Situation {
             t3i: interface,
-            emove: above(inputs),
+            emove: Above::of(&inputs.memory.emove.header, inputs.tick),
             switches: switches(&devices.joystick),
             posture,
             position: position(verb),
@@ -271,11 +271,6 @@ fn switches(joystick: &JoystickBox) -> Switches {
         1 if Coordinates::of(joystick) != Coordinates::None => Switches::One,
         _ => Switches::Several,
     }
-}
-
-/// Does E-move write its buffers?
-fn above(inputs: &Inputs<'_, TaskData<'_>>) -> Above {
-    if inputs.memory.emove.header.stamp == inputs.tick.previous() { Above::Live } else { Above::Lost }
 }
 
 /// Does a command need a position?

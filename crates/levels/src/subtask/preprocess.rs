@@ -21,7 +21,7 @@ use super::{
 };
 use crate::{
     execution::{Asked, Work},
-    halt::{Below, BoxState, Intake, Kind, Replaced},
+    halt::{Above, Below, BoxState, Intake, Kind, Replaced},
     held::Held,
     places::{Missing, place_of},
 };
@@ -159,6 +159,7 @@ fn replaced(
     Replaced {
         intake: Intake::Taken,
         kind: if command.command == SubtaskVerb::Pause { Kind::Pause } else { Kind::Other },
+        above: Above::of(&inputs.memory.task.header, inputs.tick),
         joystick: if on { BoxState::On } else { BoxState::Off },
         below: robot.and(part),
     }

@@ -86,7 +86,7 @@ impl<'d> Process<TaskData<'d>> for Task {
         let manual = state.control == Control::Manual;
         let joystick = if manual { BoxState::On } else { BoxState::Off };
         match state.execution.admit(course, &Replaced { joystick, ..seen.replaced }) {
-            Err(Halting::Stop) => return (takeover, Action::Pause),
+            Err(Halting::Stop | Halting::Abandon(_)) => return (takeover, Action::Pause),
             Err(Halting::Wait) | Ok(Course::Rest | Course::Refuse) => return (takeover, Action::Wait),
             Ok(Course::Begin) => state.step = Step::first(seen.plan.verb),
             Ok(Course::Continue) => {}

@@ -20,7 +20,7 @@ use super::{
 use crate::{
     emove::route::same_location,
     execution::{Asked, Work},
-    halt::{Below, BoxState, Intake, Kind, Replaced},
+    halt::{Above, Below, BoxState, Intake, Kind, Replaced},
     held::Held,
     places::{named, place_of},
 };
@@ -48,6 +48,7 @@ impl State {
             replaced: Replaced {
                 intake: Intake::Taken,
                 kind: if plan.verb == TaskVerb::Pause { Kind::Pause } else { Kind::Other },
+                above: Above::Live,
                 joystick: BoxState::Off,
                 below: Below::of(subtask, pausing),
             },

@@ -158,6 +158,9 @@ impl Bench {
         let after = &mut self.memory;
         let data = self.data;
         let alive = |name| !self.dead.contains(&name);
+        if alive("Subtask") {
+            after.subtask.header.stamp = self.tick;
+        }
         if alive("E-move") {
             let inputs = Inputs { tick: self.tick, memory: &before, external: &self.external, data: &data };
             self.process.step(&inputs, &mut after.emove);

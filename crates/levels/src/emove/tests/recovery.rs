@@ -32,6 +32,7 @@ pub const SCENARIOS: &[fn()] = &[
     a_link_that_is_lost_behind_a_point_may_stop_the_robot_before_it,
     a_robot_that_moved_while_emove_was_held_is_on_its_way,
     a_robot_whose_link_began_anew_short_of_its_point_is_on_its_way,
+    without_subtask_everything_stops,
 ];
 
 type Command<'a> = (EmoveVerb, &'a str, i32, &'a str, u8);
@@ -276,6 +277,25 @@ fn a_restarted_e_move_stops_what_it_had_ordered() {
     bench.process = Emove::default();
     bench.steps(5);
     assert_eq!(bench.memory.emove.prim.number, sent, "nothing is sent");
+}
+
+/// Nothing that Subtask has commanded goes on without it.
+#[test]
+fn without_subtask_everything_stops() {
+    let mut bench = loaded();
+    bench.at_every_tick(TO_VISE, |fork| {
+        let was_executing = fork.memory.emove.status.report == StatusReport::Executing;
+        fork.dead.push("Subtask");
+        fork.steps(60);
+        let there = fork.world.frame;
+        fork.steps(5);
+        assert!(fork.off(&there) < 0.01, "it stands");
+        let status = fork.memory.emove.status;
+        if was_executing {
+            let ended = (status.report, status.reason);
+            assert!([error(Reason::NeighbourLost), (StatusReport::Done, Reason::None)].contains(&ended));
+        }
+    });
 }
 
 #[test]

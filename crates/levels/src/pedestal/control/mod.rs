@@ -70,7 +70,7 @@ impl<Data: ?Sized> Process<Data> for Pedestal {
         let verb = state.command.command;
         let course = state.execution.course(seen.arrival);
         match state.execution.admit(course, &seen.replaced) {
-            Err(Halting::Stop) => return Action::StopTable,
+            Err(Halting::Stop | Halting::Abandon(_)) => return Action::StopTable,
             Err(Halting::Wait) | Ok(Course::Rest | Course::Refuse) => return Action::Wait,
             Ok(Course::Begin) => state.step = Step::first(verb),
             Ok(Course::Continue) => {}

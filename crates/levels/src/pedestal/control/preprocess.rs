@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     execution::{Asked, Work},
-    halt::{Below, BoxState, Intake, Kind, Replaced},
+    halt::{Above, Below, BoxState, Intake, Kind, Replaced},
 };
 
 impl State {
@@ -50,6 +50,7 @@ impl State {
             replaced: Replaced {
                 intake: Intake::Taken,
                 kind: if command.command == PedestalVerb::Pause { Kind::Pause } else { Kind::Other },
+                above: Above::Live,
                 joystick: BoxState::Off,
                 below: Below::of(hand, false)
                     .and(Below::of(table, written.table.command == TableVerb::Pause)),

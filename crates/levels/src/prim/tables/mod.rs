@@ -26,7 +26,10 @@ use self::{
     accept::accept,
     link::{LinkStep, link},
 };
-use crate::execution::{Asked, Course, EXECUTE};
+use crate::{
+    execution::{Asked, Course, EXECUTE},
+    halt::Above,
+};
 
 /// What T3I says of the last command to it (VI.1.2 status-report, status-arg-out).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -48,15 +51,6 @@ pub enum Interface {
     LinkError,
     /// It refused a command.
     Refused,
-}
-
-/// E-move, which commands Prim.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Above {
-    /// It wrote its buffers in the last tick.
-    Live,
-    /// It did not: nothing commands Prim any more.
-    Lost,
 }
 
 /// What the robot was told to do.

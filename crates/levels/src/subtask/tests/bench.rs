@@ -226,6 +226,8 @@ pub struct Bench<'d> {
     pub emove: EmoveDouble,
     pub pedestal: PedestalDouble,
     pub tick: Tick,
+    /// Task writes no buffers.
+    pub task_is_lost: bool,
     /// Tables and rows that fired.
     pub rows: Coverage,
 }
@@ -246,6 +248,7 @@ impl<'d> Bench<'d> {
             emove: EmoveDouble::default(),
             pedestal: PedestalDouble { part: 255, ..PedestalDouble::default() },
             tick: Tick::BEFORE_START,
+            task_is_lost: false,
             rows: Coverage::default(),
         };
         bench.emove.outputs.status.end_effector_id = Some(1);
@@ -301,6 +304,9 @@ impl<'d> Bench<'d> {
         let before = self.memory.subtask;
         self.emove.step(self.tick, &before.emove);
         self.pedestal.step(self.tick, &before.pedestal);
+        if !self.task_is_lost {
+            self.memory.task.header.stamp = self.tick;
+        }
         self.memory.subtask = outputs;
         self.memory.emove = self.emove.outputs;
         self.memory.pedestal = self.pedestal.outputs;

@@ -73,6 +73,36 @@ fn a_restarted_subtask_stops_what_it_had_commanded() {
     }
 }
 
+/// Nothing that Task has commanded goes on without it; Task, when it is back, sends the same command again.
+#[test]
+fn without_task_everything_stops() {
+    for ticks in 1..60 {
+        let mut bench = without_task_after(ticks);
+        assert!(!is_under_way(&bench), "tick {ticks}");
+        let status = bench.memory.subtask.status;
+        let ends = [(StatusReport::Error, Reason::NeighbourLost), (StatusReport::Done, Reason::None)];
+        assert!(ends.contains(&(status.report, status.reason)), "tick {ticks}: {status:?}");
+        bench.task_is_lost = false;
+        bench.step();
+        let again = bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+        assert_eq!(again, (StatusReport::Done, Reason::None), "tick {ticks}");
+    }
+}
+
+/// Task is lost so many ticks after it has commanded FIX-GRIP; 20 ticks later.
+fn without_task_after(ticks: u32) -> Bench<'static> {
+    let mut bench = Bench::grasped("PART", 1);
+    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+    (0..ticks).for_each(|_| {
+        bench.step();
+    });
+    bench.task_is_lost = true;
+    (0..20).for_each(|_| {
+        bench.step();
+    });
+    bench
+}
+
 #[test]
 fn an_interrupted_regrip_goes_on() {
     for restart in [false, true] {
@@ -477,6 +507,7 @@ pub(super) fn all_rows(rows: &mut Coverage) {
     }
     tools(rows);
     pauses(rows);
+    rows.append(&mut without_task_after(10).rows);
     let mut bench = Bench::grasped("PART", 1);
     bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE");
     bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE");

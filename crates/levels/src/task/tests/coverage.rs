@@ -171,8 +171,8 @@ fn every_row_of_every_table_fires() {
     bench.process = Task::default();
     bench.finish();
     rows.append(&mut bench.rows);
-    // The task data have no gripper numbers but 1 to 3. The look-up of a location needs no grip.
-    assert_eq!(rows.missing(TABLES), ["ACCEPT 4", "ACCEPT 9"]);
+    // The task data have no gripper numbers but 1 to 3. The look-up of a location needs no grip. No process is above.
+    assert_eq!(rows.missing(TABLES), ["ACCEPT 4", "ACCEPT 9", "HALT 4"]);
 }
 
 /// So no order is given twice, and Task needs no EFFECT. An update that is told again ends by itself: the Data

@@ -1,0 +1,101 @@
+//! Whether everything has come to rest: the robot, the fingers of its gripper, the Active Pedestal.
+
+use geometry::{frame::Rotation, kinematics::Joints};
+use rcs_core::tick::Tick;
+
+use super::{branch::Branch, trial::Verdict};
+
+/// Ticks without motion after which all is at rest: 12 s, longer than the controller waits before it moves on.
+const STILL: u64 = 300;
+/// Ticks in which all must be at rest: five minutes, as for a command.
+const LIMIT: u64 = 7500;
+/// What moves less in a tick does not move, radians: a fiftieth of what [`plant::t3::T3Controller::at_rest`] allows.
+const ANGLE: f64 = 2e-6;
+/// The same of fingers, in.
+const OPENING: f64 = 1e-4;
+
+/// Where everything stands that a control process moves.
+#[derive(Clone, Debug)]
+struct Posture {
+    /// Joints of the robot, rad. None if it has no pressure and has sagged: it creeps for minutes.
+    joints: Option<Joints>,
+    /// Rotation of the rotary table.
+    table: Rotation,
+    /// Openings of the robot's gripper and of the pedestal's hand, in.
+    openings: [f64; 4],
+}
+
+impl Posture {
+    fn of(branch: &Branch<'_>) -> Self {
+        let cell = &branch.workstation.cell;
+        let (fingers, hand) = (cell.fingers(), cell.pedestal_fingers());
+        Self {
+            joints: (!cell.t3().arm().has_sagged()).then(|| cell.joints()),
+            table: cell.pedestal().rotation,
+            openings: [fingers.0, fingers.1, hand.0, hand.1],
+        }
+    }
+
+    fn is_like(&self, other: &Self) -> bool {
+        let near = |(one, other): (&f64, &f64), most| (one - other).abs() <= most;
+        let joints = match (&self.joints, &other.joints) {
+            (Some(one), Some(other)) => one.iter().zip(other).all(|pair| near(pair, ANGLE)),
+            (one, other) => one.is_none() == other.is_none(),
+        };
+        let openings = self.openings.iter().zip(&other.openings).all(|pair| near(pair, OPENING));
+        joints && openings && (self.table.matrix() - other.table.matrix()).amax() <= ANGLE
+    }
+}
+
+/// The motion after a stop.
+pub struct Motion {
+    posture: Posture,
+    began: Tick,
+    now: Tick,
+    /// The last tick in which something moved.
+    last: Tick,
+}
+
+impl Motion {
+    /// The stop comes after the present tick.
+    #[must_use]
+    pub fn from_now(branch: &Branch<'_>) -> Self {
+        let began = branch.at();
+        Self { posture: Posture::of(branch), began, now: began, last: began }
+    }
+
+    /// No tick has followed the stop.
+    #[must_use]
+    pub fn has_just_begun(&self) -> bool {
+        self.now == self.began
+    }
+
+    /// Look at a tick.
+    pub fn look(&mut self, branch: &Branch<'_>) {
+        let posture = Posture::of(branch);
+        self.now = branch.at();
+        if !posture.is_like(&self.posture) {
+            self.last = self.now;
+        }
+        self.posture = posture;
+    }
+
+    /// Ticks from the stop to the last motion.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.last.since(self.began)
+    }
+
+    /// Whether the branch can be judged. `commanded` says of the worst harm whether a commanded point has caused it.
+    #[must_use]
+    pub fn verdict(&self, commanded: Option<bool>) -> Option<Verdict> {
+        let (still, all) = (self.now.since(self.last), self.now.since(self.began));
+        match commanded {
+            Some(true) => Some(Verdict::Hurt),
+            _ if still < STILL && all < LIMIT => None,
+            _ if still < STILL => Some(Verdict::Stranded),
+            Some(false) => Some(Verdict::Apart),
+            None => Some(Verdict::Done),
+        }
+    }
+}
