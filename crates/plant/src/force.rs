@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn the_weight_turns_with_the_robot() {
         assert_eq!(reading(&Wrench::default(), Vector::x()), [2058, 2068, 2078 + 320, 2088], "pointing down");
-        // With the tool level, 20 lb act along tool -Z, 4 in in front of the sensor, and bend it about +Y.
+        // With the tool level, 20 lb act along tool -Z at 4 in from the sensor, and bend it about +Y.
         assert_eq!(reading(&Wrench::default(), -Vector::z()), [2058 - 320, 2068, 2078, 2088 + 320]);
     }
 

@@ -13,7 +13,7 @@
 //! | | multibody arm, motors | chosen: kinematic arm, sprung fingers |
 //! |---|---|---|
 //! | arm at rest, from its command | 0.35 mrad at 1.6e5/s², 0.05 at 1e6/s² | 0 (servo lag in closed form) |
-//! | arm while moving | 5.6 to 7.3 mrad beside the path | on the path, 80 ms behind |
+//! | arm while moving | 5.6 to 7.3 mrad off the path | on the path, 80 ms behind |
 //! | grip by contact friction, one minute | slides by millimetres | below 0.001 mm, limits kept |
 //! | blank pressed to the notch with 30 lb | - | penetrates by 0.06 mm |
 //! | one core, tick of 40 ms | 760 us, 52 x real time | 110 to 185 us, 215 to 360 x |
@@ -23,7 +23,7 @@
 //!
 //! * joints follow their servos exactly ([`arm`]); the T3 controller commands them: start-up, emergency stops, inverse
 //!   kinematics, limits and the link ([`t3`]);
-//! * without hydraulic pressure each joint is a damper that gives way to the weights of links, gripper and part
+//! * without hydraulic pressure each joint is a damper that yields to the weights of links, gripper and part
 //!   ([`linkage`]) and to contacts; the shot pin stops the shoulder, and the arm jumps back when the pressure returns.
 //!   Contacts of the sagging arm are reported when it is at rest ([`cell::Droop`]);
 //! * the hand is a kinematic body at the tool frame, the fingers are attached by springs with the stiffness of arm,

@@ -47,7 +47,7 @@ pub enum FaultKind {
     Flip,
     /// A byte arrives twice.
     Duplicate,
-    /// A byte and what is behind it arrive later.
+    /// A byte and all bytes after it arrive later.
     Delay,
     /// A byte arrives that was not sent.
     Insert,

@@ -1,20 +1,20 @@
 //! Faults as TOML files with one table per fault, of the cell or of the line to the robot controller.
 //!
 //! ```toml
-//! seed = 7                        # one for all faults of the file, and the run's beside it; 1 if it is not given
+//! seed = 7                        # for all faults of the file, combined with the seed of the run; default 1
 //!
 //! [[fault]]
 //! kind = "stuck"                  # off stuck noisy slow intermittent offset drift: a sensor
 //! sensor = "grip.potentiometer"
-//! value = 900                     # stuck: at this count; at the present one if it is not given
+//! value = 900                     # stuck: at this count; default: at the present one
 //! from = 200                      # first tick, or after = 8.0 seconds ...
-//! until = 500                     # ... and the tick behind the last; or at = 200, and ticks = 300
+//! until = 500                     # ... and the first tick after the fault; or at = 200, and ticks = 300
 //!
 //! [[fault]]
 //! kind = "noisy"                  # by: counts (noisy, offset), counts a second (drift), ticks of delay (slow)
 //! sensor = "force.z"
 //! by = 40
-//! rate = 0.01                     # chance of beginning in each tick; it then lasts `ticks` ticks, 1 if not given
+//! rate = 0.01                     # probability of beginning in each tick; it then lasts `ticks` ticks, default 1
 //! ticks = 25
 //!
 //! [[fault]]
@@ -24,13 +24,13 @@
 //!
 //! [[fault]]
 //! kind = "wrong-part"             # missing misplaced turned wrong-part: a delivery to a tray
-//! object = "LINKBAR1_BH"          # of this part; of any if it is not given
+//! object = "LINKBAR1_BH"          # of this part; default: of any part
 //! part = "LCLEVIS_BH"
 //!
 //! [[fault]]
 //! kind = "flip"                   # drop flip duplicate delay insert truncate stall cts-low: the line ([`depc::fault`])
-//! direction = "to-host"           # to-host, to-controller, or both (if it is not given)
-//! rate = 0.001                    # chance of each byte (drop flip duplicate delay) or of each tick (the others)
+//! direction = "to-host"           # to-host, to-controller; default: both
+//! rate = 0.001                    # probability for each byte (drop flip duplicate delay) or each tick (others)
 //! ```
 //!
 //! A fault of the line can also have `byte = 0x06` (insert); before the faults the file can have `most_per_tick`, the

@@ -8,7 +8,7 @@ pub struct Switch(bool);
 
 impl Switch {
     /// Update with the distance of an object `beyond` the range, negative within it. `hysteresis` is the extra distance
-    /// at which the object is no longer detected.
+    /// up to which a detected object stays detected.
     pub fn see(&mut self, beyond: f64, hysteresis: f64) -> bool {
         self.0 = beyond <= if self.0 { hysteresis } else { 0.0 };
         self.0
