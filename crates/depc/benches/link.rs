@@ -1,4 +1,5 @@
-//! The link by the clock: one frame written, one read, and a whole exchange of both ends over a line with and without faults.
+//! Speed of the link: writing a frame, reading one, and a whole exchange of both ends over a line with and without
+//! faults.
 
 #![expect(missing_docs, reason = "criterion_group! makes a public function without a doc comment")]
 
@@ -19,7 +20,7 @@ use rcs_core::tick::Tick;
 
 const HOME: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
 
-/// A robot that is where it is told to be.
+/// A robot that reaches every commanded position exactly.
 struct Exact {
     joints: Joints,
     at: Plate,

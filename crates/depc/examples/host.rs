@@ -1,8 +1,8 @@
-//! A DEPC host of one's own: it leads the robot 2 in up and back, over a serial port.
+//! A minimal DEPC host: it moves the robot 2 in up and back over a serial port.
 //!
-//! In one terminal `cargo run --release -p rcs-cell -- --link /tmp/t3 --auto`, in another
-//! `cargo run --release -p depc --example host /tmp/t3`. At a robot the cable joins the host's DSR to the
-//! controller's DTR; a pseudo-terminal has no modem lines.
+//! In one terminal `cargo run --release -p rcs-cell -- --link /tmp/t3 --auto`, in another `cargo run --release -p depc
+//! --example host /tmp/t3`. With a real robot the cable connects the host's DSR with the controller's DTR; a
+//! pseudo-terminal has no modem lines.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 

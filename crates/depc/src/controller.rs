@@ -1,8 +1,9 @@
 //! The controller's end of the link: the DEPC function of the T3 controller (A 2.3, A 2.4).
 //!
-//! The function is reached in auto mode, reports where the robot is, and then takes one command a period: it
-//! acknowledges, checks, and moves. If it cannot do something, the controller's screen shows a warning; the operator
-//! answers ENTER (begin again) or CANCEL (give up). A warning is not sent over the line: the host only gets no answer.
+//! The function begins in auto mode, reports the position of the robot, and then takes one command a period: it
+//! acknowledges, checks, and moves. If it cannot execute a command, the controller's screen shows a warning; the
+//! operator answers ENTER (begin again) or CANCEL (end the function). A warning is not sent over the line: the host
+//! only gets no answer.
 //!
 //! The state machine is independent of the robot; it moves any implementation of [`Robot`]: the simulated T3, or a
 //! robot with another link.
@@ -20,25 +21,26 @@ use crate::{
 
 /// The robot that the controller moves.
 ///
-/// Positions are words of the line. A robot that can use a higher resolution gets the unrounded frames from
+/// Positions are words of the line. A robot with a higher resolution gets the unrounded frames from
 /// [`crate::exact::ExactFrames`].
 pub trait Robot {
-    /// Position of the robot, or its position at the end of the present motion: to command it moves nothing. The next
-    /// point starts from there.
+    /// Present position of the robot, or the end of its present motion: commanding it moves nothing. The next point
+    /// starts from there.
     fn present(&mut self) -> Plate;
 
-    /// Make `goal` the set point that is reached within the coming period.
+    /// Set `goal` as the set point to reach within the coming period.
     ///
     /// # Errors
-    /// [`Refusal`] if the robot cannot; then the set point stays as it was, and the warning is shown.
+    /// [`Refusal`] if the robot cannot reach it; the set point is unchanged, and the screen shows the warning.
     fn accept(&mut self, goal: &Plate) -> Result<(), Refusal>;
 
-    /// A warning of the robot itself. While there is one, no command is accepted, and the function does not begin.
+    /// A warning of the robot itself. While there is one, the controller accepts no command, and the function does not
+    /// begin.
     fn warning(&self) -> Option<Warning> {
         None
     }
 
-    /// No further point follows: the function has ended, or waits for an answer to a warning.
+    /// Stop: no further point follows, because the function has ended or waits for an answer to a warning.
     fn stop(&mut self) {}
 }
 
@@ -66,7 +68,7 @@ pub enum ControllerState {
     Ended,
 }
 
-/// The panel and the wiring in a tick. Pushbuttons are true in the tick in which they are pressed.
+/// Panel and wiring in a tick. Pushbuttons are true in the tick in which they are pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ControllerInputs {
     /// Bytes from the host.
@@ -79,7 +81,7 @@ pub struct ControllerInputs {
     pub transmitter_fault: bool,
     /// The program reaches the DEPC function.
     pub start: bool,
-    /// Hold, while it is on: the output in progress is completed, then no command is accepted.
+    /// Hold: while it is on, the output in progress is completed, then no command is accepted.
     pub hold: bool,
     /// Interrupt pushbutton.
     pub interrupt: bool,
@@ -89,7 +91,7 @@ pub struct ControllerInputs {
     pub cancel: bool,
 }
 
-/// Outputs of the controller in a tick, besides moving the robot.
+/// Outputs of the controller in a tick, except the motion of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ControllerOutputs {
     /// Bytes to the host.
@@ -98,7 +100,7 @@ pub struct ControllerOutputs {
     pub dtr: bool,
     /// A command was executed in this tick: the robot moves to [`Controller::commanded`].
     pub moving: bool,
-    /// Function to run now, that of the command reached in the previous tick.
+    /// Function to run now: that of the command whose position was reached in the previous tick.
     pub function: [u8; 2],
 }
 
@@ -120,7 +122,7 @@ impl Controller {
         Self { limits, ..Self::default() }
     }
 
-    /// The limits that positions are checked against.
+    /// The limits of a step between two positions.
     #[must_use]
     pub const fn limits(&self) -> &Limits {
         &self.limits
@@ -138,13 +140,13 @@ impl Controller {
         self.warning
     }
 
-    /// The position last commanded or reported: what the next command is checked against.
+    /// The position last commanded or reported, from which the next command is checked.
     #[must_use]
     pub const fn commanded(&self) -> Plate {
         self.commanded
     }
 
-    /// One period. The robot is moved at most once.
+    /// One period. It moves the robot at most once.
     pub fn step(
         &mut self,
         inputs: &ControllerInputs,
@@ -176,12 +178,12 @@ impl Controller {
         if before == ControllerState::Running && self.state != before {
             robot.stop();
         }
-        // A missing board drives no line; DEPC looks for it before it turns DTR on (A 2.3).
+        // A missing board drives no line; DEPC checks for it before it turns DTR on (A 2.3).
         out.dtr = inputs.board && matches!(self.state, ControllerState::Running | ControllerState::Warning);
         out
     }
 
-    /// The function begins, or begins again: the checks in their order, then the report.
+    /// Begin the function, or begin it again: the checks in their order, then the report.
     fn begin(
         &mut self,
         inputs: &ControllerInputs,
@@ -310,7 +312,7 @@ mod tests {
 
     const HOME: Plate = Plate { words: [0, -6293, -636, -9000, 13500, 0] };
 
-    /// A robot that is where it is told to be.
+    /// A robot that reaches every commanded position exactly.
     struct Exact {
         joints: Joints,
         at: Plate,
@@ -386,7 +388,7 @@ mod tests {
                 (controller.state(), controller.warning(), robot.at),
                 (ControllerState::Warning, warning, HOME)
             );
-            // Silence, until the operator answers; then the report.
+            // No answer until the operator answers; then the report.
             let out = controller.step(&line(&[0x05]), &mut robot);
             assert!(out.tx.as_slice().is_empty() && out.dtr);
             let out = controller.step(&ControllerInputs { enter: true, ..well() }, &mut robot);
@@ -465,7 +467,7 @@ mod tests {
             let words = [n, -6293, -636, -9000, 13500, 0];
             let out = controller.step(&to(words, n.to_be_bytes()), &mut robot);
             assert_eq!((out.tx.as_slice(), out.moving), (&[0x06][..], true));
-            // The function of the command before, now that its position is reached.
+            // The function of the previous command, whose position is now reached.
             assert_eq!(out.function, (n - 1).to_be_bytes());
         }
     }
@@ -503,7 +505,7 @@ mod tests {
         let out = controller.step(&inputs, &mut robot);
         assert_eq!((out.tx.length, out.moving, robot.at), (0, false, HOME));
         assert_eq!(controller.warning(), Warning::Interrupt);
-        // What was interrupted is not executed after ENTER.
+        // An interrupted command is not executed after ENTER.
         let out = controller.step(&ControllerInputs { enter: true, ..well() }, &mut robot);
         assert_eq!((out.tx.length, out.moving), (16, false));
         let out = controller.step(&well(), &mut robot);
@@ -519,7 +521,7 @@ mod tests {
         assert_eq!((out.tx.length, out.dtr, controller.state()), (16, true, ControllerState::Running));
     }
 
-    /// A robot with complaints of its own.
+    /// A robot with warnings of its own.
     struct Complaining {
         complaint: Option<Warning>,
         stopped: u32,
@@ -557,7 +559,7 @@ mod tests {
         }
         robot.complaint = None;
         assert_eq!(controller.step(&line(&[0x05]), &mut robot).tx.length, 16);
-        // A refusal of the robot is a warning as well.
+        // A refusal by the robot is a warning as well.
         let out = controller.step(&to([10, -6293, -636, -9000, 13500, 0], NO_FUNCTION), &mut robot);
         assert_eq!((out.tx.as_slice(), out.moving), (&[0x06][..], false));
         assert_eq!((controller.warning(), robot.stopped), (Warning::Translation, 2));

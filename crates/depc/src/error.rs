@@ -1,13 +1,13 @@
-//! Errors of positions and frames: small, `Copy`, with what was expected and what was found.
+//! Errors of positions and frames: small `Copy` values with what was expected and what was found.
 
 use core::fmt;
 
-/// Why a position cannot be sent, or why bytes are not a frame.
+/// Errors of positions to send and of received bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Error {
-    /// A coordinate that does not fit sixteen bits: the caller must not send it.
+    /// A coordinate that does not fit into sixteen bits: the caller must not send it.
     OutOfRange {
-        /// 0, 1, 2 for X, Y, Z.
+        /// Axis: 0, 1, 2 for X, Y, Z.
         axis: usize,
         /// The coordinate, inches.
         inches: f64,
@@ -16,19 +16,19 @@ pub enum Error {
     NotFinite,
     /// A period that is not a positive multiple of 10 ms up to 1000 ms (VI.1).
     BadPeriod {
-        /// The period asked for, milliseconds.
+        /// The period found, milliseconds.
         milliseconds: u16,
     },
     /// Too few or too many bytes for the frame.
     BadLength {
-        /// Bytes of the frame.
+        /// Number of bytes of the frame.
         expected: usize,
-        /// Bytes given.
+        /// Number of bytes given.
         found: usize,
     },
-    /// The frame begins with another byte.
+    /// The frame begins with a wrong byte.
     BadHead {
-        /// The byte that the frame has there.
+        /// The first byte of such a frame.
         expected: u8,
         /// The byte found.
         found: u8,

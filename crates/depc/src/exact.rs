@@ -1,9 +1,9 @@
-//! The unrounded frames: Prim's commands before they are rounded to 0.01 in and 0.01 degree.
+//! The unrounded frames: Prim's commands before rounding to 0.01 in and 0.01 degree.
 //!
-//! The line carries words, which command the robot. For a robot that can use a higher resolution this module finds the
-//! frame that a position was rounded from: it keeps Prim's last frames, each with the buffer that T3I got of it, and
-//! searches the one whose buffer gives the words on the line. If there is none (a point that was scaled back, a
-//! position from a report), only the words are used.
+//! The line carries words, which command the robot. For a robot with a higher resolution this module finds the frame
+//! from which a position was rounded: it keeps Prim's last frames, each with the buffer that T3I got for it, and
+//! searches for the one whose buffer gives the words on the line. If there is none (a point that was scaled back, or a
+//! position from a report), the words alone give the frame.
 
 use geometry::{
     frame::{Frame, Vector},
@@ -13,24 +13,24 @@ use geometry::{
 
 use crate::Plate;
 
-/// Number of frames kept: the queue of T3I, one on its way to it, and one on the line.
+/// Number of frames kept: the queue of T3I, one frame on its way to it, and one on the line.
 const MOST_FRAMES: usize = 8;
 
 /// A frame of Prim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Kept {
-    /// As T3I got it.
+    /// As in the buffer of T3I, rounded.
     wire: WireFrame,
     /// Unrounded, from Prim.
     exact: Frame,
-    /// It was returned already.
+    /// True if it was already returned.
     used: bool,
 }
 
 /// Prim's last frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactFrames {
-    /// The newest first.
+    /// The frames, newest first.
     frames: [Option<Kept>; MOST_FRAMES],
 }
 
@@ -41,8 +41,8 @@ impl Default for ExactFrames {
 }
 
 impl ExactFrames {
-    /// Prim has commanded the tool frame `exact` (inches, world), which T3I got as `wire`. It is not kept if `wire` is
-    /// not rounded from `exact`.
+    /// Keep a frame: Prim has commanded the tool frame `exact` (inches, world), which T3I got as `wire`. It is ignored
+    /// if `wire` is not rounded from `exact`.
     pub fn offer(&mut self, wire: &WireFrame, exact: &Frame) {
         let newest = self.frames.iter().flatten().next();
         let known = newest.is_some_and(|newest| newest.wire == *wire && newest.exact == *exact);
@@ -55,8 +55,8 @@ impl ExactFrames {
     }
 
     /// The unrounded end-plate frame (inches, world) of a position; the frame of the words if none is kept. Positions
-    /// come in the order of the frames: older frames than the one found are dropped, and the same words again give the
-    /// next frame, if it has the same words.
+    /// must come in the order of the frames: frames older than the one found are dropped, and a repeated position gives
+    /// the next frame if that has the same words.
     pub fn plate_frame(&mut self, words: &Plate, arm: &Arm) -> Frame {
         let gives = |wire: &WireFrame| {
             let tool = wire.to_frame().ok();

@@ -1,18 +1,18 @@
-//! The host's end of the link: what the T3 Interface process uses to talk to the robot controller (A 2.3, VI.1).
+//! The host's end of the link, with which the T3 Interface process talks to the robot controller (A 2.3, VI.1).
 //!
-//! Each tick has two halves: [`Host::receive`] takes the received bytes and changes the state, [`Host::transmit`] sends
-//! at most one frame. One frame is outstanding at a time. An answer has no number, so a frame without an answer is
-//! never sent again: it may have been executed. The host then sends a restart, discards everything until a report with
-//! a correct checksum comes, and continues from there. Only after a NAK, which means that nothing was executed, it
-//! sends the same bytes again.
+//! Each tick has two halves: [`Host::receive`] processes the received bytes and changes the state, [`Host::transmit`]
+//! sends at most one frame. Only one frame is outstanding at a time. An answer has no number, so the host never repeats
+//! a frame without an answer: the controller may have executed it. The host then sends a restart, discards everything
+//! until a report with a correct checksum comes, and continues from there. Only after a NAK, which means that nothing
+//! was executed, it sends the same bytes again.
 //!
 //! A controller whose DTR is on and that does not answer may be in Hold, show a warning D1 to D6, have a dead receiver,
-//! or the wire may be cut: the host cannot tell which. It sends a restart once a second, and the link counts as failed
-//! after the time of [`Host::set_patience`].
+//! or the wire may be cut: the host cannot distinguish these. It sends a restart once a second, and after the time of
+//! [`Host::set_patience`] it reports the link as failed.
 //!
 //! A report has no number either. On a slow line several may be on their way, and the robot may have moved since the
-//! first: if more than one was requested, the last counts, and only when none has followed for longer than the time for
-//! an answer.
+//! first: if more than one was requested, the last one is valid, and only when no other has followed for longer than
+//! the time for an answer.
 
 mod start;
 
@@ -25,19 +25,19 @@ use crate::{
     wire::{Control, DataCommand, FRAME_BYTES, Response},
 };
 
-/// Ticks without an answer after which a frame counts as lost
-/// (docs/design/link.md "Time-out"). Hold on the controller's panel only delays, and
-/// looks the same.
+/// Ticks without an answer after which a frame counts as lost (docs/design/link.md "Time-out"). Hold on the
+/// controller's panel only delays the answer, and looks the same.
 pub const ANSWER_TICKS: u16 = 3;
-/// Most bytes of a tick in which an answer counts; with more bytes it may be noise.
+/// Greatest number of bytes in a tick in which an answer is valid; more bytes may be noise.
 const ANSWER_BYTES: usize = 4;
-/// Repetitions of one data command after NAKs; then the link is restarted.
+/// Repetitions of one data command after NAKs, after which the host restarts the link.
 pub const MOST_RETRIES: u8 = 3;
-/// Ticks between two restarts that are not answered: 1 s (docs/design/link.md "Silence").
+/// Ticks between two unanswered restarts: 1 s (docs/design/link.md "Silence").
 pub const RESTART_TICKS: u16 = 25;
-/// Ticks without a report, with DTR on, after which a link counts as failed if nothing else is set: 60 s.
+/// Default number of ticks without a report, with DTR on, after which the link counts as failed: 60 s.
 pub const PATIENCE_TICKS: u16 = 60 * RESTART_TICKS;
-/// Times that DTR was missed, each for as long as an answer may take, after which the link counts as not responding.
+/// Number of attempts without DTR, each as long as the time for an answer, after which the link counts as not
+/// responding.
 pub const START_ATTEMPTS: u8 = 3;
 
 /// State of the host's end.
@@ -68,7 +68,7 @@ pub enum HostState {
     Ended,
 }
 
-/// What has happened since the last tick, as far as the user of the link must know.
+/// Event since the last tick that the user of the link must know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Plain)]
 pub enum HostEvent {
     /// Nothing.
@@ -82,14 +82,14 @@ pub enum HostEvent {
     Lost,
 }
 
-/// Request of the user of the link for this tick.
+/// Request from the user of the link for this tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Intent {
-    /// Nothing.
+    /// No request.
     Idle,
-    /// Move to the position; run the function there.
+    /// Move to the position and run the function there.
     Position(DataCommand),
-    /// Begin again.
+    /// Restart the link.
     Restart,
     /// End the DEPC function.
     Cancel,
@@ -102,28 +102,28 @@ pub struct Host {
     receiver: ReplyReceiver,
     /// The position last reported or acknowledged.
     position: Plate,
-    /// The outstanding data command, for a NAK.
+    /// The outstanding data command, to be repeated after a NAK.
     frame: [u8; FRAME_BYTES],
     restart_due: bool,
     resend_due: bool,
-    /// Ticks since the last byte was sent, or since the wait began.
+    /// Ticks since the last frame was sent, or since the wait began.
     waited: u16,
     answer_ticks: u16,
-    /// Ticks that a start or a cancel may take with DTR on.
+    /// Greatest number of ticks of a start or a cancel with DTR on.
     patience: u16,
-    /// Ticks with DTR on that this one has taken.
+    /// Ticks with DTR on in the present start or cancel.
     starting: u16,
-    /// No report has come for [`RESTART_TICKS`] with DTR on. [`Host::forgive`] does not end that: a report does.
+    /// No report has come for [`RESTART_TICKS`] with DTR on. Only a report ends this, not [`Host::forgive`].
     silent: bool,
-    /// A restart was sent, and its report has not come.
+    /// A restart was sent, and its report has not come yet.
     restarted: bool,
-    /// Fault of the last attempt of this start; none if nothing came.
+    /// Fault of the last attempt of this start; none if nothing was received.
     attempt: LinkFault,
     retries: u8,
     attempts: u8,
-    /// Reports that may be on their way: restarts sent since the last start, and a report that comes unasked.
+    /// Number of reports that may be on their way: restarts sent since the last start, and an unrequested report.
     asked: u8,
-    /// A report that may not be the last: more than one was asked for.
+    /// A report that may not be the last one, because more than one was requested.
     candidate: Plate,
     has_candidate: bool,
     fault: LinkFault,
@@ -136,25 +136,25 @@ fn count(counter: &mut u32) {
 }
 
 impl Host {
-    /// A host that gives a frame `answer_ticks` ticks to be answered (at least 1); usually [`ANSWER_TICKS`].
+    /// A host that waits `answer_ticks` ticks (at least 1) for the answer to a frame; usually [`ANSWER_TICKS`].
     #[must_use]
     pub fn new(answer_ticks: u16) -> Self {
         Self { answer_ticks: answer_ticks.max(1), patience: PATIENCE_TICKS, ..Self::default() }
     }
 
-    /// Wait `ticks` for a report, or for the answer to a cancel, while DTR is on before the link counts as failed;
-    /// [`PATIENCE_TICKS`] at first.
+    /// Set the number of ticks with DTR on to wait for a report, or for the answer to a cancel, before the link counts
+    /// as failed; initially [`PATIENCE_TICKS`].
     pub const fn set_patience(&mut self, ticks: u16) {
         self.patience = ticks;
     }
 
-    /// The controller's DTR was on in this tick.
+    /// True if the controller's DTR was on in this tick.
     #[must_use]
     pub const fn has_dtr(&self) -> bool {
         !matches!(self.state, HostState::Down)
     }
 
-    /// DTR is on, and for [`RESTART_TICKS`] or longer no report has come.
+    /// True if DTR is on and no report has come for [`RESTART_TICKS`] or longer.
     #[must_use]
     pub const fn is_silent(&self) -> bool {
         matches!(self.state, HostState::Starting) && self.silent
@@ -172,13 +172,13 @@ impl Host {
         self.position
     }
 
-    /// The position is known and commands are answered.
+    /// True if the position is known and the controller answers commands.
     #[must_use]
     pub const fn is_running(&self) -> bool {
         matches!(self.state, HostState::Ready | HostState::Waiting)
     }
 
-    /// [`Host::transmit`] would send a position now.
+    /// True if [`Host::transmit`] can send a position now.
     #[must_use]
     pub const fn can_send(&self) -> bool {
         matches!(self.state, HostState::Ready)
@@ -190,14 +190,14 @@ impl Host {
         self.fault
     }
 
-    /// Forget the fault.
+    /// Clear the fault.
     pub const fn forgive(&mut self) {
         self.fault = LinkFault::None;
         (self.attempts, self.starting, self.attempt) = (0, 0, LinkFault::None);
     }
 
-    /// Function bytes of the last data command that was lost with a function: it may or may not have run, and is not
-    /// repeated. [`crate::wire::NO_FUNCTION`] if there was none.
+    /// Function bytes of the last data command with a function that was lost: the function may or may not have run, and
+    /// the command is not repeated. [`crate::wire::NO_FUNCTION`] if there was none.
     #[must_use]
     pub const fn lost_function(&self) -> [u8; 2] {
         self.lost_function
@@ -214,14 +214,14 @@ impl Host {
         count(&mut self.counters.limited);
     }
 
-    /// Before the first half of a tick: the port has not taken all bytes of the last one (`status-arg-out` 4, VI.1.2).
-    /// The frame on the line was cut, so it counts as lost; the port may have been stuck for longer than the controller
-    /// waits.
+    /// Call before the first half of a tick if the port has not sent all bytes of the last one (`status-arg-out` 4,
+    /// VI.1.2). The frame on the line was cut, so it counts as lost; the port may have been blocked for longer than the
+    /// controller waits.
     pub fn unsent(&mut self) -> HostEvent {
         match self.state {
             HostState::Waiting => self.lost(LinkFault::NotTransmitted),
             HostState::Starting => {
-                // The restart itself: no report will answer it.
+                // The restart itself was cut: no report will answer it.
                 self.asked = self.asked.saturating_sub(1);
                 self.restart_due = true;
                 self.attempt = LinkFault::NotTransmitted;
@@ -244,7 +244,7 @@ impl Host {
         if self.state == HostState::Down {
             self.begin_start();
             self.waited = 0;
-            // The controller reports of its own accord when its function begins.
+            // The controller sends a report without a request when its function begins.
             self.asked = 1;
         }
         let bytes = rx.as_slice();
@@ -266,10 +266,10 @@ impl Host {
         if self.waited >= self.answer_ticks { event.max(self.without_answer()) } else { event }
     }
 
-    /// Second half of a tick: send a due frame, or `intent`. True if `intent` was sent.
+    /// Second half of a tick: send a frame that is due, or `intent`. Returns true if `intent` was sent.
     pub fn transmit(&mut self, intent: &Intent, tx: &mut LinkBytes) -> bool {
         match intent {
-            // The answer to a restart that is under way answers this one too.
+            // The report that answers the previous restart answers this one too.
             Intent::Restart if self.state == HostState::Starting && self.restarted => {}
             Intent::Restart => self.restart(),
             Intent::Cancel if self.is_running() => {
@@ -326,12 +326,12 @@ impl Host {
         sent
     }
 
-    /// Process one reply in the present state. A reply without meaning is noise and ignored: if it replaced an answer,
-    /// no answer comes.
+    /// Process one reply in the present state. A reply without meaning is noise and is ignored: if it has replaced an
+    /// answer, no answer comes.
     ///
-    /// A report counts only if it is the `last` reply of its tick: nothing is sent after it, and the checksum cannot
-    /// distinguish a report that has lost an FF from one that is completed by the first FF of the next. An answer
-    /// counts only in a tick of few bytes: it has no checksum, and may be a byte of a damaged report.
+    /// A report is valid only if it is the `last` reply of its tick: nothing is sent after it, and the checksum cannot
+    /// distinguish a report that has lost an FF from one that is completed by the first FF of the next. An answer is
+    /// valid only in a tick with few bytes: it has no checksum, and may be a byte of a damaged report.
     fn take(&mut self, reply: Reply, last: bool) -> HostEvent {
         if reply == Reply::BadChecksum {
             count(&mut self.counters.checksum_errors);
@@ -369,15 +369,15 @@ impl Host {
                 self.resend_due = true;
                 HostEvent::None
             }
-            // It was not asked for: the controller has stopped with a warning and begun again (A 2.4).
-            // Or the line is slow, and the report is not the only one.
+            // It was not requested: the controller has stopped with a warning and begun again (A 2.4). Or the line is
+            // slow, and more reports follow.
             (HostState::Ready | HostState::Waiting, Reply::Report(_)) => {
                 self.asked = 1;
                 self.lost(LinkFault::DepcError)
             }
             (HostState::Ready | HostState::Waiting, Reply::BadChecksum) => self.lost(LinkFault::Checksum),
             (HostState::Starting, Reply::BadChecksum) => {
-                // This was one of the reports that were on their way.
+                // This was one of the reports on their way.
                 self.asked = self.asked.saturating_sub(1);
                 self.restart_due = true;
                 self.has_candidate = false;

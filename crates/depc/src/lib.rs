@@ -1,8 +1,8 @@
-//! The DEPC link: "Dynamic External Path Control", the serial line over which an external computer steers a Cincinnati
-//! Milacron T3 (NBSIR 88-3692, appendix A; version 1.1, 7 Jul 82).
+//! The DEPC link: "Dynamic External Path Control", the serial line over which an external computer controls a
+//! Cincinnati Milacron T3 (NBSIR 88-3692, appendix A; version 1.1, 7 Jul 82).
 //!
-//! Both ends are state machines without I/O and without a clock. Each is stepped once a tick with the bytes that arrived
-//! and hands back the bytes to send ([`link::LinkBytes`]):
+//! Both ends are state machines without I/O and without a clock. Each is stepped once a tick: it takes the bytes that
+//! arrived and returns the bytes to send ([`link::LinkBytes`]):
 //!
 //! ```text
 //!   host (T3 Interface)                         controller (Acramatic)
@@ -11,15 +11,15 @@
 //! ```
 //!
 //! * [`link`]: the bytes of a tick, faults and counters;
-//! * [`plate`]: the six words of a position, the only place with their coding;
-//! * [`wire`]: one file a frame, every byte shown;
+//! * [`plate`]: the six words of a position; their coding is defined only there;
+//! * [`wire`]: the frames, one file each, byte by byte;
 //! * [`receive`]: byte-by-byte receivers of both ends;
 //! * [`limit`], [`step`]: the velocity limits, and steps that respect them;
 //! * [`host`], [`controller`]: the two ends; [`warning`]: the warnings of the controller;
-//! * [`exact`]: the unrounded frames, for a robot with a resolution finer than 0.01 in;
-//! * [`fault`]: faults on the line between them, by plan and seed.
+//! * [`exact`]: the unrounded frames, for a robot with a finer resolution than 0.01 in;
+//! * [`fault`]: faults on the line between the ends, from a plan and a seed.
 //!
-//! All that the appendix leaves open is marked ASSUMED where it is decided.
+//! Whatever the appendix leaves open is marked ASSUMED where it is decided.
 
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]

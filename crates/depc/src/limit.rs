@@ -1,9 +1,9 @@
 //! The velocity limits of the controller (A 2.3): 14 in/s and 1.0 rad/s.
 //!
 //! The controller gets only the words on the line, so the limits apply to a step from one set of words to the next: the
-//! distance that the end plate moves, and each of D, E and R by itself (ASSUMED; the appendix says "the commanded
-//! change in translation or orientation"). Both ends use the same integers, so that a step permitted by one end is
-//! accepted by the other.
+//! distance that the end plate moves, and each of D, E and R separately (ASSUMED; the appendix says "the commanded
+//! change in translation or orientation"). Both ends use the same integers, so that one end accepts every step that the
+//! other permits.
 
 use core::fmt;
 
@@ -23,11 +23,11 @@ const ORIENTATION_UNIT: u64 = 100_000_000_000;
 /// The limits for one period of the link.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Limits {
-    /// Time that a data command is given to be reached, microseconds.
+    /// Time in which a data command must be reached, microseconds.
     period_us: u32,
 }
 
-/// Which limit a step exceeds.
+/// The limit that a step exceeds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exceeded {
     /// The end plate would move too far: warning D3.
@@ -90,7 +90,7 @@ impl Limits {
         i32::try_from(scaled.checked_div(ORIENTATION_UNIT).unwrap_or_default()).unwrap_or(i32::MAX)
     }
 
-    /// Whether the controller accepts a step between two positions.
+    /// Check that the controller accepts a step between two positions.
     ///
     /// # Errors
     /// The limit that it exceeds, translation first.

@@ -2,14 +2,14 @@
 
 use rcs_core::Plain;
 
-/// Bytes that can travel on the DEPC line in one direction in a tick: 9600 baud gives 38, rounded up with
-/// room for what has queued in a receiver.
+/// Greatest number of bytes on the DEPC line in one direction in a tick: 9600 baud gives 38, rounded up with room for
+/// bytes that have queued in a receiver.
 pub const LINK_BYTES: usize = 64;
 
 /// Bytes of one tick on a serial line.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct LinkBytes {
-    /// How many of `bytes` are valid.
+    /// Number of valid bytes.
     pub length: u8,
     /// The bytes, zero after `length`.
     pub bytes: [u8; LINK_BYTES],
@@ -34,7 +34,7 @@ impl LinkBytes {
         }
     }
 
-    /// Append all of `bytes`, or as many as fit; returns how many did.
+    /// Append as many of `bytes` as fit; returns their number.
     pub fn extend(&mut self, bytes: &[u8]) -> usize {
         bytes.iter().take_while(|&&byte| self.push(byte)).count()
     }
@@ -66,7 +66,7 @@ pub enum LinkFault {
 /// Counters of the link since the start (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct LinkCounters {
-    /// Data commands sent, repetitions included.
+    /// Data commands sent, including repetitions.
     pub frames: u32,
     /// Data commands acknowledged.
     pub acknowledged: u32,
@@ -74,11 +74,11 @@ pub struct LinkCounters {
     pub naks: u32,
     /// Data commands sent again after a NAK.
     pub retries: u32,
-    /// Frames that got no answer in time.
+    /// Frames without an answer in time.
     pub timeouts: u32,
-    /// Re-start commands sent.
+    /// Restart commands sent.
     pub restarts: u32,
-    /// Reports received with a wrong checksum.
+    /// Reports received with an incorrect checksum.
     pub checksum_errors: u32,
     /// Points that were scaled back to the velocity limits.
     pub limited: u32,

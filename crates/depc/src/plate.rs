@@ -1,7 +1,7 @@
 //! The coding of a position on the line.
 //!
-//! Appendix A gives "12 bytes of world coordinates" and no more; VI.1 says that they are those of the end plate, in
-//! Cartesian and Euler form. ASSUMED (SPECNOTES): six signed words X, Y, Z in 0.01 in and D, E, R in 0.01 degree, where
+//! Appendix A says only "12 bytes of world coordinates"; VI.1 says that they are those of the end plate, in Cartesian
+//! and Euler form. ASSUMED (SPECNOTES): six signed words X, Y, Z in 0.01 in and D, E, R in 0.01 degree, where
 //!
 //! ```text
 //! rotation = Rz(D) Ry(E - 90) Rx(R)      D: azimuth of the gripper axis about world +Z
@@ -9,11 +9,11 @@
 //!                                        R: roll about the gripper axis
 //! ```
 //!
-//! so that a vertical gripper is the pole of the angles, of which the manual warns.
+//! so that a vertical gripper is the pole of the angles, about which the manual warns.
 //!
-//! E stays within 0 to 180 degrees. D and R run on from one position to the next without jumps of 360 degrees; where a
-//! word would overflow it goes back by 360, and both ends compare modulo 360. At the pole D has no meaning, and keeps
-//! its value.
+//! E is within 0 to 180 degrees. D and R continue from one position to the next without jumps of 360 degrees; before a
+//! word overflows it changes by 360, and both ends compare modulo 360. At the pole D has no meaning, and keeps its
+//! value.
 
 use core::f64::consts::PI;
 
@@ -27,9 +27,9 @@ use rcs_core::Plain;
 
 use crate::Error;
 
-/// A whole turn, 0.01 degree.
+/// A full turn, 0.01 degree.
 const TURN: i32 = 36_000;
-/// Half a turn, 0.01 degree; also E of a gripper that points straight down.
+/// Half a turn, 0.01 degree; also the E of a gripper that points straight down.
 pub const HALF_TURN: i32 = 18_000;
 
 /// A position of the end plate on the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree (ASSUMED coding).
@@ -39,7 +39,8 @@ pub struct Plate {
     pub words: [i16; 6],
 }
 
-/// The shortest way from angle word `from` to angle word `to`, modulo 360 degrees: -18000 to 17999, in 0.01 degree.
+/// The shortest rotation from angle word `from` to angle word `to`, modulo 360 degrees: -18000 to 17999, in 0.01
+/// degree.
 #[must_use]
 pub fn angle_between(from: i16, to: i16) -> i32 {
     shortest(i32::from(to).saturating_sub(i32::from(from)))
@@ -49,7 +50,7 @@ fn shortest(difference: i32) -> i32 {
     difference.saturating_add(HALF_TURN).rem_euclid(TURN).saturating_sub(HALF_TURN)
 }
 
-/// The word of `angle` (0.01 degree) that is nearest to `near`, or a turn further where that word would not fit.
+/// The word of `angle` (0.01 degree) that is nearest to `near`; if that is out of range, the word a full turn from it.
 #[must_use]
 pub fn angle_word(angle: i32, near: i16) -> i16 {
     let near = i32::from(near);
@@ -70,7 +71,8 @@ impl Plate {
     /// The words of an end-plate frame (inches, world), with D and R near those of `near`.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] if X, Y or Z does not fit, [`Error::NotFinite`] if a number is not one. Nothing wraps around.
+    /// [`Error::OutOfRange`] if X, Y or Z is out of range of a word, [`Error::NotFinite`] if a number is not finite. No
+    /// value wraps around.
     pub fn from_frame(plate: &Frame, near: &Self) -> Result<Self, Error> {
         if !plate.is_finite() {
             return Err(Error::NotFinite);
@@ -87,7 +89,8 @@ impl Plate {
         } else {
             angle_word(hundredths_of_degree(libm::atan2(axis.y, axis.x)), near_d)
         };
-        // The roll is what the rounded D and E leave over, so that near the pole their rounding does not add up.
+        // The roll is the remaining rotation after the rounded D and E, so that near the pole their rounding errors do
+        // not add up.
         let rolled_y = (pointing(i32::from(d), e).inverse() * plate.rotation) * Vector::y();
         let r = angle_word(hundredths_of_degree(libm::atan2(rolled_y.z, rolled_y.y)), near_r);
         let (x, y, z) = (word(0, plate.position.x)?, word(1, plate.position.y)?, word(2, plate.position.z)?);
@@ -118,14 +121,14 @@ impl Plate {
         self.to_frame().shifted(Vector::new(arm.plate_to_tool, 0.0, 0.0))
     }
 
-    /// True if E is within 0 to 180 degrees, as every position of this coding has it.
+    /// True if E is within 0 to 180 degrees, as in every position of this coding.
     #[must_use]
     pub fn is_canonical(&self) -> bool {
         let [.., e, _] = self.words;
         (0..=HALF_TURN).contains(&i32::from(e))
     }
 
-    /// True if the two are the same position on the line: equal words, the angles modulo 360 degrees.
+    /// True if both are the same position on the line: equal words, with the angles modulo 360 degrees.
     #[must_use]
     pub fn same(&self, other: &Self) -> bool {
         let ([x, y, z, d, e, r], [ox, oy, oz, od, oe, or]) = (self.words, other.words);
@@ -133,7 +136,8 @@ impl Plate {
             && [(d, od), (e, oe), (r, or)].iter().all(|(a, b)| angle_between(*a, *b) == 0)
     }
 
-    /// True if each word is within `counts` of the way from `before` to `last`, angles modulo 360 degrees.
+    /// True if each word is between those of `before` and `last`, with a tolerance of `counts`; angles modulo 360
+    /// degrees.
     #[must_use]
     pub fn is_between(&self, before: &Self, last: &Self, counts: i32) -> bool {
         let within = |way: i32, here: i32| {
@@ -157,7 +161,7 @@ impl Plate {
         bytes
     }
 
-    /// The position that twelve bytes give; any twelve bytes are one.
+    /// The position of twelve bytes; every twelve bytes are a valid position.
     #[must_use]
     pub fn from_bytes(bytes: &[u8; 12]) -> Self {
         let mut words = [0; 6];
@@ -247,7 +251,7 @@ mod tests {
     fn at_the_pole_d_stays_and_the_roll_follows() {
         let down = plate([100, 200, 300, 4000, 18_000, 1000]);
         assert_eq!(Plate::from_frame(&down.to_frame(), &down), Ok(down));
-        // Straight down only R - D counts, straight up only R + D.
+        // Straight down only R - D matters, straight up only R + D.
         let near = plate([0, 0, 0, 5000, 0, 0]);
         assert_eq!(
             Plate::from_frame(&down.to_frame(), &near).unwrap().words,

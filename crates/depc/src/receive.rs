@@ -1,6 +1,6 @@
-//! The receivers of both ends: bytes in, frames out.
+//! The receivers of both ends, which find frames in the received bytes.
 //!
-//! A byte may be changed, lost, doubled or late. Each receiver holds a bounded number of bytes, finds the next frame
+//! A byte may be changed, lost, duplicated or late. Each receiver holds a bounded number of bytes, finds the next frame
 //! after any garbage, and never waits for the end of an incomplete frame: a tick without bytes ends it (a frame takes
 //! 17 ms, a tick 40 ms).
 
@@ -12,42 +12,43 @@ use crate::{
     wire::{Control, DataCommand, FRAME_BYTES, Report, Response, START},
 };
 
-/// Bytes that the controller's receiver board holds (ASSUMED; the appendix expects one command in it).
+/// Capacity of the controller's receiver board, bytes (ASSUMED; the appendix expects one command in it).
 pub const BOARD_BYTES: usize = 64;
-/// Ticks after which garbage is answered even if the line is not quiet.
+/// Ticks after which garbage gets a NAK even if the line is not quiet.
 const GARBLED_TICKS: u8 = 3;
-/// Ticks over which the bytes of one frame may be spread; later ones may be another command that makes up for a lost byte.
+/// Greatest number of ticks over which the bytes of one frame are spread; later bytes may be another command in place
+/// of a lost byte.
 const FRAME_TICKS: u8 = 2;
 
 /// A command received by the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
-    /// A data command with a right checksum.
+    /// A data command with a correct checksum.
     Data(DataCommand),
     /// Cancel or restart.
     Control(Control),
-    /// Bytes that are not a command: they are answered with a NAK. The buffer is empty.
+    /// Bytes that are not a command; the answer is a NAK. The buffer is empty.
     Undecipherable,
 }
 
 /// The receiver of the controller, with its buffer (A 2.3 "the buffer on the RS232 board").
 ///
-/// Bytes after a bad byte must not be read as commands: a data frame that has lost its first byte may hold a cancel. So
-/// everything is discarded until the line is quiet, and only then comes the NAK.
+/// Bytes after a bad byte must not be read as commands: a data frame without its first byte may contain a cancel. So
+/// the receiver discards everything until the line is quiet, and only then the NAK follows.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct CommandReceiver {
     bytes: [u8; BOARD_BYTES],
     length: u8,
-    /// Nothing arrived in this tick.
+    /// True if nothing arrived in this tick.
     quiet: bool,
-    /// Ticks since a bad byte, 0 for none.
+    /// Ticks since a bad byte; 0 for none.
     garbled: u8,
-    /// Ticks in which the frame at the front was not complete.
+    /// Number of ticks in which the frame at the front was incomplete.
     begun: u8,
 }
 
 impl CommandReceiver {
-    /// Add the bytes of a tick; call it once a tick, also without bytes. Bytes that do not fit are a fault.
+    /// Add the bytes of a tick; call it once a tick, also without bytes. Bytes that do not fit count as garbage.
     pub fn accept(&mut self, rx: &LinkBytes) {
         let bytes = rx.as_slice();
         self.quiet = bytes.is_empty();
@@ -78,8 +79,8 @@ impl CommandReceiver {
         if first == START {
             return self.data();
         }
-        // Several restarts in a row are one: the host has only become impatient. Nothing else may follow, since it waits for
-        // an answer; a late end of a frame may begin with the byte of a cancel.
+        // Several restarts in a row count as one: the host has only repeated it. Nothing else may follow, because the
+        // host waits for an answer; the late end of a frame may begin with the byte of a cancel.
         let same = held.iter().take_while(|byte| **byte == first).count();
         match Control::from_byte(first) {
             Some(control) if same == held.len() => {
@@ -94,7 +95,7 @@ impl CommandReceiver {
         }
     }
 
-    /// Forget everything received.
+    /// Drop all received bytes.
     pub fn clear(&mut self) {
         self.drop_first(BOARD_BYTES);
     }
@@ -113,8 +114,8 @@ impl CommandReceiver {
             }
             return None;
         };
-        // Nothing but restarts may follow: the host waits for an answer. And the checksum does not tell a frame from one
-        // that begins with the late end of its own first copy, since the exclusive or of both is the same.
+        // Only restarts may follow, because the host waits for an answer. Also, the checksum does not distinguish a
+        // frame from one that begins with the late end of its own first copy, since both have the same exclusive or.
         let behind = held.get(FRAME_BYTES..).unwrap_or_default();
         let alone = behind.iter().all(|byte| *byte == Control::Restart.byte());
         match DataCommand::parse(frame) {
@@ -150,15 +151,15 @@ impl CommandReceiver {
 pub enum Reply {
     /// ACK or NAK.
     Response(Response),
-    /// A report with a right checksum.
+    /// A report with a correct checksum.
     Report(Plate),
-    /// A report with a wrong checksum.
+    /// A report with an incorrect checksum.
     BadChecksum,
-    /// A byte that belongs to nothing.
+    /// A byte that belongs to no reply.
     Garbage,
 }
 
-/// The receiver of the host: one report long.
+/// The receiver of the host; it holds one report.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ReplyReceiver {
     bytes: [u8; FRAME_BYTES],
@@ -178,7 +179,7 @@ impl ReplyReceiver {
             self.length = self.length.saturating_add(1);
         }
         if !self.may_begin(0) {
-            // A third FF leaves the last two standing; anything else ends the search, and may be an answer behind noise.
+            // A third FF keeps the last two; any other byte ends the search, and may be an answer after noise.
             self.resynchronise();
             let answer = Response::from_byte(byte).filter(|_| self.length == 0);
             return Some(answer.map_or(Reply::Garbage, Reply::Response));
@@ -203,14 +204,14 @@ impl ReplyReceiver {
         }
     }
 
-    /// A tick without bytes: drop an incomplete frame. True if there was one.
+    /// Process a tick without bytes: drop an incomplete frame. Returns true if there was one.
     pub fn idle(&mut self) -> bool {
         let begun = self.length > 0;
         self.clear();
         begun
     }
 
-    /// Forget everything received.
+    /// Drop all received bytes.
     pub fn clear(&mut self) {
         *self = Self::default();
     }
@@ -221,7 +222,7 @@ impl ReplyReceiver {
         held.zip(Report::HEAD).all(|(byte, head)| *byte == head)
     }
 
-    /// Drop the first byte, and all up to the next that can begin a report.
+    /// Drop the first byte, and all bytes up to the next one that can begin a report.
     fn resynchronise(&mut self) {
         let length = usize::from(self.length);
         let place = (1..length).find(|place| self.may_begin(*place)).unwrap_or(length);
@@ -280,7 +281,7 @@ mod tests {
 
     #[test]
     fn a_frame_in_three_ticks_is_none() {
-        // It has lost a byte, and the host's restart is just that byte.
+        // It has lost a byte, and the host's restart happens to be that byte.
         let mut frame = [0; 16];
         DataCommand { function: NO_FUNCTION, plate: Plate { words: [1, 2, 3, 4, 9000, 0x055F] } }
             .emit(&mut frame);

@@ -1,13 +1,14 @@
-//! One period towards a goal: as far as the velocity limits let the end plate go, along the straight line of the tool.
+//! One period of the motion to a goal: along the straight line of the tool, as far as the velocity limits of the end
+//! plate permit.
 //!
-//! VI.1.1 POINT: "if the limit is exceeded, the motion is scaled back". The tool frame is taken along the straight line
-//! (position linearly, rotation about one axis) from the end of the last step; the fraction of the line is found by a
-//! fixed number of bisections, each checked with the *rounded* words, because the controller checks those. The
-//! unrounded frame is kept beside the words, so that rounding does not bend the line.
+//! VI.1.1 POINT: "if the limit is exceeded, the motion is scaled back". The tool frame moves along the straight line
+//! (position linearly, rotation about one axis) from the end of the last step; a fixed number of bisections finds the
+//! fraction of the line, each checked with the *rounded* words, because the controller checks those. The unrounded
+//! frame is kept with the words, so that rounding does not bend the line.
 //!
 //! At the pole (gripper straight up or down) only the sum or difference of D and R has a meaning: a line that leaves
-//! the pole in another direction than it came would need a jump of D. There D and R are turned together, at the limit
-//! and with the tool at rest, until D has the direction of the line; so every goal is reached.
+//! the pole in another direction than the one in which it arrived would need a jump of D. There D and R turn together,
+//! at the limit and with the tool at rest, until D has the direction of the line; so every goal is reached.
 
 use geometry::{
     frame::{Frame, Vector, rotation_by, rotation_vector},
@@ -20,10 +21,11 @@ use crate::{
     plate::{HALF_TURN, angle_between, angle_word},
 };
 
-/// Halvings of the way: leave 4e-5 in of the longest way that words can name. Coarser, and a step past a pole, which may be
-/// a hundredth of a count, would be lost.
+/// Number of bisections of a line: their resolution is 4e-5 in on the longest line between two positions. With fewer, a
+/// step past a pole, which may be a hundredth of a count, would be lost.
 const BISECTIONS: u32 = 24;
-/// E this near to the pole (0.01 degree) is the pole: the tool point moves less than half a count if E is put right.
+/// E this near to the pole (0.01 degree) counts as the pole: correcting E moves the tool point by less than half a
+/// count.
 const POLE: i32 = 2;
 
 /// A position commanded to the controller: its words, and the tool frame that was rounded to them.
@@ -38,7 +40,7 @@ pub struct Position {
 }
 
 impl Position {
-    /// A position known by its words alone, as a report gives it.
+    /// A position known only by its words, as from a report.
     #[must_use]
     pub fn reported(plate: Plate, arm: &Arm) -> Self {
         Self::rounded_to(plate, &plate.to_tool(arm))
@@ -60,7 +62,7 @@ impl Position {
 pub struct Step {
     /// The position to command.
     pub position: Position,
-    /// It is the goal; otherwise the motion was scaled back.
+    /// True if it is the goal; otherwise the motion was scaled back.
     pub reached: bool,
 }
 
@@ -75,7 +77,7 @@ struct StraightLine<'a> {
 }
 
 impl StraightLine<'_> {
-    /// The words at a fraction of the way, and the tool frame that they are rounded from.
+    /// The words at a fraction of the line, and the tool frame from which they are rounded.
     fn at(&self, fraction: f64) -> Result<(Plate, Frame), Error> {
         let tool = if fraction >= 1.0 {
             *self.goal
@@ -94,7 +96,7 @@ impl StraightLine<'_> {
 /// The result never exceeds `limits`, and repeated steps reach every goal.
 ///
 /// # Errors
-/// [`Error`] if the goal, or a position on the way, has no words.
+/// [`Error`] if the goal, or a position on the line, cannot be expressed in words.
 pub fn step(from: &Position, goal: &Frame, arm: &Arm, limits: &Limits) -> Result<Step, Error> {
     let full = Plate::from_tool(goal, arm, &from.plate)?;
     if limits.check(&from.plate, &full).is_ok() {
@@ -103,7 +105,7 @@ pub fn step(from: &Position, goal: &Frame, arm: &Arm, limits: &Limits) -> Result
     let mut start = from.tool();
     let [.., e, _] = from.plate.words;
     if pole_near(e).is_some() {
-        // What the words round away at the pole can be a whole turn of D: there they say how the tool is turned.
+        // At the pole, rounding to words can change D by a full turn: there the words give the rotation of the tool.
         start.rotation = from.plate.to_frame().rotation;
     }
     let line = StraightLine {
@@ -131,8 +133,8 @@ pub fn step(from: &Position, goal: &Frame, arm: &Arm, limits: &Limits) -> Result
     Ok(Step { position: position.unwrap_or_else(|| Position::rounded_to(plate, &tool)), reached: false })
 }
 
-/// At the pole, and D more than `near` (0.01 degree) from the direction in which the line leaves it: the position with D and
-/// R turned.
+/// The position with D and R turned, if the line begins at the pole and D is more than `near` (0.01 degree) from the
+/// direction in which it leaves.
 fn turn_at_the_pole(line: &StraightLine<'_>, limits: &Limits, near: i32) -> Result<Option<Position>, Error> {
     let [.., d, e, r] = line.from.words;
     let Some((pole, sense)) = pole_near(e) else { return Ok(None) };
@@ -150,7 +152,8 @@ fn turn_at_the_pole(line: &StraightLine<'_>, limits: &Limits, near: i32) -> Resu
     Ok(limits.check(line.from, &plate).is_ok().then(|| Position::rounded_to(plate, &tool)))
 }
 
-/// E at the pole and how R goes with D there: straight down only R - D counts, straight up only R + D.
+/// E of the pole that `e` is near, and the sign with which R turns with D there: straight down only R - D matters,
+/// straight up only R + D.
 fn pole_near(e: i16) -> Option<(i16, i32)> {
     let e = i32::from(e);
     if e <= POLE {
@@ -162,7 +165,7 @@ fn pole_near(e: i16) -> Option<(i16, i32)> {
     }
 }
 
-/// The first position on the line, of those at doubling distances, that is off the pole; the goal if none is.
+/// The first position off the pole, at doubling distances on the line; the goal if there is none.
 fn way_out(line: &StraightLine<'_>) -> Result<Plate, Error> {
     let mut fraction = libm::ldexp(1.0, -20);
     loop {
@@ -189,7 +192,7 @@ mod tests {
         Plate { words }.to_tool(&T3)
     }
 
-    /// Steps to the goal; the positions on the way.
+    /// Step to the goal; returns the positions on the way.
     fn walk(from: Plate, goal: &Frame, most: usize) -> Vec<Plate> {
         let mut way = vec![from];
         let mut here = Position::reported(from, &T3);
@@ -206,7 +209,7 @@ mod tests {
         panic!("{from:?} does not come to {:?} in {most} steps: {:?}", goal, &way[way.len() - 5..]);
     }
 
-    /// Steps that the limits alone ask for, and two turns of D and R about the poles.
+    /// Number of steps that the limits require, plus two turns of D and R at the poles.
     fn enough(from: &Plate, goal: &Frame) -> usize {
         let distance = from.to_tool(&T3).distance(goal);
         let plate = distance.inches + 12.0 * distance.radians;
@@ -240,7 +243,7 @@ mod tests {
 
     #[test]
     fn through_the_pole_d_and_r_turn_with_the_tool_still() {
-        // Leaning 5 degrees one way, to 5 degrees the other way; the line goes exactly through straight down.
+        // Tilted by 5 degrees to one side, to 5 degrees to the other; the line goes exactly through straight down.
         let from = Plate { words: [3000, -4000, 500, 0, 17_500, 3000] };
         let mut goal = from.to_tool(&T3);
         goal.rotation = rotation_by(&Vector::new(0.0, 10.0 * PI / 180.0, 0.0)) * goal.rotation;

@@ -1,11 +1,11 @@
-//! The warnings of the controller: the codes on its screen, and joint problems that cause some of them (A 2.3).
+//! The warnings of the controller: the codes on its screen, and the joint problems that cause some of them (A 2.3).
 
 use geometry::kinematics::{Arm, Joints, ReachError};
 use rcs_core::Plain;
 
 use crate::{Plate, limit::Exceeded};
 
-/// Why the joints cannot take a position that the limits allow.
+/// Reasons for which the joints cannot reach a position within the velocity limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub enum JointProblem {
@@ -19,12 +19,12 @@ pub enum JointProblem {
     WristSingularity,
 }
 
-/// Why a robot refuses a position.
+/// Reasons for which a robot refuses a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// The joints cannot.
+    /// The joints cannot reach it.
     Joints(JointProblem),
-    /// It is too far from the position before.
+    /// It is too far from the previous position.
     TooFast(Exceeded),
 }
 
@@ -37,7 +37,7 @@ impl From<JointProblem> for Refusal {
 /// The joint angles (radians) for a position of the end plate, within the limits of `arm`.
 ///
 /// # Errors
-/// [`JointProblem`] with the controller's name.
+/// [`JointProblem`], with the problem that the controller would show.
 pub fn joints_for(arm: &Arm, goal: &Plate, near: &Joints) -> Result<Joints, JointProblem> {
     let joints = arm.inverse(&goal.to_tool(arm), near).map_err(|error| match error {
         ReachError::WristSingularity => JointProblem::WristSingularity,
@@ -101,9 +101,9 @@ pub enum Warning {
 }
 
 impl Warning {
-    /// True if a restart command of the host clears it. The appendix recommends that for D6, and the other joint
-    /// problems are similar; warnings that an operator, the wiring or an exceeded velocity limit has caused need an
-    /// ENTER (ASSUMED).
+    /// True if a restart command of the host clears it. The appendix recommends this for D6, and the other joint
+    /// problems are similar; warnings caused by an operator, the wiring or an exceeded velocity limit need an ENTER
+    /// (ASSUMED).
     #[must_use]
     pub const fn host_can_restart(self) -> bool {
         matches!(self, Self::JointLimit | Self::ShoulderUp | Self::OtherJoint | Self::Wrist | Self::OffPath)

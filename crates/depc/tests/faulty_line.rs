@@ -1,5 +1,5 @@
-//! One fault a tick and direction: the checksums see it. The robot never jumps, no command is executed twice or lost
-//! unnoticed, the controller never has cause for a warning, and the link comes back by itself.
+//! With one fault per tick and direction the checksums detect every fault. The robot never jumps, no command is
+//! executed twice or lost without notice, the controller never shows a warning, and the link recovers by itself.
 
 mod session;
 
@@ -10,7 +10,7 @@ use depc::{
 };
 use session::{Session, Truth};
 
-/// Bytes lost, changed, doubled and late, and frames cut short; noise that is no command.
+/// Bytes lost, changed, duplicated and late, truncated frames, and noise that is not a command.
 fn one_fault_a_tick(seed: u64) -> Plan {
     let mut plan = Plan::new(seed).most_per_tick(1);
     for rule in [
@@ -19,8 +19,8 @@ fn one_fault_a_tick(seed: u64) -> Plan {
         Rule::new(FaultKind::Delay).rate(4_000),
         Rule::new(FaultKind::Duplicate).rate(1_000),
         Rule::new(FaultKind::Truncate).rate(10_000),
-        // Noise towards the controller brings a NAK of its own; with an ACK lost at the same time the host repeats a command
-        // that was executed. Both together are two faults.
+        // Noise to the controller causes an additional NAK; with an ACK lost at the same time the host repeats a
+        // command that was executed. Both together are two faults.
         Rule::new(FaultKind::Insert).rate(10_000).byte(0x41).only(Direction::ToHost),
     ] {
         plan.add(rule).unwrap();

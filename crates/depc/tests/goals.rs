@@ -1,4 +1,4 @@
-//! Whatever is asked of the host, the controller has no cause to complain of velocity: D3 and D4 stay away.
+//! For any goals, the host never exceeds the controller's velocity limits: no warning D3 or D4.
 
 use depc::{
     Limits, Plate,
@@ -12,7 +12,7 @@ use geometry::{
 };
 use proptest::prelude::*;
 
-/// A robot with joints for everything, so that only the velocity limits can refuse.
+/// A robot whose joints reach everything, so that only the velocity limits can refuse.
 struct Anywhere(Plate);
 
 impl Robot for Anywhere {
@@ -26,7 +26,7 @@ impl Robot for Anywhere {
     }
 }
 
-/// Goals far and near; every third one stands at a pole or leans a little from it.
+/// Goals far and near; every third one is at a pole or slightly off it.
 fn goals() -> impl Strategy<Value = Vec<Frame>> {
     let point = || prop_oneof![-90.0_f64..90.0, -1.0_f64..1.0];
     let turn = || -3.1_f64..3.1;

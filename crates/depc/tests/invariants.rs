@@ -1,15 +1,16 @@
 //! Ten thousand seeded fault plans, of all kinds and with any number of faults in a frame.
 //!
-//! What always holds: the robot never moves further in a period than the limits allow; a controller that has stopped is
-//! reported; and once the line is mended and the operator has answered, the link works again and the goal is reached.
+//! These always hold: the robot never moves farther in a period than the limits permit; the host reports a controller
+//! that has stopped; and once the line is repaired and the operator has answered, the link works again and the goal is
+//! reached.
 //!
-//! What holds unless the line deceives one of the ends: no command is executed twice or lost unnoticed, every report is
-//! true, and the velocity limits give no warning. A checksum by exclusive or does not see two changes of the same bit, and
-//! ACK, NAK, cancel and restart have no checksum at all (A 2.3); a line that stands still for longer than the host waits
-//! executes what the host has given up. The run counts how often that happens. In the sessions
-//! where it has not happened the invariants are strict.
+//! These hold unless the line deceives one of the ends: no command is executed twice or lost without notice, every
+//! report is true, and the velocity limits give no warning. A checksum by exclusive or does not detect two changes of
+//! the same bit, and ACK, NAK, cancel and restart have no checksum at all (A 2.3); a line that stalls for longer than
+//! the host waits delivers commands that the host has given up. The run counts how often that happens. In all other
+//! sessions the invariants are strict.
 //!
-//! `DEPC_SCHEDULES` sets how many plans are tried.
+//! `DEPC_SCHEDULES` sets the number of plans.
 
 #![expect(clippy::print_stdout, reason = "the figures of a campaign are printed")]
 
@@ -21,14 +22,14 @@ use depc::{
 };
 use session::{Session, Truth};
 
-/// Plans in an ordinary run.
+/// Number of plans in an ordinary run.
 const SCHEDULES: u64 = 10_000;
 /// Ticks in which a plan has faults.
 const FAULTY_TICKS: u64 = 120;
-/// Ticks in which all must be well again: two answers of the operator, a line that stands still, and the way to the goal.
+/// Ticks within which the link must recover: two answers of the operator, a stalled line, and the motion to the goal.
 const MENDED_TICKS: u32 = 300;
 
-/// A rule from the numbers; it may be one that makes no sense.
+/// A random rule; it may be an invalid one.
 fn rule(numbers: &mut Numbers) -> Rule {
     let kinds = u32::try_from(FaultKind::ALL.len()).unwrap();
     let kind = FaultKind::ALL[numbers.below(kinds) as usize];
@@ -55,7 +56,7 @@ fn rule(numbers: &mut Numbers) -> Rule {
     rule
 }
 
-/// A plan of one to four rules, and how many rules were refused on the way.
+/// A plan of one to four rules, and the number of rules that were refused.
 fn plan(seed: u64) -> (Plan, u64) {
     let mut numbers = Numbers::new(seed, 2);
     let (mut plan, mut refused) = (Plan::new(seed), 0);

@@ -1,6 +1,6 @@
-//! Neither end, nor the line with its faults, allocates: counted over a whole session of good and bad ticks.
+//! Neither the ends nor the line with its faults allocates: checked over a whole session of good and bad ticks.
 //!
-//! This file holds one test only, because all of it runs on the counting allocator.
+//! This file has only one test, because everything in it runs on the counting allocator.
 
 use counting_alloc::{Counting, Section, allocations, is_installed};
 use depc::link::LinkBytes;
@@ -18,7 +18,7 @@ use rcs_core::tick::Tick;
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// A robot that is where it is told to be.
+/// A robot that reaches every commanded position exactly.
 struct Exact {
     joints: Joints,
     at: Plate,

@@ -1,6 +1,5 @@
-//! What common memory costs: a buffer beside a bare blackboard of iceoryx2, and a tick without publishing, with
-//! it, and with readers attached. Each line is the median of rounds, so that a stall of the machine does not
-//! show.
+//! Cost of common memory: a buffer compared with a bare blackboard of iceoryx2, and a tick without publishing, with it,
+//! and with attached readers. Each line is the median of rounds, so that a stall of the machine has no effect.
 
 #![expect(clippy::print_stdout, reason = "figures are what it is for")]
 
@@ -24,7 +23,7 @@ use levels::ladder::{Ladder, PROCESS_COUNT};
 use rcs_core::tick::Tick;
 use taskdata::files::TaskData;
 
-/// Bytes of a bare value, about those of a buffer of middling size.
+/// Size of a bare value, bytes: about that of a medium-sized buffer.
 const BARE: usize = 128;
 const ROUNDS: usize = 101;
 const CALLS: u32 = 200;
@@ -42,7 +41,7 @@ fn measure(what: &str, parts: usize, mut call: impl FnMut()) {
     println!("{what:<48} {:>9.1} ns", rounds[ROUNDS / 2].as_secs_f64() * 1e9 / parts as f64);
 }
 
-/// All buffers of a run at once, divided by their number.
+/// Writes all buffers of a run at once; the time is divided by their number.
 fn buffers() {
     let name = RunName::unique("bench-buffers");
     let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
@@ -59,7 +58,7 @@ fn buffers() {
     });
 }
 
-/// The same without anything of ours.
+/// The same with iceoryx2 alone.
 fn bare() {
     set_log_level(LogLevel::Fatal);
     let node = NodeBuilder::new().create::<ipc::Service>().expect("a node");
@@ -86,7 +85,7 @@ fn bare() {
     });
 }
 
-/// A tick of a ladder without a command; the controller's part and the bookkeeping.
+/// A tick of a ladder without a command: the controller's part and the bookkeeping.
 fn ticks() {
     let (external, data) = (ExternalInputs::default(), TaskData::default());
     let mut alone = Runner::new(Ladder::default(), None);

@@ -1,4 +1,4 @@
-//! A hundred ticks of the control processes, timed: `cargo run --release -p executive --example runner`.
+//! Runs and times a hundred ticks of the control processes: `cargo run --release -p executive --example runner`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 

@@ -1,8 +1,8 @@
-//! When ticks are run (docs/design/tick.md "Grid").
+//! The times at which ticks run (docs/design/tick.md "Grid").
 //!
 //! The controller itself has no clock. [`Clock::Fast`] begins a tick at once: the simulated cell advances 40 ms a tick,
 //! however long that takes. [`Clock::Real`] begins ticks on an absolute 40 ms [`Grid`]: slot `n` starts 40 ms x `n`
-//! after the start of the run, a late wake-up does not shift the slots after it, and a slot whose start has passed is
+//! after the start of the run; a late wake-up does not shift the following slots; a slot whose start has passed is
 //! skipped and counted. This holds at every wake-up:
 //!
 //! ```text
@@ -10,8 +10,8 @@
 //! ```
 //!
 //! The system wakes a sleeping thread some ten microseconds late, and within 40 ms other programs evict its data from
-//! the caches. A caller that must be ready when a slot begins calls [`Grid::wake_early`], warms up in the time that is
-//! left, and then calls [`Grid::wait`], which stays awake until the slot.
+//! the caches. A caller that must be ready when a slot begins calls [`Grid::wake_early`], warms up in the remaining
+//! time, and then calls [`Grid::wait`], which stays awake until the slot.
 
 use std::time::Duration;
 
@@ -24,19 +24,20 @@ use rustix::{
 
 /// Length of a slot.
 pub const SLOT: Duration = Duration::from_millis(TICK_MS);
-/// How long before a slot [`Grid::wake_early`] wakes. Enough for a late wake-up and a warm-up of the tick with
-/// cold caches (some 0.1 ms), and little beside a slot: a core is kept awake for at most 1.25 % of the time.
+/// Time before a slot at which [`Grid::wake_early`] wakes. It is long enough for a late wake-up and a warm-up of the
+/// tick with cold caches (some 0.1 ms), and short compared with a slot: it keeps a core awake for at most 1.25 % of the
+/// time.
 pub const LEAD: Duration = Duration::from_micros(500);
 
-/// Source of time; tests have their own.
+/// Source of time; tests implement their own.
 pub trait Time {
-    /// Time since some fixed moment; never goes back.
+    /// Time since some fixed moment; it never decreases.
     fn now(&mut self) -> Duration;
 
     /// Return as soon as [`now`](Self::now) is at least `at`; may return late, and early if a signal comes.
     fn sleep_until(&mut self, at: Duration);
 
-    /// Return as soon as [`now`](Self::now) is at least `at`, without giving the processor away.
+    /// Return as soon as [`now`](Self::now) is at least `at`, without yielding the processor.
     fn stay_awake_until(&mut self, at: Duration) {
         while self.now() < at {
             std::hint::spin_loop();
@@ -44,7 +45,7 @@ pub trait Time {
     }
 }
 
-/// `CLOCK_MONOTONIC`, slept on with `TIMER_ABSTIME`.
+/// `CLOCK_MONOTONIC`; it sleeps with `TIMER_ABSTIME`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Monotonic;
 
@@ -55,8 +56,7 @@ impl Time for Monotonic {
 
     fn sleep_until(&mut self, at: Duration) {
         let Ok(request) = Timespec::try_from(at) else { return };
-        // EINTR is the only error of a valid request: a signal, after which the caller looks at the time
-        // again.
+        // EINTR is the only error of a valid request: a signal, after which the caller checks the time again.
         match clock_nanosleep_absolute(ClockId::Monotonic, &request) {
             Ok(()) | Err(Errno::INTR) => {}
             Err(error) => debug_assert!(false, "clock_nanosleep: {error}"),
@@ -69,18 +69,18 @@ impl Time for Monotonic {
 pub struct Grid<T> {
     time: T,
     start: Duration,
-    /// How long a slot is.
+    /// Length of a slot.
     length: Duration,
     slot: u64,
     ticks: u64,
     skipped: u64,
-    /// The slot for which the thread has been woken early.
+    /// The slot for which the thread was woken early.
     ready_for: Option<u64>,
     late: Duration,
 }
 
 impl<T: Time> Grid<T> {
-    /// A grid that starts now; slot 1, the first to be run, begins 40 ms from now.
+    /// A grid that starts now; slot 1, the first with a tick, begins 40 ms from now.
     pub fn new(time: T) -> Self {
         Self::with_slots_of(time, SLOT)
     }
@@ -101,8 +101,8 @@ impl<T: Time> Grid<T> {
         self.ready_for = Some(next);
     }
 
-    /// Wait until the next slot begins: asleep, or awake after [`wake_early`](Self::wake_early). Returns how
-    /// many slots were skipped on the way to it.
+    /// Wait until the next slot begins: asleep, or awake after [`wake_early`](Self::wake_early). Returns the number of
+    /// slots that were skipped before it.
     pub fn wait(&mut self) -> u64 {
         let begins = if let Some(next) = self.ready_for.take() {
             let begins = self.begin(next);
@@ -125,7 +125,7 @@ impl<T: Time> Grid<T> {
         skipped
     }
 
-    /// When a slot begins.
+    /// Time at which a slot begins.
     fn begin(&self, slot: u64) -> Duration {
         self.start + self.length * u32::try_from(slot).unwrap_or(u32::MAX)
     }
@@ -135,13 +135,13 @@ impl<T: Time> Grid<T> {
         u64::try_from(elapsed.as_nanos() / self.length.as_nanos()).unwrap_or(u64::MAX)
     }
 
-    /// Slots in which a tick was run.
+    /// Number of slots in which a tick was run.
     #[must_use]
     pub const fn ticks(&self) -> u64 {
         self.ticks
     }
 
-    /// Slots that were skipped.
+    /// Number of slots that were skipped.
     #[must_use]
     pub const fn skipped(&self) -> u64 {
         self.skipped
@@ -153,32 +153,32 @@ impl<T: Time> Grid<T> {
         self.slot
     }
 
-    /// How late the last [`wait`](Self::wait) returned, from the beginning of its slot.
+    /// Delay of the return of the last [`wait`](Self::wait) after the beginning of its slot.
     #[must_use]
     pub const fn late(&self) -> Duration {
         self.late
     }
 }
 
-/// How ticks follow each other.
+/// The rate of ticks.
 #[derive(Debug)]
 pub enum Clock {
-    /// At once.
+    /// One tick immediately after the other.
     Fast,
-    /// Every 40 ms.
+    /// One tick every 40 ms.
     Real(Grid<Monotonic>),
 }
 
 impl Clock {
-    /// A clock that runs so many ticks in the time of one, with a simulated robot; one slot has 1 ms at least.
+    /// A clock that runs `speed` ticks in the time of one, for a simulated robot; a slot has at least 1 ms.
     #[must_use]
     pub fn times(speed: u8) -> Self {
         let length = (SLOT / u32::from(speed.max(1))).max(Duration::from_millis(1));
         Self::Real(Grid::with_slots_of(Monotonic, length))
     }
 
-    /// Sleep until shortly before the next tick; true if there is time left until it is due, which is never so
-    /// if ticks follow each other at once.
+    /// Sleep until shortly before the next tick; true if there is time left until it is due. Always false with
+    /// [`Clock::Fast`].
     pub fn wake_early(&mut self) -> bool {
         match self {
             Self::Fast => false,
@@ -189,7 +189,7 @@ impl Clock {
         }
     }
 
-    /// How late the last tick began.
+    /// Delay of the beginning of the last tick.
     #[must_use]
     pub const fn late(&self) -> Duration {
         match self {
@@ -198,7 +198,7 @@ impl Clock {
         }
     }
 
-    /// Wait until the next tick is due; returns how many slots were skipped before it.
+    /// Wait until the next tick is due; returns the number of slots that were skipped before it.
     pub fn wait(&mut self) -> u64 {
         match self {
             Self::Fast => 0,
@@ -206,7 +206,7 @@ impl Clock {
         }
     }
 
-    /// Slots skipped since the start.
+    /// Number of slots skipped since the start.
     #[must_use]
     pub const fn skipped(&self) -> u64 {
         match self {
@@ -222,8 +222,8 @@ mod tests {
     use proptest::prelude::*;
     use std::time::Instant;
 
-    /// Time that a test moves: each sleep ends late by the next entry of `late`, or early by a signal if the
-    /// entry is `None`.
+    /// Time controlled by a test: each sleep ends late by the next entry of `late`, or early by a signal if the entry
+    /// is `None`.
     struct Scripted {
         now: Duration,
         late: Vec<Option<Duration>>,
@@ -305,7 +305,7 @@ mod tests {
             grid.wait();
             let (least, most) = (after.elapsed(), before.elapsed());
             let sum = u128::from(grid.ticks() + grid.skipped());
-            // The test reads the time a little after the grid did; a slot may begin in between.
+            // The test reads the time slightly later than the grid; a slot may begin in between.
             assert!(sum <= most.as_nanos() / 40_000_000, "{sum} slots in {most:?}");
             assert!(u128::from(grid.slot()) * 40_000_000 <= most.as_nanos());
             assert_eq!(sum, u128::from(grid.slot()));

@@ -1,11 +1,11 @@
-//! The ticks of a ladder, with common memory, digest and the first failure.
+//! The ticks of a ladder, with common memory, digest and first failure.
 //!
 //! Common memory is doubled by tick parity: the processes read one half and write the other, so that their order within
-//! a tick has no effect. After every tick the buffers go into the digest, and the statuses are watched for the first
-//! sign of a failure.
+//! a tick has no effect. After every tick the buffers are added to the digest, and the statuses are checked for the
+//! first sign of a failure.
 //!
-//! A [`Course`] reads no clock and allocates nothing once it is made. It can be cloned: the copy goes on from the same
-//! tick. [`Runner`](crate::runner::Runner) times a course and publishes it; `rcs-run campaign` forks it.
+//! A [`Course`] reads no clock and does not allocate after its creation. It can be cloned: the copy continues from the
+//! same tick. [`Runner`](crate::runner::Runner) times a course and publishes it; `rcs-run campaign` forks it.
 
 use std::convert::Infallible;
 
@@ -16,16 +16,16 @@ use taskdata::files::TaskData;
 
 use crate::failure::Watch;
 
-/// A ladder of control processes that can be stepped: [`Ladder`], or a test's own.
+/// A ladder of control processes that can be stepped: [`Ladder`], or one of a test.
 pub trait Levels<Data: ?Sized> {
-    /// Why a tick could not be finished.
+    /// Error of a tick that could not be finished.
     type Error;
 
-    /// One tick of all processes: read `before` and `external`, write `after`, all of it; calls `observe` after each
+    /// One tick of all processes: read `before` and `external`, and write all of `after`; call `observe` after each
     /// stage, as [`Ladder::step_observed`] does. Time outside of the stages counts as the executive's.
     ///
     /// # Errors
-    /// If processes that run elsewhere did not take part. There must be no further tick then.
+    /// If processes that run elsewhere did not take part. The caller must then run no further tick.
     fn step(
         &mut self,
         tick: Tick,
@@ -36,7 +36,7 @@ pub trait Levels<Data: ?Sized> {
         observe: &mut dyn FnMut(Option<ProcessId>),
     ) -> Result<(), Self::Error>;
 
-    /// A copy that can warm up a tick; `None` if a warm-up would make nothing faster.
+    /// A copy with which a tick can be warmed up; `None` if a warm-up has no effect.
     fn shadow(&self) -> Option<Box<Self>>
     where
         Self: Sized,
@@ -44,14 +44,14 @@ pub trait Levels<Data: ?Sized> {
         None
     }
 
-    /// Make the shadow equal again. Does not allocate.
+    /// Copy the present state to the shadow. Does not allocate.
     fn copy_to(&self, _shadow: &mut Self)
     where
         Self: Sized,
     {
     }
 
-    /// Heap allocations in the ticks of processes that run elsewhere.
+    /// Heap allocations in ticks by processes that run elsewhere.
     fn allocations(&self) -> u64 {
         0
     }
@@ -82,7 +82,7 @@ impl Levels<TaskData<'_>> for Ladder {
     }
 }
 
-/// A ladder with the ticks that it has run.
+/// A ladder and the results of its ticks.
 #[derive(Clone)]
 pub struct Course<L> {
     levels: L,
@@ -94,7 +94,7 @@ pub struct Course<L> {
 }
 
 impl<L> Course<L> {
-    /// Before the first tick.
+    /// A course before its first tick.
     #[must_use]
     pub fn new(levels: L) -> Self {
         Self {
@@ -107,10 +107,11 @@ impl<L> Course<L> {
         }
     }
 
-    /// Run the next tick on its external inputs, and call `observe` after each stage. [`sum_up`](Self::sum_up) follows.
+    /// Run the next tick on its external inputs, and call `observe` after each stage. The caller then calls
+    /// [`sum_up`](Self::sum_up).
     ///
     /// # Errors
-    /// Those of the levels. Then the tick does not count, and common memory stays as after the tick before.
+    /// Errors of the levels. The tick does not count then, and common memory stays as after the previous tick.
     pub fn step<Data: ?Sized>(
         &mut self,
         external: &ExternalInputs,
@@ -127,23 +128,23 @@ impl<L> Course<L> {
         Ok(())
     }
 
-    /// The buffers of the tick that was run last go into the digest, and its statuses are watched.
+    /// Add the buffers of the last tick to the digest, and check its statuses.
     pub fn sum_up(&mut self, external: &ExternalInputs) {
         let (before, after) = of_tick(&mut self.halves, self.tick);
         self.watch.observe(self.tick, external, before, after);
         self.digest.add_record(after, &mut self.scratch);
     }
 
-    /// Run the next tick on a copy of the levels and forget it.
+    /// Run the next tick on a copy of the levels and discard the result.
     pub fn warm_up<Data: ?Sized>(&mut self, shadow: &mut L, external: &ExternalInputs, data: &Data)
     where
         L: Levels<Data>,
     {
         self.levels.copy_to(shadow);
         let tick = self.tick.next();
-        // The half that the tick will write anew, all of it.
+        // The half that the tick will overwrite completely.
         let (before, after) = of_tick(&mut self.halves, tick);
-        // Whether it succeeds does not matter: the tick itself follows.
+        // The result does not matter: the tick itself follows.
         let _ = shadow.step(tick, before, external, data, after, &mut |_| {});
     }
 
@@ -177,14 +178,14 @@ impl<L> Course<L> {
         self.digest
     }
 
-    /// The process that failed first, if one did.
+    /// The record of the first failure.
     #[must_use]
     pub const fn watch(&self) -> &Watch {
         &self.watch
     }
 }
 
-/// What a tick reads, and what it writes.
+/// The half that a tick reads, and the half that it writes.
 const fn of_tick(halves: &mut [CommonMemory; 2], tick: Tick) -> (&CommonMemory, &mut CommonMemory) {
     let [even, odd] = halves;
     if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) }

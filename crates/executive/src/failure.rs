@@ -1,8 +1,8 @@
 //! Explains a failure in one sentence: process, decision table and row.
 //!
-//! A reason travels up the ladder unchanged, a tick a level, so the origin is the lowest process that reports the
-//! reason which arrived at Task. When it arrives there, the lower processes may be doing something else: [`Watch`]
-//! therefore keeps, for each process, common memory as it was in the tick when the process began to report its reason.
+//! A reason travels up the ladder unchanged, one level a tick, so its origin is the lowest process that reports the
+//! reason which arrived at Task. When it arrives there, the lower processes may be doing something else. Therefore
+//! [`Watch`] keeps, for each process, common memory as it was in the tick when the process began to report its reason.
 
 use interfaces::{CommonMemory, Detail, ExternalInputs, Fault, Header, HwsCommand, Reason};
 use levels::ladder::{PROCESS_COUNT, ProcessId, ProcessInfo};
@@ -13,15 +13,15 @@ use rcs_core::{
     tick::Tick,
 };
 
-/// Processes of [`CommonMemory`], in its order.
+/// Number of processes of [`CommonMemory`], in its order.
 pub const PROCESSES: usize = PROCESS_COUNT;
 
-/// Why a run failed.
+/// The explanation of a failed run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure {
-    /// Tick in which it began.
+    /// Tick in which the failure began.
     pub tick: Tick,
-    /// The process that reports the reason; the manual's name.
+    /// The process that reports the reason, with the manual's name.
     pub process: String,
     /// Its decision table, if one was used.
     pub table: Option<String>,
@@ -33,7 +33,7 @@ pub struct Failure {
     pub stopped: bool,
 }
 
-/// The beginning of a report that lasts.
+/// The beginning of a report that is still present.
 #[derive(Clone, Copy)]
 struct Cause {
     tick: Tick,
@@ -44,7 +44,8 @@ struct Cause {
     detail: Detail,
 }
 
-/// Watches every tick and keeps, for each process, when its present report began and common memory in that tick.
+/// Observes every tick and keeps, for each process, the tick in which its present report began and common memory of
+/// that tick.
 #[derive(Clone)]
 pub struct Watch {
     last: [Fault; PROCESSES],
@@ -58,7 +59,8 @@ impl Default for Watch {
 }
 
 impl Watch {
-    /// Observe a tick: external inputs, what the processes read, and what they wrote. Does not allocate.
+    /// Observe a tick: its external inputs, the buffers that the processes read, and those that they wrote. Does not
+    /// allocate.
     pub fn observe(
         &mut self,
         tick: Tick,
@@ -81,8 +83,8 @@ impl Watch {
         self.last = now;
     }
 
-    /// Why Task reports an error; `None` while it reports none. `processes` are the names and tables in the
-    /// order of [`CommonMemory`].
+    /// The failure that Task reports; `None` if it reports none. `processes` are the names and tables in the order of
+    /// [`CommonMemory`].
     #[must_use]
     pub fn failure(&self, processes: &[ProcessInfo; PROCESSES]) -> Option<Failure> {
         let cause_of = |process: ProcessId| self.causes[process.position()].as_ref();
@@ -120,7 +122,7 @@ impl Watch {
     }
 }
 
-/// The table and the row that a header names.
+/// The table and the row in a header.
 fn row_of(process: &ProcessInfo, header: &Header) -> Option<(&'static Table, &'static Row)> {
     process.row(header.decided?)
 }
@@ -144,7 +146,7 @@ pub fn command(process: ProcessId, hws: &HwsCommand, memory: &CommonMemory) -> S
     memory.show_command(process, |command| command.to_string()).unwrap_or_else(|| hws.to_string())
 }
 
-/// What each level is doing, from Task down, for a failure that no process reports: a command that takes too
+/// The present commands of all levels, from Task down, for a failure that no process reports: a command that takes too
 /// long.
 #[must_use]
 pub fn present_commands(
@@ -246,7 +248,7 @@ mod tests {
         names.map(|name| ProcessInfo { name, tables: if name == "Grip" { TABLES } else { &[] } })
     }
 
-    /// Plays ticks: each closure changes common memory, the watch looks on.
+    /// Plays ticks: each closure changes common memory, and the watch observes it.
     fn watched(changes: &[fn(&mut CommonMemory)]) -> Watch {
         let (mut watch, mut memory) = (Watch::default(), CommonMemory::default());
         for (tick, change) in (1..).zip(changes) {

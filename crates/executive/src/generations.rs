@@ -1,17 +1,17 @@
 //! Generations of the task data: blocks that are loaded while the robot runs
 //! (docs/design/ownership.md "Reload").
 //!
-//! A reload is built and checked outside the tick. It becomes visible as a whole between two ticks, and only when no
-//! command is being executed: a command in progress keeps the records that it began with. Record numbers of names that
-//! existed stay the same from one generation to the next, so that the states that processes keep between commands
-//! (where the robot is, what it holds) stay valid.
+//! A reload is built and checked outside the tick. It becomes visible as a whole between two ticks, and only while no
+//! command is being executed: a command in progress keeps the records with which it began. Names that existed keep
+//! their record numbers from one generation to the next, so that the states that processes keep between commands (the
+//! position of the robot, the object that it holds) stay valid.
 
 use std::collections::VecDeque;
 
 use interfaces::{CommonMemory, StatusReport, hws::HwsReport};
 use taskdata::load::Store;
 
-/// The task data in use, and the next ones if they wait.
+/// The task data in use, and the queued ones.
 pub struct Generations {
     current: Store,
     number: u32,
@@ -19,7 +19,7 @@ pub struct Generations {
 }
 
 impl Generations {
-    /// Generation 0: what was loaded before the first tick.
+    /// Generation 0: the task data loaded before the first tick.
     #[must_use]
     pub const fn new(store: Store) -> Self {
         Self { current: store, number: 0, waiting: VecDeque::new() }
@@ -37,13 +37,15 @@ impl Generations {
         self.number
     }
 
-    /// Queue task data until the command in progress has ended. Several become visible one after the other, one a tick.
+    /// Queue task data until the command in progress has ended. Several queued ones become visible one after the other,
+    /// one a tick.
     pub fn propose(&mut self, store: Store) {
         self.waiting.push_back(store);
     }
 
-    /// Use other task data from the next tick on, also while a command is executed: for experiments with a run. The
-    /// records that a command has begun with must still be there. False, and nothing has changed, if others wait.
+    /// Use other task data from the next tick on, even while a command is executed: for experiments with a run. The
+    /// records of the command in progress must still exist. Returns false, without a change, if other task data are
+    /// queued.
     pub fn supersede(&mut self, store: Store) -> bool {
         if !self.waiting.is_empty() {
             return false;
@@ -53,8 +55,8 @@ impl Generations {
         true
     }
 
-    /// Between two ticks: use the queued task data if no command is being executed according to `memory`. True if the
-    /// generation is a new one.
+    /// Between two ticks: use the queued task data if no command is being executed according to `memory`. Returns true
+    /// if the generation has changed.
     pub fn advance(&mut self, memory: &CommonMemory) -> bool {
         if is_busy(memory) {
             return false;

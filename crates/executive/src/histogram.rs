@@ -1,13 +1,13 @@
 //! Times of ticks in a fixed number of buckets, so that a run of any length needs no allocation.
 
-/// Buckets an octave: a percentile is right to 1/32, about 3 %.
+/// Buckets per octave: a percentile is accurate to 1/32, about 3 %.
 const PER_OCTAVE: u64 = 32;
-/// Octaves above the linear part: up to 2^5 * 2^30 ns, half a minute.
+/// Number of octaves above the linear part: up to 2^5 * 2^30 ns, half a minute.
 const OCTAVES: usize = 30;
 const BUCKETS: usize = (OCTAVES + 1) * 32;
 
-/// A histogram of durations in nanoseconds: exact below 32 ns, then 32 buckets an octave, everything above
-/// half a minute in the last.
+/// A histogram of durations in nanoseconds: exact below 32 ns, then 32 buckets per octave; longer durations than half a
+/// minute are in the last bucket.
 #[derive(Clone)]
 pub struct Histogram {
     counts: [u64; BUCKETS],
@@ -40,14 +40,14 @@ impl Histogram {
         self.max = self.max.max(nanoseconds);
     }
 
-    /// Values added.
+    /// Number of values.
     #[must_use]
     pub const fn count(&self) -> u64 {
         self.total
     }
 
-    /// The value, in nanoseconds, that `permille` of 1000 values do not exceed: the upper edge of its bucket,
-    /// and never more than the largest value. 0 if nothing was added.
+    /// The value, in nanoseconds, that `permille` of 1000 values do not exceed: the upper edge of its bucket, at most
+    /// the largest value. 0 without values.
     #[must_use]
     pub fn quantile(&self, permille: u64) -> u64 {
         let wanted = (self.total * permille.min(1000)).div_ceil(1000);
@@ -82,7 +82,7 @@ fn bucket(value: u64) -> usize {
     ((u64::from(octave) + 1) * PER_OCTAVE + within).min(BUCKETS as u64 - 1) as usize
 }
 
-/// Largest value that falls into a bucket.
+/// Largest value of a bucket.
 fn upper_edge(index: usize) -> u64 {
     let index = index as u64;
     if index < PER_OCTAVE {

@@ -1,11 +1,11 @@
 //! Runs the levels: clocks, boards, common memory, real-time set-up.
 //!
 //! The control processes are pure state machines; this crate runs them. [`course`] steps them with tick-parity buffers
-//! and keeps digest and first failure, [`runner`] times the steps and publishes the buffers, [`clock`] gives the time
-//! of each tick, [`realtime`] asks the system for real-time priority, [`timing`] measures the parts of a tick,
-//! [`overrun`] reacts to skipped slots, [`serial`] is the line to a real robot, [`alloc`] counts allocations,
+//! and records digest and first failure, [`runner`] times the steps and publishes the buffers, [`clock`] determines
+//! when each tick begins, [`realtime`] requests real-time priority from the system, [`timing`] measures the parts of a
+//! tick, [`overrun`] reacts to skipped slots, [`serial`] is the line to a real robot, [`alloc`] counts allocations,
 //! [`boards`] distributes the processes over operating system processes, [`memory`] publishes the buffers in shared
-//! memory, [`status`] sums them up, [`generations`] exchanges task data between commands, and [`failure`] finds
+//! memory, [`status`] summarises them, [`generations`] exchanges task data between commands, and [`failure`] finds
 //! process, table and row of a failure.
 
 #![deny(unsafe_code)]

@@ -5,11 +5,11 @@ use std::{fmt, fs};
 /// The properties found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Machine {
-    /// Release of the kernel, or why it is not known.
+    /// Release of the kernel, or the reason why it is unknown.
     pub kernel: String,
-    /// The kernel is one with full preemption (PREEMPT_RT).
+    /// True if the kernel has full preemption (PREEMPT_RT).
     pub preempt_rt: bool,
-    /// Frequency governors of the cores, each once; empty if the machine has none.
+    /// Frequency governors of the cores, without duplicates; empty if the machine has none.
     pub governors: Vec<String>,
 }
 

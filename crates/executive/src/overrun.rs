@@ -1,10 +1,10 @@
 //! The reaction to skipped slots of the 40 ms grid.
 //!
-//! A skipped slot is always counted, with its cause: a part of the tick before that took too long, or the system that
-//! woke the thread too late. The user chooses the further reaction ([`Policy`]): none; the robot holds until ticks are
-//! on time again; or it comes to rest and the run ends. To hold, the velocity knob is set to zero: Prim ramps down on
-//! its path and keeps the position (docs/design/motion.md "Knob"), and every grip stays as it is. The knob is an input
-//! of the controller like any other, so it is logged, and a replay needs no clock.
+//! A skipped slot is always counted, with its cause: a part of the previous tick that took too long, or a late wake-up
+//! by the system. The user chooses the further reaction ([`Policy`]): none; the robot holds until ticks are on time
+//! again; or it comes to rest and the run ends. To hold, the velocity knob is set to zero: Prim ramps down on its path
+//! and keeps the position (docs/design/motion.md "Knob"), and every grip stays as it is. The knob is an input of the
+//! controller like any other, so it is logged, and a replay needs no clock.
 
 use std::{fmt, str::FromStr, time::Duration};
 
@@ -16,18 +16,18 @@ use crate::{
     timing::{Stage, StageTimes},
 };
 
-/// Ticks in a row, one second, that must be on time before a robot that holds goes on.
+/// Number of consecutive ticks, one second, that must be on time before a holding robot continues.
 pub const PUNCTUAL: u32 = 25;
 
 /// The reaction to skipped slots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Policy {
-    /// They are counted.
+    /// They are only counted.
     #[default]
     Count,
-    /// If at least so many are skipped in a row, the robot holds until [`PUNCTUAL`] ticks were punctual.
+    /// If at least this many are skipped in a row, the robot holds until [`PUNCTUAL`] ticks were on time.
     Hold(u64),
-    /// If at least so many are skipped in a row, the robot is brought to rest and the run ends.
+    /// If at least this many are skipped in a row, the robot comes to rest and the run ends.
     Stop(u64),
 }
 
@@ -64,12 +64,12 @@ impl fmt::Display for Policy {
 /// Slots that were skipped in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Overrun {
-    /// How many.
+    /// Number of slots.
     pub slots: u64,
-    /// The part of the tick before that took longest; `None` if the tick was over in time and the thread was
-    /// woken too late.
+    /// The part of the previous tick that took longest; `None` if that tick ended in time and the thread was woken too
+    /// late.
     pub part: Option<Stage>,
-    /// How long that part took, or how late the thread was woken.
+    /// Duration of that part, or delay of the wake-up.
     pub taken: Duration,
 }
 
@@ -89,18 +89,18 @@ impl fmt::Display for Overrun {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Reaction {
     None,
-    /// Holds; so many punctual ticks so far.
+    /// The robot holds; number of ticks on time so far.
     Holding {
         punctual: u32,
     },
-    /// Comes to rest.
+    /// The robot comes to rest.
     Stopping {
         because: Overrun,
         ticks: u32,
     },
 }
 
-/// Counts skipped slots and carries out the policy.
+/// Counts skipped slots and applies the policy.
 pub struct Overruns {
     policy: Policy,
     waking: u64,
@@ -110,7 +110,7 @@ pub struct Overruns {
 }
 
 impl Overruns {
-    /// Nothing has been skipped yet.
+    /// No slot has been skipped yet.
     #[must_use]
     pub fn new(policy: Policy) -> Self {
         Self {
@@ -122,8 +122,9 @@ impl Overruns {
         }
     }
 
-    /// A tick begins: `slots` were skipped before it, `stage_times` are those of the tick before, and the thread was
-    /// there `late` after the beginning of the slot that it waited for. Returns the overrun, if it is one.
+    /// Call at the beginning of a tick: `slots` were skipped before it, `stage_times` are those of the previous tick,
+    /// and the thread woke `late` after the beginning of the slot that it waited for. Returns the overrun, if there is
+    /// one.
     pub fn observe(&mut self, slots: u64, stage_times: &StageTimes, late: Duration) -> Option<Overrun> {
         if slots == 0 {
             if let Reaction::Holding { punctual } = &mut self.reaction {
@@ -142,7 +143,7 @@ impl Overruns {
             Overrun { slots, part: Some(part), taken: Duration::from_nanos(taken) }
         } else {
             self.waking += slots;
-            // A thread that woke too late for its slot has waited for a later one, and may be there in time.
+            // A thread that woke too late for its slot has waited for a later one, and may be on time for that.
             let missed = SLOT * u32::try_from(slots).unwrap_or(u32::MAX);
             Overrun { slots, part: None, taken: if late < SLOT { missed + late } else { late } }
         };
@@ -155,7 +156,7 @@ impl Overruns {
             (Policy::Hold(least), _) if because.slots >= least => {
                 self.reaction = Reaction::Holding { punctual: 0 };
             }
-            // Less than what makes the robot hold is still not punctual.
+            // Fewer skipped slots than the policy's limit are still not on time.
             (Policy::Hold(_), Reaction::Holding { .. }) => {
                 self.reaction = Reaction::Holding { punctual: 0 };
             }
@@ -175,13 +176,13 @@ impl Overruns {
         }
     }
 
-    /// The robot holds, or comes to rest, because of an overrun.
+    /// True if the robot holds, or comes to rest, because of an overrun.
     #[must_use]
     pub const fn is_holding(&self) -> bool {
         !matches!(self.reaction, Reaction::None)
     }
 
-    /// A tick is over: the overrun for which the run ends now, because the robot is at rest.
+    /// Call at the end of a tick: returns the overrun for which the run ends now, because the robot is at rest.
     pub fn ends(&mut self, memory: &CommonMemory) -> Option<Overrun> {
         self.rest.observe(memory);
         let Reaction::Stopping { because, ticks } = &mut self.reaction else { return None };
@@ -189,7 +190,8 @@ impl Overruns {
         (self.rest.is_at_rest() || *ticks >= AT_LAST).then_some(*because)
     }
 
-    /// Skipped slots by cause: `None` if the system woke the thread late. Parts without skipped slots are left out.
+    /// Number of skipped slots by cause: `None` for a late wake-up by the system. Parts without skipped slots are left
+    /// out.
     pub fn by_part(&self) -> impl Iterator<Item = (Option<Stage>, u64)> {
         let parts = self.parts.iter().map(|(part, count)| (Some(*part), *count));
         std::iter::once((None, self.waking)).chain(parts).filter(|(_, count)| *count > 0)
@@ -204,7 +206,7 @@ mod tests {
 
     const LATE: Duration = Duration::from_millis(95);
 
-    /// StageTimes of a tick in which the cell took so long.
+    /// Stage times of a tick in which the cell took `cell`.
     fn stage_times(cell: Duration) -> StageTimes {
         let mut stage_times = StageTimes::default();
         stage_times.begin();

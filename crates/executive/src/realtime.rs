@@ -1,11 +1,11 @@
-//! Asks the system for what real time needs, and reports what was not granted.
+//! Requests real-time operation from the system, and reports what the system refused.
 //!
-//! It asks for: no page faults in a tick (`mlockall`, and a stack that has been touched), priority of the tick thread
-//! over everything that is not real time (`SCHED_FIFO`), one fixed core, and no deep idle states of the cores
-//! (`/dev/cpu_dma_latency`). None of them is needed for correct results, only for ticks on time, so a refusal is a note
-//! in the verdict and not an error.
+//! The requests are: no page faults in a tick (`mlockall`, and a stack that has been touched), priority of the tick
+//! thread over everything that is not real time (`SCHED_FIFO`), one fixed core, and no deep idle states of the cores
+//! (`/dev/cpu_dma_latency`). Correct results need none of them, only ticks on time do, so a refusal is a note in the
+//! verdict and not an error.
 //!
-//! Threads inherit policy and core: start log and progress threads before [`acquire`] is called.
+//! Threads inherit policy and core: start log and progress threads before calling [`acquire`].
 
 use std::{
     fmt,
@@ -27,25 +27,25 @@ use thread_priority::{
 /// Priority of the tick: above interrupt threads of ordinary devices, below the kernel's own watchdogs.
 pub const PRIORITY: u8 = 80;
 
-/// Stack that is touched beforehand; a tick needs a fraction of it.
+/// Size of the stack that is touched beforehand; a tick needs a fraction of it.
 const STACK_BYTES: usize = 512 * 1024;
-/// While a program holds this file open, cores use no idle state with a longer wake-up time than the written one,
+/// While a program holds this file open, the cores use no idle state with a longer wake-up time than the written one,
 /// microseconds.
 const IDLE_STATES: &str = "/dev/cpu_dma_latency";
 
-/// One of the things that were asked for.
+/// A request and its outcome.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
-    /// What was asked for.
+    /// The request.
     pub what: String,
-    /// Why it was refused; `None` if it was granted.
+    /// Reason of the refusal; `None` if it was granted.
     pub refused: Option<String>,
 }
 
-/// What was granted and what was not.
+/// The outcomes of all requests.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
-    /// Everything that was asked for.
+    /// The requests.
     pub items: Vec<Item>,
 }
 
@@ -82,14 +82,14 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// What was granted. Idle states are limited until this is dropped.
+/// The granted requests. Idle states are limited until this is dropped.
 pub struct RealTime {
-    /// What was granted and what was not.
+    /// The outcomes of all requests.
     pub verdict: Verdict,
     _idle_states: Option<File>,
 }
 
-/// Ask for everything, for the calling thread. `core` is the one to run on; without it the highest number that the
+/// Make all requests for the calling thread. `core` is the core to run on; `None` chooses the highest number that the
 /// process may use, because interrupts and other programs prefer low ones.
 #[must_use]
 pub fn acquire(core: Option<usize>) -> RealTime {
@@ -105,10 +105,10 @@ pub fn acquire(core: Option<usize>) -> RealTime {
     RealTime { verdict, _idle_states: idle_states.ok() }
 }
 
-/// Ask for the priority alone, for the calling thread: one that serves a link beside the ticks.
+/// Request only the priority, for the calling thread: for a thread that serves a link in parallel with the ticks.
 ///
 /// # Errors
-/// Why it is not granted.
+/// The reason of the refusal.
 pub fn raise_priority() -> Result<(), String> {
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     ThreadPriority::try_from(PRIORITY).map_err(|error| error.to_string()).and_then(|priority| {
@@ -123,7 +123,7 @@ fn in_words(error: thread_priority::Error) -> String {
     }
 }
 
-/// Allocates the pages of the stack before the first tick needs them.
+/// Allocate the pages of the stack before the first tick needs them.
 #[inline(never)]
 fn touch_stack() {
     let mut stack = [0_u8; STACK_BYTES];
@@ -136,7 +136,7 @@ fn limit_idle_states() -> io::Result<File> {
     Ok(file)
 }
 
-/// Future memory is locked only where no limit can make a later allocation fail because of it.
+/// Lock memory; future memory only if no limit can make a later allocation fail because of that.
 fn lock_memory(verdict: &mut Verdict) {
     let unlimited = geteuid().is_root() || getrlimit(Resource::Memlock).current.is_none();
     let (what, flags) = if unlimited {
@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn every_request_has_an_outcome_and_a_thread_of_its_own_survives_it() {
-        // In a thread of its own: what is granted must not last for the other tests.
+        // In a separate thread, so that granted requests do not affect the other tests.
         let verdict = std::thread::spawn(|| acquire(None).verdict).join().expect("no panic");
         assert_eq!(verdict.items.len(), 5);
         assert!(verdict.items.iter().all(|item| !item.what.is_empty()));

@@ -1,7 +1,6 @@
 //! Steps the ladder, one tick after the other, with times and publication.
 //!
-//! The ticks themselves are a [`Course`]. A runner times them and, if asked for, publishes their buffers in shared
-//! memory.
+//! The ticks themselves are a [`Course`]. A runner times them and can publish their buffers in shared memory.
 //!
 //! A tick takes some microseconds if its code and its data are in the caches, and ten times as long if they are not;
 //! within the 40 ms between two ticks they are evicted. The processes are pure state machines, so a tick can be *warmed
@@ -25,19 +24,19 @@ pub struct Runner<L> {
     course: Course<L>,
     times: Box<Histogram>,
     stage_times: StageTimes,
-    /// The copy of the ladder that warms up; made by the first warm-up.
+    /// The copy of the ladder for warm-ups; the first warm-up creates it.
     shadow: Option<Box<L>>,
     publisher: Option<Publisher>,
-    /// What was published last, for warm-ups.
+    /// The data published last, for warm-ups.
     published: Box<(ExternalInputs, Pulse)>,
     allocations_at_start: u64,
-    /// Allocations of processes that run elsewhere.
+    /// Allocations by processes that run elsewhere.
     elsewhere: u64,
     last_ns: u64,
 }
 
 impl<L> Runner<L> {
-    /// A runner before its first tick. With a publisher it writes every tick to shared memory.
+    /// A runner before its first tick. With a publisher, it writes every tick to shared memory.
     #[must_use]
     pub fn new(levels: L, publisher: Option<Publisher>) -> Self {
         Self {
@@ -53,15 +52,14 @@ impl<L> Runner<L> {
         }
     }
 
-    /// Run the next tick on its external inputs. `skipped` are the slots of the grid that were skipped so far; they are
-    /// published, and change nothing else.
+    /// Run the next tick on its external inputs. `skipped` is the number of slots of the grid that were skipped so far;
+    /// it is published, and has no other effect.
     ///
-    /// Allocations are counted from here to the end of the call. The time that counts as the controller's is
-    /// that of the processes and of publishing; the digest and the watch for failures belong to the
-    /// bookkeeping of a run and are not in it.
+    /// Allocations are counted from here to the end of the call. The controller's time includes the processes and
+    /// publishing; it excludes the digest and the watch for failures, which belong to the bookkeeping of a run.
     ///
     /// # Errors
-    /// Those of the levels. The tick does not count then, and common memory is as the tick before left it.
+    /// Errors of the levels. The tick does not count then, and common memory stays as after the previous tick.
     pub fn step<Data: ?Sized>(
         &mut self,
         external: &ExternalInputs,
@@ -103,10 +101,10 @@ impl<L> Runner<L> {
         self.course.levels_mut()
     }
 
-    /// Run the next tick on a copy and forget it: see the head of this module. Changes nothing that another process can
-    /// see; the last buffers are published once more. Call it between two ticks, when there is time.
+    /// Run the next tick on a copy and discard the result: see the head of this module. It changes nothing that another
+    /// process can see; it publishes the last buffers once more. Call it between two ticks, when there is time.
     ///
-    /// The first warm-up makes the copy, which allocates; no later one does.
+    /// The first warm-up creates the copy, which allocates; later ones do not allocate.
     pub fn warm_up<Data: ?Sized>(&mut self, external: &ExternalInputs, data: &Data)
     where
         L: Levels<Data>,
@@ -122,7 +120,7 @@ impl<L> Runner<L> {
         }
     }
 
-    /// Stopwatch of the parts of a tick; a caller marks the parts that [`step`](Self::step) does not run.
+    /// Stopwatch of the parts of a tick, with which the caller marks the parts that [`step`](Self::step) does not run.
     pub const fn stage_times_mut(&mut self) -> &mut StageTimes {
         &mut self.stage_times
     }
@@ -145,7 +143,7 @@ impl<L> Runner<L> {
         self.course.tick()
     }
 
-    /// Common memory as the last tick left it.
+    /// Common memory after the last tick.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
         self.course.memory()
@@ -157,7 +155,7 @@ impl<L> Runner<L> {
         self.course.digest()
     }
 
-    /// The process that failed first, if one did.
+    /// The record of the first failure.
     #[must_use]
     pub const fn watch(&self) -> &Watch {
         self.course.watch()
@@ -169,14 +167,13 @@ impl<L> Runner<L> {
         &self.times
     }
 
-    /// Nanoseconds of the controller part of the last tick.
+    /// Duration of the controller part of the last tick, ns.
     #[must_use]
     pub const fn last_ns(&self) -> u64 {
         self.last_ns
     }
 
-    /// Heap allocations of the controller since the runner was made; `None` if the program does not count
-    /// them.
+    /// Heap allocations of the controller since the creation of the runner; `None` if the program does not count them.
     #[must_use]
     pub fn allocations(&self) -> Option<u64> {
         alloc::is_installed().then(|| alloc::allocations() - self.allocations_at_start + self.elsewhere)
@@ -198,7 +195,7 @@ mod tests {
 
     use super::*;
 
-    /// Adds one to the echo of Task and copies it one process further down a tick; counts its steps.
+    /// Adds one to the echo of Task and copies it one process further down per tick; counts its steps.
     #[derive(Clone, Default)]
     struct Chain {
         steps: u32,
@@ -253,7 +250,7 @@ mod tests {
         let external = ExternalInputs::default();
         for data in 1..=10 {
             let Ok(expected) = one.step(&external, &data, 0).copied();
-            // Even if the tick itself is given something else.
+            // Even if the tick itself gets other data.
             (0..3).for_each(|_| other.warm_up(&external, &77));
             let Ok(memory) = other.step(&external, &data, 0);
             assert_eq!(*memory, expected);

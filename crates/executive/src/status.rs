@@ -1,5 +1,5 @@
 //! Summary of a run: for each process its command, its status and the row that fired, and the executive's counts.
-//! Monitors print it, and it is mirrored for programs that cannot read the buffers ([`crate::memory::Mirror`]).
+//! Monitors print it; it is mirrored for programs that cannot read the buffers ([`crate::memory::Mirror`]).
 
 use std::fmt;
 
@@ -10,30 +10,30 @@ use serde::Serialize;
 
 use crate::{failure::command, memory::layout::Pulse};
 
-/// A process.
+/// Status of a process.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ProcessStatus {
     /// The manual's name.
     pub process: &'static str,
-    /// The command that it has; empty for none.
+    /// Its present command; empty for none.
     pub command: String,
     /// Its status report.
     pub status: &'static str,
-    /// Its decision table; `None` before one was used.
+    /// Its decision table; `None` if it has not used one yet.
     pub table: Option<&'static str>,
-    /// The row that fired; `None` before one did.
+    /// The row that fired; `None` if none has fired yet.
     pub row: Option<u8>,
-    /// Step of its command after that row; empty for none.
+    /// Step of its command after that row; empty if there is none.
     pub step: String,
-    /// It was not stepped: dormant or held.
+    /// True if it was not stepped: dormant or held.
     pub suspended: bool,
-    /// It runs in another system.
+    /// True if it runs in another system.
     pub elsewhere: bool,
-    /// It has written nothing in this tick.
+    /// True if it has not written in this tick.
     pub lost: bool,
 }
 
-/// A run.
+/// Status of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Status {
     /// Name of the run.
@@ -42,15 +42,15 @@ pub struct Status {
     pub tick: u64,
     /// Simulated time, s.
     pub simulated_s: f64,
-    /// Slots of the 40 ms grid that were skipped.
+    /// Number of slots of the 40 ms grid that were skipped.
     pub skipped: u64,
     /// Heap allocations of the controller since the start.
     pub allocations: u64,
-    /// Microseconds that the controller took for the tick.
+    /// Time that the controller took for the tick, microseconds.
     pub controller_us: f64,
-    /// The run is over.
+    /// True if the run is over.
     pub over: bool,
-    /// What is wrong with the line to the robot; `None` if nothing is.
+    /// Fault of the line to the robot; `None` if there is none.
     pub link: Option<&'static str>,
     /// The processes from Task down.
     pub processes: Vec<ProcessStatus>,
@@ -88,7 +88,7 @@ impl Status {
     }
 }
 
-/// A process that can run in another system.
+/// True for a process that can run in another system.
 const fn of_pedestal(process: ProcessId) -> bool {
     matches!(process, ProcessId::Pedestal | ProcessId::Hand | ProcessId::RotaryTable)
 }

@@ -1,9 +1,9 @@
 //! Times of the parts of a tick.
 //!
-//! A tick is a chain of parts, one after the other; the code that has finished one calls [`StageTimes::mark`], which
-//! takes the time since the part before. Nothing is summed up until the tick is over ([`StageTimes::finish`]), so that
-//! each part costs one read of the clock. If slots of the grid were skipped, [`StageTimes::worst`] gives the part that
-//! caused it.
+//! A tick is a sequence of parts; the code that has finished a part calls [`StageTimes::mark`], which takes the time
+//! since the end of the previous part. The times are summed up only at the end of the tick ([`StageTimes::finish`]), so
+//! that each part costs one read of the clock. If slots of the grid were skipped, [`StageTimes::worst`] returns the
+//! part that caused it.
 
 use std::{fmt, time::Instant};
 
@@ -18,13 +18,13 @@ pub enum Stage {
     Inputs,
     /// A control process.
     Process(ProcessId),
-    /// Common memory: carried over from the tick before, and published.
+    /// Common memory: carried over from the previous tick, and published.
     Buffers,
     /// Digest, and the watch for failures.
     Bookkeeping,
     /// Send over a serial line.
     Line,
-    /// Hand-off to the log.
+    /// Transfer to the log.
     Log,
     /// The simulated cell.
     Cell,
@@ -42,7 +42,7 @@ const OTHERS: [Stage; 7] = [
     Stage::Cell,
     Stage::Workstation,
 ];
-/// How many parts there are.
+/// Number of parts.
 pub const PARTS: usize = PROCESS_COUNT + OTHERS.len();
 
 impl Stage {
@@ -80,7 +80,7 @@ impl fmt::Display for Stage {
     }
 }
 
-/// Stopwatch of the parts of a tick, and a histogram of each.
+/// Stopwatch of the parts of a tick, with a histogram of each part.
 pub struct StageTimes {
     last: Instant,
     tick: [u64; PARTS],
@@ -94,14 +94,14 @@ impl Default for StageTimes {
 }
 
 impl StageTimes {
-    /// A tick begins.
+    /// Begin a tick.
     pub fn begin(&mut self) {
         self.tick = [0; PARTS];
         self.last = Instant::now();
     }
 
-    /// A part of the tick is over; it took from the end of the part before until now. Returns how long, in
-    /// nanoseconds. A part may come several times in a tick.
+    /// End a part of the tick, which began at the end of the previous part. Returns its duration in nanoseconds. A part
+    /// can occur several times in a tick.
     pub fn mark(&mut self, part: Stage) -> u64 {
         let now = Instant::now();
         let taken = u64::try_from(now.duration_since(self.last).as_nanos()).unwrap_or(u64::MAX);
@@ -110,14 +110,14 @@ impl StageTimes {
         taken
     }
 
-    /// The tick is over.
+    /// End the tick.
     pub fn finish(&mut self) {
         for (time, &taken) in self.times.iter_mut().zip(&self.tick) {
             time.add(taken);
         }
     }
 
-    /// The part that took longest in this tick, with its time and that of the whole tick, nanoseconds.
+    /// The part that took longest in this tick, its time and that of the whole tick, nanoseconds.
     #[must_use]
     pub fn worst(&self) -> (Stage, u64, u64) {
         let all = Stage::all().map(|part| (part, self.tick[part.index()]));

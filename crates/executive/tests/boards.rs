@@ -1,8 +1,8 @@
-//! Boards in threads of one process: the same bits as on one board, nothing allocated, and what happens when
-//! one leaves or does not fit.
+//! Boards in threads of one process: they give the same bits as one board and allocate nothing; a board that leaves or
+//! does not match the run is detected.
 //!
-//! The boards' programs, with everything that only processes can do to each other, are tested in
-//! `tests/boards.rs` of the whole system.
+//! `tests/boards.rs` of the whole system tests the boards' programs, and everything that only processes can do to each
+//! other.
 
 use std::{
     path::{Path, PathBuf},
@@ -48,8 +48,8 @@ fn store() -> &'static Store {
     })
 }
 
-/// What comes from outside in a tick: commands, hands at the joystick box, a gripper that comes and goes,
-/// another generation.
+/// The external inputs of a tick: commands, actions at the joystick box, a gripper that appears and disappears, another
+/// generation.
 fn external(tick: Tick) -> ExternalInputs {
     let mut external = ExternalInputs::default();
     let number = u32::try_from(tick.0 / 100).unwrap();
@@ -72,7 +72,7 @@ fn external(tick: Tick) -> ExternalInputs {
     external
 }
 
-/// Run so many ticks, or until the levels fail; gives the runner, and why they failed.
+/// Run a number of ticks, or until the levels fail; returns the runner, and the error of the levels.
 fn play<L, E>(levels: L, ticks: u64) -> (Runner<L>, Option<E>)
 where
     L: for<'a> Levels<TaskData<'a>, Error = E>,
@@ -95,7 +95,7 @@ where
     (runner, None)
 }
 
-/// Two generations that are the same; nothing is loaded.
+/// Two equal generations; nothing is loaded.
 struct Fixed;
 
 impl BoardData for Fixed {
@@ -108,7 +108,7 @@ impl BoardData for Fixed {
     }
 }
 
-/// A board in a thread, as `rcs-run board` does it in a process.
+/// Run a board in a thread, as `rcs-run board` runs it in a process.
 fn board<'s>(
     scope: &'s thread::Scope<'s, '_>,
     name: &RunName,
@@ -140,7 +140,7 @@ fn four_boards_compute_the_bits_of_one_and_allocate_nothing() {
         assert_eq!(split.digest(), one.digest());
         assert_ne!(one.digest(), Digest::new());
         assert_eq!(*split.levels().states(), one.levels().state());
-        // All threads of this process count in one place, so that each figure is that of all boards.
+        // All threads of this process are counted together, so each figure is that of all boards.
         assert_eq!(split.allocations(), Some(0));
         for figures in split.levels().figures() {
             assert_eq!((figures.times.count(), figures.allocations), (TICKS, 0), "{}", figures.board);
@@ -174,7 +174,7 @@ fn a_board_that_leaves_stops_the_pulse_and_is_named() {
             play_watched(coordinator, 500, |tick| leave.store(tick == Tick(400), Ordering::Relaxed));
         let lost: Lost = lost.expect("a board left");
         assert_eq!((lost.board, lost.how), (Board::Eight, How::Left));
-        // The flag rises while the board may still answer the tick before.
+        // The flag is set while the board may still answer the previous tick.
         assert!((400..=401).contains(&lost.tick.0), "{lost}");
         assert_eq!(runner.tick(), lost.tick.previous(), "the tick does not count");
         let text = lost.explain(&external(lost.tick).hws, runner.memory());
@@ -197,7 +197,7 @@ fn who_is_missing_is_said() {
         let error = coordinator.gather(PATIENCE, &stop, |event, missing| {
             assert!(matches!(event, BoardEvent::Came { .. }), "{event:?}");
             absent = missing.to_vec();
-            // Who waits knows who is missing; that is enough here.
+            // The waiting process knows which board is missing; that is enough here.
             stop.store(missing == [Board::Six], Ordering::Relaxed);
         });
         assert_eq!(absent, [Board::Six]);

@@ -1,9 +1,9 @@
-//! Nothing is allocated in a tick: counted, with everything that the executive does in one.
+//! A tick allocates nothing: checked with everything that the executive does in one.
 //!
-//! This is also what keeps iceoryx2 in its place: another version, or another messaging pattern, that allocates
-//! when a value is written or read fails here (publish-subscribe of 0.10 allocates once a message).
+//! This also checks iceoryx2: another version, or another messaging pattern, that allocates when a value is written or
+//! read fails here (publish-subscribe of 0.10 allocates once a message).
 //!
-//! This file holds one test only, because all of it runs on the counting allocator.
+//! This file has only one test, because everything in it runs on the counting allocator.
 
 mod common;
 
@@ -24,7 +24,7 @@ use crate::common::headers;
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Fails every tenth tick and recovers, so that the watch for failures has work.
+/// Fails every tenth tick and recovers, so that the watch for failures has work to do.
 #[derive(Clone)]
 struct Failing;
 
@@ -98,7 +98,7 @@ fn a_tick_does_not_allocate_and_one_that_does_is_noticed() {
     let publisher = Publisher::create(&name).expect("this machine has shared memory");
     let mut runner = Runner::new(Failing, Some(publisher));
     let external = ExternalInputs::default();
-    // The first warm-up makes the copy that warms up.
+    // The first warm-up creates the copy for warm-ups.
     runner.warm_up(&external, &());
     for _ in 0..10_000 {
         runner.warm_up(&external, &());

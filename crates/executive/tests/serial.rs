@@ -1,4 +1,4 @@
-//! Over pseudo-terminals: what happens in a tick, and what happens to a port that goes and comes back.
+//! Serial lines over pseudo-terminals: a tick, and a port that disappears and returns.
 
 use std::{
     fs::{self, File},
@@ -52,7 +52,7 @@ fn bytes(of: &[u8]) -> LinkBytes {
     bytes
 }
 
-/// Receive until so many bytes are there, as far as a second lasts.
+/// Receive until `count` bytes are there, for at most a second.
 fn received(line: &mut SerialLine, count: usize) -> LinkBytes {
     let (started, mut rx) = (Instant::now(), LinkBytes::default());
     while usize::from(rx.length) < count && started.elapsed() < Duration::from_secs(1) {
@@ -91,7 +91,7 @@ fn a_tick_allocates_nothing_not_even_when_the_port_goes() {
     assert!(is_installed());
     let mut peer = Peer::new();
     let mut line = peer.line();
-    // The sum is over all threads; no other test of this program enters a section.
+    // The sum is over all threads; no other test of this program enters a counted section.
     let within = |line: &mut SerialLine| {
         let before = allocations();
         let section = Section::enter();
@@ -119,7 +119,7 @@ fn a_line_that_takes_nothing_more_is_reported_and_rests_for_a_tick() {
     let peer = Peer::new();
     let mut line = peer.line();
     let started = Instant::now();
-    // A pseudo-terminal takes some ten thousand bytes that are not read.
+    // A pseudo-terminal takes some ten thousand unread bytes.
     let sent = (0..2000).take_while(|_| line.send(&bytes(&[3; 64]))).count();
     assert!(sent > 0 && sent < 2000, "{sent} frames were taken");
     assert!(line.counts().unsent > 0 && line.has_unsent());

@@ -1,5 +1,4 @@
-//! Common memory in shared memory: what is published is read, by readers that come and go, and nothing stays
-//! behind.
+//! Common memory in shared memory: readers that attach and leave read the published values, and nothing remains.
 
 mod common;
 
@@ -72,7 +71,7 @@ fn a_reader_meets_no_torn_tick() {
             attached.wait();
             let mut last = 0;
             loop {
-                // Once writing has ended the next attempt succeeds, whatever this one meets.
+                // After the end of writing the next attempt succeeds, whatever this one finds.
                 let written = stop.load(Ordering::Acquire);
                 let memory = match reader.memory() {
                     Ok(memory) => memory,
@@ -117,7 +116,7 @@ fn a_process_that_does_not_write_keeps_no_reader_from_the_rest() {
     }
     publisher.publish(&external, &memory, pulse);
     assert_eq!((reader.memory(), reader.external()), (Ok(memory), Ok(external)));
-    // Nor does a process of this system that is lost.
+    // Nor does a lost process of this system.
     memory.grip.header.stamp = Tick(4);
     publisher.publish(&external, &memory, pulse);
     assert_eq!(reader.memory(), Ok(memory));
@@ -155,7 +154,7 @@ fn runs_with_other_names_do_not_meet_and_the_same_name_is_refused() {
     assert_eq!(Attached::open(&other).unwrap().memory().unwrap().prim.status.distance, 2);
 }
 
-/// A stream of numbers, the same in every run.
+/// A stream of numbers that is the same in every run.
 struct Numbers(u64);
 
 impl Numbers {
@@ -165,7 +164,7 @@ impl Numbers {
     }
 }
 
-/// Appends the image of some legal value.
+/// Appends the image of a random legal value.
 fn some_value(schema: &Schema, numbers: &mut Numbers, image: &mut Vec<u8>) {
     match schema {
         Schema::Bool => image.push(u8::try_from(numbers.below(2)).unwrap()),

@@ -1,4 +1,4 @@
-//! What a reader sees beside the buffers: the headers of the last ten seconds, and the simulated cell.
+//! The data of a reader besides the buffers: the headers of the last ten seconds, and the simulated cell.
 
 mod common;
 
@@ -15,7 +15,7 @@ use rcs_core::{table::Values, tick::Tick};
 
 use crate::common::headers;
 
-/// Common memory of a tick in which every process has decided.
+/// Common memory of a tick in which every process has made a decision.
 fn memory(tick: u64) -> CommonMemory {
     let values = Values { step: 1, variables: tick };
     let header = Header {

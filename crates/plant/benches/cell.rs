@@ -1,8 +1,8 @@
-//! What a tick of the simulated cell costs: at rest, with a part in the fingers on the way, with the vise closing on a part
-//! that the fingers hold; what its digest costs, and what it costs to save and to restore it.
+//! Cost of a tick of the simulated cell: at rest, with a moving part in the fingers, with the vise closing on a part in
+//! the fingers; cost of its digest, of saving and of restoring it.
 //!
-//! `cargo bench -p plant --bench cell`. The scenes are those of the determinism tests; each sample begins with the same saved
-//! cell, so that all samples measure the same ticks.
+//! `cargo bench -p plant --bench cell`. The scenes are those of the determinism tests; each sample begins with the same
+//! saved cell, so that all samples measure the same ticks.
 
 #![expect(missing_docs, reason = "criterion_group! makes a public function without a doc comment")]
 
@@ -21,13 +21,13 @@ use rig::{
 /// Ticks of a sample.
 const TICKS: usize = 25;
 
-/// A stretch of a taped scene, and the cell at its beginning.
+/// A part of a taped scene, and the cell at its beginning.
 struct Stretch {
     cell: Vec<u8>,
     beats: Vec<Beat>,
 }
 
-/// The `TICKS` ticks from the first one on in which `begins` holds for the cell.
+/// The `TICKS` ticks from the first one for which `begins` returns true.
 fn stretch(tape: &Tape, seed: u64, begins: impl Fn(&Cell) -> bool) -> Stretch {
     let mut cell = Cell::new(&description(), seed).expect("the cell of the project");
     let at = tape.beats.iter().position(|beat| {

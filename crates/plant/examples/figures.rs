@@ -1,5 +1,5 @@
-//! The figures of the simulation: cost of a tick (one core's time, Linux), error at rest, sink of contacts, creep of a grip.
-//! The number of sub-steps can be given.
+//! Prints figures of the simulation: cost of a tick (one core's time, Linux), error at rest, penetration of contacts,
+//! creep of a grip. The argument is the number of sub-steps.
 
 #![expect(clippy::print_stdout, reason = "figures are what it is for")]
 
@@ -59,7 +59,7 @@ fn cost(what: &str, rig: &mut Rig, work: impl FnOnce(&mut Rig)) {
     println!("{what:37} {ticks:6} ticks, {:6.1} us a tick, {:5.0} x real time", tick * 1e6, 0.040 / tick);
 }
 
-/// Time that this thread has had a core, s.
+/// CPU time of this thread, s.
 fn seconds() -> f64 {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").expect("a Linux with schedstat");
     let nanoseconds: f64 =

@@ -1,8 +1,8 @@
-//! Digests of all ticks of two scenes full of contacts, one line each: `cargo run --release --example world_hash [SEED]`.
+//! Prints digests of two scenes with many contacts, one line each: `cargo run --release --example world_hash [SEED]`.
 //!
-//! The lines are the same in every run, in every process, and with and without `--release` (physics without optimisation
-//! is much slower: a minute or two). `--ticks` prints the digest of every tick, so that two outputs can be compared
-//! line by line where they should ever differ.
+//! The lines are the same in every run, in every process, and with and without `--release` (physics without
+//! optimisation is much slower: a minute or two). `--ticks` prints the digest of every tick, so that two outputs can be
+//! compared line by line if they differ.
 
 #![expect(clippy::print_stdout, reason = "figures are what it is for")]
 
@@ -11,7 +11,7 @@ mod rig;
 
 use rig::{Rig, scenes};
 
-/// A scene by its seed.
+/// A function that plays the scene of a seed.
 type Scene = fn(u64) -> Rig;
 
 fn main() {

@@ -1,12 +1,12 @@
-//! The hydraulic arm: servos that follow a command under pressure, joints that sag without.
+//! The hydraulic arm: its servos follow a command under pressure; its joints sag without.
 //!
-//! Under pressure the joints follow a command that runs to its goal at an even rate, with a first-order lag and no
-//! faster than their greatest speed. The lag is integrated exactly, so that an arm at rest is at its command within the
-//! resolution of the resolvers. The deflection of the powered arm under load is modelled by the springs between hand
-//! and fingers ([`crate::gripper`]), not here.
+//! Under pressure the command of the joints moves to its goal at a constant rate, and the joints follow it with a
+//! first-order lag, limited to their greatest speed. The lag is integrated exactly, so that an arm at rest is at its
+//! command within the resolution of the resolvers. The springs between hand and fingers ([`crate::gripper`]) model the
+//! deflection of the powered arm under load, not this module.
 //!
-//! Without pressure (III.6) each joint is a damper that gives way to the weight of the links, to what hangs
-//! on them, and to what they run into:
+//! Without pressure (III.6) each joint is a damper that yields to the weight of the links, to loads on them, and to
+//! contacts:
 //!
 //! ```text
 //!   damping x rate = torque of the weights + torque of the contacts
@@ -29,32 +29,34 @@ use crate::{
     linkage::{Chain, END_PLATE, FOREARM, Load, UPPER_ARM},
 };
 
-/// Shoulder, elbow and pitch among the joints.
+/// Indices of shoulder, elbow and pitch among the joints.
 const SHOULDER: usize = 1;
 const ELBOW: usize = 2;
 const PITCH: usize = 3;
-/// The link that yaw turns.
+/// Index of the link that the yaw joint turns.
 const WRIST: usize = 4;
 
-/// Centre of mass of the upper arm, in from the shoulder (ASSUMED: in its middle).
+/// Distance of the upper arm's centre of mass from the shoulder, in (ASSUMED: in its middle).
 const UPPER_ARM_CENTRE: f64 = 0.5 * T3.upper_arm;
-/// Centre of mass of the forearm, in from the elbow (ASSUMED: the actuators of the wrist sit at the elbow's end).
+/// Distance of the forearm's centre of mass from the elbow, in (ASSUMED: the actuators of the wrist sit at the elbow's
+/// end).
 const FOREARM_CENTRE: f64 = 0.4 * T3.forearm;
-/// Centre of mass of the wrist, in from the yaw axis (ASSUMED: halfway from the pitch axis to the end plate).
+/// Distance of the wrist's centre of mass from the yaw axis, in (ASSUMED: halfway from the pitch axis to the end
+/// plate).
 const WRIST_CENTRE: f64 = 1.5;
-/// Centre of mass of quick change and gripper, in from the yaw axis (ASSUMED: halfway from the end plate to
-/// the fingertips).
+/// Distance of the centre of mass of quick change and gripper from the yaw axis, in (ASSUMED: halfway from the end
+/// plate to the fingertips).
 pub const TOOL_CENTRE: f64 = T3.yaw_to_plate + T3.plate_to_tool / 2.0;
 
-/// An arm without pressure is at rest if no joint is faster than this, rad/s: a limb on a damper never reaches its end
-/// position exactly.
+/// An arm without pressure is at rest if no joint is faster than this, rad/s: a damped joint only approaches its end
+/// position.
 const AT_REST: f64 = 0.2 * (core::f64::consts::PI / 180.0);
 /// Full friction from this speed on, in/s; below it is proportional to speed, so that a sticking contact creeps more
 /// slowly than an arm that counts as at rest.
 const STICKING: f64 = 0.1;
 /// Longest step of the servo equation, s.
 const STEP_S: f64 = 0.0025;
-/// Joints nearer than this to their command have settled, rad.
+/// A joint within this distance of its command has settled, rad.
 const SETTLED: f64 = 0.005 * (core::f64::consts::PI / 180.0);
 
 /// A command that moves at constant speed from one set of joint angles to another.
@@ -88,12 +90,12 @@ impl Ramp {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Arm {
     actuators: Actuators,
-    /// Of each joint without pressure, lb·in·s.
+    /// Damping of each joint without pressure, lb·in·s/rad.
     dampers: [f64; 6],
     joints: Joints,
     command: Ramp,
     pressure: bool,
-    /// Where the shot pin stops the shoulder; it is out while there is no pressure.
+    /// Shoulder angle at the shot pin, which is extended while there is no pressure, rad.
     pin: f64,
     /// Rates of the joints in the last step without pressure, rad/s.
     rates: [f64; 6],
@@ -129,14 +131,14 @@ impl Arm {
         arm
     }
 
-    /// The weight of quick change and gripper on this arm, where it is.
+    /// The present load of quick change and gripper on this arm: their weight at their centre of mass.
     #[must_use]
     pub fn tool_weight(&self) -> Load {
         let chain = Chain::new(&self.joints);
         Load::weight(END_PLATE, chain.along(END_PLATE, TOOL_CENTRE), self.actuators.hydraulics.tool_weight)
     }
 
-    /// Turn the pressure on or off. Off ends the motion, the command keeps its present value, and the shot pin extends.
+    /// Turn the pressure on or off. Off stops the motion, keeps the present command, and extends the shot pin.
     pub fn set_pressure(&mut self, on: bool) {
         if self.pressure && !on {
             self.stop();
@@ -159,13 +161,13 @@ impl Arm {
         self.command = Ramp { from: self.command.present(), goal, elapsed: 0.0, duration: seconds.max(0.0) };
     }
 
-    /// End the motion: the command keeps its present value.
+    /// Stop the motion: the command keeps its present value.
     pub fn stop(&mut self) {
         self.command = Ramp::at(self.command.present());
     }
 
-    /// Advance by `seconds`. While `held` the command does not move. `loads` are the forces on the arm beside the
-    /// weight of its links; they move it only without pressure.
+    /// Advance by `seconds`. While `held` the command does not move. `loads` are the forces on the arm in addition to
+    /// the weight of its links; they move it only without pressure.
     pub fn advance(&mut self, seconds: f64, held: bool, loads: &[Load]) {
         let mut left = seconds;
         while left > 0.0 {
@@ -225,12 +227,12 @@ impl Arm {
         self.command = Ramp::at(command);
     }
 
-    /// The rates of the joints: joints that would pass a stop within the step end at it, and the others move as if
-    /// those were fixed.
+    /// The rates of the joints, rad/s: a joint that would pass a stop within the step ends at the stop, and the others
+    /// move as if it were fixed.
     fn give_way(&self, dt: f64, mut damping: Matrix6<f64>, mut torque: Vector6<f64>) -> [f64; 6] {
         let mut stopped = [None; 6];
         loop {
-            // Dampers are positive, contacts only add: the matrix has an inverse.
+            // Dampers are positive and contacts only add to them: the matrix has an inverse.
             let solved = damping.cholesky().map_or_else(Vector6::zeros, |cholesky| cholesky.solve(&torque));
             let mut rates: [f64; 6] = solved.into();
             let mut beyond = false;
@@ -244,7 +246,7 @@ impl Arm {
                     low = low.max(self.pin);
                 }
                 let next = self.joints[joint] + *rate * dt;
-                // A joint that stands beyond a stop already is not thrown back.
+                // A joint that is already beyond a stop is not moved back to it.
                 let stop = next.clamp(low.min(self.joints[joint]), high.max(self.joints[joint]));
                 if next != stop {
                     stopped[joint] = Some((stop - self.joints[joint]) / dt);
@@ -273,7 +275,7 @@ impl Arm {
         self.command.present()
     }
 
-    /// Under pressure: the command has come to its goal and every joint is within 0.005 degree of it.
+    /// True if, under pressure, the command has reached its goal and every joint is within 0.005 degree of it.
     #[must_use]
     pub fn settled(&self) -> bool {
         let near = |(joint, at): (&f64, &f64)| (joint - at).abs() < SETTLED;
@@ -288,13 +290,13 @@ impl Arm {
         }
     }
 
-    /// Without pressure: the arm has finished sagging. False before the first step without pressure.
+    /// True if, without pressure, the arm has finished sagging. False before the first step without pressure.
     #[must_use]
     pub fn has_sagged(&self) -> bool {
         !self.pressure && self.sinking > 0.0 && self.rates.iter().all(|rate| rate.abs() < AT_REST)
     }
 
-    /// The shoulder lies on the shot pin.
+    /// True if the shoulder rests on the shot pin.
     #[must_use]
     pub fn on_shot_pin(&self) -> bool {
         !self.pressure && self.joints[SHOULDER] <= self.pin
@@ -307,7 +309,7 @@ impl Arm {
     }
 }
 
-/// The matrix of a damper that acts along one direction.
+/// The damping matrix of a damper of unit strength that acts along one direction with these levers.
 fn square(lever: &Vector6<f64>) -> Matrix6<f64> {
     lever * lever.transpose()
 }
@@ -322,8 +324,8 @@ fn weights(chain: &Chain, hydraulics: &Hydraulics) -> [Load; 3] {
     ]
 }
 
-/// Damping of the joints: the load at HOME gives the droop rate. The base, which carries no load, has the damping of
-/// the shoulder; yaw and roll have that of the pitch.
+/// Damping of the joints: with the load at HOME, a joint sinks at the droop rate. The base, which carries no load, has
+/// the damping of the shoulder; yaw and roll have that of the pitch.
 fn dampers(hydraulics: &Hydraulics) -> [f64; 6] {
     let chain = Chain::new(&HOME_JOINTS);
     let tool = Load::weight(END_PLATE, chain.along(END_PLATE, TOOL_CENTRE), hydraulics.tool_weight);
@@ -341,7 +343,7 @@ mod tests {
         Arm::new(&Actuators::default(), HOME_JOINTS)
     }
 
-    /// Sag for so many seconds with a gripper on.
+    /// Sags for `seconds` with a gripper on.
     fn sag(arm: &mut Arm, seconds: f64) {
         for _ in 0..(seconds / 0.04).round() as u32 {
             arm.advance(0.04, false, &[arm.tool_weight()]);
@@ -397,7 +399,7 @@ mod tests {
         let loads = weights(&chain, &arm.actuators.hydraulics);
         let torque: Vector6<f64> =
             loads.iter().chain([&arm.tool_weight()]).map(|load| chain.torque(load)).sum();
-        // Newton metres, as worked out by hand from the masses: 2.7 and 0.85 kN·m.
+        // Newton metres, calculated by hand from the masses: 2.7 and 0.85 kN·m.
         let metric = |joint: usize| torque[joint] * 0.112_985;
         assert!((metric(SHOULDER) + 2720.0).abs() < 40.0, "{}", metric(SHOULDER));
         assert!((metric(ELBOW) + 860.0).abs() < 20.0, "{}", metric(ELBOW));
@@ -444,7 +446,7 @@ mod tests {
 
     #[test]
     fn pressure_lifts_the_hand_by_the_ten_inches_of_the_manual() {
-        // After seconds, and after a night: III.6 has about ten inches, IV.3.3 several.
+        // After seconds, and after a night: III.6 says about ten inches, IV.3.3 several.
         for (seconds, inches) in [(2.0, 12.7), (5.0, 12.2), (20.0, 10.8), (300.0, 7.4)] {
             let mut arm = arm();
             arm.set_pressure(false);

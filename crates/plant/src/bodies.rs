@@ -1,7 +1,7 @@
 //! Collision shapes of robot and devices, from the cell description and their positions.
 //!
-//! Links of the arm are capsules, hands and furniture boxes, plates and round parts cylinders. The simulated cell and
-//! the check of paths ([`crate::room`]) both make their bodies here, so that both use the same shapes.
+//! Links of the arm are capsules, hands and furniture are boxes, plates and round parts are cylinders. The simulated
+//! cell and the path check ([`crate::room`]) both make their bodies here, so that both use the same shapes.
 
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
@@ -25,7 +25,7 @@ use crate::{
 /// Size of the camera, in.
 pub const CAMERA: [f64; 3] = [2.0, 2.0, 1.5];
 
-/// Places in the chain of the arm: see [`Body::chain`].
+/// Positions of the links in the chain of the arm: see [`Body::chain`].
 mod chain {
     pub const TURRET: u8 = 1;
     pub const UPPER_ARM: u8 = 2;
@@ -34,7 +34,7 @@ mod chain {
     pub const HAND: u8 = 5;
 }
 
-/// Fixed bodies: the furniture, and the turret, which is round.
+/// Fixed bodies: the furniture, and the turret as a cylinder.
 #[must_use]
 pub fn standing(cell: &CellDescription, furniture: &[Block]) -> Vec<Body> {
     let (radius, half_height) = turret(cell);
@@ -44,7 +44,7 @@ pub fn standing(cell: &CellDescription, furniture: &[Block]) -> Vec<Body> {
     furniture.iter().map(Body::from).chain([turret]).collect()
 }
 
-/// Radius and half height of the turret, which turns about the base axis with the shoulder in its middle, in.
+/// Radius and half height of the turret, in. It turns about the base axis; the shoulder is at its middle.
 #[must_use]
 pub fn turret(cell: &CellDescription) -> (f64, f64) {
     let radius = 1.5 * cell.robot.upper_arm_radius;
@@ -56,12 +56,12 @@ fn cuboid(size: &Inches) -> SharedShape {
     SharedShape::cuboid(half.x, half.y, half.z)
 }
 
-/// A cylinder of the simulation lies along its Y; this one along X.
+/// The pose, m, of a cylinder whose axis is the X axis of `frame` (in): cylinders of the simulation lie along Y.
 fn along_x(frame: &Frame) -> Pose {
     to_pose(frame) * Pose::from_rotation(Turn::from_rotation_z(-FRAC_PI_2))
 }
 
-/// Upper arm, forearm and wrist at joint angles in radians.
+/// Upper arm, forearm and wrist for joint angles in radians.
 #[must_use]
 pub fn arm(cell: &CellDescription, joints: &Joints) -> [Body; 3] {
     let [_, upper, fore, _, _, plate] = Chain::new(joints).frames().map(|frame| to_pose(&frame));
@@ -72,7 +72,7 @@ pub fn arm(cell: &CellDescription, joints: &Joints) -> [Body; 3] {
     };
     let upper = capsule("upper_arm", upper, T3.upper_arm / 4.0, T3.upper_arm, robot.upper_arm_radius);
     let fore = capsule("forearm", fore, 0.0, T3.forearm, robot.forearm_radius);
-    // Its round end is behind the end plate, before which the quick change sits.
+    // Its round end is behind the end plate, in front of which the quick change sits.
     let end = T3.yaw_to_plate - robot.wrist_radius;
     let wrist = capsule("wrist", plate, 0.0, end, robot.wrist_radius);
     [upper.at(chain::UPPER_ARM), fore.at(chain::FOREARM), wrist.at(chain::WRIST)]
@@ -107,15 +107,15 @@ pub fn body_boxes(cell: &CellDescription, gripper: &Gripper) -> [(Frame, Inches)
     [(body, size), (left, ear), (right, ear)]
 }
 
-/// The body of a hand under its fingers, in its tool frame, and its size.
+/// Frame, in the tool frame, and size of the body of a hand behind its fingers, in.
 #[must_use]
 pub fn palm(gripper: &Gripper) -> (Frame, Inches) {
     let middle = Inches::new(-gripper.fingers[0] - gripper.body[0] / 2.0, 0.0, 0.0);
     (Frame { position: middle, rotation: Rotation::identity() }, Inches::from(gripper.body))
 }
 
-/// The gripper on the robot: its body, and its fingers at the opening of the air (in), without the deflection of their
-/// springs, because the collision check needs the depth to which the arm has moved them.
+/// The gripper on the robot: its body, and its fingers at the opening set by the air (in), without the deflection of
+/// their springs, because the collision check needs the depth to which the arm has moved them.
 #[must_use]
 pub fn worn(cell: &CellDescription, gripper: &Gripper, tool: &Frame, opening: f64) -> Vec<Body> {
     let tool = to_pose(tool);
@@ -154,7 +154,7 @@ pub fn stored(cell: &CellDescription, gripper: &Gripper, name: &'static str, at:
     let change = &cell.quick_change;
     let plate = Inches::new(-gripper.plate() - change.length / 4.0, 0.0, 0.0);
     let plate = Frame { position: plate, rotation: Rotation::identity() };
-    // The square in the round plate: the camera looks past the round.
+    // The inscribed square of the round plate: the camera looks past the round plate.
     let side = change.radius * SQRT_2;
     let boxes = body_boxes(cell, gripper).into_iter();
     boxes

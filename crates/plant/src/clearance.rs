@@ -1,10 +1,10 @@
-//! Collisions of the robot: each tick arm, gripper, and what the gripper carries, against everything else in
+//! Collision check of the robot: each tick arm, gripper, and the carried part are checked against everything else in
 //! the cell, and against the arm itself.
 //!
 //! The simulated arm follows its path even through contact, as a hydraulic arm would, so collisions must be computed
 //! from geometry. The cell description lists permitted contacts ([`crate::description::Permits`]). Of the pairs that
 //! are not always permitted, the check keeps, each tick, those that touch or are nearer than a margin, with their depth
-//! and direction. The caller that has the present command decides which are permitted.
+//! and direction. The caller, who knows the present command, decides which are permitted.
 
 use std::{borrow::Cow, collections::BTreeSet};
 
@@ -17,7 +17,7 @@ use crate::{
     description::{Kind, Permits},
 };
 
-/// Least depth of a contact, in: resting parts are less deep.
+/// Least depth of a contact, in: resting parts penetrate less.
 pub const LEAST_DEPTH: f64 = 0.001;
 
 /// A body that can collide, metres.
@@ -25,26 +25,26 @@ pub const LEAST_DEPTH: f64 = 0.001;
 pub struct Body {
     /// Its name.
     pub name: Cow<'static, str>,
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
-    /// Its place.
+    /// Its pose.
     pub pose: Pose,
     /// Its shape.
     pub shape: SharedShape,
-    /// Its surroundings.
+    /// Its bounding box.
     pub aabb: Aabb,
-    /// Its place in the chain of the arm, from 1 at the base; 0 if it is not of it. Neighbours in the chain
-    /// do not collide.
+    /// Its position in the chain of the arm, from 1 at the base; 0 for other bodies. Neighbours in the chain do not
+    /// collide.
     pub chain: u8,
 }
 
 impl Body {
-    /// A body that is not of the arm.
+    /// A body that does not belong to the arm.
     pub fn new(name: impl Into<Cow<'static, str>>, kind: Kind, pose: Pose, shape: SharedShape) -> Self {
         Self { name: name.into(), kind, aabb: shape.compute_aabb(&pose), pose, shape, chain: 0 }
     }
 
-    /// The same body at a place in the chain of the arm.
+    /// The same body at a position in the chain of the arm.
     #[must_use]
     pub fn at(self, chain: u8) -> Self {
         Self { chain, ..self }
@@ -54,40 +54,40 @@ impl Body {
         (&self.name, self.kind)
     }
 
-    /// The same thing at the same place.
+    /// True if it is the same body at the same pose.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         self.id() == other.id() && self.pose == other.pose && self.aabb == other.aabb
     }
 
-    /// They are neighbours in the chain of the arm, or the same link.
+    /// True if they are neighbours in the chain of the arm, or the same link.
     #[must_use]
     pub fn is_joined_to(&self, other: &Self) -> bool {
         self.chain != 0 && other.chain != 0 && self.chain.abs_diff(other.chain) <= 1
     }
 }
 
-/// Two things that touch or are near each other.
+/// Two bodies that touch or are near each other.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Contact {
     /// The moving body.
     pub mover: String,
-    /// What kind of thing it is.
+    /// Kind of the moving body.
     pub mover_kind: Kind,
     /// The obstacle.
     pub obstacle: String,
-    /// What kind of thing that is.
+    /// Kind of the obstacle.
     pub obstacle_kind: Kind,
-    /// How deep, in; negative is a distance.
+    /// Penetration depth, in; a negative value is a distance.
     pub depth: f64,
-    /// Where, world, in.
+    /// Position of the contact, world, in.
     pub at: [f64; 3],
     /// Unit vector, world: direction from the obstacle to the mover.
     pub away: [f64; 3],
 }
 
 impl Contact {
-    /// They touch.
+    /// True if they touch.
     #[must_use]
     pub fn touches(&self) -> bool {
         self.depth > LEAST_DEPTH
@@ -105,7 +105,7 @@ impl Contact {
         (&self.obstacle, self.obstacle_kind)
     }
 
-    /// The two, whichever pieces of them it is.
+    /// Names of the two bodies; all pieces of a body have the same name.
     #[must_use]
     pub fn pair(&self) -> (String, String) {
         (self.mover.clone(), self.obstacle.clone())
@@ -126,7 +126,7 @@ pub struct Clearance {
 }
 
 impl Clearance {
-    /// Report pairs nearer than `margin` inches; without this only contacts.
+    /// Report pairs nearer than `margin` inches; by default only contacts are reported.
     pub fn watch(&mut self, margin: f64) {
         self.margin = metres(margin.max(0.0));
     }
@@ -138,13 +138,13 @@ impl Clearance {
         &self.contacts
     }
 
-    /// The same, owned.
+    /// The contacts and near pairs as an owned list.
     #[must_use]
     pub fn into_contacts(self) -> Vec<Contact> {
         self.contacts
     }
 
-    /// Check all pairs. Returns those that have just become deeper than any command permits.
+    /// Check all pairs. Returns the contacts that have just become deeper than any command permits.
     pub fn check<'a>(
         &mut self,
         permits: &Permits,

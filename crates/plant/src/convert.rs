@@ -1,7 +1,7 @@
-//! Inches to metres and back: the one place where the cell's units become SI (docs/design/units.md "Cell").
+//! Inches to metres and back: the only place where the cell's units become SI (docs/design/units.md "Cell").
 //!
-//! The controller, the description file and the interface of this crate speak inches, pounds and radians; rapier and the
-//! viewers speak metres, newtons and kilograms.
+//! The controller, the description file and the interface of this crate use inches, pounds and radians; rapier and the
+//! viewers use metres, newtons and kilograms.
 
 use geometry::frame::{Frame, Vector};
 use nalgebra::{Matrix3, Rotation3};
@@ -69,7 +69,7 @@ pub fn to_frame(pose: &Pose) -> Frame {
     }
 }
 
-/// The quaternion of the same rotation that is nearer to `near`: of the two signs, the one that leads there without a turn.
+/// The quaternion of the same rotation with the sign that makes it nearer to `near`.
 #[must_use]
 pub fn on_the_side_of(near: &Rotation, rotation: Rotation) -> Rotation {
     if near.dot(rotation) < 0.0 { -rotation } else { rotation }

@@ -1,9 +1,9 @@
 //! The cell description: one TOML file with positions, sizes and forces of everything in the cell.
 //!
-//! Everything in the file is in inches, degrees, pounds and seconds, in world coordinates. Reading finds all mistakes
-//! at once: invalid TOML, keys that are missing, unknown or misspelt, values of another kind, and numbers and names
-//! that [`CellDescription::validate`] does not accept. Each has its entry, its place in the text, what was expected and
-//! what was found.
+//! All values in the file are in inches, degrees, pounds and seconds, in world coordinates. Reading finds all mistakes
+//! at once: invalid TOML, keys that are missing, unknown or misspelt, values of the wrong type, and numbers and names
+//! that [`CellDescription::validate`] rejects. Each mistake gives its entry, its place in the text, the expected and
+//! the found value.
 
 mod check;
 mod contact;
@@ -32,7 +32,8 @@ pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChang
 /// The file of a cell description in a data directory.
 pub const CELL: &str = "cell.toml";
 
-/// Ten times the largest number that a cell has: beyond it geometry and solver overflow.
+/// Codes of the problems, and the range of magnitudes: ten times the largest number of a cell, because geometry and
+/// solver overflow beyond.
 const KIND: FileKind = FileKind {
     whole: "the description",
     syntax: "cell.syntax",
@@ -48,7 +49,7 @@ pub fn source(text: &str) -> Source {
     Source { name: CELL.to_owned(), text: text.into() }
 }
 
-/// Why a cell description cannot be used.
+/// Errors of reading a cell description.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DescriptionError {
@@ -57,7 +58,7 @@ pub enum DescriptionError {
     Unreadable {
         /// The file.
         path: String,
-        /// What the system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// The file or the description has mistakes.
@@ -69,7 +70,7 @@ pub enum DescriptionError {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CellDescription {
-    /// A name for people.
+    /// Name of the cell, for display.
     pub name: String,
     /// Greatest distance of a part from its place after a command has put it down, in.
     #[serde(default = "placing_tolerance")]
@@ -88,7 +89,7 @@ pub struct CellDescription {
     pub drum: Drum,
     /// The Active Pedestal.
     pub pedestal: Pedestal,
-    /// Common values of kinds of sensors.
+    /// Common values of each kind of sensor.
     pub sensors: SensorModels,
     /// The camera on the wrist.
     pub camera: Camera,
@@ -121,7 +122,8 @@ const fn yes() -> bool {
 pub struct Physics {
     /// Steps in a tick of 40 ms.
     pub substeps: u32,
-    /// Whether the physics takes several sub-steps at once while only led bodies move, or a part free in still fingers.
+    /// Take several sub-steps of the physics at once while only kinematic bodies move, or a part hangs in motionless
+    /// fingers.
     #[serde(default = "yes")]
     pub long_steps: bool,
     /// Solver iterations in a step.
@@ -159,7 +161,7 @@ pub struct Robot {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grippers {
-    /// Weight of each, lb.
+    /// Weight of each gripper, lb.
     pub weight: f64,
     /// Speed of the free fingers of the v-gripper and the tool gripper, in/s.
     pub jaw_speed: f64,
@@ -189,30 +191,30 @@ pub struct Gripper {
     pub initial_opening: f64,
     /// Coefficient of friction of the pads.
     pub friction: f64,
-    /// V-grooves along tool Z in the pads: their axis along tool X, in.
+    /// V-grooves along tool Z in the pads: position of their axis along tool X, in.
     pub groove: Option<f64>,
-    /// Force that a blocked finger gains for each inch that the air would have moved it, lb/in.
+    /// Force that a blocked finger gains for each inch by which the air would have moved it, lb/in.
     pub compressibility: f64,
     /// Force of a finger at full pressure, lb.
     pub greatest_force: f64,
-    /// Time in which the force is gone when both sides are vented, s.
+    /// Time until the force is zero when both sides are vented, s.
     pub vent_time_s: f64,
     /// Its sensors.
     pub sensors: GripperSensors,
 }
 
-/// Offsets and scales of the gripper's sensors, in counts of 12-bit converters; UP-INIT has to find them.
+/// Offsets and scales of the gripper's sensors, in counts of 12-bit converters; UP-INIT determines them.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct GripperSensors {
     /// Counts of the potentiometer at opening 0.
     pub potentiometer_offset: f64,
-    /// Counts of the potentiometer for an inch.
+    /// Counts of the potentiometer per inch.
     pub potentiometer_scale: f64,
-    /// Counts of the left and right strain gages without force; both 0 where there are none.
+    /// Counts of the left and right strain gages without force; 0 for a gripper without strain gages.
     #[serde(default)]
     pub strain_offsets: [f64; 2],
-    /// Counts of the left and right strain gages for a pound.
+    /// Counts of the left and right strain gages per pound.
     #[serde(default)]
     pub strain_scales: [f64; 2],
     /// Greatest noise, counts.
@@ -225,11 +227,11 @@ pub struct GripperSensors {
 pub struct Pedestal {
     /// Name of the location.
     pub location: String,
-    /// On the axis of the table, at the fingertips of the hand, which points up; world, in.
+    /// Position of the fingertips of the hand, which points up, on the axis of the table; world, in.
     pub position: [f64; 3],
     /// Direction of the radial line from the robot, about +Z from +X, degrees.
     pub azimuth: f64,
-    /// Name of the fixture that is its stand: it is not bolted to the floor and can be moved (II.1.2.3).
+    /// Name of the fixture for its stand, which is not bolted to the floor and can be moved (II.1.2.3).
     pub stand: String,
     /// Stiffness of stand, hand and fingers together at the fingertips, lb/in.
     pub stiffness: f64,
@@ -243,13 +245,13 @@ pub struct Pedestal {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct RotaryTable {
-    /// Motor angles of the - and the + limit switch.
+    /// Motor angles of the - and the + limit switches.
     pub limits: [f64; 2],
     /// Motor angle at the start.
     pub start: f64,
     /// Motor angle and table angle at which the fingers move across the radial line.
     pub square: f64,
-    /// A turn of the motor, and that of the table that it makes.
+    /// A motor angle, and the table angle that results from it.
     pub flip: [f64; 2],
     /// Speed of the motor, degrees/s.
     pub speed: f64,
@@ -257,7 +259,7 @@ pub struct RotaryTable {
     pub acceleration: f64,
     /// Counts of the potentiometer at table angle 0.
     pub potentiometer_offset: f64,
-    /// Counts of the potentiometer for a degree of the table.
+    /// Counts of the potentiometer per degree of the table.
     pub potentiometer_scale: f64,
     /// Greatest noise, counts.
     pub noise: f64,
@@ -283,17 +285,17 @@ pub struct Camera {
     pub angle_noise: f64,
     /// Greatest error of a measured length, in.
     pub shape_noise: f64,
-    /// How much a measured length may differ from that of the part asked for, in.
+    /// Greatest difference between a measured length and that of the part asked for, in.
     pub shape_tolerance: f64,
-    /// Share of a face that must be seen for the part to be noticed.
+    /// Fraction of a face that must be visible for the part to be detected.
     pub least_share: f64,
-    /// Parts with no more than this between them are one blob in the picture, in.
+    /// Parts with at most this gap between them are one blob in the picture, in.
     pub resolution: f64,
     /// Exposures in the order of the variations: least and greatest reflectance that each exposes correctly.
     pub exposures: Vec<[f64; 2]>,
-    /// Apparent increase of the length of brighter parts, in.
+    /// Apparent increase in length of parts that are too bright, in.
     pub bloom: f64,
-    /// Chance that a visible part is not recognised.
+    /// Probability that a visible part is not recognised.
     pub failure: f64,
     /// Ticks until the answer to a fast flood.
     pub flood_ticks: u32,
@@ -307,7 +309,7 @@ pub struct Camera {
 pub struct Vise {
     /// Name of the location.
     pub location: String,
-    /// Front plane of the jaws, inner face of the fixed jaw, top of the jaws; world, in.
+    /// The origin: front plane of the jaws, inner face of the fixed jaw, top of the jaws; world, in.
     pub position: [f64; 3],
     /// Depth, thickness and height of a jaw, in.
     pub jaw: [f64; 3],
@@ -323,7 +325,7 @@ pub struct Vise {
     pub force: f64,
     /// Coefficient of friction of the jaws.
     pub friction: f64,
-    /// Its programs; the first one is on at the start.
+    /// Its programs; the first one is selected at the start.
     pub program: Vec<ViseProgram>,
 }
 
@@ -335,7 +337,7 @@ pub struct ViseProgram {
     pub name: String,
     /// Back of the step, from the front plane of the jaws, in.
     pub back: f64,
-    /// Distance of its clamping faces behind the inner faces of the jaws, in.
+    /// Depth of its clamping faces behind the inner faces of the jaws, in.
     pub depth: f64,
     /// Floor of the step, from the top of the jaws, in; negative.
     pub ledge: f64,
@@ -345,7 +347,7 @@ pub struct ViseProgram {
     pub opening_partial: f64,
 }
 
-/// A place that keeps parts by its shape: a cradle, a pot, a pocket. It is made of fixtures.
+/// A place whose shape keeps parts in position: a cradle, a pot, a pocket. It is made of fixtures.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Nest {
@@ -354,19 +356,19 @@ pub struct Nest {
     /// Sector of the location; 0 if it has none.
     #[serde(default)]
     pub sector: u16,
-    /// The parts that it is made for.
+    /// The parts that fit into it.
     pub parts: Vec<String>,
-    /// The frame of a part that lies there.
+    /// The frame of a part in the nest.
     pub seat: Points,
-    /// Parts can be machined there, if they are near enough to the seat.
+    /// Tolerance within which a part can be machined there; without it no part can.
     pub machining: Option<Tolerance>,
 }
 
-/// How far a part may be from its seat.
+/// Greatest distance of a part from its seat.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tolerance {
-    /// Of its middle, in.
+    /// Of its centre, in.
     pub inches: f64,
     /// Of its axes, degrees.
     pub degrees: f64,
@@ -398,7 +400,7 @@ pub struct TrayShape {
     pub rim: f64,
     /// Thickness of the floor, in.
     pub floor_thickness: f64,
-    /// Greatest offset in x and y at which a part is put down at random, in.
+    /// Greatest offset in x and y of a part that is put down at random, in.
     pub random_offset: f64,
 }
 
@@ -406,16 +408,16 @@ pub struct TrayShape {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fixture {
-    /// Its name, also that of its link in the picture.
+    /// Its name and that of its URDF link.
     pub name: String,
     /// Centre, x, y, z, in.
     pub centre: [f64; 3],
     /// Size, x, y, z, in.
     pub size: [f64; 3],
-    /// Turn about +Z, degrees.
+    /// Rotation about +Z, degrees.
     #[serde(default)]
     pub azimuth: f64,
-    /// Lean of the top along the turned +X, degrees.
+    /// Tilt of the top towards the rotated +X, degrees.
     #[serde(default)]
     pub tilt: f64,
 }
@@ -449,18 +451,18 @@ pub struct PartType {
     /// Vision id (VII.7.6); 0 for none.
     #[serde(default)]
     pub vision_id: u16,
-    /// Share of the light that it reflects.
+    /// Reflectance: the fraction of the light that it reflects.
     #[serde(default = "half")]
     pub reflectance: f64,
-    /// It is a tool of the machine: it fits into the drum, its X along the drum's.
+    /// True if it is a tool of the machine: it fits into the drum, its X along the drum's.
     #[serde(default)]
     pub tool: bool,
-    /// It is machined in the vise on a side that was not machined before.
+    /// True if it is machined in the vise on a side that was not machined before.
     #[serde(default)]
     pub other_side: bool,
 }
 
-/// More than the 0.15 in by which the data of the linkbar put it beside the centre of its sector (SPECNOTES.md).
+/// More than the 0.15 in by which the data of the linkbar job place it off the centre of its sector (SPECNOTES.md).
 const fn placing_tolerance() -> f64 {
     0.25
 }
@@ -470,7 +472,7 @@ const fn half() -> f64 {
 }
 
 impl Gripper {
-    /// The B plate's lower side, behind the tool point: body and fingers, in.
+    /// Distance of the B plate's lower side behind the tool point: body and fingers, in.
     #[must_use]
     pub fn plate(&self) -> f64 {
         self.body[0] + self.fingers[0]
@@ -478,13 +480,13 @@ impl Gripper {
 }
 
 impl Nest {
-    /// The frame of a part in it, in.
+    /// The frame of a part in the nest, in.
     #[must_use]
     pub fn frame(&self) -> Frame {
         self.seat.frame().unwrap_or_else(Frame::identity)
     }
 
-    /// True if it is made for a kind of part.
+    /// True if parts of this kind fit into it.
     #[must_use]
     pub fn takes(&self, kind: &PartType) -> bool {
         self.parts.contains(&kind.name)
@@ -521,8 +523,8 @@ impl CellDescription {
         })
     }
 
-    /// The place of an entry in the text of a description, by its path: `gripper.parts.body[0]`; if it is missing, the
-    /// nearest table around it.
+    /// The place of an entry in the text of a description, by its path, such as `gripper.parts.body[0]`; if it is
+    /// missing, that of the nearest table around it.
     #[must_use]
     pub fn place(text: &Source, entry: &str) -> At {
         Document::parse(text, KIND).0.place(entry)
@@ -531,14 +533,14 @@ impl CellDescription {
     /// Read a description from a file and check it.
     ///
     /// # Errors
-    /// [`DescriptionError`].
+    /// [`DescriptionError`] if the file cannot be read or has mistakes.
     pub fn load(path: &Path) -> Result<Self, DescriptionError> {
         let text = os_io::files::read_text(path)
             .map_err(|source| DescriptionError::Unreadable { path: path.display().to_string(), source })?;
         Self::from_toml(&text).map_err(DescriptionError::Mistakes)
     }
 
-    /// The part of a name.
+    /// The part with a name.
     #[must_use]
     pub fn part(&self, name: &str) -> Option<&PartType> {
         self.part.iter().find(|part| part.name == name)

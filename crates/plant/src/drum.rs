@@ -1,15 +1,15 @@
-//! The tool drum of the machine tool at its transfer position: a place for a tool, fingers that grip it, and a strike plate.
+//! The tool drum of the machine tool at its transfer position: the place of a tool, fingers, and a strike plate.
 //!
-//! The drum's frame is the tool frame of the location TOOL-TRNS: X into the drum. A tool goes in along X; near the end
-//! detents resist with a force that rises like that of a spring, and then keep it with a smaller one. Closed fingers,
-//! or another tool, stop it with a hundred pounds. The fingers centre a tool when they close and hold it more strongly
-//! than the robot: the robot's hold slides first.
+//! The drum's frame is the tool frame of the location TOOL-TRNS: X into the drum. A tool goes in along X. Near the end,
+//! detents resist with a force that rises like that of a spring; afterwards they keep the tool with a smaller force.
+//! Closed fingers, or another tool, stop it with a hundred pounds. The fingers centre a tool when they close and hold
+//! it more strongly than the robot: the robot's hold slides first.
 //!
-//! Detents and obstacles are one spring along X whose far end, the anchor, slides along when the force reaches its
+//! Detents and obstacles are one spring along X. Its far end, the anchor, slides along when the force reaches its
 //! limit; so a tool comes to rest completely, and a force sensor reads a steady value.
 //!
 //! The strike plate stands beside the tool. Its front stops the fingertips of an open gripper; its shoulders stop open
-//! fingers that slide to the right (tool -Z) or come from there and stand over the tool. They are ordinary bodies, and
+//! fingers that slide to the right (tool -Z) or come from there and are over the tool. They are ordinary bodies, and
 //! the fingers deflect on their springs.
 
 use geometry::frame::{Frame, Rotation, Vector};
@@ -24,32 +24,32 @@ use crate::{
 
 /// Stiffness of detents and obstacles, N/m.
 const STIFFNESS: Real = 1.0e5;
-/// Their damping, N·s/m: about critical for a tool of 6 lb.
+/// Damping of detents and obstacles, N·s/m: about critical for a tool of 6 lb.
 const DAMPING: Real = 1.0e3;
-/// Greatest distance from the axis of a tool before the drum, in.
+/// Greatest distance from the axis at which a tool counts as in front of the drum, in.
 const BESIDE: f64 = 2.0;
 
-/// A tool before the drum or in it.
+/// Position of a tool in the drum or in front of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entering {
     /// Distance to its place, in.
     pub left: f64,
-    /// Off the axis, in.
+    /// Distance from the axis, in.
     pub aside: f64,
     /// Angle of its axis to the drum's, radians.
     pub angle: f64,
 }
 
-/// The tool in or before the drum.
+/// The tool in the drum or in front of it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Pocketed {
     /// Index of the part.
     pub part: usize,
-    /// Where the spring along X is anchored, m.
+    /// Position of the anchor of the spring along X, m.
     anchor: Real,
-    /// It arrived while the fingers were closed.
+    /// True if it arrived while the fingers were closed.
     barred: bool,
-    /// The drum fixes it: its fingers hold it, or only the detents do.
+    /// True if the drum fixes it: by its fingers, or by the detents alone.
     pub fast: bool,
 }
 
@@ -60,7 +60,7 @@ pub struct Drum {
     frame: Frame,
     description: Description,
     closed: bool,
-    /// The tool in it.
+    /// The tool in the drum or in front of it.
     pub tool: Option<Pocketed>,
 }
 
@@ -77,7 +77,7 @@ impl Drum {
         &self.description.location
     }
 
-    /// The fingers are closed.
+    /// True if the fingers are closed.
     #[must_use]
     pub fn closed(&self) -> bool {
         self.closed
@@ -91,29 +91,29 @@ impl Drum {
         }
     }
 
-    /// Into the drum, world.
+    /// Unit vector into the drum, world.
     #[must_use]
     pub fn axis(&self) -> Vector {
         self.frame.x()
     }
 
-    /// A tool's frame in its place, its axes those of the drum.
+    /// Frame of a tool in its place, with the axes of the drum.
     #[must_use]
     pub fn seat(&self) -> Frame {
         self.frame.shifted(Vector::new(self.description.middle, 0.0, 0.0))
     }
 
-    /// A tool's frame in its place, with the roll about its axis that it has.
+    /// Frame of a tool in its place that keeps its present roll about its axis.
     #[must_use]
     pub fn place(&self, tool: &Frame) -> Frame {
         let here = self.frame.inverse().compose(tool).rotation;
-        // The least turn that lays the tool's axis along the drum's.
+        // The smallest rotation that aligns the tool's axis with the drum's.
         let upright = Rotation::rotation_between(&(here * Vector::x()), &Vector::x());
         let rotation = self.frame.rotation * upright.map_or(Rotation::identity(), |turn| turn * here);
         Frame { rotation, ..self.seat() }
     }
 
-    /// Position of a tool relative to its place; `None` if it is not before the drum.
+    /// Position of a tool relative to its place; `None` if it is not in front of the drum.
     #[must_use]
     pub fn entering(&self, tool: &Frame) -> Option<Entering> {
         let here = self.frame.inverse().compose(tool);
@@ -129,7 +129,7 @@ impl Drum {
         self.tool = Some(Pocketed { part, anchor: metres(-entering.left), barred: self.closed, fast: false });
     }
 
-    /// The fingers can close on a tool there, and centre it.
+    /// True if the fingers can close on a tool there, and centre it.
     #[must_use]
     pub fn can_grip(&self, entering: &Entering) -> bool {
         let Description { seated, seated_degrees, .. } = self.description;
@@ -138,13 +138,13 @@ impl Drum {
             && entering.angle <= seated_degrees.to_radians()
     }
 
-    /// The fingers hold the tool.
+    /// True if the fingers hold the tool.
     #[must_use]
     pub fn grips(&self, pocketed: &Pocketed) -> bool {
         self.closed && !pocketed.barred
     }
 
-    /// The detents keep a tool that nothing else holds.
+    /// True if the detents keep a tool that nothing else holds.
     #[must_use]
     pub fn keeps(&self, pocketed: &Pocketed, entering: &Entering) -> bool {
         !pocketed.barred
@@ -152,7 +152,7 @@ impl Drum {
             && entering.aside <= self.description.seated
     }
 
-    /// Greatest forces against going in and against coming out, N.
+    /// Greatest forces against insertion and against extraction, N.
     fn limits(&self, pocketed: &Pocketed, entering: &Entering) -> (Real, Real) {
         let Description { detent_length, insertion_force, extraction_force, stop_force, .. } =
             self.description;
@@ -163,7 +163,7 @@ impl Drum {
         (newtons(insertion_force * share), newtons(extraction_force * share))
     }
 
-    /// Force along X, N, on a tool that the robot moves there, `speed` m/s along X.
+    /// Force along X, N, on a tool that the robot moves at `speed` m/s along X.
     pub fn resist(&mut self, entering: &Entering, speed: Real) -> Real {
         let Some(mut pocketed) = self.tool else { return 0.0 };
         let at = metres(-entering.left);
@@ -209,7 +209,7 @@ mod tests {
         drum.entering(&tool).unwrap()
     }
 
-    /// Push a tool in from `from` to `to` inches before its place and read the force in pounds.
+    /// Pushes a tool from `from` to `to` inches in front of its place and returns the force in pounds.
     fn push(drum: &mut Drum, from: f64, to: f64) -> f64 {
         let mut force = 0.0;
         for step in 0..=100 {

@@ -1,4 +1,4 @@
-//! A finger of a gripper: a box on springs at the hand.
+//! A finger of a gripper: a box attached to the hand by springs.
 
 use rapier3d_f64::{
     parry::{bounding_volume::BoundingVolume, query},
@@ -13,7 +13,7 @@ use crate::{
     scene::groups,
 };
 
-/// A finger on its springs.
+/// A finger attached by springs.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub struct Finger {
     /// +1 left (tool +Y), -1 right.
@@ -24,11 +24,11 @@ pub struct Finger {
     pub collider: ColliderHandle,
     /// Its springs.
     pub joint: ImpulseJointHandle,
-    /// Of its springs, N/m and N·m/rad.
+    /// Stiffness of its springs, N/m and N·m/rad.
     pub stiffness: Stiffness,
 }
 
-/// Where a finger's middle stands in the tool frame, metres; `side` is 1 for the left finger, -1 for the right one.
+/// Rest pose of a finger's middle in the tool frame, metres; `side` is 1 for the left finger, -1 for the right one.
 pub fn finger_rest(description: &Description, side: Real, opening: f64) -> Pose {
     let [length, thickness, _] = description.fingers;
     Pose::from_translation(Vector::new(
@@ -44,18 +44,18 @@ pub struct Mount<'a> {
     pub hand: RigidBodyHandle,
     /// Pose of the tool frame, m.
     pub tool: &'a Pose,
-    /// Of both fingers together at the tips, lb/in.
+    /// Stiffness of both fingers together at the tips, lb/in.
     pub stiffness: f64,
     /// Collision group of the gripper.
     pub group: Group,
 }
 
 impl Finger {
-    /// True if something that it may touch is nearer than `distance`, m.
+    /// True if a body that it may touch is nearer than `distance`, m.
     pub fn is_near(&self, world: &PhysicsWorld, distance: Real) -> bool {
         world.narrow_phase.contact_pairs_with(self.collider).any(|pair| {
             let [one, other] = [&world.colliders[pair.collider1], &world.colliders[pair.collider2]];
-            // The pair of a part that is held stays in the list, but is not looked at any more.
+            // The pair with a held part stays in the list, but is not updated any more.
             one.collision_groups().test(other.collision_groups())
                 && one.compute_aabb().loosened(distance).intersects(&other.compute_aabb())
                 && query::distance(one.position(), one.shape(), other.position(), other.shape())
@@ -75,19 +75,19 @@ impl Finger {
         let rest = finger_rest(description, side, opening);
         let mass = description.finger_weight * KILOGRAMS_PER_POUND;
         let [x, y, z] = description.fingers.map(|size| metres(size / 2.0));
-        // The weight of the fingers is part of the arm's calibration: resting springs are not loaded by it.
+        // The arm's calibration includes the weight of the fingers: springs at rest do not carry it.
         let body = world
             .insert_body(RigidBodyBuilder::dynamic().pose(*tool * rest).gravity_scale(0.0).can_sleep(false));
         let collider = ColliderBuilder::cuboid(x, y, z)
             .mass(mass)
             .friction(description.friction)
-            // What stands still is near, too, while the fingers are led.
+            // Fixed bodies must also be detected as near while the fingers are kinematic.
             .active_collision_types(ActiveCollisionTypes::all())
             .collision_groups(groups(group, Group::ALL & !group));
         let collider = world.insert_collider(collider, Some(body));
         let linear = newtons(stiffness) / metres(1.0) / 2.0;
-        // The moment arm of a fingertip is half the finger's length: the springs about the middle are made so
-        // stiff that they add a hundredth to what the tip gives way.
+        // The moment arm of a fingertip is half the finger's length: the angular springs about the middle are so stiff
+        // that they add a hundredth to the deflection of the tip.
         let angular = 100.0 * linear * x * x;
         let inertia = mass / 3.0 * (x * x + z * z);
         let mut data = GenericJointBuilder::new(JointAxesMask::empty())

@@ -1,20 +1,20 @@
-//! The bytes of a value for a fingerprint: everything that can change in it, without its description.
+//! The bytes of a value for a digest: all its variable data, without its description.
 //!
-//! A fingerprint of the cell is taken in every tick, so it must be cheap. Every device contains its part of the cell
-//! description, which is most of its data and never changes: fields of the name `description` are left out. Numbers are
-//! little-endian in their own width; sequences and texts have their length before them, enums their variant.
+//! A digest of the cell is taken in every tick, so it must be cheap. Every device contains its part of the cell
+//! description, which is most of its data and never changes: fields with the name `description` are left out. Numbers
+//! are little-endian in their own width; sequences and texts are preceded by their length, enums by their variant.
 
 use core::fmt;
 
 use serde::{Serialize, Serializer, ser};
 
-/// Fields of this name never change.
+/// Name of the fields that never change.
 const CONSTANT: &str = "description";
 
 /// Append the bytes of a value.
 ///
 /// # Errors
-/// [`fmt::Error`] if the value refuses to be serialised.
+/// [`fmt::Error`] if the value cannot be serialised.
 pub fn append<T: Serialize + ?Sized>(value: &T, bytes: &mut Vec<u8>) -> fmt::Result {
     value.serialize(Writer(bytes))
 }

@@ -1,8 +1,8 @@
-//! The force sensor of the tool gripper (III.3.8): forces on its fingers and the tool in them, and their weight.
+//! The force sensor of the tool gripper (III.3.8). It measures the forces on fingers and tool, and their weight.
 //!
-//! The load is the force of the springs between the hand and fingers and tool, so it has every contact without lag.
-//! Added are the weight on the sensor, whose direction turns with the robot, an offset of the bridges, and noise:
-//! CAL-SENSOR has to find the reading without contact (V.1.1). Only four of the six axes are connected.
+//! The load is the force of the springs between the hand and fingers and tool, so it includes every contact without
+//! lag. The sensor adds the weight on it, whose direction turns with the robot, an offset of the bridges, and noise:
+//! CAL-SENSOR has to determine the reading without contact (V.1.1). Only four of the six axes are connected.
 
 use geometry::frame::Vector;
 use interfaces::device::{FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, MOMENT_COUNTS_PER_IN_LB};
@@ -19,13 +19,13 @@ pub struct Wrench {
 }
 
 impl Wrench {
-    /// A force at a point of the tool frame (in), and a moment beside it.
+    /// A force at a point of the tool frame (in), and an additional moment.
     #[must_use]
     pub fn at(point: &Vector, force: Vector, moment: Vector) -> Self {
         Self { force, moment: moment + point.cross(&force) }
     }
 
-    /// Both together.
+    /// The sum of two wrenches.
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
         Self { force: self.force + other.force, moment: self.moment + other.moment }
@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn the_weight_turns_with_the_robot() {
         assert_eq!(reading(&Wrench::default(), Vector::x()), [2058, 2068, 2078 + 320, 2088], "pointing down");
-        // Level: 20 lb along tool -Z, 4 in before the sensor, bend it about +Y.
+        // With the tool level, 20 lb act along tool -Z at 4 in from the sensor, and bend it about +Y.
         assert_eq!(reading(&Wrench::default(), -Vector::z()), [2058 - 320, 2068, 2078, 2088 + 320]);
     }
 

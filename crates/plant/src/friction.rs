@@ -1,31 +1,32 @@
-//! Friction of a flat pad on a face: its reduction of a sliding and turning motion in a time step.
+//! Friction of a flat pad on a face: how it slows sliding and turning within a time step.
 //!
-//! Force and moment of friction share one limit, an ellipse with the friction force and its moment on the touched area
-//! as axes, and act against the motion at the end of the step. This gives an equation for one number, the impulse per
-//! unit of remaining speed; it is monotonic and solved by bisection.
+//! Force and moment of friction share one limit, an ellipse whose axes are the friction force and its moment on the
+//! touched area, and act against the motion at the end of the step. This gives an equation for one number, the impulse
+//! per unit of remaining speed; it is monotonic and solved by bisection.
 
 use rapier3d_f64::math::Real;
 
-/// Rounds of bisection: more than the digits of a number.
+/// Number of bisections: more than the bits of a number.
 const ROUNDS: u32 = 60;
 
-/// Motion of a body in the plane of the pads, at its middle: two velocities (m/s) and the turn about the normal (rad/s).
+/// Motion of a body in the plane of the pads, at its middle: two velocities (m/s) and the angular velocity about the
+/// normal (rad/s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Along the line from the middle to the pads.
     pub along: Real,
-    /// Across that line, in the sense in which the turn moves the pads' point.
+    /// Across that line, in the direction in which a positive turn moves the touched area.
     pub across: Real,
-    /// About the normal.
+    /// Angular velocity about the normal.
     pub turn: Real,
 }
 
 /// A body under friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rubbed {
-    /// kg.
+    /// Mass, kg.
     pub mass: Real,
-    /// About the normal, kg·m².
+    /// Moment of inertia about the normal, kg·m².
     pub inertia: Real,
     /// Distance from the middle of the body to that of the touched area, m.
     pub reach: Real,
@@ -34,7 +35,8 @@ pub struct Rubbed {
 }
 
 impl Rubbed {
-    /// The motion after a step in which friction may give an impulse of `limit` (N·s); `None` if it stops the body.
+    /// The motion after a step in which friction can give an impulse of up to `limit` (N·s); `None` if it stops the
+    /// body.
     #[must_use]
     pub fn after(&self, motion: &Motion, limit: Real) -> Option<Motion> {
         let stop = [self.mass * motion.along, self.mass * motion.across];
@@ -58,7 +60,7 @@ impl Rubbed {
         Some(self.damped(motion, low))
     }
 
-    /// Speed of the touched area: how fast it slides, and how fast it turns at its lever arm.
+    /// Speed of the touched area, combined from sliding and from turning at its lever arm.
     fn speed(&self, motion: &Motion) -> Real {
         let point = libm::hypot(motion.along, motion.across + motion.turn * self.reach);
         libm::hypot(point, motion.turn * self.arm)
@@ -87,7 +89,7 @@ mod tests {
 
     #[test]
     fn what_friction_can_stop_stands() {
-        // Gravity for 2.5 ms asks for 0.0049 N·s at the middle: 0.042 at the touched area, mostly as a moment.
+        // Gravity for 2.5 ms needs 0.0049 N·s at the middle: 0.042 at the touched area, mostly as a moment.
         let fall = Motion { along: 0.0, across: -0.0245, turn: 0.0 };
         assert_eq!(BAR.after(&fall, 0.05), None);
         assert!(BAR.after(&fall, 0.03).is_some());

@@ -1,10 +1,10 @@
 //! A gripper: two coupled fingers, driven by air, and the part that they hold. The robot has three, the pedestal one.
 //!
-//! [`Air`] turns the flow of the valves ([`Supply`]) into an opening and a force: free fingers move by the flow,
-//! blocked fingers gain force instead, and without flow both stay. The fingers are two bodies that hang on the hand by
-//! springs: the stiffness of arm, wrist and fingers together. So contacts of the gripper have finite forces: an arm
-//! that over-travels by 0.015 in against the vise presses with 30 lb. Geometry decides when fingers are blocked
-//! ([`crate::squeeze`]); the held part is then a [`Hold`].
+//! [`Air`] turns the flow of the valves ([`Supply`]) into an opening and a force: the flow moves free fingers, and
+//! increases the force of blocked ones; without flow both stay constant. The fingers are two bodies attached to the
+//! hand by springs with the combined stiffness of arm, wrist and fingers. So contacts of the gripper have finite
+//! forces: an arm that over-travels by 0.015 in against the vise presses with 30 lb. Geometry decides when fingers are
+//! blocked ([`crate::squeeze`]); the held part is then a [`Hold`].
 
 use geometry::frame::Vector as Inches;
 use interfaces::device::GripSensors;
@@ -24,12 +24,12 @@ use crate::{
     squeeze::Pads,
 };
 
-/// Fingers are free at more than this distance from a blocking part, in.
+/// Fingers farther than this from a blocking part are free, in.
 const FREE_GAP: f64 = 0.001;
-/// Time for which the seals hold free fingers before trapped air moves them, s; a part that slides out is clear by
-/// then.
+/// Time for which seal friction holds freed fingers before trapped air moves them, s; a part that slides out is clear
+/// by then.
 const BREAKAWAY_TIME: f64 = 0.25;
-/// Nearer than this to a finger, m, something may be touched in the next step, beside the travel of the hand in it.
+/// A body nearer than this to a finger, m, can be touched in the next step; the travel of the hand in it is added.
 const TOUCHABLE: Real = 2e-3;
 /// Fingers can sleep when none of their points has moved faster than this for half a second, m/s (rad/s): their
 /// remaining motion is then less than 1e-11 m.
@@ -80,7 +80,7 @@ impl Air {
         self.force
     }
 
-    /// True if the force was reduced in the last step: a part that slides then is being released.
+    /// True if the force decreased in the last step: a part that slides then is being released.
     #[must_use]
     pub fn relieved(&self) -> bool {
         self.relieved
@@ -92,14 +92,14 @@ impl Air {
         self.speed
     }
 
-    /// True if a supply neither moves the fingers, which stood in the last step, nor changes their force.
+    /// True if the fingers did not move in the last step, and this supply neither moves them nor changes their force.
     #[must_use]
     pub fn stands(&self, supply: &Supply) -> bool {
         let full = supply.flow < 0.0 && self.force >= self.greatest_force;
         self.speed == 0.0 && !supply.vent && (supply.flow == 0.0 || full)
     }
 
-    /// Let the air flow for `dt` seconds; `stop` is the opening at which something between the fingers blocks them.
+    /// Apply a supply for `dt` seconds; `stop` is the opening at which something between the fingers blocks them.
     pub fn advance(&mut self, dt: f64, supply: Supply, stop: Option<f64>) {
         let (before, force) = (self.opening, self.force);
         let [least, greatest] = self.range;
@@ -124,7 +124,7 @@ impl Air {
         self.relieved = self.force < force;
     }
 
-    /// Trapped air moves fingers that are no longer blocked: after a part was torn out, the fingers are closer than its
+    /// Trapped air moves fingers that are no longer blocked: after a part was pulled out, they close to less than its
     /// width.
     fn expand(&mut self, dt: f64, stop: f64) {
         let gap = self.opening - stop;
@@ -141,12 +141,12 @@ impl Air {
         self.force -= travel * self.compressibility;
     }
 
-    /// The ports are open: the force is zero, and the fingers stay where they are.
+    /// Vent the cylinder: the force is zero, and the fingers stay where they are.
     pub fn cut(&mut self) {
         (self.force, self.speed, self.relieved) = (0.0, 0.0, false);
     }
 
-    /// The part has been pushed aside between the fingers and has spread them to `opening`.
+    /// A part that was pushed aside between the fingers has spread them to `opening`.
     pub fn spread(&mut self, opening: f64) {
         self.opening = opening.clamp(self.range[0], self.range[1]);
     }
@@ -158,9 +158,9 @@ pub struct Gripper {
     description: Description,
     /// Opening and force.
     pub air: Air,
-    /// The held part, by its index.
+    /// The held part, by its index in the list of parts.
     pub hold: Option<(usize, Hold)>,
-    /// Its slide in this hold was reported.
+    /// True if its slide in this hold was reported.
     pub slip_reported: bool,
     hand: RigidBodyHandle,
     fingers: [Finger; 2],
@@ -168,8 +168,8 @@ pub struct Gripper {
 }
 
 impl Gripper {
-    /// Build the gripper at a tool pose, metres. `stiffness` is that of both fingers together at the tips,
-    /// lb/in; `group` the collision group of its bodies, which do not meet each other.
+    /// Build the gripper at a tool pose, metres. `stiffness` is that of both fingers together at the tips, lb/in;
+    /// `group` is the collision group of its bodies, which do not collide with each other.
     pub fn new(
         world: &mut PhysicsWorld,
         description: &Description,
@@ -191,7 +191,7 @@ impl Gripper {
         Self { description: description.clone(), air, hold: None, slip_reported: false, hand, fingers, shown }
     }
 
-    /// The body to which the fingers are attached; its pose is the tool frame without load.
+    /// The body to which the fingers are attached; its pose is the tool frame in the unloaded state.
     #[must_use]
     pub fn hand(&self) -> RigidBodyHandle {
         self.hand
@@ -209,7 +209,7 @@ impl Gripper {
         self.fingers.map(|finger| finger.collider)
     }
 
-    /// Rest positions of the middles of the left and the right finger by arm and air, tool frame, m.
+    /// Rest poses of the middles of the left and the right finger for the opening of the air, tool frame, m.
     #[must_use]
     pub fn finger_rests(&self) -> [Pose; 2] {
         self.fingers.map(|finger| finger_rest(&self.description, finger.side, self.air.opening()))
@@ -223,7 +223,7 @@ impl Gripper {
         Pads { x: [-length, 0.0], z: [-width / 2.0, width / 2.0], groove }
     }
 
-    /// From now on the fingers sleep while nothing moves them: then their springs are not computed. They wake when the
+    /// From now on the fingers sleep while nothing moves them: their springs are not computed then. They wake when the
     /// air moves them, when something touches them, and when the hand moves. See [`Gripper::stand`].
     pub fn let_fingers_sleep(&self, world: &mut PhysicsWorld) {
         for finger in &self.fingers {
@@ -234,8 +234,8 @@ impl Gripper {
         }
     }
 
-    /// Stop the hand. A moving kinematic body never sleeps and keeps attached bodies awake: this is needed only for a
-    /// held part, which may slide at a small change of its load.
+    /// Stop the hand. A moving kinematic body never sleeps and keeps attached bodies awake: only a held part needs
+    /// that, because it may slide at a small change of its load.
     pub fn stand(&self, world: &mut PhysicsWorld) {
         let led = self.hold.is_some();
         let kind = if led { RigidBodyType::KinematicPositionBased } else { RigidBodyType::Fixed };
@@ -264,8 +264,8 @@ impl Gripper {
         }
     }
 
-    /// Move the fingers with the hand while they hold nothing and nothing is near them: springs without a load are not
-    /// computed. Otherwise the fingers are on their springs.
+    /// Move the fingers kinematically with the hand while they hold nothing and nothing is near them: springs without a
+    /// load are not computed. Otherwise the springs move the fingers.
     pub fn carry_fingers(&self, world: &mut PhysicsWorld) {
         let hand = &world.bodies[self.hand];
         let travel = (hand.next_position().translation - hand.position().translation).length();
@@ -283,12 +283,12 @@ impl Gripper {
         }
     }
 
-    /// From now on the fingers are on their springs.
+    /// From now on the springs move the fingers.
     pub fn hang_fingers(&self, world: &mut PhysicsWorld) {
         self.become_fingers(world, RigidBodyType::Dynamic);
     }
 
-    /// Switch the joints of the fingers: without springs they need not be solved.
+    /// Change the body type of the fingers and enable or disable their joints: without springs they need not be solved.
     fn become_fingers(&self, world: &mut PhysicsWorld, kind: RigidBodyType) {
         for finger in &self.fingers {
             let body = &mut world.bodies[finger.body];
@@ -302,7 +302,7 @@ impl Gripper {
         }
     }
 
-    /// Set the rest positions of the finger springs by the air.
+    /// Set the rest positions of the finger springs from the opening of the air.
     pub fn move_fingers(&mut self, world: &mut PhysicsWorld) {
         let now = (self.air.opening(), self.air.speed());
         if now == self.shown {
@@ -322,7 +322,7 @@ impl Gripper {
         }
     }
 
-    /// Put hand and fingers, at rest, to a tool pose, metres.
+    /// Place hand and fingers, at rest, at a tool pose, metres.
     pub fn hang(&self, world: &mut PhysicsWorld, tool: &Pose) {
         world.bodies[self.hand].set_position(*tool, true);
         for (finger, rest) in self.fingers.iter().zip(self.finger_rests()) {
@@ -330,14 +330,14 @@ impl Gripper {
         }
     }
 
-    /// Take the bodies into the simulation or out of it. A gripper at rest in its holster needs none.
+    /// Add the bodies to the simulation or remove them. A gripper at rest in its holster needs none.
     pub fn set_present(&self, world: &mut PhysicsWorld, present: bool) {
         for body in [self.hand, self.fingers[0].body, self.fingers[1].body] {
             world.bodies[body].set_enabled(present);
         }
     }
 
-    /// Let it fall, as a body of `weight` lb with its fingers.
+    /// Let the gripper fall freely, as a body of `weight` lb with its fingers.
     pub fn fall(&self, world: &mut PhysicsWorld, weight: f64) {
         let fingers = 2.0 * self.description.finger_weight;
         let own = (weight - fingers).max(0.1 * weight) * KILOGRAMS_PER_POUND;
@@ -350,7 +350,7 @@ impl Gripper {
         }
     }
 
-    /// Load on the fingers and the held part, weight included, at the tool point in the axes of the tool.
+    /// Load on the fingers and the held part, including their weight, at the tool point in the axes of the tool.
     #[must_use]
     pub fn load(&self, world: &PhysicsWorld) -> Wrench {
         let hand = world.bodies[self.hand].position();
@@ -367,7 +367,7 @@ impl Gripper {
         fingers.chain(held).fold(Wrench::default(), |sum, one| sum.and(&one))
     }
 
-    /// The true tool frame under load, metres: the middle between the fingertips.
+    /// The true tool frame under load, metres: midway between the fingertips.
     #[must_use]
     pub fn loaded_tool(&self, world: &PhysicsWorld) -> Pose {
         let [left, right] = self.fingers.map(|finger| *world.bodies[finger.body].position());
@@ -375,7 +375,7 @@ impl Gripper {
         (left * offset(1.0)).lerp(&(right * offset(-1.0)), 0.5)
     }
 
-    /// Read the sensors; `beams` are the broken light beams.
+    /// Read the sensors; `beams` has a bit for each interrupted light beam.
     pub fn sensors(&self, noise: &mut Noise, beams: u8) -> GripSensors {
         let sensors = &self.description.sensors;
         let analog = |offset, scale| Analog { offset, scale, noise: sensors.noise };
@@ -394,8 +394,8 @@ impl Gripper {
         }
     }
 
-    /// The light beams in the tool frame: pairs of end points on the pads, metres. ASSUMED: two columns of
-    /// four, 0.5 in to either side of the middle of a finger, 0.10 to 1.20 in behind the tips.
+    /// The light beams in the tool frame: pairs of end points on the pads, metres. ASSUMED: two columns of four, 0.5 in
+    /// to either side of the middle of a finger, 0.10 to 1.20 in behind the tips.
     pub fn beams(&self) -> impl Iterator<Item = (Vector, Vector)> + use<> {
         let half = metres(self.air.opening() / 2.0);
         let columns = [metres(-0.5), metres(0.5)];
@@ -420,13 +420,13 @@ impl Gripper {
     }
 }
 
-/// Pounds and inches from a force (N) and a moment (N·m) at a point (m).
+/// A wrench in lb and in·lb from a force (N) and a moment (N·m) at a point (m).
 fn wrench(point: Vector, force: Vector, moment: Vector) -> Wrench {
     let pounds = |v: Vector| Inches::new(v.x, v.y, v.z) / newtons(1.0);
     Wrench::at(&to_inches(point), pounds(force), pounds(moment) / metres(1.0))
 }
 
-/// Opening of the finger bodies, in: differs from that of the air by the deflection of the springs.
+/// Opening between the finger bodies, in: differs from that of the air by the deflection of the springs.
 #[must_use]
 pub fn body_opening(world: &PhysicsWorld, gripper: &Gripper) -> f64 {
     let [left, right] = gripper.finger_bodies().map(|body| *world.bodies[body].position());

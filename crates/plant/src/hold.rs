@@ -1,16 +1,17 @@
 //! A hold: a part between two pads, limited by the pads' force and friction.
 //!
 //! Simulated contacts between a squeezed light part and two heavy pads creep, and a rigid joint never slides. A hold is
-//! between the two: springs between the pads' body and the part, with limits of their forces.
+//! between the two: springs with force limits between the pads' body and the part.
 //!
-//! * Along the pads (X, Z, and the turn about Y) the limit is friction, for force and moment together: an ellipse with
-//!   the friction force and its moment on the touched area as axes. Below it the part *sticks* to its springs and
-//!   nothing creeps; beyond it the part *slides* without them, against friction, until it is at rest and sticks again.
-//! * Across the pads (Y, and the tilts about X and Z) the limit is the pads' force. The part is pushed aside against
-//!   it, and the pads bring it back to their middle, flush, as soon as they are stronger.
+//! * Along the pads (X, Z, and rotation about Y) the limit is friction, for force and moment together: an ellipse whose
+//!   axes are the friction force and its moment on the touched area. Below the limit the part *sticks* to its springs
+//!   and nothing creeps; beyond it the part *slides* without springs, against friction, until it is at rest and sticks
+//!   again.
+//! * Across the pads (Y, and the tilts about X and Z) the limit is the pads' force. A greater force pushes the part
+//!   aside, and the pads return it to their middle, flush, as soon as they are stronger.
 //!
-//! The springs act at the middle of the part, where the six axes do not disturb each other, so that the solver is exact
-//! at once; the limits hold where the pads touch, and a bar that is gripped at its end droops about that point.
+//! The springs act at the middle of the part, where the six axes are decoupled, so that the solver is exact without
+//! iteration; the limits hold where the pads touch, and a bar that is gripped at its end droops about that point.
 
 use rapier3d_f64::math::Vector;
 use rapier3d_f64::prelude::*;
@@ -26,12 +27,12 @@ use crate::{
 const AXES: [JointAxis; 6] =
     [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ, JointAxis::AngX, JointAxis::AngY, JointAxis::AngZ];
 
-/// How stiff a hold is below its limits.
+/// Stiffness of a hold below its limits.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Stiffness {
-    /// N/m.
+    /// Linear stiffness, N/m.
     pub linear: Real,
-    /// N·m/rad.
+    /// Angular stiffness, N·m/rad.
     pub angular: Real,
 }
 
@@ -47,7 +48,7 @@ pub struct Clamp {
 /// Mass and inertia of the held part, for the damping of the springs.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Load {
-    /// kg.
+    /// Mass, kg.
     pub mass: Real,
     /// Greatest principal moment of inertia, kg·m².
     pub inertia: Real,
@@ -74,12 +75,12 @@ pub struct Hold {
     part: RigidBodyHandle,
     /// Position of the part without load, changed by slides: its middle, and its rotation from flush.
     nominal: Pose,
-    /// Where the springs rest: nominal, pushed aside.
+    /// Rest pose of the springs: the nominal pose, pushed aside.
     rest: Pose,
-    /// From the part's axes to those in which it lies flush.
+    /// Rotation from the part's axes to those in which it lies flush.
     attitude: Rotation,
     stiffness: Stiffness,
-    /// Of the springs along and about the axes, N·s/m and N·m·s/rad.
+    /// Damping of the springs along and about the axes, N·s/m and N·m·s/rad.
     damping: [Real; 2],
     load: Load,
     limits: Limits,
@@ -93,7 +94,7 @@ pub struct Hold {
 /// friction stops it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 enum Grip {
-    /// The springs hold.
+    /// The springs hold the part.
     Sticks,
     /// Friction acts against the motion.
     Slides,
@@ -142,7 +143,7 @@ impl Hold {
         }
     }
 
-    /// How far the part has slid in this hold, m.
+    /// Distance that the part has slid in this hold, m.
     #[must_use]
     pub fn slipped(&self) -> Real {
         self.slipped
@@ -154,8 +155,8 @@ impl Hold {
         self.grip == Grip::Sticks
     }
 
-    /// Load of the part on the pads' body, weight included: position of the part's middle (m), force (N) and moment
-    /// about it (N·m), in the axes of the pads' body.
+    /// Load of the part on the pads' body, including its weight: position of the part's middle (m), force (N) and
+    /// moment about it (N·m), in the axes of the pads' body.
     #[must_use]
     pub fn carries(&self, world: &PhysicsWorld) -> (Vector, Vector, Vector) {
         let present = self.present(world);
@@ -179,8 +180,8 @@ impl Hold {
             return;
         }
         self.limits = limits;
-        // Within a step the springs may not exceed what the pads bear either; a force at the middle of the part adds its
-        // moment about the pads.
+        // Within a step, too, the springs must not exceed what the pads bear; a force at the middle of the part adds
+        // its moment about the pads.
         let arm = (self.nominal.translation - squeeze.point).length();
         let [about_x, about_y, about_z] = moments;
         let greatest = [
@@ -198,14 +199,14 @@ impl Hold {
         }
     }
 
-    /// Where the part is in the axes of the pads' body, turned as it is from flush.
+    /// Pose of the part in the axes of the pads' body, with the rotation measured from flush.
     fn present(&self, world: &PhysicsWorld) -> Pose {
         let pads = world.bodies[self.pads].position();
         let part = pads.inv_mul(world.bodies[self.part].position());
         Pose::from_parts(part.translation, part.rotation * self.attitude)
     }
 
-    /// Before a step of `dt` seconds: friction on a part that slides.
+    /// Before a step of `dt` seconds: apply friction to a part that slides.
     pub fn rub(&mut self, world: &mut PhysicsWorld, dt: Real) {
         if self.grip == Grip::Sticks {
             return;
@@ -240,7 +241,7 @@ impl Hold {
         if self.limits.friction > 0.0 { self.limits.moments[1] / self.limits.friction } else { 0.0 }
     }
 
-    /// After a step: start to slide if the load exceeds friction, and be pushed aside if it exceeds the pads' force.
+    /// After a step: let the part slide if the load exceeds friction, and push it aside if it exceeds the pads' force.
     pub fn give_way(&mut self, world: &mut PhysicsWorld) {
         let Stiffness { linear, angular } = self.stiffness;
         let present = self.present(world);
@@ -251,7 +252,8 @@ impl Hold {
         let turn = on_the_side_of(&Rotation::IDENTITY, present.rotation * self.nominal.rotation.inverse());
         let turn = turn.to_scaled_axis();
         let aside = Vector::Y * beyond(away.y, self.limits.normal / linear);
-        // What the springs carry, at the point where the pads touch: their moment, and that of their force at the middle.
+        // Load on the springs at the point where the pads touch: their moment, and the moment of their force at the
+        // middle.
         let arm = self.nominal.translation - self.limits.point;
         let force = (away - aside) * -linear;
         let moment = turn * -angular + arm.cross(force);
@@ -259,7 +261,7 @@ impl Hold {
             let force = libm::hypot(force.x, force.z) / self.limits.friction;
             let used = libm::hypot(force, moment.y / self.limits.moments[1]);
             if used > 1.0 {
-                // The springs go on at the limit; whether the part stands or slides is seen before the next step.
+                // The springs stay at the limit; whether the part sticks or slides is decided before the next step.
                 let excess = 1.0 - 1.0 / used;
                 let slide = Vector::new(away.x, 0.0, away.z) * excess;
                 self.nominal.translation += slide;
@@ -279,7 +281,7 @@ impl Hold {
         self.set_rest(world, rest);
     }
 
-    /// Set the rest of all springs to the present position: a stronger grip holds the part.
+    /// Set the rest pose of all springs to the present pose: another, stronger grip holds the part.
     pub fn relax(&mut self, world: &mut PhysicsWorld) {
         self.nominal = normalised(self.present(world));
         if self.grip != Grip::Sticks {
@@ -288,7 +290,8 @@ impl Hold {
         self.set_rest(world, self.nominal);
     }
 
-    /// The stronger grip has released it: draw the part back to the middle of the pads, flush; along the pads it stays.
+    /// The stronger grip has released it: draw the part back to the middle of the pads, flush; along the pads it does
+    /// not move.
     pub fn recover(&mut self, world: &mut PhysicsWorld) {
         self.nominal.translation.y = 0.0;
         let twist = Rotation::from_xyzw(0.0, self.nominal.rotation.y, 0.0, self.nominal.rotation.w);
@@ -297,7 +300,7 @@ impl Hold {
         self.set_rest(world, self.nominal);
     }
 
-    /// The part has slid without springs: set the rest position to where it is.
+    /// The part has slid without springs: set the rest pose to the present one.
     fn follow(&mut self, present: &Pose) {
         let touched = self.nominal.inverse_transform_point(self.limits.point);
         self.nominal.translation.x = present.translation.x;
@@ -329,7 +332,7 @@ impl Hold {
     }
 }
 
-/// All springs, or only those across the pads.
+/// Set all springs, or only those across the pads.
 fn set_springs(joint: &mut GenericJoint, stiffness: Stiffness, damping: [Real; 2], grip: Grip) {
     for (index, axis) in AXES.into_iter().enumerate() {
         let along = matches!(axis, JointAxis::LinX | JointAxis::LinZ | JointAxis::AngY);
@@ -341,18 +344,18 @@ fn set_springs(joint: &mut GenericJoint, stiffness: Stiffness, damping: [Real; 2
     }
 }
 
-/// The part of a rotation about Y.
+/// The component of a rotation about Y.
 fn about_y(rotation: Rotation) -> Rotation {
     let twist = Rotation::from_xyzw(0.0, rotation.y, 0.0, rotation.w);
     if twist.length_squared() > 0.0 { twist.normalize() } else { Rotation::IDENTITY }
 }
 
-/// By how much a value is beyond plus or minus a limit.
+/// The amount by which a value exceeds plus or minus a limit, with its sign; 0 within the limit.
 fn beyond(value: Real, limit: Real) -> Real {
     value - value.clamp(-limit, limit)
 }
 
-/// A pose turned about a point.
+/// A pose rotated about a point.
 fn about(point: Vector, turn: Vector, pose: Pose) -> Pose {
     if turn == Vector::ZERO {
         return pose;

@@ -1,12 +1,12 @@
-//! Holsters: a gripper hangs in one by its ears while it is not on the robot.
+//! Holsters: a gripper that is not on the robot hangs in one by its ears.
 //!
 //! A gripper released over a holster drops until its ears lie on the cheeks, and can then be slid forward (tool +Z) to
-//! the seat, where lips over the ears prevent lifting and a detent keeps it in place. Four proximity sensors look at
-//! the ears (III.3.4): two large ones from the side, two small ones at the seat.
+//! the seat, where lips over the ears prevent lifting and a detent keeps it in place. Four proximity sensors detect the
+//! ears (III.3.4): two large ones from the side, two small ones at the seat.
 //!
-//! All coordinates are in the frame of the holster: the tool frame of a gripper that rests on it, not yet slid forward.
-//! Its X points down, along the gripper. All grippers have the same ears, so any of them fits; the controller decides
-//! which one belongs where.
+//! All coordinates are in the frame of the holster: the tool frame of a gripper that rests on it and is not yet slid
+//! forward. Its X points down, along the gripper. All grippers have the same ears, so any of them fits; the controller
+//! decides which one belongs where.
 
 use geometry::frame::{Frame, Rotation, Vector, rotation_vector};
 use serde::{Deserialize, Serialize};
@@ -18,21 +18,22 @@ use crate::{
 
 /// Free fall, in/s².
 const GRAVITY: f64 = 386.1;
-/// Ears hang this far under the B plate, in.
+/// Distance of the ears under the B plate, in.
 const UNDER_PLATE: f64 = 1.0;
 /// Gap between the body of a gripper and the cheeks, and between ears and lips, in.
 const GAP: f64 = 0.25;
 /// Thickness of cheeks and lips, in.
 const THICK: f64 = 1.0;
-/// A lip begins this far before the seat's ears end, in: a gripper slid back by more than half the way is free of it.
+/// Distance of a lip behind the front end of the ears in the seat, in: a gripper slid back by more than half the travel
+/// is free of it.
 const LIP: f64 = 0.75;
 /// Greatest tilt of a released gripper that still lands on the cheeks, radians (3 degrees).
 const ASKEW: f64 = 0.052_36;
-/// Greatest depth under its rest of a gripper pressed down by the robot, in.
+/// Greatest depth under its rest to which the robot can press a gripper, in.
 const PRESSED: f64 = 0.10;
 /// Distance from the rest beyond which a gripper is not at this holster, in.
 const NEAR: f64 = 6.0;
-/// Play of a gripper under the lips before they stop it, in.
+/// Travel of a gripper under the lips before they stop it, in.
 const LIP_PLAY: f64 = 0.15;
 
 /// A holster.
@@ -47,24 +48,24 @@ pub struct Holster {
 /// Position of a gripper relative to its rest on a holster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
-    /// Above the rest, in.
+    /// Height above the rest, in.
     pub up: f64,
-    /// To the left, in.
+    /// Distance to the left, in.
     pub aside: f64,
-    /// Towards the seat, in.
+    /// Distance towards the seat, in.
     pub forward: f64,
-    /// How far it is turned, radians.
+    /// Angle to the rest, radians.
     pub angle: f64,
 }
 
 /// A gripper on its holster, or dropping onto it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Perch {
-    /// Above the rest, in.
+    /// Height above the rest, in.
     pub up: f64,
     /// Speed of falling, in/s.
     pub speed: f64,
-    /// Towards the seat, in.
+    /// Distance towards the seat, in.
     pub forward: f64,
 }
 
@@ -78,7 +79,7 @@ impl Perch {
         }
     }
 
-    /// It lies on the holster.
+    /// True if it lies on the holster.
     #[must_use]
     pub fn rests(&self) -> bool {
         self.up <= 0.0
@@ -98,7 +99,7 @@ impl Holster {
         (gripper.position - self.frame.position).norm() < NEAR
     }
 
-    /// Where a gripper's tool frame is in this holster.
+    /// Position of a gripper's tool frame in this holster.
     #[must_use]
     pub fn offset(&self, gripper: &Frame) -> Offset {
         let here = self.frame.inverse().compose(gripper);
@@ -110,13 +111,13 @@ impl Holster {
         }
     }
 
-    /// The tool frame of a gripper that is perched here.
+    /// The tool frame of a gripper on this holster.
     #[must_use]
     pub fn gripper(&self, perch: &Perch) -> Frame {
         self.frame.shifted(Vector::new(-perch.up, 0.0, perch.forward))
     }
 
-    /// A gripper in the seat.
+    /// The position of a gripper in the seat.
     #[must_use]
     pub fn seated(&self) -> Perch {
         Perch { up: 0.0, speed: 0.0, forward: self.description.seat }
@@ -133,34 +134,34 @@ impl Holster {
         over.then(|| Perch { up: offset.up.max(0.0), speed: 0.0, forward: self.slide(offset.forward) })
     }
 
-    /// Position of a gripper moved to `forward`: not beyond the seat, and into its detent.
+    /// Position of a gripper that is moved to `forward`: not beyond the seat, and drawn to it within the detent.
     #[must_use]
     pub fn slide(&self, forward: f64) -> f64 {
         let Holsters { seat, detent, .. } = self.description;
         if forward >= seat - detent { seat } else { forward }
     }
 
-    /// The lips are over the ears of a gripper there.
+    /// True if the lips are over the ears of a gripper there.
     fn under_lips(&self, offset: &Offset) -> bool {
         let beside = self.description.ears[1] + self.description.catch_aside;
         (self.description.seat - LIP..=self.description.seat + LIP).contains(&offset.forward)
             && offset.aside.abs() <= beside
     }
 
-    /// The ears lie on the cheeks under the lips: lifting is prevented.
+    /// True if the ears lie on the cheeks under the lips: lifting is prevented.
     #[must_use]
     pub fn holds_down(&self, offset: &Offset) -> bool {
         self.under_lips(offset) && offset.up.abs() <= LIP_PLAY
     }
 
-    /// A gripper that was held down is being torn upwards.
+    /// True if a gripper that was held down is being torn upwards.
     #[must_use]
     pub fn tears(&self, offset: &Offset) -> bool {
         self.under_lips(offset) && offset.up > LIP_PLAY
     }
 
-    /// How far the ears of a gripper, wherever it is, are beyond the range of the four sensors in the order of the bits of
-    /// [`interfaces::device::HolsterSensors`], in; negative inside of it.
+    /// Distance of the ears of a gripper, wherever it is, beyond the ranges of the four sensors in the order of the
+    /// bits of [`interfaces::device::HolsterSensors`], in; negative within range.
     #[must_use]
     pub fn beyond(&self, gripper: &Frame, ears: &[Frame; 2]) -> [f64; 4] {
         let Holsters { large_range, small_range, seat, .. } = self.description;
@@ -177,7 +178,7 @@ impl Holster {
         [left[0], right[0], left[1], right[1]]
     }
 
-    /// Cheeks, lips and foot, world.
+    /// Blocks of cheeks, lips and foot, world.
     #[must_use]
     pub fn blocks(&self, gripper: &Gripper) -> Vec<Block> {
         let [thick, wide, long] = self.description.ears;
@@ -221,7 +222,7 @@ pub fn holsters(cell: &CellDescription) -> [Holster; 3] {
     [holster("holster_right", right), holster("holster_left", left), holster("holster_centre", centre)]
 }
 
-/// Middles of the left and the right ear in a gripper's tool frame, in.
+/// Frames of the middles of the left and the right ear in a gripper's tool frame, in.
 #[must_use]
 pub fn ears(holsters: &Holsters, gripper: &Gripper) -> [Frame; 2] {
     let [thick, wide, _] = holsters.ears;

@@ -1,6 +1,7 @@
-//! Serde support for fields of the saved state whose types, from other crates, do not implement serde.
+//! Serde support for fields of the saved state whose types come from other crates and do not implement serde.
 //!
-//! Use with `#[serde(with = "crate::image::record")]` and `#[serde(with = "crate::image::frame")]`. Both keep every bit.
+//! Use with `#[serde(with = "crate::image::record")]` and `#[serde(with = "crate::image::frame")]`. Both preserve every
+//! bit.
 
 /// Records and coded enums of the controller, as their byte image.
 pub mod record {
@@ -13,7 +14,7 @@ pub mod record {
     /// Write the byte image.
     ///
     /// # Errors
-    /// Those of the serializer.
+    /// Errors of the serializer.
     pub fn serialize<T: Plain, S: Serializer>(record: &T, serializer: S) -> Result<S::Ok, S::Error> {
         let mut image = vec![0_u8; T::SIZE];
         record.encode(&mut Writer::new(&mut image));
@@ -23,7 +24,7 @@ pub mod record {
     /// Read the byte image.
     ///
     /// # Errors
-    /// Those of the deserializer, and if the bytes are not the image of a legal value.
+    /// Errors of the deserializer, or an error if the bytes are not the image of a legal value.
     pub fn deserialize<'de, T: Plain, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
         from_bytes(&Vec::<u8>::deserialize(deserializer)?).map_err(D::Error::custom)
     }
@@ -37,7 +38,7 @@ pub mod frame {
     /// Write position and columns.
     ///
     /// # Errors
-    /// Those of the serializer.
+    /// Errors of the serializer.
     pub fn serialize<S: Serializer>(frame: &Frame, serializer: S) -> Result<S::Ok, S::Error> {
         let axes: [[f64; 3]; 4] =
             [frame.position.into(), frame.x().into(), frame.y().into(), frame.z().into()];
@@ -47,7 +48,7 @@ pub mod frame {
     /// Read position and columns.
     ///
     /// # Errors
-    /// Those of the deserializer.
+    /// Errors of the deserializer.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Frame, D::Error> {
         let [position, x, y, z] = <[[f64; 3]; 4]>::deserialize(deserializer)?.map(Vector::from);
         let rotation = Rotation::from_basis_unchecked(&[x, y, z]);

@@ -1,9 +1,9 @@
-//! Air to a gripper: the flow through its valves.
+//! Air supply of a gripper: the flow through its valves.
 //!
-//! The parts gripper and the hand of the pedestal have eight valves, whose flows add up (III.3.6); the
-//! v-gripper and the tool gripper have two, and open or close at one speed (VI.4, VI.5). Both drive the same
-//! cylinder ([`crate::gripper::Air`]): free fingers move, blocked fingers gain force, and trapped air keeps
-//! both.
+//! The parts gripper and the hand of the pedestal have eight valves, whose flows add up (III.3.6); the v-gripper and
+//! the tool gripper have two, and open or close at one speed (VI.4, VI.5). Both drive the same cylinder
+//! ([`crate::gripper::Air`]): the flow moves free fingers and increases the force of blocked ones; trapped air keeps
+//! opening and force.
 
 use interfaces::device::{JawValves, valve};
 
@@ -17,17 +17,17 @@ const FLOWS: [(u8, f64); 6] = [
     (valve::CLOSE_COARSE, -4.0),
 ];
 
-/// Flow through the valves of a gripper.
+/// The flow through the valves of a gripper.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Supply {
     /// Speed of free fingers, in/s, opening positive.
     pub flow: f64,
-    /// Both sides are vented: the force vanishes.
+    /// Both sides are vented: the force goes to zero.
     pub vent: bool,
 }
 
 impl Supply {
-    /// Of eight valves.
+    /// The flow of eight valves, one bit each.
     #[must_use]
     pub fn of_bits(bits: u8) -> Self {
         let supplied = bits & valve::SUPPLY != 0;
@@ -35,7 +35,7 @@ impl Supply {
         Self { flow, vent: bits & valve::VENT != 0 }
     }
 
-    /// Of two valves that move free fingers at `speed` in/s; with air on both sides they balance.
+    /// The flow of two valves that move free fingers at `speed` in/s; with air on both sides they balance.
     #[must_use]
     pub fn of_jaws(valves: &JawValves, speed: f64) -> Self {
         let flow = match (valves.open, valves.close) {

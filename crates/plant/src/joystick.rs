@@ -1,17 +1,17 @@
 //! The joystick box (III.3.3) and the actions of its operator.
 //!
-//! Switches and knob stay as set; stick and buttons return when their time has passed. An action that begins while
-//! another is held is executed beside it.
+//! Switches and knob keep their setting; stick and buttons return when their time is over. An action that begins while
+//! another control is held is executed in parallel.
 
 use interfaces::device::{JoystickBox, KNOB_FULL};
 use serde::{Deserialize, Serialize};
 
-/// Ticks of a short press: long enough to be read by every process.
+/// Duration of a short press, ticks: long enough for every process to read it.
 const PRESS: u32 = 2;
 /// Ticks between two short presses of the same button.
 const PAUSE: u32 = 2;
 
-/// A push-button that is held down.
+/// A push-button; the letters are those of the box.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum BoxButton {
     /// D: along +Z.
@@ -28,37 +28,37 @@ pub enum BoxButton {
     Close,
 }
 
-/// An action at the box.
+/// An action at the joystick box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoxAction {
     /// Set the coordinate switches: bits of [`interfaces::device::joystick_frame`].
     Frame(u8),
-    /// Deflect the stick for so many ticks: -1000 to 1000.
+    /// Deflect the stick for a number of ticks: -1000 to 1000.
     Stick {
         /// Along X, or pitch.
         x: i16,
         /// Along Y, or yaw.
         y: i16,
-        /// How long.
+        /// Duration, ticks.
         ticks: u32,
     },
-    /// Hold a button down for so many ticks.
+    /// Hold a button down for a number of ticks.
     Press(BoxButton, u32),
     /// Turn the velocity knob: 0 to 1000.
     Velocity(u16),
     /// Press the record button.
     Record,
-    /// Enter the carriage return.
+    /// Press the carriage return.
     Resume,
     /// Set the switches that suspend processes: bits of [`interfaces::device::single_step`].
     Hold(u8),
-    /// Reset them.
+    /// Reset the switches that suspend processes: the same bits.
     Free(u8),
-    /// Press the button that steps a process, so often.
+    /// Press the single-step buttons of these bits, with the number of presses.
     Step(u8, u32),
 }
 
-/// What is held down, and for how many more ticks.
+/// A control that is held down, and the number of ticks left.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 enum Held {
     Stick([i16; 2]),
@@ -68,14 +68,14 @@ enum Held {
     Step(u8),
 }
 
-/// The box.
+/// The joystick box.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Joystick {
     velocity: u16,
     frame: u8,
     hold: u8,
     held: Vec<(Held, u32)>,
-    /// Remaining presses of a step button, and the ticks until the next.
+    /// Step buttons: bits, remaining presses, and ticks until the next press.
     steps: Vec<(u8, u32, u32)>,
 }
 
@@ -107,19 +107,19 @@ impl Joystick {
         }
     }
 
-    /// True while something is held down or is still to be pressed.
+    /// True while a control is held down or presses remain.
     #[must_use]
     pub fn busy(&self) -> bool {
         !self.held.is_empty() || !self.steps.is_empty()
     }
 
-    /// Release stick and buttons; switches and knob stay.
+    /// Release stick and buttons; switches and knob keep their setting.
     pub fn let_go(&mut self) {
         self.held.clear();
         self.steps.clear();
     }
 
-    /// What the controller reads in the next tick; once a tick.
+    /// The box as the controller reads it in the next tick; call once a tick.
     pub fn read(&mut self) -> JoystickBox {
         for (process, count, wait) in &mut self.steps {
             if *wait == 0 {

@@ -1,21 +1,21 @@
 //! The simulated cell: robot controller, arm, gripper, trays, vise, camera and parts, in rapier.
 //!
-//! [`Cell::step`] takes the controller's outputs of a tick and returns its inputs of the next; between the two the cell
-//! advances by exactly 40 ms. Other actions of a person, a job or a test go through [`Cell::workstation`]; errors and
-//! events come out of [`Cell::events`].
+//! [`Cell::step`] takes the controller's outputs of one tick and returns its inputs of the next; in between the cell
+//! advances by exactly 40 ms. Other actions of an operator, a job or a test go through [`Cell::workstation`];
+//! [`Cell::events`] returns errors and events.
 //!
 //! # How the arm and the grip are modelled, and why
 //!
-//! The linkbar job has gaps of 0.04 to 0.08 in. At rest the arm must be within 0.01 in, contacts may sink by 0.1 mm, a
-//! grip may creep by 0.1 mm but must slide at the limit of friction, and the linkbar should run at 50, better 200,
-//! times real time with one core for physics.
+//! The linkbar job has gaps of 0.04 to 0.08 in. At rest the arm must be within 0.01 in, contacts may penetrate by 0.1
+//! mm, a grip may creep by 0.1 mm but must slide at the limit of friction, and the linkbar should run at 50, better
+//! 200, times real time with one core for physics.
 //!
 //! | | multibody arm, motors | chosen: kinematic arm, sprung fingers |
 //! |---|---|---|
 //! | arm at rest, from its command | 0.35 mrad at 1.6e5/s², 0.05 at 1e6/s² | 0 (servo lag in closed form) |
-//! | arm while moving | 5.6 to 7.3 mrad beside the path | on the path, 80 ms behind |
+//! | arm while moving | 5.6 to 7.3 mrad off the path | on the path, 80 ms behind |
 //! | grip by contact friction, one minute | slides by millimetres | below 0.001 mm, limits kept |
-//! | blank pressed to the notch with 30 lb | - | sinks by 0.06 mm |
+//! | blank pressed to the notch with 30 lb | - | penetrates by 0.06 mm |
 //! | one core, tick of 40 ms | 760 us, 52 x real time | 110 to 185 us, 215 to 360 x |
 //!
 //! (Left: measured with rapier 0.36 at 16 sub-steps, a six-joint arm and a gripped part of 8 kg; right: `--example
@@ -23,7 +23,7 @@
 //!
 //! * joints follow their servos exactly ([`arm`]); the T3 controller commands them: start-up, emergency stops, inverse
 //!   kinematics, limits and the link ([`t3`]);
-//! * without hydraulic pressure each joint is a damper that gives way to the weights of links, gripper and part
+//! * without hydraulic pressure each joint is a damper that yields to the weights of links, gripper and part
 //!   ([`linkage`]) and to contacts; the shot pin stops the shoulder, and the arm jumps back when the pressure returns.
 //!   Contacts of the sagging arm are reported when it is at rest ([`cell::Droop`]);
 //! * the hand is a kinematic body at the tool frame, the fingers are attached by springs with the stiffness of arm,

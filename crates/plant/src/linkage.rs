@@ -1,4 +1,4 @@
-//! The arm as a chain of links: their frames, and the joint torques of forces on them.
+//! The arm as a kinematic chain: the frames of its links, and the joint torques of forces on them.
 //!
 //! Lengths are those of [`geometry::kinematics::T3`]. Inches, pounds and radians: a torque is in lb·in.
 
@@ -12,30 +12,30 @@ use nalgebra::Vector6;
 pub const AXES: [[f64; 3]; 6] =
     [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [0.0, -1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
 
-/// Where each link begins in its parent, along the parent's X, in.
+/// Origin of each link in its parent, along the parent's X, in.
 pub const STARTS: [f64; 6] = [0.0, 0.0, T3.upper_arm, T3.forearm, T3.pitch_to_yaw, 0.0];
 
-/// The upper arm among the links.
+/// Index of the upper arm among the links.
 pub const UPPER_ARM: usize = 1;
-/// The forearm among the links.
+/// Index of the forearm among the links.
 pub const FOREARM: usize = 2;
-/// The end plate among the links: it carries the quick change, the grippers and the parts in them.
+/// Index of the end plate among the links: it carries the quick change, the grippers and the parts in them.
 pub const END_PLATE: usize = 5;
 
 /// A force on a link of the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
-    /// The link, from 0, the turret.
+    /// Index of the link, 0 for the turret.
     pub link: usize,
-    /// Where it acts, world, in.
+    /// Point of application, world, in.
     pub at: Vector,
     /// The force, world, lb.
     pub force: Vector,
-    /// A moment beside it, world, lb·in.
+    /// An additional moment, world, lb·in.
     pub moment: Vector,
     /// Decrease of the force when the point moves with it, lb/in: 0 for a weight.
     pub stiffness: f64,
-    /// Coefficient of friction across the force: 0 for a weight.
+    /// Coefficient of friction perpendicular to the force: 0 for a weight.
     pub friction: f64,
 }
 
@@ -54,14 +54,14 @@ impl Load {
     }
 }
 
-/// The links of the arm at some joint angles.
+/// The frames of the links for some joint angles.
 #[derive(Clone, Debug)]
 pub struct Chain {
     frames: [Frame; 6],
 }
 
 impl Chain {
-    /// The links at joint angles in radians.
+    /// The links for joint angles in radians.
     #[must_use]
     pub fn new(joints: &Joints) -> Self {
         let mut frame = Frame::identity();
@@ -81,13 +81,13 @@ impl Chain {
         &self.frames
     }
 
-    /// A point of a link along its X, world, in.
+    /// The point at a distance along a link's X, world, in.
     #[must_use]
     pub fn along(&self, link: usize, inches: f64) -> Vector {
         self.frames[link].shifted(Vector::new(inches, 0.0, 0.0)).position
     }
 
-    /// How fast a point of a link moves along a direction when each joint turns by a radian a second: in/rad.
+    /// Row of the Jacobian: the speed of a point of a link along a direction per radian a second of each joint, in/rad.
     #[must_use]
     pub fn lever(&self, link: usize, at: &Vector, along: &Vector) -> Vector6<f64> {
         let joints = self.frames.iter().zip(AXES).take(link + 1).enumerate();
@@ -126,7 +126,7 @@ mod tests {
     }
 
     proptest! {
-        /// Virtual work: the torques of a force are those of its work in a small turn of each joint.
+        /// Virtual work: the torques of a force do its work in a small turn of each joint.
         #[test]
         fn torques_do_the_work_of_the_force(
             off in prop::array::uniform6(-0.7..0.7_f64),

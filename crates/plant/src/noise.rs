@@ -1,17 +1,17 @@
-//! Seeded noise: one stream of numbers per device, so that the numbers of a device do not depend on the use of others.
+//! Seeded noise: one random stream per device, so that the numbers of a device do not depend on those of others.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-/// Which device draws from the stream.
+/// The user of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stream {
     /// Sensors of the parts gripper.
     Gripper = 1,
     /// The camera.
     Camera = 2,
-    /// Where a part is put down at random.
+    /// Random places of parts.
     Placement = 3,
     /// The force sensor of the tool gripper.
     Force = 5,
@@ -19,7 +19,7 @@ pub enum Stream {
     Pedestal = 4,
     /// The joint resolvers.
     Resolvers = 6,
-    /// Errors of a person who aligns the robot's axes to their arrows.
+    /// Errors of an operator who aligns the robot's axes to their arrows.
     Alignment = 20,
 }
 
@@ -28,13 +28,13 @@ pub enum Stream {
 pub struct Noise(ChaCha8Rng);
 
 impl Noise {
-    /// The stream of a device for the seed of a run.
+    /// The stream of a device in a run with a seed.
     #[must_use]
     pub fn new(seed: u64, stream: Stream) -> Self {
         Self::numbered(seed, stream as u64)
     }
 
-    /// The stream of a number, beyond those of the devices, for a seed.
+    /// The stream with a number, above those of the devices, for a seed.
     #[must_use]
     pub fn numbered(seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);

@@ -14,7 +14,7 @@ use crate::{
 
 /// Coefficient of friction of a part's surface.
 const FRICTION: Real = 0.30;
-/// Angular damping of a part that can roll, 1/s: the effect of a floor and a tray that are not quite hard and even.
+/// Angular damping of a part that can roll, 1/s: floor and trays are slightly soft and uneven.
 const ROLLING: Real = 2.0;
 
 /// A part in the cell.
@@ -28,9 +28,9 @@ pub struct Part {
     pub body: RigidBodyHandle,
     /// Its collider.
     pub collider: ColliderHandle,
-    /// It was last seen lying on the floor.
+    /// True if it lay on the floor at the last check.
     pub fallen: bool,
-    /// Sides that were machined in the vise, as unit vectors along its own axes.
+    /// Sides that were machined in the vise, as unit vectors along the part's axes.
     pub machined: Vec<[i8; 3]>,
 }
 
@@ -45,7 +45,7 @@ impl Part {
         Self { kind: kind.clone(), id, body, collider, fallen: false, machined: Vec::new() }
     }
 
-    /// Make it another kind of part, its middle moved by `shift` (in its own axes, in).
+    /// Change it to another kind of part; its middle moves by `shift` (in its own axes, in).
     pub fn become_kind(&mut self, world: &mut PhysicsWorld, kind: &PartType, shift: Inches) {
         let frame = self.frame(world).shifted(shift);
         world.remove_collider(self.collider);
@@ -54,7 +54,7 @@ impl Part {
         self.kind = kind.clone();
     }
 
-    /// Its body.
+    /// Its shape.
     #[must_use]
     pub fn solid(&self) -> Solid {
         Solid::of(&self.kind)
@@ -66,13 +66,13 @@ impl Part {
         self.solid().half()
     }
 
-    /// Where it is, metres.
+    /// Its pose, metres.
     #[must_use]
     pub fn pose(&self, world: &PhysicsWorld) -> Pose {
         *world.bodies[self.body].position()
     }
 
-    /// Where it is, inches.
+    /// Its frame, inches.
     #[must_use]
     pub fn frame(&self, world: &PhysicsWorld) -> Frame {
         to_frame(&self.pose(world))
@@ -95,7 +95,7 @@ impl Part {
         }
     }
 
-    /// Its corners lie within this distance of its middle, metres.
+    /// Radius of a sphere around its middle that contains it, metres.
     #[must_use]
     pub fn radius(&self) -> Real {
         self.half().length()
@@ -117,9 +117,9 @@ pub struct PartState {
     pub id: u32,
     /// Its name at present.
     pub name: String,
-    /// Where it is: a unit, the vise's, the drum's or the pedestal's location, `gripper`, `floor` or `elsewhere`.
+    /// A location: a unit, that of the vise, the drum or the pedestal, `gripper`, `floor` or `elsewhere`.
     pub location: String,
-    /// The nearest sector of the unit, 0 elsewhere.
+    /// The nearest sector of the unit; 0 elsewhere.
     pub sector: u16,
     /// The gripper holds it.
     pub held: bool,
@@ -127,7 +127,7 @@ pub struct PartState {
     pub clamped: bool,
     /// Its middle in world coordinates, in.
     pub position: [f64; 3],
-    /// Distance of its middle from the centre of its sector (in x and y) or from its seat in the vise; in.
+    /// Distance of its middle from the centre of its sector (x and y) or from its seat in the vise, in.
     pub error: Option<f64>,
 }
 
@@ -153,7 +153,7 @@ pub fn segment_meets_box(from: Vector, to: Vector, pose: &Pose, half: Vector) ->
     enters <= leaves
 }
 
-/// Sizes of a part along the axes of the frame that `here` is given in, in.
+/// Sizes of a part along the axes of the frame in which `here` is given, in.
 #[must_use]
 pub fn sizes_along(here: &Frame, kind: &PartType) -> Inches {
     let square = nearest_square(here);
@@ -161,7 +161,7 @@ pub fn sizes_along(here: &Frame, kind: &PartType) -> Inches {
     sizes.map(f64::abs)
 }
 
-/// The frame with its axes turned onto the nearest axes of the frame it is given in.
+/// The frame with its axes aligned to the nearest axes of the frame in which it is given.
 #[must_use]
 pub fn nearest_square(here: &Frame) -> Frame {
     let snapped = |v: Inches| {
@@ -191,7 +191,7 @@ mod tests {
             tool: false,
             other_side: false,
         };
-        // Part X down, Y along vise X, a little askew.
+        // Part X down, Y along vise X, slightly tilted.
         let upright =
             geometry::frame::rotation_from_x_y(&Inches::new(0.02, 0.01, -1.0), &Inches::x()).unwrap();
         let here = Frame { position: Inches::zeros(), rotation: upright };

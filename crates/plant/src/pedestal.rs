@@ -3,13 +3,13 @@
 //!
 //! Three angles, all in degrees and positive to the left seen from above (ASSUMED):
 //!
-//! * the *counter* of the motor's controller: steps from wherever it was last set to a value. The only angle that the
-//!   controller of the pedestal has; it is not valid before the motor has moved to the + limit and the counter was set;
-//! * the *motor angle*: the value of the counter after a calibration by IV.1 step 3. The switches stand at fixed motor
+//! * the *counter* of the motor's controller: steps from the position where it was last set to a value. It is the only
+//!   angle that the controller of the pedestal has; it is not valid until the motor has moved to the + limit and the
+//!   counter was set there;
+//! * the *motor angle*: the value of the counter after a calibration by IV.1 step 3. The switches are at fixed motor
 //!   angles. The motor stops at once at a switch and can move away from it;
-//! * the *table angle*: the angle of the hand. VII.7.4 lets a motor angle of 183.5 flip a part by 180, so the gear
-//!   ratio is not exactly one (ASSUMED); the two are equal where the fingers move across the radial line from the
-//!   robot.
+//! * the *table angle*: the angle of the hand. In VII.7.4 a motor angle of 183.5 flips a part by 180, so the gear ratio
+//!   is not exactly one (ASSUMED); the two are equal where the fingers move across the radial line from the robot.
 
 mod panel;
 
@@ -28,9 +28,9 @@ use crate::{
     sensor::Analog,
 };
 
-/// Steps of the motor for a degree.
+/// Motor steps per degree.
 const STEPS_PER_DEGREE: f64 = TABLE_STEPS_PER_TENTH as f64 * 10.0;
-/// Distance within which the motor is at its goal, steps.
+/// Distance within which the motor has reached its goal, steps.
 const ON_STEP: f64 = 1e-6;
 
 /// The rotary table: motor, controller, switches, potentiometer.
@@ -39,11 +39,11 @@ pub struct Table {
     description: RotaryTable,
     /// Motor angle, steps.
     position: f64,
-    /// Where it is to stop, steps.
+    /// Position at which it stops, steps.
     goal: f64,
-    /// Steps a second.
+    /// Speed, steps/s.
     speed: f64,
-    /// Counter less motor angle, steps.
+    /// Counter minus motor angle, steps.
     offset: f64,
     echo: u32,
     panel: TablePanel,
@@ -65,7 +65,7 @@ impl Table {
         }
     }
 
-    /// Once a tick: take an order, if it is a new one.
+    /// Once a tick: accept an order if it has a new number.
     pub fn order(&mut self, command: &MotorCommand) {
         if !self.attend(command.number) || command.number == 0 || command.number == self.echo {
             return;
@@ -81,26 +81,26 @@ impl Table {
         }
     }
 
-    /// Come to rest as soon as the ramp lets it.
+    /// Set the goal to the nearest point where the ramp can stop the motor.
     fn ramp_down(&mut self) {
         self.goal = libm::round(self.position + self.stopping_way());
     }
 
-    /// Steps in which the motor comes to rest from its present speed, with their sign.
+    /// Stopping distance from the present speed, steps, signed.
     fn stopping_way(&self) -> f64 {
         self.speed * self.speed.abs() / (2.0 * self.ramp())
     }
 
-    /// Steps a second, each second.
+    /// Acceleration, steps/s².
     fn ramp(&self) -> f64 {
         self.description.acceleration * STEPS_PER_DEGREE
     }
 
-    /// Turn for `dt` seconds: up to speed, and down again in time to stop at the goal.
+    /// Turn for `dt` seconds: accelerate to speed, and decelerate in time to stop at the goal.
     pub fn advance(&mut self, dt: f64) {
         let left = self.goal - self.position;
         let change = self.ramp() * dt;
-        // The fastest speed from which the goal can still be kept, if one more step is made at it.
+        // The greatest speed from which the motor can still stop at the goal after one more step at that speed.
         let slowing = libm::sqrt(change * change / 4.0 + 2.0 * self.ramp() * left.abs()) - change / 2.0;
         let greatest = slowing.min(self.description.speed * STEPS_PER_DEGREE);
         self.speed = (greatest.copysign(left)).clamp(self.speed - change, self.speed + change);
@@ -182,24 +182,24 @@ impl Pedestal {
         let table = Table::new(&description.table);
         let tool = to_pose(&hand_frame(description, table.angle()));
         let hand = Gripper::new(world, &description.hand, description.stiffness, &tool, HAND);
-        // Most jobs never ask for it, and in the others it stands still most of the time.
+        // Most jobs never use it, and in the others it is mostly at rest.
         hand.let_fingers_sleep(world);
         Self { hand, table, description: description.clone() }
     }
 
-    /// Where the hand is: its fingertips, X up, Y across the fingers; world, in.
+    /// The frame of the fingertips: X up, Y across the fingers; world, in.
     #[must_use]
     pub fn frame(&self) -> Frame {
         hand_frame(&self.description, self.table.angle())
     }
 
-    /// Where the hand is while its fingers move across the radial line.
+    /// The frame of the fingertips while the fingers move across the radial line.
     #[must_use]
     pub fn square_frame(&self) -> Frame {
         hand_frame(&self.description, self.description.table.square)
     }
 
-    /// Let the table turn for `dt` seconds, and the hand with it.
+    /// Turn the table for `dt` seconds, and the hand with it.
     pub fn turn(&mut self, world: &mut PhysicsWorld, dt: f64) {
         if !self.table.moving() {
             self.hand.stand(world);
@@ -226,7 +226,7 @@ impl Pedestal {
     }
 }
 
-/// The hand at a table angle in degrees: at `square` its Y lies across the radial line. World, in.
+/// The hand at a table angle in degrees: at `square` its Y is perpendicular to the radial line. World, in.
 #[must_use]
 pub fn hand_frame(description: &Description, angle: f64) -> Frame {
     let across = description.azimuth + 90.0 + angle - description.table.square;

@@ -1,12 +1,12 @@
 //! The quick change: the A plate on the wrist with its locking ring, and its position relative to the B plate of a
 //! gripper.
 //!
-//! Air turns the ring between its two ends as long as the control port is enabled; two reflectance sensors detect only
-//! the ends (VI.2). The ring catches a B plate only if it is locked while the plates lie together, and releases it at
-//! its unlocked end. The id pins are longer than the play of the plates: they read the gripper under the A plate,
-//! locked or not, also after it has dropped onto its holster (V.2.1 QC-DETACH).
+//! Air turns the ring between its two ends while the control port is enabled; two reflectance sensors detect only the
+//! ends (VI.2). The ring catches a B plate only if it locks while the plates lie together, and releases it at its
+//! unlocked end. The id pins are longer than the play of the plates: they read the gripper under the A plate, locked or
+//! not, also after it has dropped onto its holster (V.2.1 QC-DETACH).
 //!
-//! [`crate::cell`] decides what carries a gripper, and when it falls.
+//! [`crate::cell`] decides which body carries a gripper, and when it falls.
 
 use geometry::frame::{Frame, rotation_vector};
 use interfaces::device::QuickChangeValves;
@@ -14,17 +14,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::description::QuickChange as Description;
 
-/// Share of the ring's travel at an end within which its sensor detects it.
+/// Fraction of the ring's travel at an end within which its sensor detects it.
 const SEEN: f64 = 0.02;
-/// Plates that are pressed together this far, in, are still on their pins; beyond it there is a collision.
+/// Depth to which plates can be pressed together with touching pins, in; more is a collision.
 const PRESSED: f64 = 0.30;
-/// Pins meet their pads within this angle, radians (3 degrees).
+/// Greatest angle between the plates at which the pins meet their pads, radians (3 degrees).
 const PINS_ANGLE: f64 = 0.052_36;
 
 /// The locking ring.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Ring {
-    /// 0 unlocked, 1 locked.
+    /// Position: 0 unlocked, 1 locked.
     place: f64,
     travel_time: f64,
 }
@@ -36,7 +36,7 @@ impl Ring {
         Self { place: f64::from(u8::from(locked)), travel_time: description.travel_time_s }
     }
 
-    /// Let the air act for `dt` seconds. Air on both sides, or on none, leaves the ring where it is.
+    /// Apply the air for `dt` seconds. Air on both sides, or on none, leaves the ring where it is.
     pub fn advance(&mut self, dt: f64, valves: &QuickChangeValves) {
         let way = dt / self.travel_time;
         let towards = match (valves.port, valves.lock, valves.unlock) {
@@ -47,20 +47,20 @@ impl Ring {
         self.place = (self.place + towards).clamp(0.0, 1.0);
     }
 
-    /// How far the ring is beyond the range of the sensors of the locked and the unlocked position, as a share of its way;
-    /// negative inside of it.
+    /// Distance of the ring beyond the ranges of the sensors of the locked and the unlocked position, as a fraction of
+    /// its travel; negative within range.
     #[must_use]
     pub fn beyond(&self) -> [f64; 2] {
         [1.0 - SEEN - self.place, self.place - SEEN]
     }
 
-    /// It is in its locked position.
+    /// True if it is in its locked position.
     #[must_use]
     pub fn locked(&self) -> bool {
         self.place >= 1.0 - SEEN
     }
 
-    /// It is in its unlocked position.
+    /// True if it is in its unlocked position.
     #[must_use]
     pub fn unlocked(&self) -> bool {
         self.place <= SEEN
@@ -79,7 +79,7 @@ pub struct Gap {
 }
 
 impl Gap {
-    /// Between the robot's tool frame and that of a gripper; where they coincide the plates lie together.
+    /// The gap between the robot's tool frame and that of a gripper; the plates lie together where the frames coincide.
     #[must_use]
     pub fn between(robot: &Frame, gripper: &Frame) -> Self {
         let gripper = robot.inverse().compose(gripper);
@@ -87,7 +87,7 @@ impl Gap {
         Self { apart: at.x, aside: libm::hypot(at.y, at.z), angle: rotation_vector(&gripper.rotation).norm() }
     }
 
-    /// The mating elements are in each other: the id pins touch, and the plates move together sideways.
+    /// True if the mating elements are engaged: the id pins touch, and the plates move together sideways.
     #[must_use]
     pub fn engaged(&self, description: &Description) -> bool {
         (-PRESSED..=description.pins_reach).contains(&self.apart)
@@ -95,7 +95,7 @@ impl Gap {
             && self.angle <= PINS_ANGLE
     }
 
-    /// The ring reaches the B plate.
+    /// True if the ring reaches the B plate.
     #[must_use]
     pub fn lies_together(&self, description: &Description) -> bool {
         self.apart.abs() <= description.tolerance

@@ -1,7 +1,8 @@
-//! The cell for the check of paths: positions of everything, and the carried part, without physics and time.
+//! The cell for the path check: the positions of all bodies and of the carried part, without physics and time.
 //!
 //! A [`Layout`] has the positions of everything that a job moves. [`Room::look`] sets the robot to joint angles and
-//! returns its contacts and near bodies, with the bodies ([`crate::bodies`]) and the clearance check of a run.
+//! returns its contacts and near bodies, with the same bodies ([`crate::bodies`]) and the same clearance check as a
+//! run.
 
 use geometry::{
     frame::{Frame, Vector as Inches},
@@ -22,42 +23,41 @@ use crate::{
 
 /// Names of the grippers by end effector id from 1.
 const GRIPPERS: [&str; 3] = ["parts_gripper", "v_gripper", "tool_gripper"];
-/// A part whose middle is nearer than this to that of the seat of a nest is in the nest, in.
+/// A part whose centre is nearer than this to that of a nest's seat is in the nest, in.
 const IN_NEST: f64 = 1.0;
-/// Step in which a part is lowered, in, and number of halvings of the last one.
+/// Step in which a part is lowered, in, and number of times that the last step is halved.
 const STEP: f64 = 0.02;
 const HALVES: u32 = 8;
 
 /// A part and its position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
-    /// What it is.
+    /// Its kind.
     pub kind: PartType,
-    /// Frame: in the world, or in the tool frame if the robot holds it; in.
+    /// Its frame, in: in the tool frame if the robot holds it, else in the world.
     pub frame: Frame,
 }
 
-/// Everything that a job moves. Openings in inches, the table angle in degrees.
+/// Positions of everything that a job moves. Openings in inches, the table angle in degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// End effector id of the gripper on the robot, if any.
     pub gripper: Option<u8>,
-    /// End effector id of a gripper in its holster that the robot is engaged with, if there is one: then it is not an
-    /// obstacle.
+    /// End effector id of a gripper in its holster that the robot is engaged with, if any: it is not an obstacle then.
     pub engaged: Option<u8>,
-    /// Of its fingers.
+    /// Opening of the robot's fingers.
     pub opening: f64,
     /// The carried part.
     pub held: Option<Placed>,
     /// The other parts.
     pub parts: Vec<Placed>,
-    /// The program of the vise that is on, from 0.
+    /// Index of the selected program of the vise, from 0.
     pub program: usize,
-    /// Distance of the inner faces of its jaws.
+    /// Distance of the inner faces of the vise's jaws.
     pub jaws: f64,
-    /// Of the pedestal.
+    /// Angle of the pedestal's table.
     pub table: f64,
-    /// Of the pedestal's hand.
+    /// Opening of the pedestal's hand.
     pub hand: f64,
 }
 
@@ -70,7 +70,7 @@ pub struct Room {
 }
 
 impl Room {
-    /// The cell of a description that has been validated.
+    /// The cell of a validated description.
     #[must_use]
     pub fn new(cell: &CellDescription) -> Self {
         Self {
@@ -115,21 +115,21 @@ impl Room {
         self.gripper(layout.gripper?)
     }
 
-    /// The gripper of an end effector id.
+    /// The gripper with an end effector id.
     #[must_use]
     pub fn gripper(&self, id: u8) -> Option<&Gripper> {
         let grippers = &self.cell.gripper;
         [&grippers.parts, &grippers.v, &grippers.tool].get(usize::from(id).checked_sub(1)?).copied()
     }
 
-    /// Distance of the inner faces of the jaws of the vise by a program, in.
+    /// Distance of the inner faces of the vise's jaws in a program, in.
     #[must_use]
     pub fn jaws(&self, program: usize, jaws: Jaws) -> f64 {
         self.cell.vise.program.get(program).map_or(0.0, |program| jaws.gap(program))
     }
 
-    /// The seat in the vise, by a program, of a part that is near to it: its frame, and the distance of the
-    /// inner faces of the jaws that are closed on it, in.
+    /// The seat in the vise, in a program, of a part that is near it: its frame, and the distance of the inner faces of
+    /// the jaws when closed on it, in.
     #[must_use]
     pub fn vise_seat(&self, program: usize, part: &Placed) -> Option<(Frame, f64)> {
         let program = self.cell.vise.program.get(program)?;
@@ -140,7 +140,7 @@ impl Room {
         Some((vise.compose(&seat), size.y - 2.0 * program.depth))
     }
 
-    /// The part that stands in the vise: its middle is within the jaws.
+    /// Index of the part in the vise: its middle is within the jaws.
     #[must_use]
     pub fn in_vise(&self, layout: &Layout) -> Option<usize> {
         let vise = vise_frame(&self.cell.vise).inverse();
@@ -153,15 +153,15 @@ impl Room {
         })
     }
 
-    /// The seat of the nest in which a part is.
+    /// The seat of the nest that contains a part; `None` if it is in no nest.
     #[must_use]
     pub fn nest_seat(&self, part: &Placed) -> Option<Frame> {
         let nests = self.cell.nest.iter().filter(|nest| nest.takes(&part.kind)).map(|nest| nest.frame());
         nests.into_iter().find(|seat| (seat.position - part.frame.position).norm() < IN_NEST)
     }
 
-    /// Final position of a part lowered from `above` along the unit vector `down`, among the fixed bodies. `None` if it
-    /// touches something at once, or nothing within `deepest` inches.
+    /// Final frame of a part lowered from `above` along the unit vector `down`, among the fixed bodies. `None` if it
+    /// touches something at the start, or nothing within `deepest` inches.
     #[must_use]
     pub fn let_down(&self, kind: &PartType, above: &Frame, down: &Inches, deepest: f64) -> Option<Frame> {
         let at = |deep: f64| Frame { position: above.position + down * deep, ..*above };
@@ -179,14 +179,15 @@ impl Room {
         Some(at(free))
     }
 
-    /// A part in the pedestal's hand after the table has turned from the angle of the layout to another, degrees.
+    /// Frame of a part in the pedestal's hand after the table has turned from the angle of the layout to another,
+    /// degrees.
     #[must_use]
     pub fn turned(&self, layout: &Layout, to: f64, frame: &Frame) -> Frame {
         let [before, after] = [layout.table, to].map(|angle| hand_frame(&self.cell.pedestal, angle));
         after.compose(&before.inverse().compose(frame))
     }
 
-    /// Obstacles of the robot except itself and fixed bodies.
+    /// Obstacles of the robot except the robot itself and the fixed bodies.
     #[must_use]
     pub fn devices(&self, layout: &Layout) -> Vec<Body> {
         let jaw = vise_frame(&self.cell.vise).shifted(Inches::new(0.0, layout.jaws, 0.0));
@@ -202,7 +203,7 @@ impl Room {
         devices
     }
 
-    /// Bodies of the robot at joint angles in radians, its gripper, and the carried part.
+    /// Bodies of the robot at joint angles in radians, with its gripper and the carried part.
     #[must_use]
     pub fn movers(&self, layout: &Layout, joints: &Joints) -> Vec<Body> {
         let tool = T3.forward(joints);
@@ -217,8 +218,8 @@ impl Room {
         movers
     }
 
-    /// Contacts of the robot, and bodies nearer than `margin` inches: as [`crate::Cell::contacts`]. `movers` are the
-    /// robot's and `devices` those of a layout.
+    /// Contacts of the robot, and bodies nearer than `margin` inches, as in [`crate::Cell::contacts`]. `movers` are the
+    /// robot's bodies and `devices` those of a layout.
     #[must_use]
     pub fn look(&self, movers: &[Body], devices: &[Body], margin: f64) -> Vec<Contact> {
         let arm = movers.iter().filter(|body| body.kind.is_obstacle());
@@ -246,7 +247,7 @@ mod tests {
         let room = Room::new(&description);
         for nest in &description.nest {
             let (seat, kind) = (nest.frame(), description.part(&nest.parts[0]).unwrap());
-            // Parts lie with X down, and stand in the pocket with Z up.
+            // Parts lie with X down, and are upright in the pocket with Z up.
             let down = if seat.x().z < -0.5 { seat.x() } else { -seat.z() };
             let above = Frame { position: seat.position - down * 4.0, ..seat };
             let stands = room.let_down(kind, &above, &down, 5.0).unwrap();
@@ -259,7 +260,7 @@ mod tests {
         }
     }
 
-    /// What a cell that runs says of where it stands, and what the room says.
+    /// A running cell and the room report the same positions and contacts.
     #[test]
     fn the_room_sees_what_the_cell_sees() {
         let description = cell();

@@ -25,41 +25,41 @@ pub const FINGER: Group = Group::GROUP_2;
 pub const HAND: Group = Group::GROUP_5;
 /// Collision group of parts.
 pub const PART: Group = Group::GROUP_3;
-/// Collision group of the palms of hands: a held part still rests on the palm.
+/// Collision group of the palms of hands: a held part still collides with the palm.
 pub const PALM: Group = Group::GROUP_6;
 
 /// Distance of the backs of the movable jaw behind those of the fixed one, in: the fixed jaw determines the position of
-/// a part, and the other must not drag it along when it closes.
+/// a part, and the movable jaw must not drag it along when it closes.
 const RELIEF: f64 = 0.02;
 
 /// Coefficient of friction of steel on trays, vise and floor.
 const FRICTION: Real = 0.30;
 
-/// Membership and filter of a collider.
+/// Collision membership and filter of a collider.
 #[must_use]
 pub const fn groups(member: Group, meets: Group) -> InteractionGroups {
     InteractionGroups::new(member, meets, InteractionTestMode::And)
 }
 
-/// A box that is part of something.
+/// A box of a fixed body or of a jaw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
-    /// What it belongs to; the name of its link.
+    /// Name of the link that it belongs to.
     pub name: String,
-    /// Its middle and its axes, world (or the jaw's frame), in.
+    /// Its centre and its axes, in the world (or the jaw's frame), in.
     pub frame: Frame,
     /// Its size along its axes, in.
     pub size: Inches,
-    /// What kind of thing it is.
+    /// Its kind for the clearance check.
     pub kind: Kind,
-    /// It is a jaw of the vise.
+    /// True if it is a jaw of the vise.
     pub jaw: bool,
-    /// Its coefficient of friction, if that is not the one of trays, vise and floor.
+    /// Its coefficient of friction, if it differs from that of trays, vise and floor.
     pub friction: Option<f64>,
 }
 
 impl Block {
-    /// A box from corner to corner, in the frame that they are given in.
+    /// A box given by two opposite corners, in their frame.
     #[must_use]
     pub fn between(name: &str, kind: Kind, low: Inches, high: Inches) -> Self {
         let frame = Frame { position: (low + high) / 2.0, rotation: Rotation::identity() };
@@ -76,13 +76,13 @@ impl Block {
         to_metres(&self.size) / 2.0
     }
 
-    /// The same block in the frame that its own frame is given in.
+    /// The same block moved by a frame.
     #[must_use]
     pub fn moved(&self, by: &Frame) -> Self {
         Self { frame: by.compose(&self.frame), ..self.clone() }
     }
 
-    /// A collider of this block, at its place.
+    /// A collider of this block at its position.
     pub fn collider(&self) -> ColliderBuilder {
         let half = self.half();
         ColliderBuilder::cuboid(half.x, half.y, half.z)
@@ -162,7 +162,8 @@ fn vise_blocks(vise: &Vise) -> Vec<Block> {
     blocks
 }
 
-/// The movable jaw in its own frame, whose Y is that of its inner face: the mirror image of the fixed one, its backs relieved.
+/// The movable jaw in its own frame, whose Y origin is its inner face: the mirror image of the fixed one, its backs
+/// relieved.
 #[must_use]
 pub fn jaw_blocks(vise: &Vise) -> Vec<Block> {
     let pieces = jaw_pieces(vise).into_iter().map(|[[x0, x1], [d0, d1], [z0, z1]]| {
@@ -172,8 +173,8 @@ pub fn jaw_blocks(vise: &Vise) -> Vec<Block> {
     pieces.collect()
 }
 
-/// The blocks of a jaw without the steps of all programs: boxes from and to in depth into the vise, in depth behind the
-/// inner face, and in height. A step is cut from the front to its back, down to its ledge, and as deep as its clamping
+/// The blocks of a jaw without the steps of all programs: boxes as ranges of depth into the vise, depth behind the
+/// inner face, and height. A step is cut from the front to its back, down to its ledge, and as deep as its clamping
 /// face.
 fn jaw_pieces(vise: &Vise) -> Vec<[[f64; 2]; 3]> {
     let [into, thickness, height] = vise.jaw;
@@ -191,7 +192,7 @@ fn jaw_pieces(vise: &Vise) -> Vec<[[f64; 2]; 3]> {
             let cuts = vise.program.iter().filter(|cut| cut.depth >= depth[1] && cut.ledge <= level[0]);
             let from = cuts.map(|cut| cut.back).fold(0.0, f64::max);
             match pieces.last_mut() {
-                // One box where the step above goes as far into the vise.
+                // Merge with the box of the step above if both extend equally far into the vise.
                 Some([x, d, z]) if x[0] == from && *d == [depth[0], depth[1]] && z[1] == level[0] => {
                     z[1] = level[1];
                 }
@@ -213,7 +214,7 @@ impl From<&Block> for Body {
     }
 }
 
-/// The rotation of a cylinder along Z, as a URDF draws it, onto the X axis of a link.
+/// The rotation of a cylinder along Z, as in a URDF, onto the X axis of a link.
 #[must_use]
 pub fn along_x() -> Rotation {
     Rotation::from_axis_angle(&Inches::y_axis(), FRAC_PI_2)

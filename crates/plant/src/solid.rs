@@ -1,4 +1,4 @@
-//! The body of a part: a box, or a cylinder along one of the axes of the part.
+//! The shape of a part: a box, or a cylinder along one of the axes of the part.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -10,7 +10,7 @@ use crate::{
     description::{PartType, Shape},
 };
 
-/// The body of a part, metres, in the axes of the part, its middle at their origin.
+/// The shape of a part, metres, in the axes of the part, its middle at their origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solid {
     half: Vector,
@@ -19,7 +19,7 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// The body of a kind of part.
+    /// The shape of a kind of part.
     #[must_use]
     pub fn of(kind: &PartType) -> Self {
         let axis = match kind.shape {
@@ -42,13 +42,13 @@ impl Solid {
         Self { half: Vector::new(radius, radius, half_length), axis: Some(2) }
     }
 
-    /// Half the sizes of the box around it.
+    /// Half the sizes of its bounding box.
     #[must_use]
     pub const fn half(&self) -> Vector {
         self.half
     }
 
-    /// Direction, radius and half length of a cylinder; `None` of a box.
+    /// Direction, radius and half length of a cylinder; `None` for a box.
     #[must_use]
     pub fn cylinder(&self) -> Option<(Vector, Real, Real)> {
         let axis = self.axis?;
@@ -56,7 +56,7 @@ impl Solid {
         Some((Vector::AXES[axis], half[(axis + 1) % 3], half[axis]))
     }
 
-    /// The shape, and how it is turned in the axes of the part: a cylinder of the simulation lies along its Y.
+    /// The shape, and its pose in the axes of the part: a cylinder of the simulation lies along its Y.
     #[must_use]
     pub fn shape(&self) -> (SharedShape, Pose) {
         let Some((direction, radius, half_length)) = self.cylinder() else {
@@ -88,7 +88,7 @@ impl Solid {
     }
 }
 
-/// Where the axis of a cylinder lies in a picture that draws it along X; inches.
+/// Frame whose X is the axis of a cylinder, for URDF, and its radius and length; inches. `None` for a box.
 #[must_use]
 pub fn along(kind: &PartType) -> Option<(Frame, f64, f64)> {
     let [x, y, z] = kind.size;

@@ -1,27 +1,27 @@
-//! Geometry of a part between two closing parallel faces: fingers, vise jaws.
+//! Geometry of a part between two parallel closing faces: fingers or vise jaws.
 //!
-//! Both grips are the same geometry: two rectangular pads face each other along Y. The box turns the face that is most
-//! nearly parallel to the pads towards them; that face, clipped to the pad, gives the width at which the pads are stopped,
-//! the point and area where friction acts, and the position in which the box lies flush.
+//! Both grips have the same geometry: two rectangular pads face each other along Y. Of the faces of a box, the most
+//! nearly parallel one turns towards the pads; clipped to the pad, it gives the width at which the pads stop, the point
+//! and area where friction acts, and the pose in which the box lies flush.
 //!
-//! A cylinder that lies between the pads touches each with a line, which counts as a narrow strip. Pads with V-grooves
-//! (the v-gripper) touch it with two, and align its axis with that of the grooves. A cylinder that stands between the
-//! pads counts as the box around it.
+//! A cylinder that lies between the pads touches each along a line, which counts as a narrow strip. Pads with V-grooves
+//! (the v-gripper) touch it along two lines, and align its axis with that of the grooves. A cylinder that stands
+//! between the pads counts as its bounding box.
 
 use rapier3d_f64::math::{Pose, Real, Rotation, Vector};
 
 use crate::solid::Solid;
 
-/// Faces within this angle of the pads are drawn flush when the pads close (10 degrees, its cosine).
+/// Cosine of 10 degrees: faces within this angle of the pads become flush when the pads close.
 const FLUSH_COSINE: Real = 0.984_807_753;
-/// The same for an axis that is to lie along the pads (its sine to them).
+/// Sine of 10 degrees: axes within this angle of the pads become parallel to them.
 const FLUSH_SINE: Real = 0.173_648_178;
 /// Half the width of the strip that a cylinder touches, in radii: on a flat pad, and between the lines of two grooves.
 const STRIP: Real = 0.1;
 const GROOVE_STRIP: Real = 0.7;
-/// A groove catches a cylinder whose axis is nearer to its own than this, in radii.
+/// Greatest distance between the axes of a cylinder and of a groove that catches it, in radii.
 const CAUGHT: Real = 0.5;
-/// Contact below this area does not stop a pad (0.01 square inch), m².
+/// Least contact area that stops a pad, m² (0.01 square inch).
 const LEAST_AREA: Real = 6.45e-6;
 
 /// The rectangle that each of two pads covers, in the axes of the grip, metres.
@@ -31,7 +31,7 @@ pub struct Pads {
     pub x: [Real; 2],
     /// Extent along Z.
     pub z: [Real; 2],
-    /// Where V-grooves along Z have their common axis, along X; `None` on flat pads.
+    /// Position along X of the common axis of V-grooves along Z; `None` for flat pads.
     pub groove: Option<Real>,
 }
 
@@ -40,7 +40,7 @@ pub struct Pads {
 pub struct Squeeze {
     /// Distance of the pads when both touch.
     pub width: Real,
-    /// Where the part has its centre along Y.
+    /// Position of the part's centre along Y.
     pub centre: Real,
     /// Centre of the touched area.
     pub point: Vector,
@@ -48,19 +48,19 @@ pub struct Squeeze {
     pub area: Real,
     /// Extent of the touched area along X and Z.
     pub span: [Real; 2],
-    /// The part turned so that its face lies on the pads, and moved into the grooves.
+    /// Pose of the part turned so that its face lies on the pads, and moved into the grooves.
     pub flush: Pose,
 }
 
 impl Squeeze {
-    /// Lever arm of friction about Y: two thirds of the radius of a disc of the touched area.
+    /// Lever arm of friction about Y: two thirds of the radius of a disc with the touched area.
     #[must_use]
     pub fn friction_arm(&self) -> Real {
         2.0 / 3.0 * libm::sqrt(self.area / core::f64::consts::PI)
     }
 }
 
-/// The squeeze of a part at `pose` (in the axes of the grip); `None` if nothing.
+/// The squeeze of a part at `pose` (in the axes of the grip); `None` if it does not touch the pads.
 #[must_use]
 pub fn squeeze(pose: &Pose, solid: &Solid, pads: &Pads) -> Option<Squeeze> {
     match solid.cylinder() {
@@ -71,7 +71,7 @@ pub fn squeeze(pose: &Pose, solid: &Solid, pads: &Pads) -> Option<Squeeze> {
     }
 }
 
-/// A cylinder whose axis lies along the pads.
+/// The squeeze of a cylinder whose axis lies along the pads.
 fn squeeze_cylinder(
     pose: &Pose,
     axis: Vector,
@@ -153,12 +153,12 @@ fn spans(polygon: &[[Real; 2]]) -> [Real; 2] {
     })
 }
 
-/// The pose turned about its own origin, in the axes it is given in.
+/// The pose rotated about its own origin, in the axes in which it is given.
 fn turn_about(pose: &Pose, turn: &Rotation) -> Pose {
     Pose::from_parts(pose.translation, (*turn * pose.rotation).normalize())
 }
 
-/// The part of a convex polygon that lies in the rectangle.
+/// The intersection of a convex polygon with the rectangle.
 fn clip(polygon: &[[Real; 2]], pads: &Pads) -> Vec<[Real; 2]> {
     let bounds = [(0, pads.x[0], 1.0), (0, pads.x[1], -1.0), (1, pads.z[0], 1.0), (1, pads.z[1], -1.0)];
     let mut left = polygon.to_vec();
@@ -181,7 +181,7 @@ fn clip(polygon: &[[Real; 2]], pads: &Pads) -> Vec<[Real; 2]> {
     left
 }
 
-/// Area and centroid of a polygon; `None` if it is a line or less.
+/// Area and centroid of a polygon; `None` if it has no area.
 fn area_and_centroid(polygon: &[[Real; 2]]) -> Option<(Real, [Real; 2])> {
     let (mut twice, mut x, mut z) = (0.0, 0.0, 0.0);
     for (index, from) in polygon.iter().enumerate() {
@@ -242,7 +242,7 @@ mod tests {
 
     #[test]
     fn fingers_cover_what_the_manual_lets_stand_out() {
-        // Picked as LK-GRP-1 has it: finger centre 2.10 in from the centroid, tips 0.20 above the tray (VIII.9.5).
+        // Picked as in LK-GRP-1: finger centre 2.10 in from the centroid, tips 0.20 above the tray (VIII.9.5).
         let part = Pose::from_translation(Vector::new(metres(0.20 - 0.3125), metres(0.1), metres(-2.10)));
         let held = squeeze(&part, &bar(), &FINGERS).unwrap();
         assert!((inches(held.width) - 0.625).abs() < 1e-9);

@@ -4,12 +4,12 @@ use rapier3d_f64::prelude::{Aabb, BoundingVolume};
 
 use crate::{clearance::Body, convert::metres};
 
-/// The surroundings of bodies over a motion, one box for each body and leg.
+/// Bounding boxes of bodies over a motion, one for each body and leg.
 #[derive(Clone, Debug, Default)]
 pub struct Swept(Vec<Aabb>);
 
 impl Swept {
-    /// The bodies begin a leg.
+    /// Begin a leg with the positions of the bodies.
     pub fn begin(&mut self, bodies: &[Body]) {
         self.0.extend(bodies.iter().map(|body| body.aabb));
     }
@@ -22,7 +22,7 @@ impl Swept {
         }
     }
 
-    /// True if a body may have been nearer to them than `margin` inches.
+    /// True if a body may have been nearer to the moving bodies than `margin` inches.
     #[must_use]
     pub fn passes(&self, body: &Body, margin: f64) -> bool {
         let around = body.aabb.loosened(metres(margin));

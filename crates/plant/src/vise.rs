@@ -1,13 +1,13 @@
 //! The programmable vise: a fixed jaw, a movable jaw, and the clamped part.
 //!
 //! Both jaws have steps, one for each family of parts. A program of the vise is such a step with its openings. Openings
-//! are counted between the clamping faces of the step of the program that is on, as its user counts them; internally
-//! the jaw position is the distance of the inner faces. A part stops the jaw in any step.
+//! are measured between the clamping faces of the step of the selected program, as for the operator; internally the jaw
+//! position is the distance of the inner faces. A part stops the jaw in any step.
 //!
 //! The jaw moves at its speed to an opening. When it reaches a part it pushes the part along, flush with its face, and
-//! stops when the part lies against the fixed face; from then on the closing force and friction hold it. The gripper
-//! cannot resist: 500 lb against at most twice the finger force. A part that is still in the fingers is pushed aside in
-//! them.
+//! stops when the part touches the fixed face; from then on the closing force and friction hold the part. The gripper
+//! cannot resist: 500 lb against at most twice the finger force. The jaws push aside a part that is still in the
+//! fingers.
 
 use geometry::frame::{Frame, Vector as Inches};
 use rapier3d_f64::prelude::*;
@@ -32,20 +32,20 @@ pub enum Jaws {
 }
 
 impl Jaws {
-    /// Distance of the inner faces of the jaws by a program, in.
+    /// Distance of the inner faces of the jaws in a program, in.
     #[must_use]
     pub fn gap(self, program: &ViseProgram) -> f64 {
         match self {
             Self::Open => program.opening_open - 2.0 * program.depth,
             Self::Partial => program.opening_partial - 2.0 * program.depth,
-            // The inner faces of the jaws meet.
+            // The inner faces of the jaws touch.
             Self::Closed => 0.0,
         }
     }
 }
 
 impl ViseProgram {
-    /// Where the middle of a part of the given size (in, along the axes of the vise: X in, Y left, Z up) is when it is
+    /// Position of the middle of a part of the given size (in, along the axes of the vise: X in, Y left, Z up) that is
     /// seated in the step: on the ledge, at the back, against the fixed face. Vise frame, in.
     #[must_use]
     pub fn seat(&self, size: &Inches) -> Inches {
@@ -59,7 +59,7 @@ pub struct Vise {
     description: Description,
     #[serde(with = "crate::image::frame")]
     frame: Frame,
-    /// Which program is on.
+    /// Index of the selected program.
     program: usize,
     /// Distance of the inner faces of the jaws, in.
     gap: f64,
@@ -77,12 +77,12 @@ pub struct Clamped {
     pub part: usize,
     /// The step in which it is clamped.
     pub step: usize,
-    /// Where it is in the frame of the vise, m.
+    /// Its pose in the frame of the vise, m.
     pub rest: Pose,
 }
 
 impl Vise {
-    /// Build the movable jaw, open by the first program.
+    /// Build the movable jaw at the open position of the first program.
     pub fn new(world: &mut PhysicsWorld, description: &Description) -> Self {
         let frame = vise_frame(description);
         let jaw = world.insert_body(RigidBodyBuilder::kinematic_position_based());
@@ -127,13 +127,13 @@ impl Vise {
         0..self.description.program.len()
     }
 
-    /// Go on by the program of a name, if there is one.
+    /// Select the program with a name, if there is one.
     pub fn select(&mut self, name: &str) {
         let program = self.description.program.iter().position(|program| program.name == name);
         self.program = program.unwrap_or(self.program);
     }
 
-    /// Distance of the clamping faces of the program that is on, in.
+    /// Distance of the clamping faces of the selected program, in.
     #[must_use]
     pub fn opening(&self) -> f64 {
         self.gap + 2.0 * self.step(self.program).depth
@@ -157,7 +157,7 @@ impl Vise {
         &self.description.location
     }
 
-    /// True while the jaw is on its way.
+    /// True while the jaw moves.
     #[must_use]
     pub fn moving(&self) -> bool {
         !self.stopped && (self.gap - self.target).abs() > 1e-9
@@ -169,19 +169,19 @@ impl Vise {
         self.stopped
     }
 
-    /// True while the jaw is on its way to the fixed jaw.
+    /// True while the jaw moves towards the fixed jaw.
     #[must_use]
     pub fn closing(&self) -> bool {
         self.moving() && self.target < self.gap
     }
 
-    /// Command an opening of the program that is on. Before a wider opening the caller must release the clamped part.
+    /// Command an opening of the selected program. Before a wider opening the caller must release the clamped part.
     pub fn command(&mut self, jaws: Jaws) {
         self.target = jaws.gap(self.step(self.program));
         self.stopped &= self.target < self.gap;
     }
 
-    /// True if the jaw would move away from the fixed jaw.
+    /// True if the command would move the jaw away from the fixed jaw.
     #[must_use]
     pub fn opening_commanded(&self) -> bool {
         self.target > self.gap
@@ -211,8 +211,8 @@ impl Vise {
         to_pose(&self.frame.shifted(Inches::new(0.0, self.gap, 0.0)))
     }
 
-    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for where the fixed one is. Deeper steps have cut
-    /// pieces out of them: of the areas left beside and below each piece, the larger rectangle counts.
+    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for the position of the fixed one. Deeper steps
+    /// have cut pieces out of them: of the areas left beside and below each piece, the larger rectangle counts.
     #[must_use]
     pub fn pads(&self, step: usize) -> Pads {
         let step = self.step(step);
@@ -229,7 +229,7 @@ impl Vise {
         Pads { x: x.map(metres), z: z.map(metres), groove: None }
     }
 
-    /// How deep the clamping face of a step is behind the inner face, in.
+    /// Depth of the clamping face of a step behind the inner face, in.
     #[must_use]
     pub fn depth(&self, step: usize) -> f64 {
         self.step(step).depth
@@ -247,25 +247,25 @@ impl Vise {
         metres(self.gap + self.step(step).depth)
     }
 
-    /// The force along the faces that draws a part out of the closed jaws, N.
+    /// The force along the faces that pulls a part out of the closed jaws, N.
     #[must_use]
     pub fn friction_limit(&self) -> Real {
         2.0 * newtons(self.description.force) * self.description.friction
     }
 
-    /// Where the middle of a part is when it is seated in a step: see [`ViseProgram::seat`].
+    /// Position of the middle of a part that is seated in a step: see [`ViseProgram::seat`].
     #[must_use]
     pub fn seat(&self, step: usize, size: &Inches) -> Inches {
         self.step(step).seat(size)
     }
 
-    /// The step that a part stands in if nothing clamps it: that of the program that is on.
+    /// The step for a part that is not clamped: that of the selected program.
     #[must_use]
     pub fn present_step(&self) -> usize {
         self.clamped.map_or(self.program, |clamped| clamped.step)
     }
 
-    /// True if a point (vise frame, in) is where a part in the vise has its middle.
+    /// True if a part whose middle is at a point (vise frame, in) is in the vise.
     #[must_use]
     pub fn contains(&self, point: &Inches) -> bool {
         let [into, _, height] = self.description.jaw;
@@ -295,7 +295,7 @@ mod tests {
             let found = [x[0], x[1], z[0], z[1]];
             assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {expected:?}");
         };
-        // The linkbar's face is cut from above, that of the clevis from the front by both others.
+        // The linkbar's face is cut from above; both other steps cut that of the clevis from the front.
         is(faces(0), [0.0, 0.41, -3.25, -0.6]);
         is(faces(1), [0.87, 1.6, -1.0, 0.0]);
         is(faces(2), [0.0, 0.87, -0.6, 0.0]);

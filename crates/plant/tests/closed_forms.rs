@@ -1,7 +1,7 @@
-//! Contact, friction and grip against closed forms: what justifies the parameters of contacts in the cell description.
+//! Contact, friction and grip against closed forms, which justify the contact parameters of the cell description.
 //!
-//! Each test states the form that it holds the simulation against. Steps of 2.5 ms integrate a constant acceleration with an
-//! error of half a step of velocity; tolerances are a few times that.
+//! Each test gives the formula with which it compares the simulation. Steps of 2.5 ms integrate a constant acceleration
+//! with an error of half a step of velocity; tolerances are a few times that.
 
 mod rig;
 
@@ -15,12 +15,12 @@ use rig::{CELL, PFIX, Rig, UNIT_V1, description, table};
 
 /// Standard gravity, in/s².
 const GRAVITY: f64 = 9.806_65 / 0.0254;
-/// Of parts on everything that stands, `Part` and `scene`.
+/// Coefficient of friction of parts on fixed bodies, as in `Part` and `scene`.
 const FRICTION: f64 = 0.30;
-/// Middle of the slope, in: where nothing else is.
+/// Middle of the slope, in: away from all other bodies.
 const SLOPE: [f64; 3] = [0.0, 90.0, -20.0];
 
-/// The cell with blocks of 2 x 2 x 2 in of some weight, and a slope of 120 x 20 x 4 in that falls towards +X.
+/// The cell with blocks of 2 x 2 x 2 in of a given weight, and a slope of 120 x 20 x 4 in that falls towards +X.
 fn with_slope(degrees: f64, weight: f64) -> CellDescription {
     let [x, y, z] = SLOPE;
     let text = format!(
@@ -34,7 +34,7 @@ fn put(rig: &mut Rig, frame: Frame) {
     rig.cell.workstation(&WorkstationAction::Put { part: "BLOCK".into(), frame }).unwrap();
 }
 
-/// Axes of the slope: X down it, Z out of it.
+/// Axes of the slope: X down the slope, Z normal to it.
 fn slope_axes(degrees: f64) -> Rotation {
     rotation_by(&Vector::new(0.0, degrees.to_radians(), 0.0))
 }
@@ -50,7 +50,7 @@ fn on_slope(degrees: f64, weight: f64) -> Rig {
     rig
 }
 
-/// Way down the slope since `from`, in, and how far it has left the slope or turned.
+/// Distance down the slope since `from`, in; height above the slope and rotation since then.
 fn slid(rig: &Rig, degrees: f64, from: &Frame) -> (f64, f64, f64) {
     let at = rig.part_frame();
     let way = slope_axes(degrees).inverse() * (at.position - from.position);
@@ -73,7 +73,7 @@ fn a_block_on_an_incline_stands_below_the_angle_of_friction() {
     }
 }
 
-/// Beyond it the block slides with a = g (sin a - mu cos a), whatever its weight.
+/// Beyond that angle the block slides with a = g (sin a - mu cos a), whatever its weight.
 #[test]
 fn a_block_on_an_incline_slides_as_friction_lets_it() {
     for (degrees, weight) in [(18.0, 5.0), (25.0, 0.5), (25.0, 5.0), (25.0, 50.0), (40.0, 5.0)] {
@@ -81,7 +81,7 @@ fn a_block_on_an_incline_slides_as_friction_lets_it() {
         let acceleration = GRAVITY * (libm::sin(angle) - FRICTION * libm::cos(angle));
         let mut rig = on_slope(degrees, weight);
         let from = rig.part_frame();
-        // From rest; 20 ticks, or as long as the slope is.
+        // From rest; 20 ticks, or less if the slope is too short.
         let ticks = (libm::sqrt(2.0 * 60.0 / acceleration) / TICK_S).min(20.0) as u32;
         rig.ticks(ticks);
         let time = f64::from(ticks) * TICK_S;
@@ -95,7 +95,7 @@ fn a_block_on_an_incline_slides_as_friction_lets_it() {
     }
 }
 
-/// A falling part: z = h - g t²/2 until t = sqrt(2h/g), then it lies; nothing bounces in this cell.
+/// A falling part: z = h - g t²/2 until t = sqrt(2h/g), then it is at rest; nothing bounces in this cell.
 #[test]
 fn a_falling_part_lands_when_it_should() {
     let top = SLOPE[2] + 2.0 + 1.0;
@@ -126,7 +126,7 @@ fn a_falling_part_lands_when_it_should() {
     }
 }
 
-/// Stand over a block of some weight in sector 4 and close on it; where that is.
+/// Move over a block of a given weight in sector 4 and close on it; returns the rig and the frame of the block.
 fn grip_block(weight: f64, force: f64) -> (Rig, Frame) {
     let mut rig = Rig::new(&with_slope(0.0, weight), 1);
     let sector = description().tray("UNIT_1").unwrap().sector(4).unwrap();
@@ -140,9 +140,9 @@ fn grip_block(weight: f64, force: f64) -> (Rig, Frame) {
     (rig, grip)
 }
 
-/// Between pads with the force F each and friction mu a part hangs as long as it weighs less than 2 F mu, and slips out
-/// beyond: the pull is its weight; the rounded words by which it is lifted add up to 2 % in jolts. The air adds force in ticks, so
-/// F is what the fingers have then, and weights are tried across the limit.
+/// Between pads with the force F each and friction mu a part hangs while it weighs less than 2 F mu, and slips out
+/// beyond: the load is its weight; the rounded words of the lifting motion add up to 2 % in jolts. The air adds force
+/// tick by tick, so F is the final force of the fingers, and the tested weights are on both sides of the limit.
 #[test]
 fn a_gripped_part_slips_at_twice_force_times_friction() {
     let friction = description().gripper.parts.friction;
@@ -166,8 +166,8 @@ fn a_gripped_part_slips_at_twice_force_times_friction() {
     }
 }
 
-/// A bar on its edge falls to the side on which its middle is: on the ledge that is behind the edge by 0.0375 in at a height
-/// of 2.00 in, so that it stands up to atan(0.0375 / 2) = 1.074 degrees (cell proposal, §2).
+/// A bar on its edge falls to the side of its middle: on the ledge the middle is behind the edge by 0.0375 in at a
+/// height of 2.00 in, so the bar stands up to atan(0.0375 / 2) = 1.074 degrees (cell proposal, §2).
 #[test]
 fn a_bar_on_the_ledge_tips_where_its_middle_passes_the_edge() {
     let critical = libm::atan2(0.0375, 2.0).to_degrees();
@@ -187,8 +187,8 @@ fn a_bar_on_the_ledge_tips_where_its_middle_passes_the_edge() {
     }
 }
 
-/// What the seat move over-travels is pushed back by the arm's stiffness: at rest the bar is pressed against the back of the
-/// notch with F = k x, and stays where it is; k = 2000 lb/in, x = 0.015 in give 30 lb.
+/// The arm's stiffness takes up the over-travel of the seat move: at rest the bar is pressed against the back of the
+/// notch with F = k x, and does not move; k = 2000 lb/in, x = 0.015 in give 30 lb.
 #[test]
 fn the_pressed_bar_takes_stiffness_times_over_travel() {
     let mut rig = Rig::new(&description(), 1);
@@ -202,7 +202,7 @@ fn the_pressed_bar_takes_stiffness_times_over_travel() {
     rig.go(Rig::fixture(&rig::HOLD, 0.0, 0.0), 1.0);
     rig.go_and_stop(Rig::fixture(&rig::SEAT, 0.0, 0.0), 0.5);
     let command = Rig::fixture(&rig::SEAT, 0.0, 0.0).position.x;
-    // The fingertips stand 0.015 in before the command: their springs carry the whole over-travel.
+    // The fingertips stop 0.015 in before the command: their springs take up the whole over-travel.
     let given = command - rig.cell.tool().position.x;
     assert!((given - 0.015).abs() < 0.004, "{given}");
     let seated = rig.in_fixture().position;

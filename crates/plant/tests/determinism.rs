@@ -1,12 +1,12 @@
-//! The same seed gives the same bits: in ten runs, in two processes, and after saving and restoring the cell in the middle
-//! of contacts. `cargo run --example world_hash` with and without `--release` compares the two profiles.
+//! The same seed gives the same bits: in ten runs, in two processes, and after saving and restoring the cell during
+//! contacts. `cargo run --example world_hash` with and without `--release` compares the two profiles.
 
 mod rig;
 
 use plant::{Cell, RestoreError};
 use rig::{Rig, description, scenes, tape::Tape};
 
-/// Ticks for which a restored cell must go on as the one that was saved.
+/// Ticks for which a restored cell is compared with the saved one.
 const GOES_ON: usize = 500;
 
 fn tape(rig: Rig) -> Tape {
@@ -59,7 +59,7 @@ fn two_processes_have_the_same_digests() {
     assert_eq!([chains(), chains()], [here.clone(), here]);
 }
 
-/// Play a tape again, save the cell every `every` ticks, and let each of the saved cells go on along the tape.
+/// Play a tape again, save the cell every `every` ticks, and continue each of the saved cells along the tape.
 fn saved_cells_go_on(rig: Rig, seed: u64, every: usize) {
     let description = rig.description.clone();
     let tape = tape(rig);
@@ -118,7 +118,7 @@ fn what_is_no_saved_cell_is_refused() {
         damaged[at] ^= 0x10;
         assert!(matches!(refused(&damaged), RestoreError::Damaged { .. }), "byte {at}");
     }
-    // Magic, then the version: nothing of another one is looked at, however whole it is.
+    // Magic, then the version: nothing else of another version is read, even if it is undamaged.
     let written = u32::from_le_bytes(bytes[8..12].try_into().unwrap());
     for other in (0..written).chain([written + 1, 77]) {
         let mut bytes = bytes.clone();

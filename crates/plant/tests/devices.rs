@@ -121,7 +121,7 @@ fn the_gripper_s_sensors_tell_opening_force_and_part() {
     rig.outputs.grip.bits = valve::SUPPLY;
     rig.tick();
     let pressed = rig.inputs.grip;
-    // Closed on themselves the fingers press on their stop: 1 in/s for 0.32 s at 100 lb/in.
+    // Closed without a part, the fingers press on their stop: 1 in/s for 0.32 s at 100 lb/in.
     assert!((f64::from(pressed.strain_left - free.strain_left) - 32.0 * 40.5).abs() < 4.0, "{pressed:?}");
     assert!(pressed.potentiometer.abs_diff(free.potentiometer) <= 2);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
@@ -131,7 +131,7 @@ fn the_gripper_s_sensors_tell_opening_force_and_part() {
     assert_eq!(held.beams, 0b0000_0011, "the bar covers one side of the fingers, 0.42 in deep");
 }
 
-/// Stand over sector 4 of UNIT_1 with GR-PIC and ask.
+/// Move over sector 4 of UNIT_1 with GR-PIC and send a request.
 fn look(
     rig: &mut Rig,
     number: u32,
@@ -184,7 +184,7 @@ fn an_empty_sector_shows_nothing() {
     assert_eq!(look(&mut rig, 1, Picture::FastFlood, 17, [0.0, 0.0], 0.0).status, VisionStatus::NothingSeen);
 }
 
-/// The bytes of all inputs of a run that places at random, picks and looks.
+/// The bytes of all inputs of a run that places at random, picks and takes pictures.
 fn run(seed: u64) -> Vec<u8> {
     let mut rig = Rig::new(&description(), seed);
     let action = WorkstationAction::Place {

@@ -1,4 +1,4 @@
-//! Tools in and out of the tool drum, guarded by forces, with arm and valves driven directly.
+//! Inserting tools into the tool drum and taking them out with guarded moves; arm and valves are driven directly.
 
 mod rig;
 
@@ -23,12 +23,12 @@ fn description() -> plant::CellDescription {
     plant::CellDescription::from_toml(&text).unwrap()
 }
 
-/// A place in the frame of TOOL-TRNS, in.
+/// A position in the frame of TOOL-TRNS, in.
 fn at(x: f64, z: f64) -> Frame {
     description().drum.pose.frame().unwrap().shifted(Vector::new(x, 0.0, z))
 }
 
-/// Forces along tool X, Y, Z (lb) and moment about Y (in·lb) since the sensor was read as `zero`.
+/// Forces along tool X, Y, Z (lb) and moment about Y (in·lb), relative to the reading `zero`.
 fn since(zero: &ForceSensor, now: &ForceSensor) -> [f64; 4] {
     let change = |now: u16, zero: u16, unit: i32| (f64::from(now) - f64::from(zero)) / f64::from(unit);
     [
@@ -39,7 +39,7 @@ fn since(zero: &ForceSensor, now: &ForceSensor) -> [f64; 4] {
     ]
 }
 
-/// A rig before the drum.
+/// A rig in front of the drum.
 fn before_drum() -> Rig {
     let mut rig = Rig::new(&description(), 3);
     for via in [FIX_V1, TOOL_V1, TOOL_SAFE] {
@@ -55,8 +55,8 @@ fn jaws(rig: &mut Rig, open: bool) {
     rig.ticks(5);
 }
 
-/// Move on in a straight line from `from` to `to` until the forces since the start do what they should; how
-/// far along X or Z that was, and the forces then.
+/// Move in a straight line from `from` towards `to` until the forces relative to the start satisfy the condition;
+/// returns the distance along X or Z, and the forces.
 fn until(
     rig: &mut Rig,
     from: (f64, f64),
@@ -82,7 +82,7 @@ fn until(
     (place, since(&zero, &rig.inputs.force))
 }
 
-/// ACQUIRE-TOOL: to the strike plate, along it to the tool, grasp.
+/// ACQUIRE-TOOL: move to the strike plate, along it to the tool, grasp.
 fn acquire(rig: &mut Rig) {
     jaws(rig, true);
     rig.go_and_stop(at(-3.0, -1.65), 4.0);
@@ -209,7 +209,7 @@ fn the_force_sensor_feels_weights_and_turns() {
     let held = rig.inputs.force;
     jaws(&mut rig, true);
     let free = rig.inputs.force;
-    // Of the 6 lb of the tool, at TOOL-TRNS world up is tool (0.01, -0.94, 0.34).
+    // The tool weighs 6 lb; at TOOL-TRNS world up is tool (0.01, -0.94, 0.34).
     let tool = since(&free, &held);
     assert!(tool[0].abs() < 1.0 && (tool[1] - 5.6).abs() < 1.0 && (tool[2] + 2.0).abs() < 1.0, "{tool:?}");
     let other = Rig::new(&rig::description(), 3);

@@ -1,4 +1,4 @@
-//! Faults in the cell, with arm and valves driven directly: what they do to it, and what they leave alone.
+//! Faults in the cell, with arm and valves driven directly: what they change, and what they do not.
 
 mod rig;
 
@@ -145,7 +145,7 @@ fn a_saved_cell_goes_on_with_its_faults() {
     assert_eq!(cell.faults(), restored.faults());
 }
 
-/// Everything that a run with faults has shown to the controller.
+/// Everything that the controller reads in a run with faults.
 fn shown(seed: u64) -> String {
     let text = "seed = 5\n\
         [[fault]]\nkind = \"noisy\"\nsensor = \"grip.potentiometer\"\nby = 20\n\

@@ -1,4 +1,4 @@
-//! Programs of the vise, nests, cylinders: what the workstation does with parts of other shapes.
+//! Programs of the vise, nests, cylinders: workstation actions with parts of other shapes.
 
 mod rig;
 
@@ -28,7 +28,7 @@ fn program(rig: &mut Rig, name: &str) -> Result<(), WorkstationError> {
     rig.cell.workstation(&WorkstationAction::ViseProgram { name: name.into() })
 }
 
-/// A clevis in the vise, X in, Y left, Z up, its middle at a point of the fixture's frame.
+/// A clevis in the vise, X in, Y left, Z up, with its middle at a point of the fixture's frame.
 fn clevis(position: Vector) -> Frame {
     let square = rotation_from_x_y(&Vector::x(), &Vector::y()).unwrap();
     PFIX.to_frame().unwrap().compose(&Frame { position, rotation: square })
@@ -103,7 +103,7 @@ fn a_bar_stops_the_jaw_whatever_program_is_on() {
     program(&mut rig, "CLEVIS").unwrap();
     rig.vise(WorkstationAction::ViseClose);
     assert!(rig.part().clamped, "{:?}", rig.part());
-    // Counted at the faces of the clevis, which stand 0.125 in nearer to each other.
+    // Measured between the faces for the clevis, which are 0.125 in nearer to each other.
     assert!((rig.cell.vise_opening() - 0.50).abs() < 1e-3, "{}", rig.cell.vise_opening());
 }
 
@@ -128,7 +128,7 @@ fn a_cylinder_lies_still_in_its_cradle_and_stands_still_in_its_nest() {
     let unit = |sector: u16| ("UNIT_2".to_owned(), sector);
     assert_eq!(places, [unit(7), unit(8), ("V-VFIXTURE".into(), 0), unit(1), unit(2), unit(3)]);
     let errors: Vec<f64> = rig.cell.parts().into_iter().filter_map(|part| part.error).collect();
-    // The thinner shaft lies 0.05 in lower, tools lean against the wall of their pot.
+    // The thinner shaft lies 0.05 in lower; tools lean against the wall of their pot.
     assert!(errors.len() == 6 && errors.iter().all(|error| *error < 0.12), "{errors:?}");
 }
 

@@ -1,4 +1,4 @@
-//! What a grip can do and what it cannot.
+//! Limits of a grip.
 
 mod rig;
 
@@ -7,7 +7,7 @@ use interfaces::device::valve;
 use plant::{CellEvent, Placement, WorkstationAction};
 use rig::{Rig, UNIT_V1, description, table};
 
-/// Where the part is, seen from the fingertips, in.
+/// Position of the part relative to the fingertips, in.
 fn in_fingers(rig: &Rig) -> Vector {
     rig.cell.tool().inverse().compose(&rig.part_frame()).position
 }
@@ -37,7 +37,7 @@ fn a_held_part_does_not_creep() {
     assert!(rig.log.is_empty(), "{:?}", rig.log);
 }
 
-/// A block of the given weight, 2 x 2 x 2 in.
+/// The cell with a block of the given weight, 2 x 2 x 2 in.
 fn with_block(weight: f64) -> plant::CellDescription {
     let text = format!(
         "{}\n[[part]]\nname = \"BLOCK\"\nsize = [2.0, 2.0, 2.0]\nweight = {weight}\nvision_id = 99\n",
@@ -86,7 +86,7 @@ fn friction_decides_what_can_be_lifted() {
 
 #[test]
 fn a_bar_that_is_gripped_at_its_end_droops_if_it_is_gripped_too_softly() {
-    // 0.44 lb at 1.67 in from the pads ask for 0.73 in.lb; two pads of 4 lb give 0.48 in.lb, of 30 lb 3.6.
+    // 0.44 lb at 1.67 in from the pads needs 0.73 in.lb; two pads of 4 lb give 0.48 in.lb, of 30 lb 3.6.
     for (force, droops) in [(4.0, true), (30.0, false)] {
         let mut rig = Rig::new(&description(), 1);
         rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
@@ -120,7 +120,7 @@ fn a_carried_part_that_is_pushed_against_a_wall_slips() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     rig.pick(0.0, 0.0, 0.0, 30.0);
-    // Down between the fingers: onto the tray floor, and 0.3 in farther.
+    // Down between the fingers: to the tray floor, and 0.3 in farther.
     rig.go_and_stop(rig.grip_frame(4, 0.0, 0.0, 0.0, -0.15), 2.0);
     assert!(
         matches!(rig.log.as_slice(), [CellEvent::Slipped { .. }]),

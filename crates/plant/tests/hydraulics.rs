@@ -1,4 +1,4 @@
-//! The arm without pressure: how it sags, what it runs into, and how it comes back.
+//! The arm without pressure: how it sags, its contacts, and its return under pressure.
 
 mod rig;
 
@@ -11,7 +11,7 @@ use interfaces::device::DeviceOutputs;
 use plant::{Cell, CellDescription, CellEvent, Cut, Droop, EStop, Key, WorkstationAction, t3::Stage};
 use rig::{FIX_V1, FX1, Rig, UNIT_V1, description};
 
-/// Ticks in which an arm has come to rest, whatever it fell on.
+/// Ticks within which an arm comes to rest, whatever it falls on.
 const LONGEST: u32 = 3000;
 
 /// SAFE of the cell proposal, degrees.
@@ -23,7 +23,7 @@ fn starting_at(start: [f64; 6]) -> CellDescription {
     description
 }
 
-/// Let the arm sag until it lies still.
+/// Let the arm sag until it is at rest.
 fn settle(rig: &mut Rig) -> Droop {
     for _ in 0..LONGEST {
         rig.tick();
@@ -39,7 +39,7 @@ fn stop(rig: &mut Rig, site: EStop) -> Droop {
     settle(rig)
 }
 
-/// The keys of III.6 and IV.3.3, each as soon as the last one has done its work.
+/// The keys of III.6 and IV.3.3, each as soon as the previous one has taken effect.
 fn start_up(rig: &mut Rig, keys: &[Key]) {
     for key in keys {
         rig.cell.press(*key).unwrap_or_else(|refusal| panic!("{key:?}: {refusal}"));
@@ -118,7 +118,7 @@ fn over_a_tray_it_runs_into_what_is_there() {
     assert!(droop.touched.iter().any(|contact| contact.obstacle.starts_with("UNIT_1_")), "{droop:?}");
     let reported = contacts(&rig);
     assert!(!reported.is_empty(), "{:?}", rig.log);
-    // It lies still: nothing moves any more.
+    // It is at rest: nothing moves any more.
     let before = hand(&rig);
     rig.ticks(25);
     assert!((hand(&rig) - before).norm() < 0.3, "{}", hand(&rig) - before);

@@ -1,4 +1,4 @@
-//! The link survives each example of `data/faults` that is about the line alone.
+//! The link survives each example of `data/faults` with faults of the line only.
 
 #[path = "../../depc/tests/session/mod.rs"]
 mod session;
@@ -18,7 +18,7 @@ fn the_link_survives_every_example() {
         assert_eq!(path.extension().and_then(|e| e.to_str()), Some("toml"), "{}", path.display());
         let text = fs::read_to_string(&path).unwrap();
         let source = Source { name: path.display().to_string(), text: text.into() };
-        // Faults of the rest of the cell: tests/faults.rs plays them.
+        // tests/faults.rs plays faults of the rest of the cell.
         let Ok(plan) = parse_line(&source) else { continue };
         let mut session = Session::new(1, &plan);
         for tick in 0..2000 {

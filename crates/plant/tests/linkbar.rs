@@ -1,4 +1,4 @@
-//! The linkbar of chapter VIII by hand: what the job of Figure VIII.4 asks of the cell, step by step.
+//! The linkbar of chapter VIII without a controller: the actions of the job of Figure VIII.4, step by step.
 
 mod rig;
 
@@ -88,7 +88,8 @@ fn the_linkbar_is_made() {
     let end = rig.part();
     eprintln!("{end:?}");
     assert_eq!((end.location.as_str(), end.sector, end.held), ("UNIT_1", 1, false));
-    // Gripped 2.10 above its middle before the drop and 2.25 after it (VIII.9.5): 0.15 in is left over in the tray.
+    // Gripped 2.10 above its middle before the drop and 2.25 after it (VIII.9.5): an error of 0.15 in remains in the
+    // tray.
     assert!((end.error.unwrap() - 0.15).abs() < 0.02, "{end:?}");
     assert!(rig.log.is_empty(), "nothing unexpected: {:?}", rig.log);
 }

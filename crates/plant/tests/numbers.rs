@@ -1,4 +1,4 @@
-//! Every number of a cell description: whatever it is set to, the cell is refused in words or runs.
+//! Every number of a cell description: for any value, either a message rejects the cell or it runs.
 
 use std::{
     fs,
@@ -10,7 +10,7 @@ use diagnostics::Diagnostic;
 use interfaces::device::DeviceOutputs;
 use plant::{Cell, CellDescription};
 
-/// Where the numbers stand in a description: behind an equals sign, or in an array.
+/// Positions of the numbers in a description: after an equals sign, or in an array.
 fn numbers(text: &str) -> Vec<Range<usize>> {
     let (mut found, mut begin, mut quoted, mut remark) = (Vec::new(), None, false, false);
     for (at, character) in text.char_indices() {
@@ -22,7 +22,7 @@ fn numbers(text: &str) -> Vec<Range<usize>> {
         }
         let part = !quoted && !remark && (character.is_ascii_digit() || "+-.".contains(character));
         match (part, begin) {
-            // A digit in a name is none.
+            // A digit in a name is not a number.
             (true, None) if text[..at].ends_with([' ', '[', '=', ',', '\n']) => begin = Some(at),
             (false, Some(start)) => {
                 let is_value = [' ', ',', ']', '\n', '}'].contains(&character);
@@ -35,7 +35,7 @@ fn numbers(text: &str) -> Vec<Range<usize>> {
     found
 }
 
-/// Ten ticks in a cell, if it can be built.
+/// Runs ten ticks of a cell, if it can be built.
 fn runs(text: &str) -> Result<(), String> {
     let description = CellDescription::from_toml(text).map_err(|error| error.to_string())?;
     let mut cell = Cell::new(&description, 1).map_err(|error| error.to_string())?;
@@ -73,7 +73,8 @@ fn every_number_is_refused_in_words_or_runs() {
     assert!(panicked.is_empty(), "{panicked:#?}");
 }
 
-/// What a description is refused for in this place of the text: expected values of the entry that stands there.
+/// The expected values in the message that rejects a value at this place of the text; `None` if the cell is not
+/// rejected.
 fn expected(text: &str, place: &Range<usize>, value: &str) -> Option<String> {
     let changed = format!("{}{value}{}", &text[..place.start], &text[place.end..]);
     let report = CellDescription::from_toml(&changed).err()?;

@@ -1,4 +1,4 @@
-//! The Active Pedestal: what its hand holds, how it turns, and how a part changes hands.
+//! The Active Pedestal: its grip, its rotation, and the handover of a part.
 
 mod rig;
 
@@ -15,7 +15,7 @@ fn pedestal() -> Frame {
     PED.to_frame().unwrap()
 }
 
-/// A clevis that stands on the palm of the hand, its thickness along the radial line.
+/// A clevis on the palm of the hand, its thickness along the radial line.
 fn with_clevis() -> Rig {
     let mut rig = Rig::new(&description(), 1);
     rig.table_square();
@@ -28,14 +28,14 @@ fn with_clevis() -> Rig {
     rig
 }
 
-/// Where the robot holds the clevis, backed off and lifted.
+/// The robot's grip frame at the clevis, backed off and lifted.
 fn at_part(back: f64, up: f64) -> Frame {
     let frame = table(&[(System::Tool, [64, 0, 100])]).apply(&pedestal());
     let frame = frame.shifted(Vector::new(-back, 0.0, 0.0));
     Frame { position: frame.position + Vector::new(0.0, 0.0, up), ..frame }
 }
 
-/// Bring the open gripper to the part.
+/// Move the open gripper to the part.
 fn come(rig: &mut Rig) {
     rig.go(at_part(15.0, 6.0), 10.0);
     rig.open(3.5);
@@ -97,7 +97,7 @@ fn the_hand_holds_a_part_and_turns_it() {
     rig.ticks(20);
     let before = part(&rig);
     assert!(before.position.y.abs() < 0.002, "drawn to the middle: {:?}", before.position);
-    // It has stood still long enough to be asleep.
+    // It has been at rest long enough to sleep.
     rig.ticks(500);
     rig.table(MotorOrder::Turn, 18_350);
     rig.ticks(20);
@@ -123,7 +123,7 @@ fn a_part_is_regripped_from_the_other_side() {
     rig.ticks(20);
     assert!(rig.part().held, "{:?} {:?}", rig.part(), rig.log);
     assert!((part(&rig).position - both.position).norm() < 0.03, "{:?} {:?}", part(&rig), both);
-    // Up and back: the robot alone has it.
+    // Up and back: only the robot holds it.
     rig.go_and_stop(at_part(0.0, 2.0), 2.0);
     assert!((part(&rig).position.z - both.position.z - 2.0).abs() < 0.03, "{:?}", part(&rig));
     rig.go_and_stop(at_part(0.0, 0.02), 2.0);
@@ -153,7 +153,7 @@ fn a_hand_takes_a_part_askew_without_a_jolt() {
     rig.go(at_part(15.0, 6.0), 10.0);
     rig.open(3.5);
     rig.go(at_part(10.0, 0.0), 10.0);
-    // 0.06 in to the left of the part: more than the arm's springs would bring to the middle without a word.
+    // 0.06 in to the left of the part: too far for the arm's springs to draw it to the middle without an event.
     let beside = |back: f64| {
         let frame = at_part(back, 0.0);
         Frame { position: frame.position + pedestal().y() * 0.06, ..frame }

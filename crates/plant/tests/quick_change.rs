@@ -24,7 +24,7 @@ const LOCK: QuickChangeValves = QuickChangeValves { lock: true, unlock: false, p
 const UNLOCK: QuickChangeValves = QuickChangeValves { lock: false, unlock: true, port: true };
 const FULL: u8 = 0x0F;
 
-/// A place over a holster: so far up and so far forward, in.
+/// A position over a holster, by its distances up and forward, in.
 fn over(holster: &Pose, up: f64, forward: f64) -> Frame {
     holster.to_frame().unwrap().shifted(Vector::new(-up, 0.0, forward))
 }
@@ -126,7 +126,7 @@ fn any_gripper_can_be_attached_and_used() {
         assert_eq!(rig.inputs.grip.strain_left > 0, id == 1, "only the parts gripper has strain gages");
         (rig.outputs.v_grip, rig.outputs.tool_grip) = Default::default();
         rig.outputs.grip.bits = 0;
-        // And back into the same holster.
+        // Put it back into the same holster.
         rig.go_and_stop(over(&holster, 0.3, 0.0), 2.0);
         air(&mut rig, UNLOCK);
         rig.go_and_stop(over(&holster, 0.3, 1.5), 1.0);

@@ -1,6 +1,7 @@
-//! What is at rest stays at rest: parts that are held or stacked for a minute, and the arm at its command.
+//! Bodies at rest stay at rest: parts that are held or stacked for a minute, and the arm at its command.
 //!
-//! Gaps of a millimetre decide the linkbar (cell proposal, §2). Allowed are 0.5 mm a minute; what is asserted is 0.1 mm.
+//! The linkbar job depends on gaps of a millimetre (cell proposal, §2). 0.5 mm a minute is permitted; the limit here is
+//! 0.1 mm.
 
 mod rig;
 
@@ -12,7 +13,7 @@ use interfaces::device::JawValves;
 use plant::{CellDescription, WorkstationAction};
 use rig::{CELL, Rig, UNIT_V1, description, scenes, table};
 
-/// A minute.
+/// A minute, ticks.
 const MINUTE: u32 = 1500;
 /// 0.1 mm, in.
 const LIMIT: f64 = 0.1 / 25.4;
@@ -22,7 +23,7 @@ fn with_block(weight: f64) -> CellDescription {
     CellDescription::from_toml(&text).unwrap()
 }
 
-/// How far the last part moves in the fingers in a minute, in; and how far it turns, at a lever of 2 in.
+/// Distance that the last part moves in the fingers in a minute, in, and its rotation at a lever of 2 in.
 fn creep(rig: &mut Rig) -> f64 {
     rig.ticks(50);
     let in_fingers = |rig: &Rig| rig.cell.tool().inverse().compose(&rig.part_frame());
@@ -64,7 +65,7 @@ fn a_bar_held_level_and_upright_stays() {
 
 #[test]
 fn a_block_near_the_limit_of_friction_stays() {
-    // 2 x 50 lb x 0.30 carry 30 lb: 0.9 of it.
+    // 2 x 50 lb x 0.30 carry 30 lb: this is 0.9 of it.
     let mut rig = Rig::new(&with_block(27.0), 1);
     rig.place("BLOCK", 4, 0.0, 0.0, 0.0);
     let sector = description().tray("UNIT_1").unwrap().sector(4).unwrap();
@@ -133,7 +134,7 @@ fn a_part_in_the_pedestal_s_hand_stays() {
     assert!(moved < LIMIT, "{moved} in");
 }
 
-/// A pile in sector 4: how far each part has moved in a minute, and how far it lies below its nominal height.
+/// A pile in sector 4: the distance that each part moves in a minute, and its depth below its nominal height.
 fn pile(description: &CellDescription, parts: &[(&str, f64)]) -> Vec<(f64, f64)> {
     let mut rig = Rig::new(description, 1);
     let sector = description.tray("UNIT_1").unwrap().sector(4).unwrap();
@@ -161,7 +162,7 @@ fn piles_of_five_neither_sink_nor_creep() {
     let bar = "LINKBAR1_BH";
     let piles: [[(&str, f64); 5]; 3] = [
         [(bar, 0.0); 5],
-        // Crosswise, and heavy on light.
+        // Crosswise, and heavy parts on light ones.
         [("LCLEVIS_BH", 0.0), (bar, 0.0), ("LCLEVIS", 30.0), ("LCLEVIS_IH", 120.0), ("BLOCK", 10.0)],
         [("BLOCK", 0.0), ("BLOCK", 20.0), ("BLOCK", 40.0), ("BLOCK", 60.0), ("BLOCK", 80.0)],
     ];

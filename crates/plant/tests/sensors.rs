@@ -1,4 +1,4 @@
-//! What lies between the truth and the words: noise, weight and bias, dead time, light, and what hides a part.
+//! From true values to words: noise, weight and bias, dead time, light, and hidden parts.
 
 mod rig;
 
@@ -31,14 +31,14 @@ fn along_tool(rig: &mut Rig) -> f64 {
 fn a_force_without_calibration_is_misjudged() {
     let mut rig = with_tool_gripper(3.0);
     rig.ticks(10);
-    // Nothing touches the gripper. The drum's guarded moves watch for 25 lb against the tool: by the raw reading they
-    // would wait for almost twice as much, for weight and offset pull the other way.
+    // Nothing touches the gripper. The drum's guarded moves stop at 25 lb against the tool: with the raw reading they
+    // would stop at almost twice as much, because weight and offset act in the other direction.
     let bias = along_tool(&mut rig);
     assert!((20.0..28.0).contains(&bias), "{bias} lb of weight and offset at HOME");
-    // What CAL-SENSOR does: the mean of ten readings at rest is taken off. Then the tenth part of 25 lb is seen.
+    // As CAL-SENSOR does: subtract the mean of ten readings at rest. A tenth of 25 lb is then detected.
     let calibrated = along_tool(&mut rig) - bias;
     assert!(calibrated.abs() < 0.2, "{calibrated} lb");
-    // The weight turns with the robot: a bias from elsewhere is worth little.
+    // The direction of the weight turns with the robot: a bias from another attitude is wrong.
     rig.go_and_stop(UNIT_V1.to_frame().unwrap(), 10.0);
     let elsewhere = along_tool(&mut rig) - bias;
     assert!(elsewhere.abs() > 4.0, "{elsewhere} lb");
@@ -91,7 +91,7 @@ fn late_converters_show_what_was() {
     assert_eq!(rig.inputs.grip.potentiometer, before + 28);
 }
 
-/// Stand over a sector of UNIT_1 with GR-PIC, and take a second picture.
+/// Move over a sector of UNIT_1 with GR-PIC, and take a second picture.
 fn look(rig: &mut Rig, number: u32, variation: u8, aside: [f64; 2]) -> VisionResponse {
     let sector = description().tray("UNIT_1").unwrap().sector(4).unwrap();
     let place = sector.shifted(Vector::new(0.0, aside[0], aside[1]));
@@ -136,7 +136,7 @@ fn a_part_that_another_hides_is_not_recognised() {
     let mut rig = at_unit(0.5);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     assert_eq!(look(&mut rig, 1, 0, [0.0; 2]).recognised, Some(17));
-    // A clevis blank is put beside it, so near that it is one blob with the bar.
+    // A clevis blank beside the bar, so near that both are one blob.
     rig.place("LCLEVIS_BH", 4, 0.0, -1.61, 0.0);
     assert_eq!(look(&mut rig, 2, 0, [0.0; 2]).status, VisionStatus::NotRecognised);
 }

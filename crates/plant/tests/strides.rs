@@ -1,11 +1,11 @@
-//! Long steps of the physics are as good as small ones: the same scenes with and without them.
+//! Long steps of the physics give the same results as small ones: the same scenes with and without them.
 
 mod rig;
 
 use plant::{Cell, CellDescription};
 use rig::{FIX_V1, Rig, description, scenes, tape::Beat};
 
-/// Greatest distance between a part in long steps and in small ones, in.
+/// Greatest distance of a part between a run with long steps and one with small steps, in.
 const ALIKE: f64 = 0.02;
 
 fn small(description: &CellDescription) -> CellDescription {
@@ -14,7 +14,7 @@ fn small(description: &CellDescription) -> CellDescription {
     small
 }
 
-/// Play a scene with long steps and with small ones: how far apart a part came, in.
+/// Play a scene with long steps and with small ones; returns the greatest distance of a part between the two, in.
 fn compare(description: &CellDescription, scene: Rig) -> f64 {
     let mut cells = [description, &small(description)].map(|each| Cell::new(each, 1).unwrap());
     let mut apart = 0.0_f64;

@@ -1,4 +1,4 @@
-//! What stands, falls and is machined in the vise.
+//! Parts in the vise: standing, falling and being machined.
 
 mod rig;
 
@@ -6,8 +6,8 @@ use geometry::frame::{Frame, Vector, rotation_by, rotation_from_x_y};
 use plant::{CellEvent, WorkstationAction, WorkstationError};
 use rig::{PFIX, Rig, description};
 
-/// A bar upright in the vise: its middle at `position` in the fixture's frame, leaning to the front by `lean` degrees about
-/// the front edge of the ledge.
+/// A bar upright in the vise: its middle at `position` in the fixture's frame, tilted to the front by `lean` degrees
+/// about the front edge of the ledge.
 fn upright(position: Vector, lean: f64) -> Frame {
     let fixture = PFIX.to_frame().unwrap();
     let square = rotation_from_x_y(&Vector::x(), &Vector::y()).unwrap();
@@ -111,7 +111,7 @@ fn a_clamped_bar_takes_the_robot_s_push() {
     let before = rig.in_fixture().position;
     rig.go(rig::FIX_V1.to_frame().unwrap(), 10.0);
     rig.go(Rig::fixture(&rig::HOLD, 5.0, 0.0), 4.0);
-    // 0.02 in into the bar: the arm gives way with 40 lb, the vise does not.
+    // 0.02 in into the bar: the arm deflects under 40 lb, the vise does not.
     rig.go_and_stop(Rig::fixture(&rig::HOLD, -0.095, 0.0), 0.5);
     let moved = (rig.in_fixture().position - before).norm();
     assert!(moved < 0.004, "{moved}");

@@ -1,7 +1,7 @@
-//! The injector: applies a plan to the bytes that are sent.
+//! The injector: applies the faults of a plan to the transmitted bytes.
 //!
-//! Each direction has its own random numbers and its own line, so that faults in one do not depend on the traffic of
-//! the other. A line holds bytes with the tick in which they are due; they leave it in order, and as many a tick as
+//! Each direction has its own random numbers and its own line, so that faults in one do not depend on the traffic in
+//! the other. A line holds bytes with the tick in which they are due; they leave it in order, at most as many a tick as
 //! [`LinkBytes`] holds.
 
 use rcs_core::{Plain, tick::Tick};
@@ -9,36 +9,36 @@ use rcs_core::{Plain, tick::Tick};
 use super::{ALWAYS, Direction, FaultKind, KINDS, Numbers, Plan, Rule};
 use crate::link::LinkBytes;
 
-/// Bytes that a line holds while it is late or stalls; further ones are lost.
+/// Number of bytes that a delayed or stalled line holds; further ones are lost.
 pub const LINE_BYTES: usize = 256;
 
-/// Counts of one direction, or of both.
+/// Counts of one direction, or the sum of both.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Counts {
     /// Bytes sent.
     pub sent: u64,
     /// Bytes that arrived.
     pub arrived: u64,
-    /// Bytes that a late line could not hold.
+    /// Bytes lost because a delayed line was full.
     pub overflowed: u64,
     by_kind: [u64; KINDS],
 }
 
 impl Counts {
-    /// Faults of a kind: bytes dropped, flipped, doubled, inserted, delayed; ticks cut short; stalls; losses of the signal.
-    /// Of a stall or a loss of the signal that is made longer before it ends, each beginning counts.
+    /// Number of faults of a kind: bytes dropped, flipped, duplicated, inserted, delayed; ticks truncated; stalls;
+    /// losses of the signal. If a stall or a loss of the signal is extended before it ends, each beginning counts.
     #[must_use]
     pub fn of(&self, kind: FaultKind) -> u64 {
         self.by_kind.get(usize::from(kind.code())).copied().unwrap_or_default()
     }
 
-    /// Faults of all kinds.
+    /// Number of faults of all kinds.
     #[must_use]
     pub fn faults(&self) -> u64 {
         self.by_kind.iter().fold(0, |sum, count| sum.saturating_add(*count))
     }
 
-    /// The sum of two.
+    /// The sum of two counts.
     #[must_use]
     pub fn plus(mut self, other: &Self) -> Self {
         self.sent = self.sent.saturating_add(other.sent);
@@ -71,7 +71,7 @@ struct OneWay {
     counts: Counts,
 }
 
-/// The line between the two ends, with the faults of a plan. It must be used once a tick and direction.
+/// The line between the two ends, with the faults of a plan. Call [`Injector::carry`] once a tick and direction.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Injector {
     plan: Plan,
@@ -80,7 +80,7 @@ pub struct Injector {
 }
 
 impl Injector {
-    /// A line without faults so far.
+    /// A line before its first tick.
     #[must_use]
     pub fn new(plan: &Plan) -> Self {
         let line = |direction: Direction| OneWay {
@@ -90,7 +90,7 @@ impl Injector {
         Self { plan: *plan, to_controller: line(Direction::ToController), to_host: line(Direction::ToHost) }
     }
 
-    /// Carry the bytes that one end sends in `tick`, and the level of its DTR; returns what arrives at the other end.
+    /// Carry the bytes that one end sends in `tick`, and the level of its DTR; returns what the other end receives.
     pub fn carry(
         &mut self,
         direction: Direction,
@@ -130,14 +130,14 @@ struct Work<'a> {
     direction: Direction,
     tick: u64,
     line: &'a mut OneWay,
-    /// Faults allowed in the tick.
+    /// Greatest number of faults in the tick.
     most: u8,
-    /// Faults so far.
+    /// Number of faults in this tick so far.
     struck: u8,
 }
 
 impl Work<'_> {
-    /// The rule of a kind that strikes now, if one does. Every rule draws its own number, independent of the others.
+    /// The rule of a kind that acts now, if any. Every rule draws its own number, whether others act or not.
     fn strike(&mut self, kind: FaultKind) -> Option<Rule> {
         let mut struck = None;
         for rule in self.rules {
@@ -267,7 +267,7 @@ mod tests {
         Injector::new(&plan)
     }
 
-    /// What arrives at the host in ticks 0 to 9 if `sent` is sent in each of them, and the signal.
+    /// The bytes and the signal that arrive at the host in ticks 0 to 9 if `sent` is sent in each of them.
     fn ten(injector: &mut Injector, sent: &[u8]) -> Vec<(Vec<u8>, bool)> {
         (0..10)
             .map(|tick| {
@@ -348,7 +348,7 @@ mod tests {
         let lengths: Vec<_> = got.iter().map(|(bytes, _)| bytes.len()).collect();
         assert_eq!(lengths, [8, 8, 0, 0, 0, 0, 40, 8, 8, 8]);
         assert_eq!(got[6].0, ABC.repeat(5));
-        // A stall of given length begins in one tick; more than a tick can hold comes in the next.
+        // A stall of a given length begins in one tick; bytes that do not fit into a tick come in the next.
         let lengths: Vec<_> =
             arrived(Rule::new(FaultKind::Stall).at(1).ticks(8), &[b'Z'; 16]).iter().map(Vec::len).collect();
         assert_eq!(lengths, [16, 0, 0, 0, 0, 0, 0, 0, 0, 64]);

@@ -1,24 +1,23 @@
-//! Faults on the line, between the two ends: part of the product, so that a host can be tested with a bad line.
+//! Faults on the line between the two ends. They are part of the product, so that a host can be tested on a bad line.
 //!
 //! A [`Plan`] is a seed and some [`Rule`]s; an [`Injector`] applies it, tick by tick and direction by direction, to the
-//! bytes and the modem signal that pass. It is plain data without a clock: the same plan and the same traffic give the
-//! same faults.
+//! transmitted bytes and the modem signal. It is plain data without a clock: the same plan and the same traffic give
+//! the same faults.
 //!
-//! | kind | acts on | what it does | `ticks` |
+//! | kind | acts on | effect | `ticks` |
 //! |---|---|---|---|
 //! | `drop` | each byte | the byte is lost | |
 //! | `flip` | each byte | one bit of it is inverted | |
 //! | `duplicate` | each byte | the byte arrives twice | |
-//! | `delay` | each byte | the byte, and what is behind it, is late | how late |
-//! | `insert` | each tick | a byte arrives that was not sent, a given one or any | |
-//! | `truncate` | each tick that bears bytes | the end of them is lost, at least one byte | |
-//! | `stall` | each tick | nothing arrives; what was sent comes afterwards, in order | how long |
-//! | `cts-low` | each tick | the receiving end sees the other's DTR off | how long |
+//! | `delay` | each byte | the byte, and all bytes after it, are late | the delay |
+//! | `insert` | each tick | a byte arrives that was not sent, a given one or a random one | |
+//! | `truncate` | each tick with bytes | the last bytes of the tick are lost, at least one | |
+//! | `stall` | each tick | nothing arrives; the bytes come afterwards, in order | the duration |
+//! | `cts-low` | each tick | the receiving end sees the other's DTR off | the duration |
 //!
-//! A rule acts with a *rate*, the chance of each byte or tick; in a *window* of ticks; or both. In a window
-//! without a rate it acts on every byte or tick. A serial line does not reorder, and neither does the
-//! injector. In one tick the order is: truncate, then for each byte drop, flip, delay, duplicate, then
-//! insert, then stall.
+//! A rule acts with a *rate*, the probability for each byte or tick; in a *window* of ticks; or both. In a window
+//! without a rate it acts on every byte or tick. A serial line does not reorder bytes, and neither does the injector.
+//! In one tick the order is: truncate, then for each byte drop, flip, delay, duplicate, then insert, then stall.
 
 mod inject;
 mod numbers;
@@ -30,11 +29,11 @@ use rcs_core::Plain;
 pub use inject::{Counts, Injector, LINE_BYTES};
 pub use numbers::Numbers;
 
-/// Rules in a plan.
+/// Greatest number of rules in a plan.
 pub const RULES: usize = 16;
-/// Kinds of fault.
+/// Number of kinds of faults.
 pub const KINDS: usize = FaultKind::ALL.len();
-/// Rate of a fault that always happens: rates are in millionths.
+/// Rate of a fault that always happens; rates are in millionths.
 pub const ALWAYS: u32 = 1_000_000;
 /// The longest delay, stall or loss of the signal that one event causes, ticks.
 pub const MOST_TICKS: u16 = 1000;
@@ -48,7 +47,7 @@ pub enum FaultKind {
     Flip,
     /// A byte arrives twice.
     Duplicate,
-    /// A byte and what is behind it arrive later.
+    /// A byte and all bytes after it arrive later.
     Delay,
     /// A byte arrives that was not sent.
     Insert,
@@ -70,42 +69,42 @@ pub enum Direction {
 }
 
 impl FaultKind {
-    /// True if each byte has the chance of the rate; otherwise each tick has it.
+    /// True if the rate is the probability for each byte; otherwise for each tick.
     #[must_use]
     pub const fn is_per_byte(self) -> bool {
         matches!(self, Self::Drop | Self::Flip | Self::Duplicate | Self::Delay)
     }
 
-    /// True if the fault has a length in ticks.
+    /// True if the fault has a duration in ticks.
     #[must_use]
     pub const fn has_ticks(self) -> bool {
         matches!(self, Self::Delay | Self::Stall | Self::CtsLow)
     }
 
-    /// True if the fault does something only to bytes that were sent.
+    /// True if the fault acts only on bytes that were sent.
     const fn needs_bytes(self) -> bool {
         self.is_per_byte() || matches!(self, Self::Truncate | Self::Stall)
     }
 }
 
-/// One kind of fault: where, when, how often. Zero means not given.
+/// One kind of fault, with direction, time and rate. Zero means not given.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Rule {
     /// The kind.
     pub kind: FaultKind,
-    /// It acts on bytes of the host.
+    /// True if it acts on bytes of the host.
     pub to_controller: bool,
-    /// It acts on bytes of the controller.
+    /// True if it acts on bytes of the controller.
     pub to_host: bool,
-    /// Chance of each byte or tick, millionths; 0: not given.
+    /// Probability for each byte or tick, millionths; 0: not given.
     pub rate: u32,
     /// First tick of the window.
     pub from: u64,
-    /// First tick after the window; 0: not given, then there is no window.
+    /// First tick after the window; 0: not given, no window.
     pub until: u64,
-    /// Length of a delay, a stall or a loss of the signal; 0: not given, then it is one tick.
+    /// Duration of a delay, a stall or a loss of the signal, ticks; 0: not given, one tick.
     pub ticks: u16,
-    /// `insert`: always `byte`, otherwise any.
+    /// `insert`: true to insert `byte`, false for a random byte.
     pub fixed: bool,
     /// The byte to insert.
     pub byte: u8,
@@ -133,7 +132,7 @@ impl Rule {
         self
     }
 
-    /// The rule in the ticks `from` to `until` - 1.
+    /// The rule with a window: the ticks `from` to `until` - 1.
     #[must_use]
     pub const fn window(mut self, from: u64, until: u64) -> Self {
         self.from = from;
@@ -141,13 +140,13 @@ impl Rule {
         self
     }
 
-    /// The rule in one tick.
+    /// The rule with a window of one tick.
     #[must_use]
     pub const fn at(self, tick: u64) -> Self {
         self.window(tick, tick.saturating_add(1))
     }
 
-    /// The rule with a length.
+    /// The rule with a duration in ticks.
     #[must_use]
     pub const fn ticks(mut self, ticks: u16) -> Self {
         self.ticks = ticks;
@@ -177,17 +176,17 @@ impl Rule {
         !self.has_window() || self.from <= tick && tick < self.until
     }
 
-    /// The chance, or its default.
+    /// The rate, or its default.
     const fn chance(&self) -> u32 {
         if self.rate == 0 { ALWAYS } else { self.rate }
     }
 
-    /// The length, or its default.
+    /// The duration, or its default, ticks.
     fn length(&self) -> u64 {
         u64::from(self.ticks.max(1))
     }
 
-    /// This rule drops everything on which `other` could act.
+    /// True if this rule drops every byte on which `other` could act.
     fn hides(&self, other: &Self) -> bool {
         let directions = (!other.to_controller || self.to_controller) && (!other.to_host || self.to_host);
         let ticks =
@@ -199,7 +198,7 @@ impl Rule {
             && ticks
     }
 
-    /// Check of the rule by itself.
+    /// Check the rule by itself, without the others.
     fn check(&self) -> Result<(), Refusal> {
         let kind = self.kind;
         if !self.to_controller && !self.to_host {
@@ -231,11 +230,11 @@ impl Rule {
     }
 }
 
-/// A seed and rules, checked.
+/// A seed and validated rules.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Plan {
     seed: u64,
-    /// Faults in a tick and direction; 0: as many as come.
+    /// Greatest number of faults in a tick and direction; 0: no limit.
     most_per_tick: u8,
     rules: [Rule; RULES],
     count: u8,
@@ -248,7 +247,7 @@ impl Plan {
         Self { seed, ..Self::default() }
     }
 
-    /// The plan with at most `most` faults in a tick and direction (at least 1). With one, no frame is hit twice in a
+    /// The plan with at most `most` faults in a tick and direction (at least 1). With one, no frame has two faults in a
     /// tick, and the checksum detects every fault.
     #[must_use]
     pub const fn most_per_tick(mut self, most: u8) -> Self {
@@ -271,7 +270,7 @@ impl Plan {
     /// Append a rule.
     ///
     /// # Errors
-    /// [`Refusal`] if the rule, or the rule beside those before it, makes no sense; the plan stays as it was.
+    /// [`Refusal`] if the rule is invalid by itself or with those before it; the plan is unchanged.
     pub fn add(&mut self, rule: Rule) -> Result<(), Refusal> {
         rule.check()?;
         for (number, other) in (1_u8..).zip(self.rules()) {
@@ -289,41 +288,41 @@ impl Plan {
     }
 }
 
-/// Why a rule is refused. Rules are counted from 1.
+/// Reasons for which a plan refuses a rule. Rules are counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// There is no direction.
+    /// The rule has no direction.
     NoDirection,
-    /// There is neither a rate nor a window.
+    /// The rule has neither a rate nor a window.
     Never,
     /// The rate is above 1.
     Rate {
         /// The rate found.
         millionths: u32,
     },
-    /// There is no tick in the window.
+    /// The window contains no tick.
     EmptyWindow {
         /// Its first tick.
         from: u64,
         /// First tick after it.
         until: u64,
     },
-    /// `ticks` for a fault that has no length.
+    /// `ticks` is given for a fault without a duration.
     NoLength {
         /// The fault.
         kind: FaultKind,
     },
-    /// `ticks` beside a window that gives the length already.
+    /// `ticks` is given with a window that determines the duration.
     TwoLengths {
         /// The fault.
         kind: FaultKind,
     },
-    /// More than [`MOST_TICKS`].
+    /// The duration is longer than [`MOST_TICKS`].
     TooLong {
-        /// The length found.
+        /// The duration found, ticks.
         found: u16,
     },
-    /// A byte for a fault that inserts none.
+    /// A byte is given for a fault that inserts none.
     NoByte {
         /// The fault.
         kind: FaultKind,
@@ -342,7 +341,7 @@ pub enum Refusal {
         /// Number of its rule.
         number: u8,
     },
-    /// More than [`RULES`].
+    /// The plan already has [`RULES`] rules.
     TooMany,
 }
 

@@ -1,5 +1,5 @@
-//! Numbers that depend on the seed alone: PCG-XSH-RR 64/32 (O'Neill, 2014), written out so that a plan gives the same
-//! faults in every build and on every machine.
+//! Random numbers that depend only on the seed: PCG-XSH-RR 64/32 (O'Neill, 2014), implemented here so that a plan gives
+//! the same faults in every build and on every machine.
 
 use rcs_core::Plain;
 
@@ -13,7 +13,7 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// A generator; other streams of the same seed are independent of it.
+    /// A generator; different streams of the same seed are independent.
     #[must_use]
     pub const fn new(seed: u64, stream: u64) -> Self {
         let stream = stream.wrapping_shl(1) | 1;
@@ -21,7 +21,7 @@ impl Numbers {
         Self { state, stream }
     }
 
-    /// The next number; all 32-bit numbers are equally frequent.
+    /// The next number, uniform over all 32-bit numbers.
     pub fn draw(&mut self) -> u32 {
         let old = self.state;
         self.state = old.wrapping_mul(MULTIPLIER).wrapping_add(self.stream);
@@ -31,7 +31,7 @@ impl Numbers {
         u32::from_le_bytes([a, b, c, d]).rotate_right(turn)
     }
 
-    /// A number from 0 to `end` - 1, 0 if `end` is 0.
+    /// A uniform number from 0 to `end` - 1; 0 if `end` is 0.
     pub fn below(&mut self, end: u32) -> u32 {
         let scaled = u64::from(self.draw()).wrapping_mul(u64::from(end)).wrapping_shr(32);
         u32::try_from(scaled).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! Start and end of the data phase of the host: reports, refusals, silence, DTR, restarts.
+//! Start and end of the host's data phase: reports, refusals, silence, DTR, restarts.
 
 use super::{Host, HostEvent, HostState, MOST_RETRIES, RESTART_TICKS, START_ATTEMPTS, count};
 use crate::link::LinkFault;
@@ -8,7 +8,7 @@ use crate::{
 };
 
 impl Host {
-    /// Go on from a reported position.
+    /// Continue from a reported position.
     pub(super) fn start(&mut self, plate: Plate) -> HostEvent {
         self.position = plate;
         self.state = HostState::Ready;
@@ -17,8 +17,8 @@ impl Host {
         HostEvent::Started
     }
 
-    /// A NAK. A later one than in the next tick may be the answer to noise after a command whose ACK was lost: then the
-    /// position may be repeated, but not a function.
+    /// Process a NAK. If it comes later than in the next tick, it may be the answer to noise after a command whose ACK
+    /// was lost: then a position may be repeated, but not a function.
     pub(super) fn refused(&mut self) -> HostEvent {
         let ambiguous = self.waited > 1 && self.function() != NO_FUNCTION;
         if self.retries >= MOST_RETRIES || ambiguous {
@@ -36,9 +36,8 @@ impl Host {
                 count(&mut self.counters.timeouts);
                 self.lost(LinkFault::NotResponding)
             }
-            // On a slow line the reports to all restarts come one by one, and the first would be out of date
-            // by the time the last is here: only one that stays the last for longer than the time between two
-            // restarts is believed.
+            // On a slow line the reports to all restarts come one by one, and the first is out of date when the last
+            // arrives: a report is valid only if no other follows for longer than the time between two restarts.
             HostState::Starting if self.has_candidate => {
                 if self.waited > self.answer_ticks {
                     self.start(self.candidate)
@@ -57,7 +56,7 @@ impl Host {
                 self.resend_due = true;
                 HostEvent::None
             }
-            // DTR is on again, and the report with which the function begins has not come.
+            // DTR is on again, and the report of the beginning function has not come.
             HostState::Ended => {
                 self.begin_start();
                 (self.starting, self.attempt) = (0, LinkFault::None);
@@ -70,7 +69,7 @@ impl Host {
 
     pub(super) fn without_dtr(&mut self) -> HostEvent {
         if matches!(self.state, HostState::Cancelling | HostState::Ended) {
-            // What was asked for; the ACK, which comes with it, is not waited for.
+            // The cancel was requested; do not wait for the ACK that comes with the loss of DTR.
             self.receiver.clear();
             self.state = HostState::Ended;
             (self.resend_due, self.waited) = (false, 0);
@@ -101,7 +100,7 @@ impl Host {
         HostEvent::Lost
     }
 
-    /// Nothing is outstanding any more; a restart goes out in this tick.
+    /// Drop the outstanding frame; a restart is sent in this tick.
     pub(super) fn restart(&mut self) {
         self.note_lost_function();
         self.resend_due = false;
@@ -115,7 +114,7 @@ impl Host {
         }
     }
 
-    /// DTR is on, or the link was lost. An intermittent DTR does not restart the time limit.
+    /// Begin a start: DTR is on, or the link was lost. An intermittent DTR does not reset the time limit.
     pub(super) fn begin_start(&mut self) {
         if self.is_running() {
             (self.starting, self.attempt) = (0, LinkFault::None);
@@ -124,7 +123,7 @@ impl Host {
         self.restarted = false;
     }
 
-    /// A tick of a start, or of a cancel that is not answered, is over with DTR on.
+    /// Count a tick with DTR on in a start, or in a cancel without an answer.
     pub(super) fn be_patient(&mut self) {
         if !matches!(self.state, HostState::Starting | HostState::Cancelling) {
             return;

@@ -1,4 +1,4 @@
-//! The host's end against a line that is written by hand.
+//! The host's end with hand-written inputs from the line.
 
 use super::*;
 use crate::wire::{NO_FUNCTION, Report};
@@ -71,11 +71,11 @@ fn what_the_port_has_not_taken_is_lost_and_named() {
     tick(&mut host, &[], &position([7, 9]));
     assert_eq!(host.unsent(), HostEvent::Lost);
     assert_eq!((host.fault(), host.lost_function()), (LinkFault::NotTransmitted, [7, 9]));
-    // An answer that comes all the same is none to this.
+    // An answer that still comes is not the answer to this.
     assert_eq!(tick(&mut host, &[0x06], &position(NO_FUNCTION)), (HostEvent::None, vec![0x05]));
     assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
     host.forgive();
-    // A restart that stays in the port is sent again, and is the fault when patience is at an end.
+    // A restart that the port does not send is repeated, and is the fault when the time limit is reached.
     host.set_patience(4);
     tick(&mut host, &[], &Intent::Restart);
     for attempt in 1..=4 {
@@ -84,7 +84,7 @@ fn what_the_port_has_not_taken_is_lost_and_named() {
         assert_eq!(tick(&mut host, &[], &Intent::Idle).1, [0x05]);
     }
     assert_eq!(host.fault(), LinkFault::NotTransmitted);
-    // One report answers the one restart that went out.
+    // One report answers the one restart that was sent.
     assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
     tick(&mut host, &[], &Intent::Cancel);
     assert_eq!(host.unsent(), HostEvent::None);
@@ -99,7 +99,7 @@ fn without_an_answer_the_link_is_restarted_and_nothing_is_repeated() {
     assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::None, vec![]));
     assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::Lost, vec![0x05]));
     assert_eq!((host.fault(), host.lost_function()), (LinkFault::NotResponding, [7, 9]));
-    // Late answers are discarded, the report is not.
+    // Late answers are discarded, but not the report.
     assert_eq!(tick(&mut host, &[0x06, 0x15, 0x41], &position(NO_FUNCTION)).1, []);
     assert_eq!(host.state(), HostState::Starting);
     assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
@@ -120,11 +120,11 @@ fn a_start_without_answer_is_tried_once_a_second_and_blamed_at_the_end_of_patien
     }
     assert_eq!(sent[..4], [4, 29, 54, 79]);
     assert_eq!((host.fault(), host.counters().restarts), (LinkFault::NotResponding, 60));
-    // RESTART begins the patience anew, but the silence goes on; the answer to the 05 that is under way will do.
+    // RESTART begins the time limit anew, but the silence continues; the answer to the previous 05 is sufficient.
     host.forgive();
     assert_eq!(tick(&mut host, &[], &Intent::Restart).1, []);
     assert_eq!((host.fault(), host.is_silent()), (LinkFault::None, true));
-    // The report comes as if Hold had ended: one for all of them.
+    // A report comes as if Hold had ended: one for all restarts.
     tick(&mut host, &report(), &Intent::Idle);
     for _ in 0..ANSWER_TICKS {
         tick(&mut host, &[], &Intent::Idle);
@@ -336,7 +336,7 @@ fn a_report_that_comes_late_at_the_start_is_believed_only_if_it_is_the_last() {
         restarts += tick(&mut host, &[], &Intent::Idle).1.len();
     }
     assert_eq!(restarts, 1);
-    // The report of the start; the answer to the restart is behind it.
+    // The report of the start; the answer to the restart follows it.
     assert_eq!(tick(&mut host, &report(), &Intent::Idle), (HostEvent::None, vec![]));
     tick(&mut host, &[], &Intent::Idle);
     assert_eq!(tick(&mut host, &report(), &Intent::Idle), (HostEvent::None, vec![]));
@@ -386,7 +386,7 @@ fn a_function_that_begins_again_after_a_cancel_is_asked_for_its_report() {
     for _ in 0..20 {
         host.receive(&LinkBytes::default(), false);
     }
-    // DTR is on again, and the report with which the function begins is lost.
+    // DTR is on again, and the report of the beginning function is lost.
     for waited in 1..ANSWER_TICKS {
         assert_eq!(
             (tick(&mut host, &[], &Intent::Idle).1, host.state()),

@@ -1,4 +1,4 @@
-//! The frames of one byte: the host's commands without data, the controller's responses (A 2.3).
+//! The frames of one byte: the host's commands without data, and the controller's responses (A 2.3).
 
 /// A command of the host that has no data and no checksum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +19,7 @@ impl Control {
         }
     }
 
-    /// The command that a byte is.
+    /// The command of a byte; `None` if there is none.
     #[must_use]
     pub const fn from_byte(byte: u8) -> Option<Self> {
         match byte {
@@ -49,7 +49,7 @@ impl Response {
         }
     }
 
-    /// The response that a byte is.
+    /// The response of a byte; `None` if there is none.
     #[must_use]
     pub const fn from_byte(byte: u8) -> Option<Self> {
         match byte {

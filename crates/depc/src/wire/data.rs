@@ -1,4 +1,4 @@
-//! The data command of the host: go there, and run a function on arrival (A 2.3, A 2.5).
+//! The data command of the host: move to a position, and run a function on arrival (A 2.3, A 2.5).
 //!
 //! ```text
 //!  0    1 2        3 4  5 6  7 8  9 10  11 12  13 14  15
@@ -8,7 +8,7 @@
 use super::{FRAME_BYTES, START, checksum};
 use crate::{Error, Plate};
 
-/// Function bytes that run nothing (ASSUMED: the meaning of "bytes two and three of the Point Data" is not known).
+/// Function bytes for no function (ASSUMED: the meaning of "bytes two and three of the Point Data" is not known).
 pub const NO_FUNCTION: [u8; 2] = [0, 0];
 
 /// The host's command for the next period.
@@ -21,7 +21,7 @@ pub struct DataCommand {
 }
 
 impl DataCommand {
-    /// Write the frame over `bytes`.
+    /// Write the frame into `bytes`.
     pub fn emit(&self, bytes: &mut [u8; FRAME_BYTES]) {
         let [start, function @ .., _, _, _, _, _, _, _, _, _, _, _, _, _] = bytes;
         *start = START;
@@ -34,10 +34,10 @@ impl DataCommand {
         }
     }
 
-    /// The data command in `bytes`.
+    /// Parse the data command in `bytes`.
     ///
     /// # Errors
-    /// [`Error::BadLength`], [`Error::BadHead`] or [`Error::BadChecksum`] if the bytes are not one.
+    /// [`Error::BadLength`], [`Error::BadHead`] or [`Error::BadChecksum`] if the bytes are not a data command.
     pub fn parse(bytes: &[u8]) -> Result<Self, Error> {
         let frame = <&[u8; FRAME_BYTES]>::try_from(bytes)
             .map_err(|_| Error::BadLength { expected: FRAME_BYTES, found: bytes.len() })?;

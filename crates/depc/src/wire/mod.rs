@@ -15,7 +15,7 @@ pub use control::{Control, Response};
 pub use data::{DataCommand, NO_FUNCTION};
 pub use report::Report;
 
-/// Bytes of a report and of a data command.
+/// Length of a report and of a data command, bytes.
 pub const FRAME_BYTES: usize = 16;
 
 /// First byte of a data command, third of a report (A 2.3).
@@ -23,7 +23,7 @@ pub const START: u8 = 0x03;
 /// First two bytes of a report (A 2.3).
 pub const FILL: u8 = 0xFF;
 
-/// The checksum: all bytes exclusive-ored, beginning with zero (A 2.3). Over a frame with its checksum it is zero.
+/// The checksum: exclusive or of all bytes, beginning with zero (A 2.3). For a frame with its checksum it is zero.
 #[must_use]
 pub fn checksum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)

@@ -1,4 +1,4 @@
-//! The report of the controller: where the robot is (A 2.3).
+//! The report of the controller: the position of the robot (A 2.3).
 //!
 //! ```text
 //!  0    1    2    3 4  5 6  7 8  9 10  11 12  13 14  15
@@ -8,7 +8,7 @@
 use super::{FILL, FRAME_BYTES, START, checksum};
 use crate::{Error, Plate};
 
-/// The controller's message at start and restart.
+/// The controller's report at start and restart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
     /// Present position of the end plate.
@@ -16,10 +16,10 @@ pub struct Report {
 }
 
 impl Report {
-    /// The three bytes that a report begins with.
+    /// The first three bytes of a report.
     pub const HEAD: [u8; 3] = [FILL, FILL, START];
 
-    /// Write the frame over `bytes`.
+    /// Write the frame into `bytes`.
     pub fn emit(&self, bytes: &mut [u8; FRAME_BYTES]) {
         let (head, rest) = bytes.split_at_mut(Self::HEAD.len());
         head.copy_from_slice(&Self::HEAD);
@@ -29,10 +29,10 @@ impl Report {
         }
     }
 
-    /// The report in `bytes`.
+    /// Parse the report in `bytes`.
     ///
     /// # Errors
-    /// [`Error::BadLength`], [`Error::BadHead`] or [`Error::BadChecksum`] if the bytes are not one.
+    /// [`Error::BadLength`], [`Error::BadHead`] or [`Error::BadChecksum`] if the bytes are not a report.
     pub fn parse(bytes: &[u8]) -> Result<Self, Error> {
         let frame = <&[u8; FRAME_BYTES]>::try_from(bytes)
             .map_err(|_| Error::BadLength { expected: FRAME_BYTES, found: bytes.len() })?;

@@ -1,4 +1,4 @@
-//! Breadth first over all states, with a set of visited ones; then how long each takes to come to a good end.
+//! Breadth-first search over all states with a set of visited states; then the time of each state to a good end.
 
 use std::collections::{HashMap, VecDeque};
 
@@ -7,16 +7,16 @@ use crate::model::{Event, Panel, QUIET, Setting, State, Wrong};
 /// No state.
 const NONE: u32 = u32::MAX;
 
-/// Where a state goes if nothing goes wrong any more, and whether that tick is good.
+/// The next state without further faults, and whether that tick is good.
 type Onward = (u32, bool);
 
-/// What was searched, or the shortest way to something wrong.
+/// The result of a search, or the shortest sequence of ticks to an error.
 #[derive(Debug)]
 pub struct Found {
     pub states: usize,
     pub ticks: u64,
-    /// Ticks from any state to the next acknowledged command, or to a stop that is reported: without the operator, and
-    /// with one who answers everything at once.
+    /// Ticks from any state to the next acknowledged command, or to a reported stop: without the operator, and with one
+    /// who answers everything at once.
     pub alone: u32,
     pub helped: u32,
     pub wrong: Option<(Vec<Event>, Wrong)>,
@@ -26,7 +26,7 @@ pub struct Found {
 struct Space {
     known: HashMap<u64, u32>,
     from: Vec<(u32, Event)>,
-    /// Of each state: onward alone, and onward with help.
+    /// For each state: the next state without the operator, and with help.
     onward: Vec<[Onward; 2]>,
     ticks: u64,
 }
@@ -42,7 +42,7 @@ impl Space {
         (number, number == next)
     }
 
-    /// The ticks that lead to a state, and one more.
+    /// The ticks that lead to a state, with an optional last one.
     fn way(&self, mut state: u32, last: Option<Event>) -> Vec<Event> {
         let mut way = Vec::from_iter(last);
         while let Some((before, event)) = self.from.get(state as usize).filter(|(before, _)| *before != NONE)
@@ -54,7 +54,7 @@ impl Space {
         way
     }
 
-    /// The most ticks from a state to its good end; or a state that has none.
+    /// The greatest number of ticks from a state to its good end; or a state without one.
     fn longest(&self, which: usize) -> Result<u32, u32> {
         const OPEN: u32 = u32::MAX;
         let mut ticks = vec![0_u32; self.onward.len()];
@@ -86,7 +86,7 @@ impl Space {
     }
 }
 
-/// Search all states of a setting, the nearest first.
+/// Search all states of a setting, breadth first.
 pub fn search(setting: &Setting) -> Found {
     let first = State::first(setting);
     let mut space = Space::default();

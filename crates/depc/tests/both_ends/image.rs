@@ -1,7 +1,7 @@
-//! The bytes by which states are told apart.
+//! The byte image that distinguishes states.
 //!
-//! Counters do not count. A time is taken up to the one beyond which the host does not tell it from a later one, and so
-//! is the number of reports that were asked for: otherwise no state would ever come again.
+//! Counters are left out. A time is limited to the value beyond which the host makes no difference, and so is the
+//! number of requested reports: otherwise no state would ever repeat.
 
 use depc::host::{Host, HostState, RESTART_TICKS, START_ATTEMPTS};
 use rcs_core::{
@@ -19,7 +19,7 @@ const HOST: &StructSchema = match &Host::SCHEMA {
     _ => panic!("the host is a struct"),
 };
 
-/// Where a field of the host begins in its image, and its size.
+/// Offset of a field of the host in its image, and its size.
 fn field(name: &str) -> (usize, usize) {
     let mut at = 0;
     for field in HOST.fields {
@@ -31,7 +31,7 @@ fn field(name: &str) -> (usize, usize) {
     panic!("the host has no field {name}");
 }
 
-/// Where the fields are that are changed.
+/// Offsets and sizes of the fields that are changed.
 pub struct Fields {
     counters: (usize, usize),
     lost_function: (usize, usize),
@@ -73,14 +73,14 @@ impl Image {
         value.encode(&mut Writer::new(&mut self.0[from..]));
     }
 
-    /// The host; so many faults can still happen.
+    /// Add the host; `faults` is the number of faults that can still happen.
     pub fn add_host(&mut self, host: &Host, faults: u8) {
         let from = self.0.len();
         self.add_plain(host);
         let (image, fields) = (&mut self.0[from..], &*FIELDS);
         let clear = |image: &mut [u8], (at, size): (usize, usize)| image[at..at + size].fill(0);
         clear(image, fields.counters);
-        // It is told to the user, and nothing depends on it.
+        // It is only reported to the user; nothing depends on it.
         clear(image, fields.lost_function);
         if host.state() != HostState::Waiting {
             clear(image, fields.frame);
@@ -95,12 +95,12 @@ impl Image {
         }
         let attempts = &mut image[fields.attempts.0];
         *attempts = (*attempts).min(START_ATTEMPTS);
-        // One report less is awaited after each that is damaged; all beyond one are alike.
+        // Each damaged report reduces the number of awaited ones by one; all numbers beyond that are equivalent.
         let asked = &mut image[fields.asked.0];
         *asked = (*asked).min(faults + 4);
     }
 
-    /// 64 bits of it: of a million states two are alike with a chance of 1 in 37 million.
+    /// A 64-bit hash: in a million states two are equal with a probability of 1 in 37 million.
     pub fn fingerprint(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         hasher.write(&self.0);

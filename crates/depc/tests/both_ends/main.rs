@@ -1,4 +1,4 @@
-//! The real [`depc::host::Host`] against the real [`depc::controller::Controller`], searched through: breadth first
+//! Exhaustive search of the real [`depc::host::Host`] against the real [`depc::controller::Controller`]: breadth first
 //! over all states that both ends, the line, the panel and the user of the host can reach with a bounded number of
 //! faults.
 //!
@@ -8,12 +8,12 @@
 //!                                            └── answer: as sent, lost, damaged, doubled, late, DTR ─────┘
 //! ```
 //!
-//! In every state: no point is executed twice (without functions: the robot never goes back), none is skipped, one
-//! command is outstanding, and what the host believes is true. From every state on, if nothing else goes wrong, the
-//! next command is acknowledged or a stop is reported within a bound, whatever the operator does; and with an operator
-//! who answers at once the next command is acknowledged.
+//! In every state: no point is executed twice (without functions: the robot never moves backwards), none is skipped,
+//! one command is outstanding, and the host's knowledge is true. From every state, without further faults, the next
+//! command is acknowledged or a stop is reported within a bound, whatever the operator does; and with an operator who
+//! answers at once the next command is acknowledged.
 //!
-//! `DEPC_FAULTS=3` searches three faults in place of two, without Hold; `DEPC_ALL_BITS=1` damages every bit and every
+//! `DEPC_FAULTS=3` searches three faults instead of two, without Hold; `DEPC_ALL_BITS=1` damages every bit and every
 //! byte, not only one of each part of a frame.
 
 #![expect(clippy::print_stdout, reason = "the figures of a search are printed")]
@@ -25,11 +25,12 @@ mod model;
 use explore::{Found, search};
 use model::{Carried, Event, KINDS, Kind, Panel, QUIET, Setting, Wrong};
 
-/// Ticks in which a stop is reported or the next command is acknowledged: a second of silence, and what comes before.
+/// Ticks within which a stop is reported or the next command is acknowledged: a second of silence, and the ticks before
+/// it.
 const BOUND: u32 = RESTART + 11;
 const RESTART: u32 = depc::host::RESTART_TICKS as u32;
 
-/// A serial line does not double frames. One that does deceives this protocol, if something else goes wrong too.
+/// A serial line does not duplicate frames. One that does can deceive this protocol together with another fault.
 const fn is_doubling(kind: Kind) -> bool {
     matches!(kind, Kind::CommandDoubled | Kind::AnswerDoubled)
 }
@@ -58,7 +59,7 @@ fn one_fault_of_any_kind_deceives_neither_end_and_is_over_or_reported_in_time() 
     }
 }
 
-/// Two faults of any kind but a doubled frame.
+/// Two faults of any kind except a duplicated frame.
 fn several_faults(functions: bool) {
     let faults = number("DEPC_FAULTS").unwrap_or(2);
     let mut kinds = KINDS.to_vec();
@@ -78,14 +79,14 @@ fn two_faults_deceive_neither_end_of_a_line_of_functions() {
     several_faults(true);
 }
 
-/// What the protocol cannot do, in the fewest ticks.
+/// The shortest sequence of ticks in which these faults deceive the protocol, and the error.
 fn shortest(functions: bool, kinds: [Kind; 2]) -> Option<(Vec<Event>, Wrong)> {
     search(&Setting { functions, faults: 2, kinds: kinds.to_vec(), all_bits: false }).wrong
 }
 
 const START: Event = Event { panel: Panel::Start, ..QUIET };
 
-/// An answer bears no number: that of one command is believed to be that of the next, which is lost.
+/// An answer has no number: the host takes the answer to one command for that to the next, which is lost.
 #[test]
 fn an_answer_that_arrives_twice_hides_a_command_that_is_lost() {
     let twice = Event { answer: Carried::Doubled(1), ..QUIET };
@@ -95,18 +96,18 @@ fn an_answer_that_arrives_twice_hides_a_command_that_is_lost() {
     assert_eq!(found, Some((vec![START, twice, lost, QUIET], wrong)));
 }
 
-/// A command bears no number either: the controller executes the copy, if no other command comes between.
+/// A command has no number either: the controller executes the copy if no other command comes in between.
 #[test]
 fn a_command_that_arrives_twice_is_executed_twice_if_its_answer_is_lost() {
     let twice = Event { command: Carried::Doubled(1), answer: Carried::Lost, ..QUIET };
     let wrong = "a point is executed twice";
     let found = shortest(true, [Kind::CommandDoubled, Kind::AnswerLost]);
     assert_eq!(found, Some((vec![START, twice, QUIET], wrong)));
-    // T3 Interface sends no functions. To be sent once more where it stands does not move the robot.
+    // T3 Interface sends no functions. A repeated command to the present position does not move the robot.
     assert_eq!(shortest(false, [Kind::CommandDoubled, Kind::AnswerLost]), None);
 }
 
-/// Each pair of faults with a doubled frame, once for positions and once for functions.
+/// Each pair of faults with a duplicated frame, once for positions and once for functions.
 #[test]
 fn a_doubled_frame_deceives_together_with_these_faults_only() {
     use Kind::*;

@@ -1,7 +1,7 @@
-//! The model around the two ends: a line in each direction, the user of the host, the panel, and what is true.
+//! The model around the two ends: a line in each direction, the user of the host, the panel, and the true state.
 //!
-//! The robot goes round a ring of four points, a count apart, so that a point that is skipped, executed again or
-//! gone back to is told from the next one, and the search comes to an end.
+//! The robot moves around a ring of four points, a count apart, so that a skipped or repeated point or a step back
+//! differs from the next point, and the search ends.
 
 use depc::{
     Limits, Plate,
@@ -13,19 +13,19 @@ use depc::{
 
 use crate::image::Image;
 
-/// Points of the ring.
+/// Number of points of the ring.
 const RING: i16 = 4;
-/// The position at a point, but for its first word.
+/// The position of a point, except for its first word.
 const AT: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
-/// A second and a bit: the host calls the link failed after it. The real value only takes longer.
+/// Slightly more than a second, after which the host reports the link as failed. The real value only takes longer.
 const PATIENCE: u16 = RESTART_TICKS + 5;
-/// Ticks by which a frame is late.
+/// Delays of a late frame, ticks.
 const LATE: [u8; 3] = [1, 2, 3];
 
-/// What has shown to be wrong.
+/// Text of an error that was found.
 pub type Wrong = &'static str;
 
-/// What can go wrong, each time at the cost of a fault.
+/// Kinds of disturbances; each one counts as a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     CommandLost,
@@ -36,19 +36,19 @@ pub enum Kind {
     AnswerDamaged,
     AnswerDoubled,
     AnswerLate,
-    /// The host's DTR seems off to the controller for a tick.
+    /// The controller sees the host's DTR off for a tick.
     CtsLow,
-    /// The controller's DTR seems off to the host for a tick.
+    /// The host sees the controller's DTR off for a tick.
     DtrLow,
     Hold,
     Interrupt,
-    /// The user of the host begins the link again.
+    /// The user of the host restarts the link.
     Restart,
     /// The user of the host ends the function.
     Cancel,
 }
 
-/// All of them.
+/// All kinds.
 pub const KINDS: [Kind; 14] = [
     Kind::CommandLost,
     Kind::CommandDamaged,
@@ -66,20 +66,20 @@ pub const KINDS: [Kind; 14] = [
     Kind::Cancel,
 ];
 
-/// What is searched.
+/// Scope of a search.
 #[derive(Clone, Debug)]
 pub struct Setting {
-    /// Commands bear a function.
+    /// True if commands have a function.
     pub functions: bool,
-    /// Faults in a run, at most.
+    /// Greatest number of faults in a run.
     pub faults: u8,
-    /// Of these kinds.
+    /// The kinds of faults.
     pub kinds: Vec<Kind>,
-    /// Each bit and each byte of a frame can be damaged, not only one of each part.
+    /// True to damage each bit and each byte of a frame, not only one of each part.
     pub all_bits: bool,
 }
 
-/// What becomes of the frame that one end sends in a tick.
+/// Fate of the frame that one end sends in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carried {
     AsSent,
@@ -88,13 +88,13 @@ pub enum Carried {
     Flipped(u8),
     /// This byte is lost.
     Short(u8),
-    /// It arrives again, so many ticks later.
+    /// It arrives again this many ticks later.
     Doubled(u8),
-    /// It, and what is behind it, arrives so many ticks later.
+    /// The frame and all frames after it arrive this many ticks later.
     Late(u8),
 }
 
-/// What is done at the panel of the controller before a tick.
+/// An action at the panel of the controller before a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel {
     Nothing,
@@ -106,7 +106,7 @@ pub enum Panel {
     Release,
 }
 
-/// What the user of the host wants in a tick.
+/// The request of the user of the host in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
     /// The next point, as soon as it can be sent.
@@ -115,7 +115,7 @@ pub enum Wanted {
     Cancel,
 }
 
-/// A tick.
+/// Everything that happens in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event {
     pub wanted: Wanted,
@@ -126,7 +126,7 @@ pub struct Event {
     pub answer: Carried,
 }
 
-/// A tick in which nothing goes wrong and nobody does anything.
+/// A tick without a fault and without an action.
 pub const QUIET: Event = Event {
     wanted: Wanted::Next,
     dtr_low: false,
@@ -136,7 +136,7 @@ pub const QUIET: Event = Event {
     answer: Carried::AsSent,
 };
 
-/// One direction of the line: frames in order, each with the ticks that it still takes.
+/// One direction of the line: frames in order, each with its remaining ticks.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Line(Vec<(u8, Vec<u8>)>);
 
@@ -185,7 +185,7 @@ impl Line {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct OnRing {
     at: i16,
-    /// A point may be commanded again where the robot stands.
+    /// True if the point where the robot is may be commanded again.
     may_repeat: bool,
     wrong: Option<Wrong>,
 }
@@ -216,7 +216,7 @@ impl Robot for OnRing {
     }
 }
 
-/// Both ends and all between them.
+/// Both ends and everything between them.
 #[derive(Clone)]
 pub struct State {
     host: Host,
@@ -226,14 +226,14 @@ pub struct State {
     to_host: Line,
     dtr: bool,
     hold: bool,
-    /// A data command is sent and neither answered nor given up.
+    /// True if a data command was sent and is neither answered nor given up.
     outstanding: bool,
-    /// Faults that can still happen.
+    /// Number of faults that can still happen.
     faults: u8,
 }
 
 impl State {
-    /// Before the power is switched on at either end.
+    /// The state before either end has power.
     pub fn first(setting: &Setting) -> Self {
         let mut host = Host::new(ANSWER_TICKS);
         host.set_patience(PATIENCE);
@@ -250,7 +250,7 @@ impl State {
         }
     }
 
-    /// What tells this state from others: all that the next ticks depend on.
+    /// The image that distinguishes this state from others: everything on which the next ticks depend.
     pub fn image(&self) -> Image {
         let mut image = Image::default();
         image.add_host(&self.host, self.faults);
@@ -262,7 +262,7 @@ impl State {
         image
     }
 
-    /// The host's half of a tick: what it sends, and whether a command was acknowledged.
+    /// The host's half of a tick: the bytes that it sends, and whether a command was acknowledged.
     fn host_half(
         &mut self,
         (wanted, dtr_low): (Wanted, bool),
@@ -301,7 +301,7 @@ impl State {
         Ok((tx, event == HostEvent::Acknowledged))
     }
 
-    /// The controller's half of a tick: what it sends.
+    /// The controller's half of a tick: the bytes that it sends.
     fn controller_half(&mut self, cts_low: bool, panel: Panel) -> Result<LinkBytes, Wrong> {
         self.hold = match panel {
             Panel::Hold => true,
@@ -324,8 +324,8 @@ impl State {
         self.robot.wrong.map_or(Ok(out.tx), Err)
     }
 
-    /// Each tick that can come next: what happens in it, and the state after it or what it shows to be wrong. `good`
-    /// says that a command was acknowledged, or that a stop is reported.
+    /// Calls `visit` for each possible next tick: its event, and the state after it or the error that it shows. `good`
+    /// means that a command was acknowledged, or that a stop is reported.
     pub fn each_next(
         &self,
         setting: &Setting,
@@ -371,7 +371,7 @@ impl State {
         Ok(())
     }
 
-    /// The controller has stopped, and the host says so.
+    /// True if the controller has stopped and the host reports it.
     fn is_reported(&self) -> bool {
         let stopped = self.hold || self.controller.state() != ControllerState::Running;
         let host = &self.host;
@@ -379,7 +379,7 @@ impl State {
         stopped && (says || host.state() == HostState::Ended)
     }
 
-    /// What an operator does who answers everything at once.
+    /// The action of an operator who answers everything at once.
     pub fn help(&self) -> Panel {
         match self.controller.state() {
             _ if self.hold => Panel::Release,
@@ -394,7 +394,7 @@ impl State {
         let can = |kind| self.faults > 0 && setting.kinds.contains(&kind);
         let mut all = vec![(Wanted::Next, false)];
         all.extend(can(Kind::DtrLow).then_some((Wanted::Next, true)));
-        // After a fault the user begins again whenever it likes.
+        // After a fault the user may restart at any time.
         all.extend(can(Kind::Restart).then_some((Wanted::Restart, false)));
         all.extend(can(Kind::Cancel).then_some((Wanted::Cancel, false)));
         all
@@ -418,7 +418,7 @@ impl State {
     }
 }
 
-/// All that can become of a frame.
+/// All possible fates of a frame.
 fn carried(frame: &[u8], faults: u8, setting: &Setting, command: bool) -> Vec<Carried> {
     let mut all = vec![Carried::AsSent];
     if frame.is_empty() || faults == 0 {

@@ -1,4 +1,4 @@
-//! Both ends of the link, the line between them, a robot that watches over its moves, and the truth about every command.
+//! Both ends of the link, the line between them, a robot that checks its moves, and the truth about every command.
 
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part of it")]
 
@@ -19,11 +19,11 @@ use rcs_core::tick::Tick;
 
 /// Ticks after which the operator answers a warning, or starts the program again.
 const OPERATOR_TICKS: u32 = 50;
-/// Ticks in which a controller that has stopped must be reported by the host: the time for an answer, then a second
-/// of silence.
+/// Ticks within which the host must report a controller that has stopped: the time for an answer, then a second of
+/// silence.
 const REPORT_TICKS: u32 = 32;
 
-/// A robot that is where it is told to be, and watches over every step.
+/// A robot that reaches every commanded position exactly, and checks every step.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Watched {
     joints: Joints,
@@ -50,32 +50,32 @@ impl Robot for Watched {
     }
 }
 
-/// What was believed against what was true. Everything but `started` stays zero as long as checksums see every fault and no
-/// noise looks like one of the commands and answers that have none.
+/// Counts of wrong conclusions. All except `started` stay zero as long as the checksums detect every fault and no noise
+/// looks like a command or answer without a checksum.
 #[derive(Clone, Copy, Default, Debug, PartialEq)]
 pub struct Truth {
-    /// Reports believed by the host.
+    /// Reports accepted by the host.
     pub started: u64,
-    /// Reports believed that were not, or no longer, true.
+    /// Accepted reports that were never true or no longer true.
     pub false_reports: u64,
-    /// Commands executed, or refused with a warning, that the host had not sent like this.
+    /// Commands executed, or refused with a warning, that the host had not sent in this form.
     pub false_commands: u64,
-    /// Acknowledgements believed for a command that was not executed, and not refused with a warning either.
+    /// Acknowledgements accepted for a command that was neither executed nor refused with a warning.
     pub false_acks: u64,
-    /// Commands executed after the host had given them up and begun again: the line has held them back for so long.
+    /// Commands executed after the host had given them up and restarted, because the line delayed them so long.
     pub late_commands: u64,
-    /// Commands executed a second time, function and all.
+    /// Commands executed a second time, including their function.
     pub repeated: u64,
     /// The controller took noise for a cancel.
     pub false_cancels: u64,
     /// Warnings of the velocity limits.
     pub velocity_warnings: u64,
-    /// Warnings of the controller, all.
+    /// All warnings of the controller.
     pub warnings: u64,
 }
 
 impl Truth {
-    /// All that the line has made one end believe.
+    /// Number of wrong conclusions that the line has caused.
     pub fn deceptions(&self) -> u64 {
         self.false_reports
             + self.false_commands
@@ -98,14 +98,14 @@ impl Truth {
     }
 }
 
-/// A session: the host is used as T3I uses it, with a number in the function bytes of each command.
+/// A session: it uses the host as T3I does, with a number in the function bytes of each command.
 pub struct Session {
     pub host: Host,
     pub controller: Controller,
     pub robot: Watched,
     pub injector: Injector,
     pub truth: Truth,
-    /// Numbers of the commands executed as they were sent.
+    /// Numbers of the commands that were executed as sent.
     pub executed: Vec<u16>,
     pub tick: u64,
     to_host: LinkBytes,
@@ -113,18 +113,18 @@ pub struct Session {
     position: Position,
     goal: Frame,
     numbers: Numbers,
-    /// Commands sent, number 1 first.
+    /// Commands sent; number 1 is the first.
     sent: Vec<Position>,
-    /// The last command on the line, and what arrived at the controller in the last tick and in this one.
+    /// The last command on the line, and the bytes that arrived at the controller in the last tick and in this one.
     frame: LinkBytes,
     arrived: [LinkBytes; 2],
-    /// Position of the command that the controller has executed in the last tick.
+    /// Position of the command that the controller executed in the last tick.
     moving_to: Option<Plate>,
-    /// That command was not the last one sent.
+    /// True if that command was not the last one sent.
     late: bool,
     /// Number of the command that was last refused with a warning.
     refused: Option<u16>,
-    /// Ticks since the host has last believed something; a slow line goes on telling of a controller that has stopped.
+    /// Ticks since the host last accepted something; on a slow line data of a stopped controller still arrive.
     silent: u32,
     stopped: u32,
     answers: u32,
@@ -170,12 +170,12 @@ impl Session {
         self.goal = Frame { position: home.position + shift, rotation: rotation_by(&turn) * home.rotation };
     }
 
-    /// The robot stands at the goal, to the word.
+    /// True if the robot is at the goal, in words of the line.
     pub fn at_goal(&self) -> bool {
         self.robot.at.same(&Plate::from_tool(&self.goal, &T3, &self.robot.at).unwrap())
     }
 
-    /// One tick of host, line and controller; true if the host knows the goal to be reached.
+    /// One tick of host, line and controller; true if the host knows that the goal is reached.
     pub fn tick(&mut self) -> bool {
         let acknowledged = self.receive();
         let next = step(&self.position, &self.goal, &T3, &Limits::NBS).unwrap();
@@ -197,7 +197,7 @@ impl Session {
         reached
     }
 
-    /// The host's first half. The number of the command that is acknowledged.
+    /// The host's first half; returns the number of the command that is acknowledged.
     fn receive(&mut self) -> Option<u16> {
         self.silent += 1;
         match self.host.receive(&self.to_host, self.dtr) {
@@ -228,7 +228,7 @@ impl Session {
         }
         let (before, state) = (self.controller.warning(), self.controller.state());
         let warned = state == ControllerState::Warning;
-        // Every fourth warning is answered with CANCEL.
+        // Every fourth warning gets a CANCEL.
         let give_up = self.answers % 4 == 3;
         let inputs = ControllerInputs {
             rx,
@@ -272,7 +272,7 @@ impl Session {
         bytes.windows(usize::from(self.frame.length)).any(|bytes| bytes == self.frame.as_slice())
     }
 
-    /// The function of the command executed in the last tick: which command was it?
+    /// Checks and counts the command whose function was executed in the last tick.
     fn note_executed(&mut self, number: u16) {
         let sent = usize::from(number).checked_sub(1).and_then(|place| self.sent.get(place));
         if sent.map(|sent| sent.plate) != self.moving_to {
@@ -300,7 +300,7 @@ impl Session {
         );
     }
 
-    /// Ticks until the goal is reached and held; for a line that is mended.
+    /// Run until the goal is reached and held, at most this many ticks; for a repaired line.
     pub fn until_reached(&mut self, most: u32) {
         for _ in 0..most {
             if self.tick() && self.at_goal() && self.controller.state() == ControllerState::Running {

@@ -1,8 +1,8 @@
 //! Board 0's side of `--boards split`: gives the pulse, waits for the stamps, collects common memory.
 //!
-//! For the run the boards are a ladder like any other ([`Levels`]): common memory after a tick is the same, bit for
-//! bit. There is one new failure: a board that does not stamp. Then board 0 gives no more pulses. So no process is
-//! stepped again and the robot gets no further point; valves and fingers stay as they are.
+//! For the run, the boards are a ladder like any other ([`Levels`]): common memory after a tick is the same, bit for
+//! bit. There is one additional failure: a board that does not stamp. Board 0 then gives no more pulses. So no process
+//! is stepped again and the robot gets no further point; valves and fingers stay as they are.
 
 use std::{
     process::{Child, ExitStatus},
@@ -35,30 +35,30 @@ use crate::{
 
 /// Name of board 0 among the nodes of a run.
 pub const BOARD_0: &str = "board-0";
-/// How long board 0 waits for a notification before it checks by itself.
+/// Time that board 0 waits for a notification before it checks by itself.
 const LOOK: Duration = Duration::from_millis(10);
 /// Time between two checks for boards that have not joined yet.
 const GATHER: Duration = Duration::from_millis(20);
-/// Checks after which board 0 tests whether a board that had joined is still alive.
+/// Number of checks after which board 0 tests whether a board that had joined is still alive.
 const LIFE: u32 = 25;
-/// Time limit for boards to end by themselves when the run is over.
+/// Time limit for the boards to end by themselves when the run is over.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// A board joins or leaves before the first tick.
+/// A board joined or left before the first tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoardEvent {
     /// A board has joined.
     Came {
-        /// Which.
+        /// The board.
         board: Board,
-        /// Its process.
+        /// Its process id.
         pid: u32,
     },
     /// A board that had joined has left.
     Left {
-        /// Which.
+        /// The board.
         board: Board,
-        /// Its process.
+        /// Its process id.
         pid: u32,
     },
 }
@@ -66,7 +66,7 @@ pub enum BoardEvent {
 /// State of another board in board 0.
 struct Seat {
     board: Board,
-    /// Its process, if it was started from here.
+    /// Its process, if board 0 started it.
     child: Option<Child>,
     /// Its services, once it has joined.
     ports: Option<(Readers, ReportReader)>,
@@ -91,7 +91,7 @@ impl Seat {
         }
     }
 
-    /// A process has joined as this board.
+    /// True if a process has joined as this board.
     const fn has_come(&self) -> bool {
         self.report.pid != 0
     }
@@ -100,7 +100,7 @@ impl Seat {
         self.former_allocations + self.report.allocations
     }
 
-    /// How the process ended, if it was started from here and has.
+    /// Exit status of the process, if board 0 started it and it has ended.
     fn ended(&mut self) -> Option<ExitStatus> {
         self.child.as_mut().and_then(|child| child.try_wait().ok().flatten())
     }
@@ -121,18 +121,18 @@ impl Seat {
     }
 }
 
-/// Figures of a board, for the result of the run.
+/// Figures of a board for the result of the run.
 #[derive(Clone, Copy)]
 pub struct BoardFigures<'a> {
     /// The board.
     pub board: Board,
-    /// Its process.
+    /// Its process id.
     pub pid: u32,
     /// Heap allocations in its ticks.
     pub allocations: u64,
-    /// From wake-up to stamp.
+    /// Times from wake-up to stamp.
     pub times: &'a Histogram,
-    /// It got everything that it asked of the system for real time.
+    /// True if the system granted all its real-time requests.
     pub punctual: bool,
 }
 
@@ -140,7 +140,7 @@ pub struct BoardFigures<'a> {
 /// memory.
 pub struct Coordinator {
     name: RunName,
-    // Taken out before the files are removed: iceoryx2 must have let go of them by then.
+    // Dropped before the files are removed: iceoryx2 must have released them by then.
     ports: Option<(PulseGiver, RunNode)>,
     seats: Vec<Seat>,
     pulse: SystemPulse,
@@ -149,7 +149,7 @@ pub struct Coordinator {
 }
 
 impl Coordinator {
-    /// Set up the pulse of a run. The remains of killed runs are removed first.
+    /// Set up the pulse of a run. It first removes the remains of killed runs.
     ///
     /// # Errors
     /// [`SharedMemoryError`] if there is not enough shared memory or the name is taken.
@@ -181,11 +181,11 @@ impl Coordinator {
         self.seats[board.index()].child = Some(child);
     }
 
-    /// Wait until all boards have joined and read each other. `heard` is called for each board that joins or leaves,
-    /// with the list of those still missing.
+    /// Wait until all boards have joined and read each other. Calls `heard` for each board that joins or leaves, with
+    /// the list of those still missing.
     ///
     /// # Errors
-    /// [`SplitError`] if a board does not join, or has other data.
+    /// [`SplitError`] if a board does not join, or has another program, data or job.
     pub fn gather(
         &mut self,
         patience: Duration,
@@ -209,7 +209,7 @@ impl Coordinator {
             if unready.is_empty() {
                 break;
             }
-            // A board that has come is ready as soon as all others have.
+            // A board that has joined is ready as soon as all others have joined.
             let absent = self.boards_that(|seat| !seat.has_come());
             let missing = if absent.is_empty() { unready } else { absent };
             if stop.load(Ordering::Relaxed) {
@@ -223,7 +223,7 @@ impl Coordinator {
             }
         }
         self.seats.iter_mut().for_each(|seat| seat.former.clear());
-        // The first call after a listener has come connects to it, and allocates: not in a tick.
+        // The first call after a new listener connects to it, which allocates: it must not be in a tick.
         if let Some((giver, _)) = &self.ports {
             giver.wake();
         }
@@ -243,7 +243,7 @@ impl Coordinator {
         }
         if seat.ports.is_none() {
             let epoch = self.pulse.epochs[board.index()];
-            // Services that are not there are those of a board that has not come yet.
+            // If the services do not exist, the board has not joined yet.
             let Ok(reports) = ReportReader::open(node, board, epoch) else { return Ok(false) };
             let Ok(readers) = Readers::open(node, board, epoch) else { return Ok(false) };
             seat.ports = Some((readers, reports));
@@ -272,12 +272,12 @@ impl Coordinator {
         Some(event)
     }
 
-    /// Wait for a process that replaces a lost board. It joins under the next epoch, so that later writes of the lost
-    /// one are not read. Afterwards run the tick again on the same inputs: boards that have stamped it already take no
+    /// Wait for a process that replaces a lost board. It joins with the next epoch, so that later writes of the lost
+    /// one are not read. Afterwards run the tick again on the same inputs: boards that have already stamped it take no
     /// further step, and the new one restarts its processes on the last outputs of the lost one.
     ///
     /// # Errors
-    /// [`SplitError`] if none joins, or it has other data.
+    /// [`SplitError`] if no process joins, or it has another program, data or job.
     pub fn await_successor(
         &mut self,
         lost: &Lost,
@@ -289,10 +289,10 @@ impl Coordinator {
         self.gather(patience, stop, heard)
     }
 
-    /// Give a board's place to the next process that joins.
+    /// Free a board's place for the next process that joins.
     fn vacate(&mut self, at: usize) {
         let (Some((giver, _)), Some(seat)) = (&self.ports, self.seats.get_mut(at)) else { return };
-        // Kept until the successor has read from them what stands on the devices.
+        // Kept until the successor has read the last outputs to the devices from them.
         seat.former.extend(seat.ports.take());
         seat.former_allocations += seat.report.allocations;
         seat.report = BoardReport::ZERO;
@@ -317,13 +317,13 @@ impl Coordinator {
         })
     }
 
-    /// The epochs under which the boards run.
+    /// The present epochs of the boards.
     #[must_use]
     pub const fn epochs(&self) -> &Epochs {
         &self.pulse.epochs
     }
 
-    /// Let the boards check a load beside their ticks: its file is there.
+    /// Announce a load, whose file exists, to the boards, which check it in parallel with their ticks.
     pub fn announce(&mut self, load: u32) {
         self.pulse.load = load;
         if let Some((giver, _)) = &self.ports {
@@ -338,7 +338,7 @@ impl Coordinator {
     pub fn have_checked(&mut self, load: u32, data: u64) -> Result<bool, Board> {
         let mut all = true;
         for seat in &mut self.seats {
-            // A report that cannot be read is found with the next stamp.
+            // If a report cannot be read, the wait for the next stamp detects it.
             if let Some((_, reports)) = &seat.ports
                 && let Ok((_, report)) = reports.read()
             {
@@ -353,7 +353,7 @@ impl Coordinator {
         Ok(all)
     }
 
-    /// From the next pulse on the load counts.
+    /// Put the load into effect with the next pulse.
     pub const fn commit(&mut self, load: u32) {
         self.pulse.loaded = load;
     }
@@ -372,7 +372,7 @@ impl Coordinator {
             let Some(seat) = late.and_then(|at| self.seats.get_mut(at)) else { return Ok(()) };
             let started = Instant::now();
             sleep(&giver.done, LOOK);
-            // Time in which this process itself was stopped is not the board's.
+            // Do not count time in which this process itself was stopped.
             waited += started.elapsed().min(2 * LOOK);
             if started.elapsed() < LOOK {
                 continue;
@@ -387,7 +387,7 @@ impl Coordinator {
         }
     }
 
-    /// Collect common memory of a tick, and the states of the processes after it.
+    /// Collect common memory of a tick, and the states of the processes after the tick.
     fn collect(&mut self, tick: Tick, after: &mut CommonMemory) -> Result<(), Lost> {
         for seat in &mut self.seats {
             seat.times.add(seat.report.step_ns);
@@ -398,19 +398,19 @@ impl Coordinator {
             }
             readers.states(tick, &mut self.states).map_err(garbled)?;
         }
-        // Every board has seen the same buttons.
+        // All boards have read the same buttons.
         self.states.buttons = self.pulse.external.devices.joystick.single_step;
         Ok(())
     }
 
-    /// Wait for the processes that were started here to end, and end those that do not.
+    /// Wait for the processes that board 0 started to end, and kill those that do not.
     fn reap(&mut self) {
         let deadline = Instant::now() + FAREWELL;
         for child in self.seats.iter_mut().filter_map(|seat| seat.child.as_mut()) {
             while Instant::now() < deadline && matches!(child.try_wait(), Ok(None)) {
                 std::thread::sleep(Duration::from_millis(2));
             }
-            // Neither can fail for a child that has not been waited for; one that has is gone.
+            // Neither call fails for a child that was not waited for; one that was no longer exists.
             let _ = child.kill();
             let _ = child.wait();
         }
@@ -420,7 +420,7 @@ impl Coordinator {
 impl Levels<TaskData<'_>> for Coordinator {
     type Error = Lost;
 
-    /// The task data are those of the boards; they switch generations with the pulse that names a new one.
+    /// The task data are those of the boards; they change to a new generation with the pulse that names it.
     fn step(
         &mut self,
         tick: Tick,
@@ -452,7 +452,7 @@ impl Drop for Coordinator {
         self.reap();
         self.seats.clear();
         drop(self.ports.take());
-        // Boards that were started by hand keep the files until they have left; the last one out removes them.
+        // Boards that were started by hand keep the files until they have left; the last process to leave removes them.
         let _ = runs::remove_if_deserted(&self.name, &memory::layout());
     }
 }

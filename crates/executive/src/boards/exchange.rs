@@ -1,12 +1,12 @@
 //! Data exchange of the boards: the outputs of each process, doubled by tick parity, and its state.
 //!
-//! Each process has one blackboard service with three entries: its outputs in even ticks, its outputs in odd ticks, its
-//! state. An entry is a byte image under the number of the tick that wrote it; iceoryx2 hands it over whole or not at
-//! all. A reader that finds another number than the one it needs reads nothing: then the process's outputs keep their
-//! old stamp, and its neighbours treat it as lost (docs/design/handshake.md "Stamp").
+//! Each process has one blackboard service with three entries: its outputs in even ticks, its outputs in odd ticks, and
+//! its state. An entry is a byte image after the number of the tick that wrote it; iceoryx2 transfers it as a whole or
+//! not at all. A reader that finds another number than the one it needs reads nothing: the process's outputs then keep
+//! their old stamp, and its neighbours treat it as lost (docs/design/handshake.md "Stamp").
 //!
-//! A service belongs to the board on which the process runs, and its name has the board's epoch: a board that replaces
-//! a killed one creates services of the next epoch.
+//! A service belongs to the board on which the process runs, and its name contains the board's epoch: a board that
+//! replaces a killed one creates services of the next epoch.
 
 use std::{fmt::Debug, marker::PhantomData};
 
@@ -30,26 +30,26 @@ use taskdata::files::TaskData;
 use super::{BOARDS, Board};
 use crate::memory::{SharedMemoryError, layout::Epoch, runs::service_name};
 
-/// Most readers of a board's blackboards: the other boards, board 0, and a board that takes over.
+/// Greatest number of readers of a board's blackboards: the other boards, board 0, and a board that takes over.
 pub(super) const READERS: usize = BOARDS + 2;
 
 type StateOf<P> = <P as Process<TaskData<'static>>>::State;
 type OutputsOf<P> = <P as Process<TaskData<'static>>>::Outputs;
 
-/// Bytes of an entry.
+/// Size of an entry, bytes.
 pub(super) const fn entry_size<T: Plain>() -> usize {
     Tick::SIZE + T::SIZE
 }
 
-/// Key of the state; 0 and 1 are the halves.
+/// Key of the state; 0 and 1 are the keys of the halves.
 const STATE: u32 = 2;
 
-/// The half of a tick.
+/// Index of the half for a tick.
 const fn half(tick: Tick) -> usize {
     if tick.0.is_multiple_of(2) { 0 } else { 1 }
 }
 
-/// The writer's end of an entry of `N` bytes that holds a `T`.
+/// The writer's end of an entry of `N` bytes that contains a `T`.
 pub(super) struct EntryWriter<const N: usize, T> {
     entry: EntryHandleMut<ipc::Service, u32, [u8; N]>,
     holds: PhantomData<T>,
@@ -65,7 +65,7 @@ impl<const N: usize, T: Plain> EntryWriter<N, T> {
     }
 }
 
-/// An entry as it stands in shared memory.
+/// The bytes of an entry in shared memory.
 pub(super) fn stamped<const N: usize, T: Plain>(tick: Tick, value: &T) -> [u8; N] {
     let mut bytes = [0; N];
     let mut w = Writer::new(&mut bytes);
@@ -86,14 +86,14 @@ impl<const N: usize, T: Plain> EntryReader<N, T> {
         Self { entry, holds: PhantomData }
     }
 
-    /// The number of the tick, and the value.
+    /// The tick that wrote the entry, and the value.
     pub(super) fn read(&self) -> Result<(Tick, T), DecodeError> {
         let image: [u8; N] = *self.entry.get();
         let mut r = Reader::new(&image);
         Ok((Tick::decode(&mut r)?, T::decode(&mut r)?))
     }
 
-    /// The value, if it was written in `tick`; the rest is not decoded otherwise.
+    /// The value, if it was written in `tick`; otherwise it is not decoded.
     pub(super) fn read_at(&self, tick: Tick) -> Result<Option<T>, DecodeError> {
         let image: [u8; N] = *self.entry.get();
         let mut r = Reader::new(&image);
@@ -198,7 +198,7 @@ macro_rules! exchange {
             /// Create the services of a board's processes.
             ///
             /// # Errors
-            /// What iceoryx2 says; if a service exists already, another process runs the same board.
+            /// Errors of iceoryx2; if a service already exists, another process runs the same board.
             pub fn create(
                 node: &Node<ipc::Service>,
                 board: Board,
@@ -233,7 +233,7 @@ macro_rules! exchange {
             /// Open the services of a board's processes.
             ///
             /// # Errors
-            /// What iceoryx2 says; a service that does not exist yet may be created later.
+            /// Errors of iceoryx2; a service that does not exist yet may be created later.
             pub fn open(
                 node: &Node<ipc::Service>,
                 board: Board,
@@ -246,8 +246,8 @@ macro_rules! exchange {
                 )+ })
             }
 
-            /// Read the outputs of the processes in `tick`; outputs of a process that did not write in it stay as they
-            /// are. True if all wrote. Does not allocate.
+            /// Read the outputs of the processes in `tick`; outputs of a process that did not write in it are
+            /// unchanged. Returns true if all wrote. Does not allocate.
             ///
             /// # Errors
             /// If bytes are not a valid record.

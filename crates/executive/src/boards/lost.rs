@@ -1,4 +1,4 @@
-//! Why boards cannot start together, and how a board is lost during a run.
+//! Errors of starting the boards together, and the loss of a board during a run.
 
 use std::{fmt, process::ExitStatus, time::Duration};
 
@@ -11,48 +11,48 @@ use rcs_core::{
 use super::Board;
 use crate::{failure, memory::SharedMemoryError};
 
-/// Time without a stamp after which a board is lost (docs/design/handshake.md "Lost board"); in fast clock the same
-/// time.
+/// Time without a stamp after which a board is lost (docs/design/handshake.md "Lost board"); the same time applies with
+/// the fast clock.
 pub const LOST_AFTER: Duration = Duration::from_millis(25 * TICK_MS);
 
-/// Why the boards could not start together.
+/// Errors of starting the boards together.
 #[derive(Debug, thiserror::Error)]
 pub enum SplitError {
-    /// Boards need shared memory.
+    /// Shared memory, which boards need, is not available.
     #[error("boards exchange their data in shared memory, which is not available: {0}")]
     SharedMemory(#[from] SharedMemoryError),
     /// A board's process could not be started.
     #[error("{board} cannot be started: {source}")]
     Start {
-        /// Which.
+        /// The board.
         board: Board,
-        /// Why.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// A board's process ended before the first tick.
     #[error("{board} ended before the first tick ({status}); its reason stands above")]
     Ended {
-        /// Which.
+        /// The board.
         board: Board,
-        /// How.
+        /// Its exit status.
         status: ExitStatus,
     },
     /// A board has another program, other data or another job.
     #[error("{board} (process {pid}) cannot take part: {difference}")]
     Different {
-        /// Which.
+        /// The board.
         board: Board,
-        /// Its process.
+        /// Its process id.
         pid: u32,
-        /// In what it differs.
+        /// The difference.
         difference: &'static str,
     },
     /// Boards did not join.
     #[error("{} did not come within {} s", list(.missing), .patience.as_secs())]
     Missing {
-        /// Which.
+        /// The missing boards.
         missing: Vec<Board>,
-        /// How long they were waited for.
+        /// Time for which board 0 waited for them.
         patience: Duration,
     },
     /// The wait was interrupted.
@@ -65,7 +65,7 @@ fn list(boards: &[Board]) -> String {
     boards.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// How a board was lost.
+/// Ways in which a board is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum How {
     /// Its process ended.
@@ -85,11 +85,11 @@ pub enum How {
 pub struct Lost {
     /// The board.
     pub board: Board,
-    /// Its process.
+    /// Its process id.
     pub pid: u32,
     /// The tick that it did not finish.
     pub tick: Tick,
-    /// How.
+    /// The way in which it was lost.
     pub how: How,
 }
 
@@ -109,8 +109,8 @@ impl fmt::Display for Lost {
 }
 
 impl Lost {
-    /// The loss in one sentence: what the board's processes were doing, and what follows. `hws` and `memory` are those
-    /// at the start of the tick.
+    /// The loss in one sentence: what the board's processes were doing, and the consequence. `hws` and `memory` are
+    /// those at the start of the tick.
     #[must_use]
     pub fn explain(&self, hws: &HwsCommand, memory: &CommonMemory) -> String {
         let doing = failure::unfinished_commands(self.board.processes(), hws, memory);

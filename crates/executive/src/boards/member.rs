@@ -4,10 +4,10 @@
 //! processes. Everything it needs for a tick comes with the pulse: the number, the external inputs, the generation of
 //! the task data. It never counts pulses and never reads a clock.
 //!
-//! A board that replaces a killed one in the middle of a run finds a pulse that the killed one has not answered. It
-//! latches the outputs of its predecessor and writes them again under its own epoch, so that its neighbours read the
-//! same before and after the change. It restarts the processes: they adopt the numbers of the commands that they find
-//! and report that they were restarted (docs/design/handshake.md "Restart").
+//! A board that replaces a killed one during a run finds a pulse that the killed one has not answered. It latches the
+//! outputs of its predecessor and writes them again with its own epoch, so that its neighbours read the same before and
+//! after the change. It restarts the processes: they adopt the numbers of the commands that they find and report that
+//! they were restarted (docs/design/handshake.md "Restart").
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
@@ -37,19 +37,19 @@ use crate::{
     },
 };
 
-/// How long a board waits for a notification before it checks for a pulse by itself.
+/// Time that a board waits for a notification before it checks for a pulse by itself.
 const LOOK: Duration = Duration::from_millis(100);
-/// Checks without a pulse after which the board tests whether board 0 is still alive.
+/// Number of checks without a pulse after which the board tests whether board 0 is still alive.
 const LIFE: u32 = 10;
-/// How long to wait for a board's name to become free: its process may just have been killed.
+/// Time to wait for a board's name to become free: its process may just have been killed.
 const CROWDED: Duration = Duration::from_secs(2);
 /// Time between two attempts to open a service that does not exist yet.
 const AGAIN: Duration = Duration::from_millis(5);
 
-/// Why a board cannot take part in a run, or cannot go on.
+/// Errors of a board that joins a run or takes part in it.
 #[derive(Debug, thiserror::Error)]
 pub enum MemberError {
-    /// Shared memory.
+    /// Error of shared memory.
     #[error(transparent)]
     SharedMemory(#[from] SharedMemoryError),
     /// The board has another program or other data than the run.
@@ -59,25 +59,25 @@ pub enum MemberError {
         board: Board,
         /// The run.
         run: RunName,
-        /// In what it differs.
+        /// The difference.
         difference: &'static str,
     },
-    /// Another process has the board.
+    /// Another process already runs as this board.
     #[error("{board} of {run} runs already: {source}")]
     Taken {
         /// This board.
         board: Board,
         /// The run.
         run: RunName,
-        /// What iceoryx2 says.
+        /// The error of iceoryx2.
         source: SharedMemoryError,
     },
-    /// The last outputs to the devices of the board are not known.
+    /// The last outputs of the board to its devices are not known.
     #[error("{board} cannot be taken over: what it wrote in tick {last} is lost")]
     NothingToLatch {
         /// This board.
         board: Board,
-        /// The last tick of all boards.
+        /// The last tick that all boards have finished.
         last: Tick,
     },
     /// The run is over.
@@ -86,15 +86,15 @@ pub enum MemberError {
     /// Shared memory holds an invalid record.
     #[error("shared memory holds an invalid record: {0}")]
     Decode(#[from] DecodeError),
-    /// A generation of the task data that was never loaded.
+    /// The pulse names a generation of the task data that was never loaded.
     #[error("the pulse asks for generation {0} of the task data, which the job does not have")]
     Generation(u32),
-    /// A pulse that does not follow upon the last one.
+    /// The pulse does not follow the last one.
     #[error("tick {found} came after tick {last}")]
     OutOfStep {
         /// The tick that was run last.
         last: Tick,
-        /// That of the pulse.
+        /// The tick of the pulse.
         found: Tick,
     },
 }
@@ -104,27 +104,27 @@ pub trait BoardData {
     /// A generation of the task data with the loads up to `loaded`; `None` if it was never loaded. Called in a tick.
     fn generation(&mut self, generation: u32, loaded: u32) -> Option<TaskData<'_>>;
 
-    /// Begin to check a load beside the ticks, if it is a new one. Returns the last result.
+    /// Start to check a load in parallel with the ticks, if it is a new one. Returns the last result.
     fn check(&mut self, load: u32) -> Checked;
 }
 
-/// How a board's part in a run ended.
+/// Ways in which a board's part in a run ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MemberEnd {
     /// The run is over.
     Over,
-    /// This board was asked to leave.
+    /// The board was asked to leave.
     Asked,
-    /// Board 0 has ended.
+    /// Board 0 ended.
     Orphaned,
-    /// Board 0 gave this board up for lost, and its place to another process.
+    /// Board 0 declared this board lost and gave its place to another process.
     Replaced,
 }
 
-/// Arrange that this process ends with the process that started it. False if that one has ended already.
+/// Arrange that this process ends when its parent process ends. Returns false if that has already ended.
 ///
 /// # Errors
-/// What the system says.
+/// The error of the operating system.
 pub fn end_with_parent(parent: u32) -> std::io::Result<bool> {
     set_parent_process_death_signal(Some(Signal::KILL))?;
     let present = getppid().map(Pid::as_raw_nonzero).and_then(|pid| u32::try_from(pid.get()).ok());
@@ -135,7 +135,7 @@ struct Ports {
     taker: PulseTaker,
     writers: Writers,
     reports: ReportWriter,
-    // The neighbours with the epochs under which they were opened.
+    // The neighbours with the epochs with which they were opened.
     neighbours: [Option<(Epoch, Readers)>; BOARDS],
     node: RunNode,
 }
@@ -146,11 +146,11 @@ pub struct Member {
     processes: Vec<ProcessId>,
     epoch: Epoch,
     name: RunName,
-    // Taken out before the files are removed.
+    // Dropped before the files are removed.
     ports: Option<Ports>,
     card: RunCard,
     ladder: Ladder,
-    /// Common memory by tick parity, as far as this board knows it.
+    /// Common memory by tick parity, as read by this board.
     halves: [CommonMemory; 2],
     tick: Tick,
     loaded: u32,
@@ -159,11 +159,10 @@ pub struct Member {
 }
 
 impl Member {
-    /// Take a board's place in a run.
+    /// Join a run as one of its boards.
     ///
     /// # Errors
-    /// [`MemberError`] if there is no such run, if it runs with something else than `fingerprint`, or if the
-    /// place is taken.
+    /// [`MemberError`] if there is no such run, if it runs with another `fingerprint`, or if the place is taken.
     pub fn join(name: &RunName, board: Board, fingerprint: Fingerprint) -> Result<Self, MemberError> {
         runs::find_living(name)?;
         let node = runs::enter(name, board.name())?;
@@ -217,23 +216,23 @@ impl Member {
         })
     }
 
-    /// Ticks come every 40 ms: ask the system for what real time needs, and tell [`Member::run`] the outcome.
+    /// True if ticks come every 40 ms: make the real-time requests, and pass their outcome to [`Member::run`].
     #[must_use]
     pub const fn is_real_time(&self) -> bool {
         self.card.real_time
     }
 
-    /// The loads up to this one counted when the board joined.
+    /// The last load that was in effect when the board joined.
     #[must_use]
     pub const fn loaded(&self) -> u32 {
         self.loaded
     }
 
-    /// Step the board's processes, once a pulse, until the run is over. `data` gives the task data; `stop` asks
-    /// to leave. `punctual` says whether everything that real time needs was granted.
+    /// Step the board's processes, once a pulse, until the run is over. `data` gives the task data; `stop` asks the
+    /// board to leave. `punctual` is true if all real-time requests were granted.
     ///
     /// # Errors
-    /// [`MemberError`] if the run does what no run does.
+    /// [`MemberError`] if a pulse is out of step or invalid, or a record in shared memory is invalid.
     pub fn run(
         &mut self,
         mut data: impl BoardData,
@@ -270,7 +269,7 @@ impl Member {
             if silent >= LIFE {
                 silent = 0;
                 if !runs::has_living(&self.name, BOARD_0) {
-                    // It may have said good-bye since the pulse was read.
+                    // Board 0 may have ended the run since the pulse was read.
                     let over = self.pulse()?.is_none_or(|pulse| pulse.over);
                     return Ok(if over { MemberEnd::Over } else { MemberEnd::Orphaned });
                 }
@@ -278,7 +277,7 @@ impl Member {
         }
     }
 
-    /// The pulse as it stands; `None` without ports.
+    /// The present pulse; `None` without ports.
     fn pulse(&self) -> Result<Option<SystemPulse>, DecodeError> {
         self.ports.as_ref().map(|ports| ports.taker.pulse()).transpose()
     }
@@ -292,11 +291,11 @@ impl Member {
         started.elapsed() < LOOK
     }
 
-    /// Open the neighbours that came, or came anew, since the last look; true if all are there. With the
-    /// first time the board is ready.
+    /// Open the neighbours that have joined or were replaced since the last call; true if all are there. The board is
+    /// ready when this succeeds for the first time.
     fn follow(&mut self, pulse: &SystemPulse) -> Result<bool, MemberError> {
         let Some(ports) = &mut self.ports else { return Ok(false) };
-        // What this board needs to know for the next tick, if that has come.
+        // The tick whose outputs this board still needs for the next tick, if it has run.
         let needed = Some(self.tick).filter(|tick| *tick != Tick::BEFORE_START && *tick != pulse.tick);
         let [even, odd] = &mut self.halves;
         let half = if self.tick.0.is_multiple_of(2) { even } else { odd };
@@ -307,7 +306,7 @@ impl Member {
             if place.as_ref().is_some_and(|(opened, _)| *opened == epoch) {
                 continue;
             }
-            // What cannot be opened is not there yet; until it is, a successor may need what is open.
+            // A service that cannot be opened does not exist yet; until it does, a successor may need the open one.
             let Ok(readers) = Readers::open(&ports.node, board, epoch) else {
                 complete = false;
                 continue;
@@ -320,13 +319,13 @@ impl Member {
         if complete && changed {
             self.report.ready = true;
             ports.reports.write(self.tick, &self.report);
-            // The first call after a change of the run's nodes allocates: not in a tick.
+            // The first call after a change of the run's nodes allocates: it must not be in a tick.
             ports.taker.done();
         }
         Ok(complete)
     }
 
-    /// One tick.
+    /// Run one tick.
     fn step(&mut self, pulse: &SystemPulse, data: &TaskData<'_>) -> Result<(), MemberError> {
         let _section = Section::enter();
         let started = Instant::now();
@@ -335,7 +334,7 @@ impl Member {
         let [even, odd] = &mut self.halves;
         let (before, after) = if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) };
         for (_, readers) in ports.neighbours.iter().flatten() {
-            // A process that has not written keeps its old stamp, by which the others know.
+            // A process that has not written keeps its old stamp, from which the others detect it.
             let _complete: bool = readers.outputs(self.tick, before)?;
         }
         self.ladder.step_in_order(&self.processes, tick, before, &pulse.external, data, after);
@@ -348,7 +347,7 @@ impl Member {
         Ok(())
     }
 
-    /// Say what has been checked, if that is news.
+    /// Report the result of a check if it is new.
     fn tell(&mut self, checked: Checked) {
         let Some(ports) = &self.ports else { return };
         if self.report.checked != checked {
@@ -358,7 +357,7 @@ impl Member {
         }
     }
 
-    /// Say that no further tick will be stamped.
+    /// Report that this board will stamp no further tick.
     fn leave(&mut self) {
         let Some(ports) = &self.ports else { return };
         self.report.ready = false;
@@ -367,7 +366,7 @@ impl Member {
     }
 }
 
-/// What the last predecessor that stepped wrote stays on its devices.
+/// Latch the outputs of the last predecessor that stepped: they stay on its devices.
 fn latch<'a>(
     node: &Node<ipc::Service>,
     board: Board,
@@ -378,7 +377,7 @@ fn latch<'a>(
     let [even, odd] = halves;
     let half = if last.0.is_multiple_of(2) { even } else { odd };
     for epoch in (FIRST_EPOCH..pulse.epochs[board.index()]).rev() {
-        // One that never came to a tick may have left no services, or empty ones.
+        // A predecessor that never ran a tick may have left no services, or empty ones.
         let Ok(predecessor) = Readers::open(node, board, epoch) else { continue };
         if predecessor.outputs(last, half)? {
             return Ok(half);
@@ -390,7 +389,7 @@ fn latch<'a>(
 impl Drop for Member {
     fn drop(&mut self) {
         drop(self.ports.take());
-        // Board 0 or another board keeps the files; the process that leaves last removes them.
+        // Board 0 or another board keeps the files; the last process to leave removes them.
         let _ = runs::remove_if_deserted(&self.name, &memory::layout());
     }
 }

@@ -24,13 +24,13 @@
 //!   gathers the halves of tick k: common memory
 //! ```
 //!
-//! So no board can be a tick ahead of another by more than one, and two halves are enough: while a fast board writes
-//! tick k, a slow one still reads k-1 from the other half ([`exchange`]). The pulse only wakes; the number that a board
-//! reads decides what it does, so a lost or repeated pulse changes nothing.
+//! So no board can be ahead of another by more than one tick, and two halves are enough: while a fast board writes tick
+//! k, a slow one still reads k-1 from the other half ([`exchange`]). The pulse only wakes; the number that a board
+//! reads determines its action, so a lost or repeated pulse changes nothing.
 //!
-//! The blackboards between the boards are not those for other programs ([`crate::memory`]): for these board 0 publishes
-//! common memory, as in a run on one board. So an observer has the same services for every distribution of the
-//! processes, is not affected by the restart of a board, and cannot delay one.
+//! The blackboards between the boards are not those for other programs ([`crate::memory`]): for these, board 0
+//! publishes common memory, as in a run on one board. So an observer finds the same services for every distribution of
+//! the processes, is not affected by the restart of a board, and cannot delay one.
 
 pub mod coordinator;
 pub mod exchange;
@@ -62,8 +62,8 @@ pub enum Board {
     Eight,
 }
 
-/// The boards of a run that waits for its boards, each with whether its process has joined; none if the run does not
-/// exist or has begun.
+/// The boards of a run that is waiting for its boards; for each, true if its process has joined. `None` if the run does
+/// not exist or has begun.
 #[must_use]
 pub fn coming_up(name: &RunName) -> Option<Vec<(Board, bool)>> {
     let is_there = |role| memory::is_there(name, role);
@@ -71,11 +71,11 @@ pub fn coming_up(name: &RunName) -> Option<Vec<(Board, bool)>> {
     waits.then(|| Board::ALL.iter().map(|board| (*board, is_there(board.name()))).collect())
 }
 
-/// How many boards there are, without board 0.
+/// Number of boards without board 0.
 pub const BOARDS: usize = Board::ALL.len();
 
 impl Board {
-    /// All of them, by number.
+    /// All boards, by number.
     pub const ALL: &'static [Self] = &[Self::Two, Self::Four, Self::Six, Self::Eight];
 
     /// Number of the board (IV.2.2).
@@ -89,7 +89,7 @@ impl Board {
         }
     }
 
-    /// Place among [`Board::ALL`].
+    /// Index in [`Board::ALL`].
     #[must_use]
     pub const fn index(self) -> usize {
         match self {
@@ -116,12 +116,12 @@ impl Board {
         }
     }
 
-    /// All boards but this one.
+    /// All other boards.
     pub(super) fn others(self) -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(move |board| *board != self)
     }
 
-    /// The names of its processes, for people.
+    /// The names of its processes, as text for messages.
     #[must_use]
     pub fn process_names(self) -> String {
         self.processes().map(ProcessId::text).collect::<Vec<_>>().join(", ")

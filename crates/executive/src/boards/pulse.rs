@@ -1,8 +1,8 @@
 //! The system pulse (II.2.3) and the stamps that answer it.
 //!
 //! Board 0 owns the service `pulse`: the facts of the run for every board ([`RunCard`]), and for each tick its number
-//! and the external inputs ([`SystemPulse`]). It is not doubled: the next pulse is given only after all boards have
-//! stamped this one. Each board owns a service with its [`BoardReport`], which it writes last in a tick.
+//! and the external inputs ([`SystemPulse`]). It is not doubled: board 0 gives the next pulse only after all boards
+//! have stamped this one. Each board owns a service with its [`BoardReport`], which it writes last in a tick.
 //!
 //! Two event services wake the processes: `pulse/wake` the boards, `pulse/done` board 0. Events carry no data; a
 //! process that wakes reads a number.
@@ -29,17 +29,17 @@ use crate::memory::{
     runs::service_name,
 };
 
-/// Epoch of the services of board 0, which is never taken over: a run ends with it.
+/// Epoch of the services of board 0, which is never replaced: a run ends with it.
 const BOARD_0: Epoch = 1;
 
 /// Fingerprint of a program and its data: boards with different fingerprints must not run together.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Fingerprint {
-    /// Of the program: version control, and the layout of all buffers.
+    /// Fingerprint of the program: its version control revision, and the layout of all buffers.
     pub program: u64,
-    /// Of the task data.
+    /// Fingerprint of the task data.
     pub data: u64,
-    /// Of the job, with the blocks that it loads on the way.
+    /// Fingerprint of the job, including the blocks that it loads during the run.
     pub job: u64,
 }
 
@@ -66,7 +66,7 @@ impl Fingerprint {
         }
     }
 
-    /// The difference from that of the run, as text; `None` if they are equal.
+    /// The difference from the fingerprint of the run, as text; `None` if they are equal.
     #[must_use]
     pub fn difference(&self, run: &Self) -> Option<&'static str> {
         if self.program != run.program {
@@ -84,9 +84,9 @@ impl Fingerprint {
 /// Facts of the run that a board needs before the first tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct RunCard {
-    /// What every board must have.
+    /// The fingerprint that every board must have.
     pub fingerprint: Fingerprint,
-    /// Ticks come every 40 ms: boards ask for real time.
+    /// True if ticks come every 40 ms: boards make the real-time requests.
     pub real_time: bool,
 }
 
@@ -98,13 +98,14 @@ pub type Epochs = [Epoch; BOARDS];
 pub struct SystemPulse {
     /// The tick to run; [`Tick::BEFORE_START`] until all boards have joined.
     pub tick: Tick,
-    /// The run is over: boards end.
+    /// True if the run is over: boards end.
     pub over: bool,
     /// The present epoch of each board.
     pub epochs: Epochs,
-    /// The load that boards are to check beside their ticks ([`load_file`](crate::memory::load_file)); 0 for none.
+    /// The load that boards must check in parallel with their ticks ([`load_file`](crate::memory::load_file)); 0 for
+    /// none.
     pub load: u32,
-    /// The loads up to this one are in effect, except those that were refused.
+    /// The last load in effect; all loads up to it are, except those that were refused.
     pub loaded: u32,
     /// External inputs of the tick.
     pub external: ExternalInputs,
@@ -115,30 +116,30 @@ pub struct SystemPulse {
 pub struct Checked {
     /// The load.
     pub load: u32,
-    /// [`Fingerprint::data`] of the task data with it; 0 if they have errors, or if it could not be read.
+    /// [`Fingerprint::data`] of the task data with this load; 0 if it has errors or could not be read.
     pub data: u64,
 }
 
 /// Report of a board after each tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct BoardReport {
-    /// Its program, data and job.
+    /// Fingerprint of its program, data and job.
     pub fingerprint: Fingerprint,
-    /// Its process number in the operating system.
+    /// Its process id.
     pub pid: u32,
-    /// It reads all its neighbours and waits for pulses; false once it has left.
+    /// True if it reads all its neighbours and waits for pulses; false after it has left.
     pub ready: bool,
-    /// The system granted everything that it asked for real time; true if it asked for nothing.
+    /// True if the system granted all its real-time requests, or it made none.
     pub punctual: bool,
     /// Heap allocations in its ticks so far.
     pub allocations: u64,
-    /// Nanoseconds from its wake-up to its stamp in the last tick.
+    /// Time from its wake-up to its stamp in the last tick, ns.
     pub step_ns: u64,
-    /// The load that it has checked last.
+    /// The last load that it has checked.
     pub checked: Checked,
 }
 
-/// Bytes of the entries.
+/// Size of the entries, bytes.
 const PULSE: usize = entry_size::<SystemPulse>();
 const CARD: usize = entry_size::<RunCard>();
 const REPORT: usize = entry_size::<BoardReport>();
@@ -178,10 +179,10 @@ fn notifier(
     event(node, service)?.notifier_builder().create().map_err(|error| failed(service)(&error))
 }
 
-/// Sleep until a notification comes or the time has passed. A signal ends it early.
+/// Sleep until a notification comes or the time has passed. A signal ends the sleep early.
 pub(super) fn sleep(listener: &Listener<ipc::Service>, at_most: Duration) {
-    // Who notified, and how often, does not matter: the caller looks at numbers. Without a listener that
-    // works it looks more often, but not all the time.
+    // The sender and number of notifications do not matter: the caller reads numbers. Without a working listener the
+    // caller checks more often, but does not busy-wait.
     if listener.timed_wait(|_| (), at_most).is_err() {
         std::thread::sleep(at_most.min(Duration::from_millis(1)));
     }
@@ -221,14 +222,14 @@ impl PulseGiver {
         self.wake();
     }
 
-    /// Wake the boards once more. A board that cannot be woken, because it has ended or does not empty its socket, is
-    /// detected by its missing stamp.
+    /// Wake the boards once more. Board 0 detects a board that cannot be woken, because it has ended or does not empty
+    /// its socket, by its missing stamp.
     pub(super) fn wake(&self) {
         let _ = self.wake.notify();
     }
 }
 
-/// The side of the boards.
+/// The boards' side.
 pub(super) struct PulseTaker {
     pulse: EntryReader<PULSE, SystemPulse>,
     card: EntryReader<CARD, RunCard>,
@@ -261,7 +262,7 @@ impl PulseTaker {
         self.pulse.read().map(|(_, pulse)| pulse)
     }
 
-    /// Notify board 0 that there is a stamp to read. If this fails, board 0 checks by itself soon.
+    /// Notify board 0 that there is a stamp to read. If this fails, board 0 soon checks by itself.
     pub(super) fn done(&self) {
         let _ = self.done.notify();
     }
@@ -289,7 +290,7 @@ impl ReportWriter {
         Ok(Self(EntryWriter::new(port.entry(&0).map_err(|error| failed(&error))?)))
     }
 
-    /// The stamp: `tick` is done.
+    /// Write the report and stamp `tick`: it is done.
     pub(super) fn write(&self, tick: Tick, report: &BoardReport) {
         self.0.write(tick, report);
     }
@@ -314,7 +315,7 @@ impl ReportReader {
         Ok(Self(EntryReader::new(port.entry(&0).map_err(|error| failed(&error))?)))
     }
 
-    /// The tick that the board has stamped last, and its report.
+    /// The last tick that the board has stamped, and its report.
     pub(super) fn read(&self) -> Result<(Tick, BoardReport), DecodeError> {
         self.0.read()
     }

@@ -1,4 +1,4 @@
-//! The side of the readers: read the buffers of a run without disturbing it.
+//! The readers' side: reads the buffers of a run without disturbing it.
 
 use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{plain::DecodeError, tick::Tick};
@@ -8,10 +8,10 @@ use super::{
     name::RunName, place, publish::FIRST_EPOCH, runs,
 };
 
-/// How often a reader tries again while the writer writes, which takes some microseconds of a tick.
+/// Number of attempts of a reader while the writer writes, which takes some microseconds of a tick.
 const ATTEMPTS: usize = 1000;
 
-/// Why nothing was read.
+/// Errors of reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReadError {
     /// The bytes are not legal records.
@@ -25,7 +25,7 @@ pub enum ReadError {
 /// A reader that is attached to a run. Dropping it detaches.
 pub struct Attached {
     name: RunName,
-    // Taken out before the files are removed, if this is the last one out.
+    // Dropped before the files are removed, if this is the last process to leave.
     ports: Option<Ports>,
 }
 
@@ -38,8 +38,8 @@ impl Attached {
     /// Attach to a run by its name.
     ///
     /// # Errors
-    /// [`SharedMemoryError::NoSuchRun`] if no living run has the name, [`SharedMemoryError::OtherLayout`] if
-    /// it comes from other sources, else what iceoryx2 says.
+    /// [`SharedMemoryError::NoSuchRun`] if no living run has the name, [`SharedMemoryError::OtherLayout`] if its
+    /// program has another layout, otherwise the error of iceoryx2.
     pub fn open(name: &RunName) -> Result<Self, SharedMemoryError> {
         runs::find_living(name)?;
         let member = runs::enter(name, "reader")?;
@@ -61,8 +61,8 @@ impl Attached {
     pub fn memory(&self) -> Result<CommonMemory, ReadError> {
         let Some(Ports { readers, .. }) = &self.ports else { return Err(ReadError::Busy) };
         for _ in 0..ATTEMPTS {
-            // What is written last is read first, and what is written first is read last: if both are of one
-            // tick, so is all between them.
+            // The entry written last is read first, and the one written first is read last: if both are of one tick,
+            // all others are too.
             let tick = readers.executive.read()?.tick;
             let memory = readers.processes()?;
             if readers.outside.read()?.tick == tick {
@@ -91,8 +91,8 @@ impl Attached {
         Ok(ports.readers.executive.read()?)
     }
 
-    /// The headers of the ticks behind `after`, the oldest first: at most those of the last ten seconds,
-    /// all of them with [`Tick::BEFORE_START`].
+    /// The headers of the ticks after `after`, the oldest first: at most those of the last ten seconds.
+    /// [`Tick::BEFORE_START`] returns all of them.
     ///
     /// # Errors
     /// [`ReadError`].
@@ -102,8 +102,8 @@ impl Attached {
         Ok(ports.readers.history.read(after, last)?)
     }
 
-    /// The view of the simulated cell; `None` if the run has none, or before its first tick. It is published after the
-    /// tick whose number it has, so it may be a tick behind [`Self::memory`].
+    /// The view of the simulated cell; `None` before its first tick, or if the run has no simulated cell. It is
+    /// published after the tick whose number it has, so it may be a tick behind [`Self::memory`].
     ///
     /// # Errors
     /// [`ReadError`].
@@ -117,7 +117,7 @@ impl Attached {
 impl Drop for Attached {
     fn drop(&mut self) {
         drop(self.ports.take());
-        // A living run or another reader keeps the files; a failure is left to `rcs-run clean`.
+        // A living run or another reader keeps the files; `rcs-run clean` handles a failure.
         let _ = runs::remove_if_deserted(&self.name, &place::layout());
     }
 }

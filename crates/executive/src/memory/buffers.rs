@@ -1,8 +1,8 @@
 //! The buffers in shared memory, service by service.
 //!
-//! Each process has a service with one entry, its output buffers as a byte image. Further services hold the external
+//! Each process has a service with one entry, its output buffers as a byte image. Further services have the external
 //! inputs, the executive's counts, the view of the simulated cell, and the headers of the last ten seconds
-//! ([`super::history`]). iceoryx2 hands an entry over whole, so all buffers that a reader finds in it are of one tick.
+//! ([`super::history`]). iceoryx2 transfers an entry as a whole, so all buffers in an entry are of one tick.
 
 use std::fmt::Debug;
 
@@ -26,7 +26,7 @@ use super::{
     runs,
 };
 
-/// Key of the one entry of a service.
+/// Key of the only entry of a service.
 const ENTRY: u32 = 0;
 
 /// The writer's end of a service whose entry has `N` bytes.
@@ -36,7 +36,7 @@ pub struct ServiceWriter<const N: usize, T> {
 }
 
 impl<const N: usize, T: Plain> ServiceWriter<N, T> {
-    /// Create the service and its entry, zeroed.
+    /// Create the service and its entry, filled with zeros.
     pub(super) fn create(
         node: &Node<ipc::Service>,
         service: &'static str,
@@ -118,7 +118,7 @@ macro_rules! services {
             /// Create all services.
             ///
             /// # Errors
-            /// What iceoryx2 says.
+            /// Errors of iceoryx2.
             pub(super) fn create(node: &Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
                 Ok(Self {
                     $( $field: ServiceWriter::create(node, stringify!($field), epoch)?, )+
@@ -129,8 +129,8 @@ macro_rules! services {
                 })
             }
 
-            /// Write a tick: what came in, what the processes wrote, their headers into the history, and the pulse, in
-            /// this order. Does not allocate.
+            /// Write a tick in this order: external inputs, outputs of the processes, their headers in the history, and
+            /// the pulse. Does not allocate.
             pub fn write(&self, inputs: &ExternalInputs, memory: &CommonMemory, pulse: &Pulse) {
                 self.outside.write(&Outside { tick: pulse.tick, inputs: *inputs });
                 $( self.$field.write(&memory.$field); )+
@@ -156,7 +156,7 @@ macro_rules! services {
             /// Open all services.
             ///
             /// # Errors
-            /// What iceoryx2 says.
+            /// Errors of iceoryx2.
             pub(super) fn open(node: &Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
                 Ok(Self {
                     $( $field: ServiceReader::open(node, stringify!($field), epoch)?, )+
@@ -167,7 +167,7 @@ macro_rules! services {
                 })
             }
 
-            /// The outputs of all processes, each whole, maybe of different ticks.
+            /// The outputs of all processes. Each is complete, but they may be of different ticks.
             ///
             /// # Errors
             /// If bytes are not a valid record.

@@ -1,7 +1,7 @@
 //! The view of the simulated cell for screens: published after each tick, when the cell has moved.
 //!
 //! It is not an input of the controller and is not logged: a log has the cell on `/tf` and `/joint_states`. A run with
-//! a robot at a port has none.
+//! a robot at a port has no view.
 
 use rcs_core::{Plain, name::Name16, tick::Tick};
 
@@ -9,7 +9,7 @@ use super::text::Text;
 
 /// The name of the service.
 pub(super) const CELL: &str = "cell";
-/// Parts of a cell that are shown.
+/// Greatest number of parts in the view.
 pub const PARTS: usize = 24;
 
 /// The view of a cell.
@@ -27,7 +27,7 @@ pub struct CellView {
     pub tool: [f64; 3],
     /// Clear width between the fingers of the robot's gripper, and their force, in and lb.
     pub fingers: [f64; 2],
-    /// The same of the pedestal's hand.
+    /// Clear width, in, and force, lb, of the fingers of the pedestal's hand.
     pub pedestal_fingers: [f64; 2],
     /// Clear width between the jaws of the vise, in.
     pub vise_opening: f64,
@@ -35,30 +35,30 @@ pub struct CellView {
     pub drum_closed: bool,
     /// Identification number of the gripper on the robot.
     pub gripper: Option<u8>,
-    /// How many parts there are; the first [`PARTS`] are shown.
+    /// Number of parts in the cell; the view has the first [`PARTS`].
     pub part_count: u32,
     /// The parts, by their numbers.
     pub parts: [PartView; PARTS],
     /// The job.
     pub job: JobView,
-    /// How late ticks begin.
+    /// Delays of ticks.
     pub lateness: LatenessView,
 }
 
 /// The console of the robot controller (IV.3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ControllerView {
-    /// Stage of its start-up: `hydraulics enabled`, `DEPC`.
+    /// Stage of its start-up, such as `hydraulics enabled` or `DEPC`.
     pub stage: Text<24>,
-    /// Lamps and keys that stay.
+    /// Lamps and latching keys.
     pub lamps: Lamps,
     /// The last warning or error on its screen, with its code; empty if there was none.
     pub screen: Text<96>,
     /// The tick of this warning or error.
     pub screen_tick: Tick,
-    /// Why the actuators have no pressure; empty while they have it.
+    /// Cause of the loss of pressure; empty under pressure.
     pub cut: Text<48>,
-    /// Emergency stops that are in (III.6): control panel, teach pendant, terminals, joystick box, pedestal.
+    /// Emergency stops that are pressed (III.6): control panel, teach pendant, terminals, joystick box, pedestal.
     pub estops: [bool; 5],
     /// Axes with an asterisk on the screen.
     pub aligned: [bool; 6],
@@ -86,11 +86,11 @@ pub struct Lamps {
 /// The panel of the rotary table's controller (IV.1 step 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct TableView {
-    /// It has power.
+    /// The controller has power.
     pub power: bool,
-    /// The mode switch stands at MANUAL.
+    /// The mode switch is at MANUAL.
     pub manual: bool,
-    /// It obeys its serial line.
+    /// The controller obeys its serial line.
     pub obeys: bool,
 }
 
@@ -101,7 +101,7 @@ pub struct PartView {
     pub id: u32,
     /// Its name at present.
     pub name: Name16,
-    /// Where it is: a unit, the vise's, the drum's or the pedestal's location, `gripper`, `floor` or `elsewhere`.
+    /// A location: a unit, that of the vise, the drum or the pedestal, `gripper`, `floor` or `elsewhere`.
     pub location: Name16,
     /// The nearest sector of the unit; 0 elsewhere.
     pub sector: u16,
@@ -113,29 +113,29 @@ pub struct PartView {
     pub position: [f64; 3],
 }
 
-/// How far the job is.
+/// Progress of the job.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct JobView {
-    /// Lines that the job has, the first PAUSE not counted.
+    /// Number of lines of the job, without the first PAUSE.
     pub lines: u32,
-    /// Lines that were begun, the first PAUSE counted; 0 before it.
+    /// Number of lines that were begun, including the first PAUSE; 0 before it.
     pub begun: u32,
-    /// The line that was begun last.
+    /// The last line that was begun.
     pub line: Text<96>,
     /// The tick after which it was begun.
     pub began: Tick,
 }
 
-/// How late ticks begin on the 40 ms grid, microseconds; all 0 in a run without one. All but the last tick as of
-/// the last full second.
+/// Delays of the beginnings of ticks on the 40 ms grid, microseconds; all 0 in a run without one. All except `last` are
+/// as of the last full second.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct LatenessView {
-    /// The last tick.
+    /// Delay of the last tick.
     pub last: f64,
     /// Median of all ticks.
     pub p50: f64,
-    /// 99 of 100 ticks are at most so late.
+    /// 99 of 100 ticks have at most this delay.
     pub p99: f64,
-    /// The latest tick.
+    /// The greatest delay.
     pub max: f64,
 }

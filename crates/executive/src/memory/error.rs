@@ -1,19 +1,19 @@
-//! Why common memory is not shared, with messages for a person.
+//! Errors of shared memory, with messages for the user.
 
 use std::{fmt::Debug, io, path::PathBuf, time::Duration};
 
 use super::name::{NameError, RunName};
 
-/// Why common memory is not shared.
+/// Errors of shared memory.
 #[derive(Debug, thiserror::Error)]
 pub enum SharedMemoryError {
-    /// A name that no run can have.
+    /// A name that is not valid for a run.
     #[error(transparent)]
     BadName(#[from] NameError),
-    /// No living run of that name, or none at all.
+    /// There is no living run of that name, or no living run at all.
     #[error("there is no run{}: {}", .run.as_ref().map_or_else(String::new, |run| format!(" named {run}")), alive_in_words(.alive))]
     NoSuchRun {
-        /// As asked for; `None` if any would do.
+        /// The requested name; `None` if any run was accepted.
         run: Option<String>,
         /// The runs that are alive.
         alive: Vec<RunName>,
@@ -35,7 +35,7 @@ pub enum SharedMemoryError {
     Node {
         /// Its directory.
         place: PathBuf,
-        /// What iceoryx2 says.
+        /// The error of iceoryx2.
         what: String,
     },
     /// A service could not be created or opened.
@@ -43,31 +43,31 @@ pub enum SharedMemoryError {
     Service {
         /// Name of the service.
         service: &'static str,
-        /// What iceoryx2 says.
+        /// The error of iceoryx2.
         what: String,
     },
     /// A directory, file or object of runs belongs to another user, or other users may write to it.
     #[error("{path:?} must belong to this user only ({what}): remove it, or set TMPDIR to another directory")]
     NotOurs {
-        /// Which.
+        /// Path of the object.
         path: PathBuf,
-        /// What it is instead.
+        /// Its wrong type, owner or mode.
         what: String,
     },
     /// There is too little shared memory.
     #[error("/dev/shm has {free} bytes left, a run needs {needed}")]
     Full {
-        /// Bytes that are free.
+        /// Number of free bytes.
         free: u64,
-        /// Bytes that a run needs.
+        /// Number of bytes that a run needs.
         needed: u64,
     },
     /// An operation of another program took too long.
     #[error("{what} took longer than {}: another program may be stopped in the middle of it", seconds(*.limit))]
     Late {
-        /// What was waited for.
+        /// The operation.
         what: String,
-        /// How long.
+        /// The time limit.
         limit: Duration,
     },
     /// iceoryx2 has panicked because its objects are damaged.
@@ -76,12 +76,12 @@ pub enum SharedMemoryError {
          removes them"
     )]
     Damaged,
-    /// A file could not be removed or a directory not be read.
+    /// A file could not be removed or a directory could not be read.
     #[error("{path:?}: {source}")]
     Io {
-        /// Which.
+        /// Path of the file or directory.
         path: PathBuf,
-        /// Why.
+        /// The error of the operating system.
         source: io::Error,
     },
 }

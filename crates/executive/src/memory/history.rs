@@ -1,7 +1,7 @@
-//! The headers of the last ten seconds, in a service of their own.
+//! The headers of the last ten seconds, in a separate service.
 //!
-//! A reader that reads every 80 ms sees every second tick at best, and one that has just attached sees no earlier tick.
-//! So the run keeps the headers of all processes for [`HISTORY_TICKS`] ticks in a ring with one entry a tick. A tick
+//! A reader that reads every 80 ms sees at best every second tick, and one that has just attached sees no earlier tick.
+//! So the run keeps the headers of all processes for [`HISTORY_TICKS`] ticks in a ring with one entry per tick. A tick
 //! writes one entry of about a kilobyte; a reader takes all of them, or those since its last read.
 
 use iceoryx2::{
@@ -18,7 +18,7 @@ use rcs_core::{
 
 use super::{error::SharedMemoryError, layout::Epoch, runs};
 
-/// Ticks whose headers are kept: 10 s.
+/// Number of ticks whose headers are kept: 10 s.
 pub const HISTORY_TICKS: u32 = 250;
 /// The name of the service.
 pub(super) const HISTORY: &str = "history";
@@ -33,7 +33,7 @@ pub struct Headers {
 }
 
 impl Headers {
-    /// Those of common memory.
+    /// The headers in common memory.
     #[must_use]
     pub fn of(tick: Tick, memory: &CommonMemory) -> Self {
         let mut headers = [Header::default(); PROCESS_COUNT];
@@ -50,9 +50,9 @@ impl Headers {
     }
 }
 
-/// Place of a tick among the entries.
+/// Index of a tick's entry.
 fn place(tick: Tick) -> usize {
-    // Less than 250.
+    // The index is less than 250.
     usize::try_from(tick.0 % u64::from(HISTORY_TICKS)).unwrap_or_default()
 }
 
@@ -60,7 +60,7 @@ fn place(tick: Tick) -> usize {
 pub(super) struct HistoryWriter(Vec<EntryHandleMut<ipc::Service, u32, [u8; Headers::SIZE]>>);
 
 impl HistoryWriter {
-    /// Create the service, with entries of no tick.
+    /// Create the service, with entries that belong to no tick.
     pub(super) fn create(node: &Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
         let failed = |what: &dyn std::fmt::Debug| SharedMemoryError::service(HISTORY, what);
         let name = runs::service_name(HISTORY, epoch)?;
@@ -77,7 +77,7 @@ impl HistoryWriter {
         (0..HISTORY_TICKS).map(entry).collect::<Result<_, _>>().map(Self)
     }
 
-    /// Write the headers of a tick over those of ten seconds before. Does not allocate.
+    /// Write the headers of a tick over those of ten seconds earlier. Does not allocate.
     pub(super) fn write(&self, tick: Tick, memory: &CommonMemory) {
         if let Some(entry) = self.0.get(place(tick)) {
             entry.update_with_copy(to_bytes(&Headers::of(tick, memory)));
@@ -100,8 +100,8 @@ impl HistoryReader {
         (0..HISTORY_TICKS).map(entry).collect::<Result<_, _>>().map(Self)
     }
 
-    /// The headers of the ticks behind `after` up to `last`, the oldest first. A tick that was written over
-    /// meanwhile is left out.
+    /// The headers of the ticks after `after` up to `last`, the oldest first. Ticks that were overwritten in the
+    /// meantime are left out.
     pub(super) fn read(&self, after: Tick, last: Tick) -> Result<Vec<Headers>, DecodeError> {
         let first = after.next().0.max(last.next().0.saturating_sub(u64::from(HISTORY_TICKS)));
         let mut found = Vec::new();

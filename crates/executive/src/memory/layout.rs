@@ -9,34 +9,33 @@ use super::{
     history::{HISTORY, Headers},
 };
 
-/// Epoch of a service: 1 for the first writer, the next number for a writer that takes over from a killed
-/// one, because a blackboard cannot be reopened for writing while a reader holds it. Part of the service's
-/// name.
+/// Epoch of a service: 1 for the first writer, the next number for a writer that replaces a killed one, because a
+/// blackboard cannot be reopened for writing while a reader holds it. It is part of the service's name.
 pub type Epoch = u32;
 
-/// The executive's counts of a run, once a tick. They depend on the machine and are not part of the digest.
+/// The executive's counts of a run, written once a tick. They depend on the machine and are not part of the digest.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Pulse {
     /// The tick that was run last.
     pub tick: Tick,
     /// Generation of the task data that it used.
     pub generation: u32,
-    /// Slots of the 40 ms grid that were skipped so far.
+    /// Number of slots of the 40 ms grid that were skipped so far.
     pub skipped: u64,
     /// Heap allocations of the controller since the start.
     pub allocations: u64,
-    /// Nanoseconds that the controller took for the tick.
+    /// Time that the controller took for the tick, ns.
     pub controller_ns: u64,
-    /// The run is over: nothing will be written any more.
+    /// True if the run is over: nothing more will be written.
     pub over: bool,
 }
 
 /// External inputs of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Outside {
-    /// The tick that reads it.
+    /// The tick that reads them.
     pub tick: Tick,
-    /// All that was read.
+    /// The inputs.
     pub inputs: ExternalInputs,
 }
 
@@ -67,8 +66,8 @@ macro_rules! services {
 }
 for_each_process!(services);
 
-/// Version of the layout: a hash of the names and schemas of all services. Programs that were built with
-/// different layouts never read each other's bytes.
+/// Version of the layout: a hash of the names and schemas of all services. Programs with different layouts never read
+/// each other's bytes.
 #[must_use]
 pub fn layout_version() -> u32 {
     let mut digest = Digest::new();

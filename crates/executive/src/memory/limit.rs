@@ -1,7 +1,7 @@
-//! Limits for what iceoryx2 sets up or opens.
+//! Time limits for the set-up and opening of iceoryx2 services.
 //!
-//! It follows indices and flags in shared memory. If another program damages these while a run is set up, iceoryx2
-//! 0.10.0 can panic, which becomes an error here, or wait for a flag that never comes. Such a call cannot be cancelled:
+//! iceoryx2 follows indices and flags in shared memory. If another program damages these during the set-up of a run,
+//! iceoryx2 0.10.0 can panic, which becomes an error here, or wait forever for a flag. Such a call cannot be cancelled:
 //! only the whole process can be ended.
 
 use std::{
@@ -13,25 +13,25 @@ use std::{
 
 use super::{error::SharedMemoryError, place::root};
 
-/// Longest time that shared memory may take to set up or to open: it usually takes some milliseconds, on a busy machine
-/// up to a second.
+/// Longest time for setting up or opening shared memory: it usually takes some milliseconds, on a busy machine up to a
+/// second.
 pub const SET_UP_LIMIT: Duration = Duration::from_secs(20);
 
-/// Called with the limit, on a separate thread, when it has passed. It should end the process, because the other call
-/// does not return.
+/// Called with the limit, on a separate thread, when the limit has passed. It should end the process, because the other
+/// call does not return.
 pub type OnStuck = fn(Duration);
 
-/// Set up or open something. If this takes longer than `limit`, `on_stuck` is called; without it there is no limit.
+/// Run `work`. If it takes longer than `limit`, `on_stuck` is called; without it there is no limit.
 ///
 /// # Errors
-/// Those of `work`, [`SharedMemoryError::Damaged`] if it panics, and [`SharedMemoryError::Io`] if there is no
-/// thread to watch it.
+/// Errors of `work`, [`SharedMemoryError::Damaged`] if it panics, and [`SharedMemoryError::Io`] if the thread that
+/// watches it cannot be started.
 pub fn within_limit<T, E: From<SharedMemoryError>>(
     limit: Duration,
     on_stuck: Option<OnStuck>,
     work: impl FnOnce() -> Result<T, E>,
 ) -> Result<T, E> {
-    // What a panic leaves half done belongs to `work`, and is dropped with it.
+    // Data that a panic leaves incomplete belong to `work`, and are dropped with it.
     let work =
         || panic::catch_unwind(AssertUnwindSafe(work)).unwrap_or(Err(SharedMemoryError::Damaged.into()));
     let Some(on_stuck) = on_stuck else { return work() };

@@ -1,9 +1,9 @@
-//! The status of a run for programs without knowledge of its buffers: mirrored on publish-subscribe.
+//! The status of a run for programs that do not know its buffers: mirrored by publish-subscribe.
 //!
 //! `iox2`, the tool of iceoryx2 (`cargo install iceoryx2-cli`), lists nodes and services of a run, but shows no values
-//! of blackboards. So a separate thread sums up the last published buffers ten times a second ([`Status`]) and
-//! publishes the sum as one JSON object on the service [`SERVICE`]. `iox2` finds a run by the configuration file that
-//! the mirror writes into the run's directory:
+//! of blackboards. So a separate thread summarises the last published buffers ten times a second ([`Status`]) and
+//! publishes the summary as one JSON object on the service [`SERVICE`]. `iox2` finds a run by the configuration file
+//! that the mirror writes into the run's directory:
 //!
 //! ```sh
 //! cd "$(rcs-run status --directory)"
@@ -48,16 +48,16 @@ use crate::status::Status;
 pub const SERVICE: &str = "rcs-ii/status";
 /// Time between two messages.
 const PERIOD: Duration = Duration::from_millis(100);
-/// How often the thread checks whether it should end.
+/// Interval at which the thread checks whether it should end.
 const LOOK: Duration = Duration::from_millis(10);
-/// How long the start and the end of a run wait for the thread.
+/// Longest wait for the thread at the start and the end of a run.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// Bytes that a message may have: about five times what it has.
+/// Greatest size of a message, bytes: about five times the usual size.
 const MESSAGE: usize = 16 * 1024;
-/// Monitors at a time.
+/// Greatest number of monitors at a time.
 const MAX_SUBSCRIBERS: usize = 8;
 
-/// The thread that mirrors. Dropping it ends the thread.
+/// The mirror thread. Dropping this ends the thread.
 pub struct Mirror {
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -67,16 +67,16 @@ struct Ports {
     run: RunName,
     window: Arc<Window>,
     publisher: Publisher<ipc::Service, [u8], ()>,
-    // After the publisher: the service is closed before its node.
+    // After the publisher: the service must be closed before its node.
     _member: runs::RunNode,
 }
 
 impl Mirror {
-    /// Begin to mirror a run of this program. The thread inherits the priority of its maker:
-    /// start it before real time is asked for.
+    /// Start to mirror a run of this program. The thread inherits the priority of its creator: start it before the
+    /// real-time requests.
     ///
     /// # Errors
-    /// [`SharedMemoryError`] with what iceoryx2 or the system says.
+    /// [`SharedMemoryError`] with the error of iceoryx2 or of the operating system.
     pub fn start(run: &publish::Publisher) -> Result<Self, SharedMemoryError> {
         let name = run.name();
         write_configuration(name)?;
@@ -138,11 +138,11 @@ impl Ports {
             }
             thread::sleep(LOOK);
         }
-        // The last status, with the end of the run in it if it is over.
+        // The last status, which includes the end of the run if it is over.
         self.publish();
     }
 
-    /// False if the tick is being written at the moment: then this message is left out, and the next one comes soon.
+    /// Returns false if the tick is being written at the moment: this message is left out, and the next one comes soon.
     fn publish(&self) -> bool {
         let Some(Published { external, memory, pulse }) = self.window.with(|published| *published) else {
             return false;
@@ -166,18 +166,18 @@ impl Drop for Mirror {
         self.stop.store(true, Ordering::Relaxed);
         let Some(thread) = self.thread.take() else { return };
         let started = Instant::now();
-        // Memory that others can write could keep the thread for ever; the end of a run does not depend on it.
+        // Memory that other processes can write could block the thread forever; the end of a run does not depend on it.
         while !thread.is_finished() && started.elapsed() < PATIENCE {
             thread::sleep(Duration::from_millis(1));
         }
         if thread.is_finished() {
-            // A panic of the mirror has been reported by the thread itself, and does not affect the run.
+            // The thread itself has reported its panic, which does not affect the run.
             let _ = thread.join();
         }
     }
 }
 
-/// Where `iox2` finds the run: in this directory it looks for `config/iceoryx2.toml`.
+/// Directory in which `iox2` finds the run: it looks there for `config/iceoryx2.toml`.
 #[must_use]
 pub fn directory(name: &RunName) -> PathBuf {
     place::place(name, &place::layout())

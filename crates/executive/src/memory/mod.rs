@@ -1,19 +1,18 @@
-//! Common memory that others can see
-//! (docs/design/memory.md "Shared memory"): the buffers of a run in shared memory.
+//! Common memory for other programs (docs/design/memory.md "Shared memory"): the buffers of a run in shared memory.
 //!
-//! The run publishes, once a tick, what its processes wrote. Other programs attach and leave at any time and read the
-//! latest values; nothing they do changes a tick. Each writer (a control process, the HWSC, the devices, the executive)
-//! has one iceoryx2 *blackboard* service: latest value, one writer, no allocation. Its buffers are the keys.
+//! The run publishes the outputs of its processes once a tick. Other programs attach and leave at any time and read the
+//! latest values; they cannot affect a tick. Each writer (a control process, the HWSC, the devices, the executive) has
+//! one iceoryx2 *blackboard* service: latest value, one writer, no allocation. Its buffers are the keys.
 //!
-//! A value is bytes, never a Rust structure: a [`Header`](interfaces::Header) with the tick that
-//! wrote it, then the buffer's byte image (`rcs_core::record`). So there is no padding, no pointer and no
-//! enum that another program could make illegal; a reader decodes with checks.
+//! A value is bytes, never a Rust structure: a [`Header`](interfaces::Header) with the tick that wrote it, then the
+//! buffer's byte image (`rcs_core::record`). So there is no padding, no pointer and no enum that another program could
+//! make illegal; a reader decodes with checks.
 //!
-//! * [`mod@layout`]: which services there are, [`buffers`]: how they are written and read;
-//! * [`publish`]: the side of the run;
-//! * [`attach`]: the side of the readers;
+//! * [`mod@layout`]: the list of services, [`buffers`]: writing and reading them;
+//! * [`publish`]: the writer's side, for the run;
+//! * [`attach`]: the readers' side;
 //! * [`history`]: the headers of the last ten seconds, [`cell`]: the view of the simulated cell;
-//! * [`mirror`]: the status for programs without knowledge of the buffers;
+//! * [`mirror`]: the status for programs that do not know the buffers;
 //! * [`name`], [`place`]: names, directories and prefixes, and the check that only this user can use them;
 //! * [`presence`]: which programs of a run are alive;
 //! * [`runs`]: entering, finding and removing runs;

@@ -2,10 +2,11 @@
 
 use std::{fmt, str::FromStr};
 
-/// Most characters of a run's name. The path of an event's socket holds it, and Linux gives such a path 107 bytes.
+/// Greatest length of a run's name, characters. The path of an event's socket contains it, and Linux limits such a path
+/// to 107 bytes.
 pub const RUN_NAME_MAX: usize = 28;
 
-/// A text that is no name of a run.
+/// A text that is not a valid name of a run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "a run's name has 1 to {RUN_NAME_MAX} letters, digits, dots, hyphens or underscores, {0:?} is not one"
@@ -17,8 +18,8 @@ pub struct NameError(pub String);
 pub struct RunName(String);
 
 impl RunName {
-    /// A name that no other living run of this machine has: the job and the number of this operating system
-    /// process. Characters of the job that a name cannot have become hyphens.
+    /// A name that no other living run of this machine has: the job and this process id. Characters of the job that are
+    /// not valid in a name become hyphens.
     #[must_use]
     pub fn unique(job: &str) -> Self {
         let suffix = format!("-{}", std::process::id());

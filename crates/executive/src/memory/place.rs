@@ -1,12 +1,11 @@
-//! Places of a run: the directory of all runs by name, the prefix for the names of objects in shared memory, the
-//! directory for the files of iceoryx2 among them, and the checks that only this user can use them.
+//! Paths of a run: the directory of all runs by name, the prefix for the names of objects in shared memory, the
+//! directory for the files of iceoryx2 among them, and the checks that only this user can access them.
 //!
-//! The files of iceoryx2 do not lie under `TMPDIR`: there are sockets among them, whose paths have 107 bytes at most,
-//! and it panics over paths of more than 255 bytes.
+//! The files of iceoryx2 are not under `TMPDIR`: some are sockets, whose paths have 107 bytes at most, and iceoryx2
+//! panics on paths of more than 255 bytes.
 //!
-//! The prefix is a hash over a random number in the directory of runs. So runs under another `TMPDIR` never
-//! meet, also not in containers that share `/dev/shm`, and another user cannot take a name before the run
-//! does.
+//! The prefix is a hash of a random number in the directory of runs. So runs under different `TMPDIR`s never collide,
+//! even in containers that share `/dev/shm`, and another user cannot take a name before the run does.
 
 use std::{
     fs::{self, DirBuilder, File, Metadata, OpenOptions, Permissions, TryLockError},
@@ -25,16 +24,16 @@ use rustix::{
 
 use super::{error::SharedMemoryError, layout::layout_version, name::RunName};
 
-/// Where Linux keeps shared memory objects.
+/// The directory in which Linux keeps shared memory objects.
 pub(super) const SHARED_MEMORY: &str = "/dev/shm";
-/// Bytes of shared memory that must be free before a run makes its objects, which take 1.9 MB with boards and less
-/// without.
+/// Number of bytes of shared memory that must be free before a run creates its objects, which take 1.9 MB with boards
+/// and less without.
 const NEEDED: u64 = 3 * 1024 * 1024;
-/// What follows the prefix in the name of the directory of iceoryx2.
+/// Suffix of the prefix in the name of the directory of iceoryx2.
 const FILES: &str = "files";
-/// Longest wait for a lock that is held for milliseconds.
+/// Longest wait for a lock, which other programs hold for milliseconds.
 pub(super) const LOCK_LIMIT: Duration = Duration::from_secs(5);
-/// Time between two attempts at a lock.
+/// Time between two attempts to take a lock.
 const AGAIN: Duration = Duration::from_millis(1);
 /// Permission bits of other users.
 const OTHERS: u32 = 0o077;
@@ -45,7 +44,7 @@ pub fn root() -> PathBuf {
     std::env::temp_dir().join(format!("rcs-runs-{}", geteuid().as_raw()))
 }
 
-/// The layout version of this program as it stands in names.
+/// The layout version of this program as used in names.
 #[must_use]
 pub fn layout() -> String {
     format!("{:08x}", layout_version())
@@ -56,20 +55,20 @@ pub(super) fn place(name: &RunName, layout: &str) -> PathBuf {
     root().join(format!("{name}@{layout}"))
 }
 
-/// Directory of the files that iceoryx2 makes for the run with this prefix.
+/// Directory of the files that iceoryx2 creates for the run with this prefix.
 pub(super) fn files(prefix: &str) -> PathBuf {
     Path::new(SHARED_MEMORY).join(format!("{prefix}{FILES}"))
 }
 
-/// The socket at which operators reach a run: in a directory that is this user's alone, and there as long as the run
-/// is shown to others.
+/// The socket through which operators reach a run: in a directory that only this user can access, and present while the
+/// run is published.
 #[must_use]
 pub fn operator_socket(name: &RunName) -> PathBuf {
     files(&prefix(name, &layout())).join("operator")
 }
 
-/// What boards of other processes are to load: the generation and the name of the blocks in the first line, then the
-/// blocks. The file goes with the run.
+/// The file of a load for boards in other processes: the generation and the name of the blocks in the first line, then
+/// the blocks. It is removed with the run.
 #[must_use]
 pub fn load_file(name: &RunName, load: u32) -> PathBuf {
     files(&prefix(name, &layout())).join(format!("load-{load}"))
@@ -95,8 +94,8 @@ pub(super) fn objects(prefix: &str) -> impl Iterator<Item = PathBuf> {
         .map(|entry| entry.path())
 }
 
-/// Held while runs are listed, and while a run's directory is made or removed. The system releases it when its holder
-/// ends, however that happens.
+/// Take the lock for listing runs, and for creating or removing a run's directory. The system releases it when its
+/// holder ends, in whatever way.
 pub(super) fn lock() -> Result<File, SharedMemoryError> {
     own_root()?;
     let path = root().join("lock");
@@ -117,7 +116,7 @@ pub(super) fn lock() -> Result<File, SharedMemoryError> {
     }
 }
 
-/// Opens a file of this user's alone for a lock, and makes it if it is not there.
+/// Open a file that only this user can access, for a lock, and create it if it does not exist.
 pub(super) fn own_file(path: &Path) -> Result<File, SharedMemoryError> {
     let failed = |source| SharedMemoryError::Io { path: path.to_owned(), source };
     let mut options = OpenOptions::new();
@@ -131,7 +130,7 @@ pub(super) fn own_file(path: &Path) -> Result<File, SharedMemoryError> {
     Ok(file)
 }
 
-/// Make sure that the random number of this directory of runs exists. Call it only while the lock is held.
+/// Make sure that the random number of this directory of runs exists. The caller must hold the lock.
 pub(super) fn have_salt() -> Result<(), SharedMemoryError> {
     let path = root().join("salt");
     let mut file = own_file(&path)?;
@@ -143,12 +142,12 @@ pub(super) fn have_salt() -> Result<(), SharedMemoryError> {
     Ok(())
 }
 
-/// Make sure that the directory of runs exists and only this user can use it.
+/// Make sure that the directory of runs exists and only this user can access it.
 fn own_root() -> Result<(), SharedMemoryError> {
     own_directory(root())
 }
 
-/// Make sure that a directory exists and only this user can use it.
+/// Make sure that a directory exists and only this user can access it.
 pub(super) fn own_directory(path: PathBuf) -> Result<(), SharedMemoryError> {
     let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
     match DirBuilder::new().mode(0o700).create(&path) {
@@ -156,11 +155,11 @@ pub(super) fn own_directory(path: PathBuf) -> Result<(), SharedMemoryError> {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
         Err(source) => return Err(failed(source)),
     }
-    // The place can be guessed and lies where every user may write: another user may have made it.
+    // The path is predictable and its parent is writable for all users: another user may have created it.
     let found = fs::symlink_metadata(&path).map_err(failed)?;
     let owned = found.uid() == geteuid().as_raw();
     if found.is_dir() && owned && found.mode() & 0o022 == 0 && found.mode() & OTHERS != 0 {
-        // Made by hand.
+        // The user has created it by hand.
         return fs::set_permissions(&path, Permissions::from_mode(0o700)).map_err(failed);
     }
     match found.is_dir() {
@@ -169,7 +168,7 @@ pub(super) fn own_directory(path: PathBuf) -> Result<(), SharedMemoryError> {
     }
 }
 
-/// A regular file of this user's alone.
+/// Check that the path is a regular file that only this user can access.
 fn ours(path: &Path, found: &Metadata) -> Result<(), SharedMemoryError> {
     match found.is_file() {
         true => alone(path, found),
@@ -191,14 +190,14 @@ fn alone(path: &Path, found: &Metadata) -> Result<(), SharedMemoryError> {
     Err(SharedMemoryError::NotOurs { path: path.to_owned(), what })
 }
 
-/// All objects of a run are regular files of this user's alone, but for the directory of iceoryx2.
+/// Check that all objects of a run are regular files that only this user can access, except the directory of iceoryx2.
 pub(super) fn own_objects(prefix: &str) -> Result<(), SharedMemoryError> {
     let directory = files(prefix);
     for path in objects(prefix) {
         match fs::symlink_metadata(&path) {
             Ok(found) if path == directory && found.is_dir() => alone(&path, &found)?,
             Ok(found) => ours(&path, &found)?,
-            // A reader that has just left takes its object with it.
+            // A reader that has just left removes its object.
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(source) => return Err(SharedMemoryError::Io { path, source }),
         }
@@ -206,14 +205,14 @@ pub(super) fn own_objects(prefix: &str) -> Result<(), SharedMemoryError> {
     Ok(())
 }
 
-/// Name behind the prefix, and first bytes, of the object that iceoryx2 0.10.0 keeps for all nodes of a run:
-/// its version and a counter.
+/// Name after the prefix, and first bytes, of the object that iceoryx2 0.10.0 keeps for all nodes of a run: its version
+/// and a counter.
 const NODES: (&str, [u8; 16]) = (
     "9204dd183d1c4d8e1ff592a30766ffa6765aa8b5_node.0_10_0.global_mgmt",
     [0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
 );
 
-/// Makes the object for all nodes of a run, if it is not there. iceoryx2 would make it for all users to write.
+/// Create the object for all nodes of a run, if it does not exist. iceoryx2 would make it writable for all users.
 pub(super) fn have_nodes(prefix: &str) -> Result<(), SharedMemoryError> {
     let path = Path::new(SHARED_MEMORY).join(format!("{prefix}{}", NODES.0));
     let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
@@ -224,8 +223,8 @@ pub(super) fn have_nodes(prefix: &str) -> Result<(), SharedMemoryError> {
     }
 }
 
-/// Check that there is enough shared memory for a run. If the system has no page for an object when it is first
-/// accessed, the program ends with a bus error, so this is checked before.
+/// Check that there is enough shared memory for a run. If the system has no page for an object at its first access, the
+/// program ends with a bus error, so this is checked before.
 pub(crate) fn have_room() -> Result<(), SharedMemoryError> {
     let Ok(found) = statvfs(SHARED_MEMORY) else { return Ok(()) };
     let free = found.f_bavail.saturating_mul(found.f_frsize);
@@ -239,7 +238,7 @@ pub(crate) fn reserve(name: &RunName) -> Result<(), SharedMemoryError> {
     for path in objects(&prefix).filter(|path| *path != directory) {
         let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
         let file = match File::options().read(true).write(true).open(&path) {
-            // Of a board that has left meanwhile.
+            // It belonged to a board that has left in the meantime.
             Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
             other => other.map_err(failed)?,
         };

@@ -1,7 +1,8 @@
-//! Which programs use a run: a lock for each role. The system releases it when the program ends, for whatever reason.
+//! Detects which programs use a run: each role has a lock, which the system releases when the program ends, for any
+//! reason.
 //!
-//! The lock is on a file beside the run's objects in shared memory. So whether a run is alive is known without opening
-//! remains of a killed or damaged run.
+//! The lock is on a file next to the run's objects in shared memory. So it shows whether a run is alive without opening
+//! the remains of a killed or damaged run.
 
 use std::{
     fs::{self, File, TryLockError},
@@ -19,11 +20,11 @@ use super::{
     place::{LOCK_LIMIT, SHARED_MEMORY, objects, own_file},
 };
 
-/// What follows the prefix in the name of a lock file; the role comes last.
+/// Text after the prefix in the name of a lock file; the role comes last.
 const MARK: &str = "alive.";
-/// Another program that asks whether the role is held keeps the lock for less than this.
+/// Another program that tests whether the role is held keeps the lock for less than this.
 const ASKING: Duration = Duration::from_millis(2);
-/// How often a held lock is looked at again, to tell a holder from a program that asks.
+/// Number of times a held lock is tested, to distinguish a holder from a program that tests.
 const LOOKS: usize = 3;
 
 /// Holds a role in a run until it is dropped. Several readers share one role.
@@ -40,7 +41,7 @@ impl Presence {
         while Instant::now() < deadline {
             let file = own_file(&path)?;
             match file.try_lock_shared() {
-                // A program that removed the dead run may have taken the file away in between.
+                // A program that removed the dead run may have removed the file in the meantime.
                 Ok(()) if is_at(&file, &path).map_err(failed)? => return Ok(Self { _lock: file }),
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => thread::sleep(ASKING),
@@ -73,7 +74,7 @@ pub(super) fn is_alive(prefix: &str) -> bool {
     objects(&format!("{prefix}{MARK}")).any(|path| locked(&path))
 }
 
-/// Prefixes of all runs of this user whose lock files lie in shared memory, of whatever directory of runs.
+/// Prefixes of all runs of this user whose lock files are in shared memory, for any directory of runs.
 pub(super) fn prefixes() -> Vec<String> {
     let own =
         |path: &PathBuf| fs::symlink_metadata(path).is_ok_and(|found| found.uid() == geteuid().as_raw());
@@ -90,7 +91,7 @@ pub(super) fn prefixes() -> Vec<String> {
 
 fn locked(path: &Path) -> bool {
     let Ok(metadata) = fs::symlink_metadata(path) else { return false };
-    // What is no file is no lock, and opening it could wait for ever.
+    // Only a regular file is a lock; opening another kind of file could block forever.
     let Some(file) = metadata.is_file().then(|| File::open(path).ok()).flatten() else { return false };
     for _ in 0..LOOKS {
         match file.try_lock() {

@@ -1,4 +1,4 @@
-//! The side of the run: creates all services before the first tick and writes them once a tick, without
+//! The writer's side, for the run: creates all services before the first tick and writes them once a tick, without
 //! allocating.
 
 use std::sync::{Arc, Mutex, TryLockError};
@@ -14,13 +14,13 @@ use super::{
     place, runs,
 };
 
-/// The role of the program that shows a run.
+/// The role of the program that publishes a run.
 pub(crate) const PUBLISHER: &str = "rcs-run";
 
 /// Epoch of a run whose writers were never restarted.
 pub const FIRST_EPOCH: Epoch = 1;
 
-/// What was published last.
+/// The data published last.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Published {
     pub external: ExternalInputs,
@@ -28,7 +28,7 @@ pub(super) struct Published {
     pub pulse: Pulse,
 }
 
-/// What was published last, for other threads of this program: no other process can change it. Neither side waits for
+/// The data published last, for other threads of this program: no other process can change them. Neither side waits for
 /// the other, so that a reading thread never delays a tick.
 #[derive(Default)]
 pub(super) struct Window(Mutex<Published>);
@@ -38,18 +38,18 @@ impl Window {
     pub(super) fn with<T>(&self, work: impl FnOnce(&mut Published) -> T) -> Option<T> {
         match self.0.try_lock() {
             Ok(mut published) => Some(work(&mut published)),
-            // Every value in it is whole whatever its owner was doing when it panicked.
+            // Every value in it is valid, whatever its owner was doing when it panicked.
             Err(TryLockError::Poisoned(published)) => Some(work(&mut published.into_inner())),
             Err(TryLockError::WouldBlock) => None,
         }
     }
 }
 
-/// The writers of all buffers of a run. Dropping it ends the run in shared memory: readers that are still
-/// attached see [`Pulse::over`], and the process that leaves last removes the files.
+/// The writers of all buffers of a run. Dropping this ends the run in shared memory: readers that are still attached
+/// see [`Pulse::over`], and the last process to leave removes the files.
 pub struct Publisher {
     name: RunName,
-    // Taken out before the files are removed: iceoryx2 must have let go of them by then.
+    // Dropped before the files are removed: iceoryx2 must have released them by then.
     ports: Option<Ports>,
     pulse: Pulse,
     window: Arc<Window>,
@@ -57,17 +57,17 @@ pub struct Publisher {
 
 struct Ports {
     writers: Writers,
-    // Last: the services are closed before their node.
+    // Last: the services must be closed before their node.
     _member: runs::RunNode,
 }
 
 impl Publisher {
-    /// Set up all services of a run. The remains of killed runs are removed first.
+    /// Set up all services of a run. It first removes the remains of killed runs.
     ///
     /// # Errors
-    /// [`SharedMemoryError`] with what iceoryx2 says, if there is not enough shared memory or the name is taken.
+    /// [`SharedMemoryError`] with the error of iceoryx2, or if there is not enough shared memory or the name is taken.
     pub fn create(name: &RunName) -> Result<Self, SharedMemoryError> {
-        // Half a run is none: what was set up before something failed goes again.
+        // If a step of the set-up fails, remove the objects of the earlier steps.
         Self::set_up(name).inspect_err(|_| {
             let _ = runs::remove_if_deserted(name, &place::layout());
         })
@@ -86,19 +86,18 @@ impl Publisher {
         Arc::clone(&self.window)
     }
 
-    /// The name under which readers find the run.
+    /// The name by which readers find the run.
     #[must_use]
     pub const fn name(&self) -> &RunName {
         &self.name
     }
 
-    /// Write the buffers of a tick: what came in, what the processes wrote, and the pulse, in this order.
-    /// Does not allocate.
+    /// Write the buffers of a tick in this order: external inputs, outputs of the processes, pulse. Does not allocate.
     pub fn publish(&mut self, external: &ExternalInputs, memory: &CommonMemory, pulse: Pulse) {
         let Some(ports) = &self.ports else { return };
         ports.writers.write(external, memory, &pulse);
         self.pulse = pulse;
-        // If it is being looked at, the next tick comes soon.
+        // If the other side is reading it, the next tick comes soon.
         let _ = self.window.with(|seen| *seen = Published { external: *external, memory: *memory, pulse });
     }
 }
@@ -118,7 +117,7 @@ impl Drop for Publisher {
             ports.writers.executive.write(&Pulse { over: true, ..self.pulse });
             drop(ports);
         }
-        // Nothing can be done about a failure here; `rcs-run clean` tries again and reports.
+        // A failure cannot be handled here; `rcs-run clean` tries again and reports it.
         let _ = runs::remove_if_deserted(&self.name, &place::layout());
     }
 }

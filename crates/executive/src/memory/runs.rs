@@ -1,8 +1,8 @@
-//! How runs are entered, found and removed.
+//! Entering, finding and removing runs.
 //!
-//! Every run has a name, a directory of its own, and its own prefix of names in shared memory ([`super::place`]). A run
-//! is alive as long as a program holds a role in it ([`super::presence`]). Other runs are removed by name, without
-//! opening their objects.
+//! Every run has a name, its own directory, and its own prefix of names in shared memory ([`super::place`]). A run is
+//! alive as long as a program holds a role in it ([`super::presence`]). Other runs are removed by name, without opening
+//! their objects.
 
 use std::{
     fs, io,
@@ -28,21 +28,21 @@ use super::{
     presence::{self, Presence},
 };
 
-/// Readers of a run at a time: consoles, monitors, recorders.
+/// Greatest number of readers of a run at a time: consoles, monitors, recorders.
 pub(super) const MAX_READERS: usize = 16;
 
-/// A run as found in shared memory.
+/// A run found in shared memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Found {
     /// Its name.
     pub name: RunName,
     /// Layout version of the program that runs it.
     pub layout: String,
-    /// A living program uses it: the run itself, or a reader that has not left yet.
+    /// True if a living program uses it: the run itself, or a reader that has not left yet.
     pub alive: bool,
 }
 
-/// What [`clean`] did.
+/// Results of [`clean`].
 #[derive(Debug, Default)]
 pub struct Cleaned {
     /// Runs that were removed.
@@ -53,10 +53,10 @@ pub struct Cleaned {
     pub failed: Vec<SharedMemoryError>,
 }
 
-/// A place in a run: a node of iceoryx2, and the role that tells others that its program lives.
+/// A program's access to a run: a node of iceoryx2, and the role that shows others that the program is alive.
 pub(crate) struct RunNode {
     node: Node<ipc::Service>,
-    // After the node: as long as iceoryx2 uses the run it lives.
+    // After the node: the run is alive as long as iceoryx2 uses it.
     _presence: Presence,
 }
 
@@ -75,7 +75,7 @@ pub fn traces(name: &RunName) -> Vec<PathBuf> {
     place.exists().then_some(place).into_iter().chain(objects(&prefix)).collect()
 }
 
-/// The configuration under which all of a run's files and objects are its own.
+/// The configuration with which all files and objects of iceoryx2 belong to this run only.
 pub(super) fn config(name: &RunName) -> Result<Config, SharedMemoryError> {
     let prefix = prefix(name, &layout());
     let place = files(&prefix);
@@ -88,7 +88,7 @@ pub(super) fn config(name: &RunName) -> Result<Config, SharedMemoryError> {
 
 /// Enter a run of this layout.
 pub(crate) fn enter(name: &RunName, role: &str) -> Result<RunNode, SharedMemoryError> {
-    // iceoryx2 warns on standard error where this program has its own words for the same.
+    // Suppress warnings of iceoryx2 on standard error: this program has its own messages for them.
     set_log_level(LogLevel::Fatal);
     let _lock = lock()?;
     have_salt()?;
@@ -110,7 +110,7 @@ pub(crate) fn enter(name: &RunName, role: &str) -> Result<RunNode, SharedMemoryE
     Ok(RunNode { node, _presence: presence })
 }
 
-/// Whether a living program has a role in a run of this layout.
+/// True if a living program has a role in a run of this layout.
 pub(crate) fn is_there(name: &RunName, role: &str) -> bool {
     presence::is_held(&prefix(name, &layout()), role)
 }
@@ -120,11 +120,11 @@ pub(crate) fn service_name(service: &'static str, epoch: Epoch) -> Result<Servic
         .map_err(|error| SharedMemoryError::service(service, &error))
 }
 
-/// All runs of this user that left something in shared memory, alive or not, in the order of their names.
+/// All runs of this user with remains in shared memory, alive or not, in the order of their names.
 ///
 /// # Errors
-/// [`SharedMemoryError::Io`] if the directory of runs cannot be read, [`SharedMemoryError::NotOurs`] if it is another
-/// user's.
+/// [`SharedMemoryError::Io`] if the directory of runs cannot be read, [`SharedMemoryError::NotOurs`] if it belongs to
+/// another user.
 pub fn list() -> Result<Vec<Found>, SharedMemoryError> {
     let root = root();
     if matches!(fs::symlink_metadata(&root), Err(error) if error.kind() == io::ErrorKind::NotFound) {
@@ -168,7 +168,7 @@ pub(crate) fn has_living(name: &RunName, role: &str) -> bool {
     presence::is_held(&prefix(name, &layout()), role)
 }
 
-/// Remove the remains of killed runs; runs that are alive are not touched, also those under another `TMPDIR`.
+/// Remove the remains of killed runs; living runs are not affected, even those under another `TMPDIR`.
 ///
 /// # Errors
 /// [`SharedMemoryError::Io`] if the directory of runs cannot be read. Failed removals are in the result.
@@ -184,8 +184,8 @@ pub fn clean() -> Result<Cleaned, SharedMemoryError> {
     Ok(cleaned)
 }
 
-/// Remove the objects of killed runs whose directory is gone or lies under another `TMPDIR`; returns the number of
-/// these runs.
+/// Remove the objects of killed runs whose directory no longer exists or is under another `TMPDIR`; returns the number
+/// of these runs.
 ///
 /// # Errors
 /// [`SharedMemoryError::Io`] with the first object that could not be removed.
@@ -196,7 +196,7 @@ pub fn clean_objects() -> Result<usize, SharedMemoryError> {
     Ok(dead.len())
 }
 
-/// Removes a run's directory and objects if no living program is left in it; false if there is one.
+/// Remove a run's directory and objects if no living program uses it; returns false if one does.
 pub(crate) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, SharedMemoryError> {
     let (place, prefix) = (place(name, layout), prefix(name, layout));
     let _lock = lock()?;
@@ -212,13 +212,13 @@ pub(crate) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, S
     }
 }
 
-/// Removes a directory with all that is in it, or a file.
+/// Remove a directory with all its contents, or a file.
 fn remove(path: &path::Path) -> io::Result<()> {
     let is_directory = fs::symlink_metadata(path).is_ok_and(|found| found.is_dir());
     if is_directory { fs::remove_dir_all(path) } else { fs::remove_file(path) }
 }
 
-/// Removes the objects of a run.
+/// Remove the objects of a run.
 fn remove_objects(prefix: &str) -> Result<(), SharedMemoryError> {
     for path in objects(prefix) {
         match remove(&path) {

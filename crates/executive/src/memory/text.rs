@@ -7,13 +7,13 @@ use rcs_core::{
     plain::{DecodeError, Reader, Schema, Writer},
 };
 
-/// At most `N` printable ASCII characters, blanks among them, zero-filled.
+/// At most `N` printable ASCII characters, including blanks, padded with zeros.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Text<const N: usize>([u8; N]);
 
 impl<const N: usize> Text<N> {
-    /// The first `N` characters of a text. A character that is not printable ASCII becomes `?`, the end of a
-    /// line a blank.
+    /// The first `N` characters of a text. A character that is not printable ASCII becomes `?`, a line break becomes a
+    /// blank.
     #[must_use]
     pub fn clipped(text: &str) -> Self {
         let mut bytes = [0; N];

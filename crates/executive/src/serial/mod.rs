@@ -1,7 +1,7 @@
 //! A serial port for the controller: bytes are received and sent without waiting (docs/design/link.md "Serial port").
 //!
-//! [`SerialLine`] stands between the T3 Interface, which knows bytes only, and the port. In a tick it makes a handful
-//! of system calls, never blocks and never allocates. The port may disappear at any time, by an unplugged adapter or a
+//! [`SerialLine`] connects the T3 Interface, which knows only bytes, with the port. In a tick it makes a handful of
+//! system calls, never blocks and never allocates. The port may disappear at any time, by an unplugged adapter or a
 //! peer that closes the line: then the line is not ready and gives no bytes; this is not an error. A helper thread then
 //! closes the dead port (closing may wait for the hardware) and tries once a second to open it again; the tick only
 //! checks whether the thread has opened a new one.
@@ -15,7 +15,7 @@
 //!
 //! There are two descriptors of the same port. The serialport crate sets the line up, holds it exclusively and reads
 //! the modem lines, but its descriptor blocks on a write that does not fit, and it allocates for each error, even for
-//! "nothing there". Bytes go through the other one, which does neither.
+//! "no data". Bytes go through the other descriptor, which does neither.
 
 mod settings;
 
@@ -41,24 +41,24 @@ pub use self::settings::{Parity, SerialSettings};
 /// Time between two attempts to open a port that has disappeared.
 pub const RETRY: Duration = Duration::from_secs(1);
 
-/// Why a port cannot be opened.
+/// Errors of opening a port.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
-    /// There is nothing at the path.
+    /// The path does not exist.
     #[error("there is no serial port {}", .0.display())]
     Missing(PathBuf),
-    /// The user may not open it.
+    /// The user has no permission to open it.
     #[error("{}: permission denied; ports usually belong to a group such as dialout", .0.display())]
     Denied(PathBuf),
-    /// Another program has it.
+    /// Another program uses it.
     #[error("{} is used by another program", .0.display())]
     Busy(PathBuf),
-    /// It is no serial port, or not one that can be set up as asked for.
+    /// It is not a serial port, or does not support the settings.
     #[error("{} cannot be used as a serial port: {reason}", path.display())]
     Unusable {
-        /// Which.
+        /// Path of the port.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the operating system.
         reason: String,
     },
 }
@@ -68,22 +68,22 @@ pub enum OpenError {
 pub struct SerialCounts {
     /// Bytes received.
     pub received: u64,
-    /// Bytes handed over to the port.
+    /// Bytes written to the port.
     pub sent: u64,
-    /// Bytes that the port did not take, or that found no port.
+    /// Bytes that the port did not take, or that were sent while there was no port.
     pub unsent: u64,
-    /// How often the port has disappeared.
+    /// Number of times that the port has disappeared.
     pub losses: u32,
-    /// How often it was opened again.
+    /// Number of times that it was opened again.
     pub reopened: u32,
 }
 
-/// A serial line that stays when its port disappears.
+/// A serial line that persists when its port disappears.
 #[derive(Debug)]
 pub struct SerialLine {
     path: PathBuf,
     port: Option<Port>,
-    /// The port took a part of a frame only; the line rests for a tick.
+    /// The port took only a part of a frame; the line is not ready for a tick.
     cut: bool,
     /// Not all bytes of the last tick were sent.
     unsent: bool,
@@ -92,12 +92,12 @@ pub struct SerialLine {
     opened: Receiver<Port>,
 }
 
-/// The port has disappeared.
+/// Error: the port has disappeared.
 struct Gone;
 
 impl SerialLine {
-    /// Open a port. The thread that keeps it open starts here, with the priority of the caller: open the line
-    /// before asking for real time.
+    /// Open a port. This starts the thread that keeps it open, with the priority of the caller: open the line before
+    /// the real-time requests.
     ///
     /// # Errors
     /// [`OpenError`] if the port cannot be opened now. A later loss of the port is not an error.
@@ -123,9 +123,9 @@ impl SerialLine {
         })
     }
 
-    /// Append what has arrived to `rx`, as far as there is room; the rest stays in the port. True if the line
-    /// is ready: the port is there and, where it has modem lines, CTS is on (the robot's DTR, A.2). Without
-    /// a port `rx` is empty. Never blocks, never allocates.
+    /// Append received bytes to `rx`, as far as there is room; the rest stays in the port. Returns true if the line is
+    /// ready: the port is there and, if it has modem lines, CTS is on (the robot's DTR, A.2). Without a port `rx` is
+    /// empty. Never blocks, never allocates.
     pub fn receive(&mut self, rx: &mut LinkBytes) -> bool {
         if self.port.is_none()
             && let Ok(port) = self.opened.try_recv()
@@ -150,10 +150,10 @@ impl SerialLine {
         ready
     }
 
-    /// Hand over the bytes of a tick; true if the port took them all. A port that takes a part of a frame
-    /// only is stuck: the rest is dropped and counted, what waits in the port is thrown away as far as it
-    /// can be, and the line is not ready in the next tick, so that the link begins again instead of continuing
-    /// a torn frame. Never blocks, never allocates.
+    /// Send the bytes of a tick; true if the port took them all. A port that takes only a part of a frame is stuck: the
+    /// rest is dropped and counted, the bytes that wait in the port are discarded if possible, and the line is not
+    /// ready in the next tick, so that the link restarts instead of continuing an incomplete frame. Never blocks, never
+    /// allocates.
     pub fn send(&mut self, tx: &LinkBytes) -> bool {
         let bytes = tx.as_slice();
         if bytes.is_empty() {
@@ -175,23 +175,23 @@ impl SerialLine {
         !self.unsent
     }
 
-    /// True if not all bytes of the last [`SerialLine::send`] went out: `link_unsent` of
+    /// True if the port did not take all bytes of the last [`SerialLine::send`]: `link_unsent` of
     /// [`interfaces::DeviceInputs`].
     #[must_use]
     pub const fn has_unsent(&self) -> bool {
         self.unsent
     }
 
-    /// Wait until bytes are there, or for `timeout`; may return early. Not for use in a tick.
+    /// Wait for bytes for up to `timeout`; may return early. Not for use in a tick.
     pub fn wait(&self, timeout: Duration) {
         let (Some(port), Ok(limit)) = (&self.port, Timespec::try_from(timeout)) else {
             return thread::sleep(timeout);
         };
-        // Whatever it says, the next receive finds out.
+        // The result does not matter: the next receive detects an error.
         let _ = poll(&mut [PollFd::new(&port.bytes, PollFlags::IN)], Some(&limit));
     }
 
-    /// True if the port is there and, where it has modem lines, CTS is on. Reads no bytes.
+    /// True if the port is there and, if it has modem lines, CTS is on. Reads no bytes.
     pub fn is_ready(&mut self) -> bool {
         self.port.as_mut().is_some_and(Port::is_ready)
     }
@@ -214,7 +214,7 @@ impl SerialLine {
         self.port.as_ref().is_some_and(|port| port.modem)
     }
 
-    /// What went over the line.
+    /// Counts of the line.
     #[must_use]
     pub const fn counts(&self) -> SerialCounts {
         self.counts
@@ -223,7 +223,7 @@ impl SerialLine {
     fn lose(&mut self) {
         if let Some(port) = self.port.take() {
             self.counts.losses = self.counts.losses.saturating_add(1);
-            // There is room: the helper has taken the last dead port before it handed over this one.
+            // There is room: the helper has taken the last dead port before it provided this one.
             drop(self.dead.try_send(port));
         }
     }
@@ -251,9 +251,9 @@ fn keep_open(settings: &SerialSettings, dead: &Receiver<Port>, hand_over: &SyncS
 /// An open port.
 #[derive(Debug)]
 struct Port {
-    /// Bytes; does not block.
+    /// Descriptor for bytes; does not block.
     bytes: File,
-    /// Set-up, exclusive use, modem lines.
+    /// Descriptor for set-up, exclusive use and modem lines.
     lines: TTYPort,
     modem: bool,
 }
@@ -262,8 +262,8 @@ impl Port {
     fn open(settings: &SerialSettings) -> Result<Self, OpenError> {
         let path = &settings.path;
         let unusable = |reason: String| OpenError::Unusable { path: path.clone(), reason };
-        // A terminal that is opened by a program without one must not become its own, or Ctrl-C on it would
-        // end the program.
+        // A terminal must not become the controlling terminal of a program without one, or Ctrl-C on it would end the
+        // program.
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
         let bytes = rustix::fs::open(path, flags, Mode::empty()).map_err(|error| match error {
             Errno::NOENT | Errno::NODEV | Errno::NXIO => OpenError::Missing(path.clone()),
@@ -279,7 +279,7 @@ impl Port {
             serialport::ErrorKind::NoDevice => OpenError::Busy(path.clone()),
             _ => unusable(error.description),
         })?;
-        // What was said before has no meaning any more. A port that cannot forget has nothing to forget.
+        // Discard old bytes, which have no meaning any more. A port without this function has none to discard.
         drop(lines.clear(ClearBuffer::All));
         let modem = settings.clear_to_send && lines.read_clear_to_send().is_ok();
         Ok(Self { bytes: File::from(bytes), lines, modem })
@@ -291,12 +291,13 @@ impl Port {
 
     fn receive(&mut self, rx: &mut LinkBytes) -> Result<bool, Gone> {
         let room = rx.bytes.get_mut(usize::from(rx.length)..).unwrap_or_default();
-        // A read that finds nothing waits for the kernel's worker that carries bytes to the terminal, whatever has the processor
-        // meanwhile: for half a second where others take all of it. What the worker has not brought has not arrived.
+        // A read that finds nothing waits for the kernel's worker that carries bytes to the terminal, even while other
+        // programs use the processor: up to half a second on a busy machine. Bytes that the worker has not delivered
+        // have not arrived.
         let arrived = ioctl_fionread(&self.bytes).map_err(|_| Gone)?;
         if arrived > 0 && !room.is_empty() {
             match self.bytes.read(room) {
-                // The end of a terminal is its hang-up.
+                // The end of file of a terminal is its hang-up.
                 Ok(0) => return Err(Gone),
                 Ok(count) => rx.length += u8::try_from(count).unwrap_or_default(),
                 Err(error) if waits(error.kind()) => {}
@@ -319,7 +320,7 @@ impl Port {
     }
 }
 
-/// Not an error: there are no bytes to read, or no room to write, at the moment.
+/// True if the error only means that there are no bytes to read, or no room to write, at the moment.
 fn waits(kind: ErrorKind) -> bool {
     matches!(kind, ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }

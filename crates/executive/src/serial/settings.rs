@@ -20,13 +20,13 @@ pub enum Parity {
 pub struct SerialSettings {
     /// Device file of the port.
     pub path: PathBuf,
-    /// Bits a second; A.1 has 9600.
+    /// Bit rate, bits per second; A.1 has 9600.
     pub baud: u32,
     /// Parity (ASSUMED none; the appendix does not say).
     pub parity: Parity,
     /// Two stop bits instead of one (ASSUMED one; the appendix does not say).
     pub two_stop_bits: bool,
-    /// Watch CTS, where the port has it; off for cables of three wires.
+    /// Check CTS, if the port has it; off for cables with three wires.
     pub clear_to_send: bool,
 }
 
@@ -55,7 +55,7 @@ impl SerialSettings {
             .stop_bits(if self.two_stop_bits { StopBits::Two } else { StopBits::One })
             .flow_control(FlowControl::None)
             .timeout(Duration::ZERO)
-            // The robot takes it for its CTS (A.2).
+            // The robot reads it as its CTS (A.2).
             .dtr_on_open(true)
     }
 }
@@ -94,7 +94,7 @@ impl FromStr for SerialSettings {
 }
 
 impl fmt::Display for SerialSettings {
-    /// As typed by a person; settings as in [`SerialSettings::new`] are left out.
+    /// In the notation of the command line; settings as in [`SerialSettings::new`] are left out.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { path, baud, parity, two_stop_bits, clear_to_send } = self;
         let usual = Self::new(path);

@@ -1,4 +1,4 @@
-//! What several tests of this crate need.
+//! Common code of several tests of this crate.
 
 use interfaces::{CommonMemory, Header};
 use levels::ladder::PROCESS_COUNT;

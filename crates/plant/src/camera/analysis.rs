@@ -1,12 +1,12 @@
-//! Analysis of a picture (V.2.1 LOCATE-OBJ): centroid, and with the second picture angle and recognition.
+//! Analysis of a picture (V.2.1 LOCATE-OBJ): the centroid; for the second picture also the angle and recognition.
 //!
 //! It uses only the visible points of each part ([`Subject`]), so it gives the same bits in the cell and in another
-//! process. It computes centroid and lengths from the visible points: a part that is cut by the edge of the picture, or
-//! half hidden, is found beside its middle and is not recognised. Parts that touch in the picture are one blob.
+//! process. It computes centroid and lengths from these points: for a part that is cut by the edge of the picture or
+//! half hidden, the centroid is off its middle and recognition fails. Parts that touch in the picture are one blob.
 //!
 //! Positions are those of a pinhole camera: a part that is nearer than the expected range looks larger and farther from
-//! the axis. The second picture also measures the outline, and by that recognises the part. `variation` chooses the
-//! exposure: a part that reflects too little light for it is not in the picture, one that reflects too much blooms, and
+//! the axis. The second picture also measures the outline and recognises the part by it. `variation` chooses the
+//! exposure: a part that reflects too little light for it is not in the picture; one that reflects too much blooms, and
 //! its outline grows. LOCATE-OBJ tries the variations one after the other.
 
 use geometry::{
@@ -25,7 +25,7 @@ use crate::{
     noise::{Noise, Stream},
 };
 
-/// An answer that is not due yet.
+/// An answer and the time until it is due.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 struct Pending {
     #[serde(with = "crate::image::record")]
@@ -46,7 +46,7 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// An analysis without requests so far, for the seed of a run.
+    /// An analysis that has had no request yet; `seed` is that of the run.
     #[must_use]
     pub fn new(description: &Description, seed: u64) -> Self {
         Self {
@@ -58,16 +58,16 @@ impl Analysis {
         }
     }
 
-    /// Use the noise of another seed from now on.
+    /// Draw the noise from another seed from now on.
     pub(crate) fn reseed(&mut self, seed: u64) {
         self.noise = Noise::new(seed, Stream::Camera);
     }
 
-    /// Fingerprint of the entries of a cell on which the answers depend, besides seed and pictures: camera, and parts
-    /// with a vision id. Two analyses of equal fingerprint answer the same.
+    /// Fingerprint of the entries of a cell on which the answers depend, besides seed and pictures: the camera, and the
+    /// parts with a vision id. Two analyses with the same fingerprint give the same answers.
     ///
     /// # Panics
-    /// If a description refuses to be serialised, which is a fault of this crate.
+    /// If a description cannot be serialised, which is a fault of this crate.
     #[must_use]
     pub fn fingerprint(cell: &CellDescription) -> u64 {
         let known = cell.part.iter().filter(|part| part.vision_id != 0);
@@ -86,7 +86,7 @@ impl Analysis {
         request.number != 0 && request.number != self.last && request.picture != Picture::None
     }
 
-    /// Begin with the picture of a new request; `subjects` are the visible parts.
+    /// Start the analysis of a new request; `subjects` are the visible parts.
     pub fn expose(&mut self, request: &VisionRequest, subjects: &[Subject], expected: Option<&PartType>) {
         self.last = request.number;
         let answer = self.analyse(request, subjects, expected);
@@ -142,7 +142,7 @@ impl Analysis {
         answer
     }
 
-    /// Result of a second picture besides the centroid: angle, and whether it is the part.
+    /// Result of a second picture besides the centroid: the angle, and whether the part is the one asked for.
     fn recognise(
         &mut self,
         blob: &[&Subject],
@@ -166,13 +166,14 @@ impl Analysis {
         }
     }
 
-    /// Random failure of the analysis; a number is drawn only if such failures are configured.
+    /// True if the analysis fails at random; draws a number only if such failures are configured.
     fn fails(&mut self) -> bool {
         let chance = self.description.failure;
         chance > 0.0 && (self.noise.within(1.0) + 1.0) / 2.0 < chance
     }
 
-    /// Least and greatest reflectance that a variation exposes correctly; after the last variation the first follows.
+    /// Least and greatest reflectance that a variation exposes correctly; the variation after the last one is the first
+    /// again.
     fn exposure(&self, variation: u8) -> [f64; 2] {
         let exposures = &self.description.exposures;
         exposures.get(usize::from(variation) % exposures.len().max(1)).copied().unwrap_or([0.0, 1.0])
@@ -192,14 +193,14 @@ impl Analysis {
     }
 }
 
-/// Right-hand roll about X, 0.01 degree, that brings Y onto the edge to grip across: the longer for grip 1, else the
-/// shorter (VII.7.6).
+/// Right-hand roll about X, 0.01 degree, that turns Y onto the edge to grip across: the longer edge for grip 1, else
+/// the shorter one (VII.7.6).
 fn grip_angle(edges: &[(Vector, f64); 2], grip: i16, noise: f64) -> i32 {
     let [first, second] = edges;
     let widest = grip.unsigned_abs() == 1;
     let (across, _) = if (first.1 > second.1) == widest { first } else { second };
     let angle = hundredths_of_degree(libm::atan2(across.z, across.y) + noise);
-    // An edge has no direction: the roll of less than a quarter turn is wanted.
+    // An edge has no direction: choose the roll of less than a quarter turn.
     let folded = angle.rem_euclid(18_000);
     if folded > 9_000 { folded - 18_000 } else { folded }
 }
@@ -238,7 +239,7 @@ mod tests {
             .unwrap()
     }
 
-    /// A bar on the place, seen from the view point above it.
+    /// A bar in its place, seen from the view point above it.
     fn bar(y: f64, z: f64, roll: f64) -> Subject {
         let place = straight_down(Vector::new(-50.75, 10.25, -16.55));
         let part =
@@ -247,7 +248,7 @@ mod tests {
         seen(&view.inverse().compose(&part), Vector::new(0.625, 0.625, 4.0), 0.5)
     }
 
-    /// A part in camera axes of which everything in the field of view is seen.
+    /// A part in camera axes, visible where it is in the field of view.
     fn seen(frame: &Frame, size: Vector, reflectance: f64) -> Subject {
         let optics = optics();
         Subject::new(Face::of(frame, &size), reflectance, |point| optics.has_in_view(&point))
@@ -310,14 +311,14 @@ mod tests {
         assert!((near.y + 100).abs() <= 6, "{near:?}");
     }
 
-    /// A frame 590 mm before the camera, turned as parts lie there.
+    /// A frame 590 mm in front of the camera, turned as parts lie there.
     fn before() -> Frame {
         Frame { position: Vector::new(23.54, 0.0, 0.0), ..Frame::identity() }
     }
 
     #[test]
     fn a_bar_that_is_cut_by_the_edge_is_found_beside_its_middle_and_not_recognised() {
-        // Its far third is out of the picture.
+        // Its far third is outside the picture.
         let cut = bar(0.0, 4.6, 0.0);
         let flood = ask(Picture::FastFlood, 2, &[bar(0.0, 4.6, 0.0)]);
         assert_eq!(flood.status, VisionStatus::Done);

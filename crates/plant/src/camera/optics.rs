@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{convert::inches, description::Camera as Description};
 
-/// The camera as it is mounted on the wrist.
+/// The camera in its mount on the wrist.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Optics {
     description: Description,
@@ -18,7 +18,7 @@ impl Optics {
         Self { description: description.clone() }
     }
 
-    /// Frame of the camera on the given tool frame: origin in the image plane, X along the optical axis, Y the tool's Y.
+    /// Frame of the camera for a tool frame: origin in the image plane, X along the optical axis, Y the tool's Y.
     #[must_use]
     pub fn frame(&self, tool: &Frame) -> Frame {
         let tilt = Rotation::from_axis_angle(&Vector::y_axis(), self.description.tilt.to_radians());

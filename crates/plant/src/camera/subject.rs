@@ -1,17 +1,17 @@
-//! Parts before the camera: for each part the face towards the camera, as a raster of visible and hidden points.
+//! Parts in front of the camera: for each part its face towards the camera, as a raster of visible and hidden points.
 
 use geometry::frame::{Frame, Vector};
 
-/// Points of the raster along an edge of a face: odd, so that one is in the middle.
+/// Points of the raster along an edge of a face; odd, so that one is in the middle.
 pub const RASTER: usize = 9;
 
-/// A part before the camera, in camera axes: X along the optical axis, Y the tool's Y; inches.
+/// A part in front of the camera, in camera axes: X along the optical axis, Y the tool's Y; inches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subject {
     face: Face,
-    /// Share of the light that it reflects.
+    /// Reflectance: the fraction of the light that it reflects.
     reflectance: f64,
-    /// Which points of the raster are seen, row by row.
+    /// The visible points of the raster, row by row.
     seen: Vec<bool>,
 }
 
@@ -25,7 +25,7 @@ pub struct Face {
 }
 
 impl Face {
-    /// Of a part with a frame (camera axes) and a size.
+    /// The face of a part, from its frame (camera axes) and its size.
     #[must_use]
     pub fn of(frame: &Frame, size: &Vector) -> Self {
         let axes = [frame.x(), frame.y(), frame.z()];
@@ -39,7 +39,7 @@ impl Face {
         }
     }
 
-    /// The points of the raster, row by row: the middles of equal fields.
+    /// The points of the raster, row by row: the centres of equal fields.
     pub fn points(&self) -> impl Iterator<Item = Vector> + use<> {
         let Self { centre, edges: [(a, long), (b, wide)] } = *self;
         let step = |index: usize| (2 * index + 1) as f64 / (2 * RASTER) as f64 - 0.5;
@@ -50,19 +50,19 @@ impl Face {
 }
 
 impl Subject {
-    /// A face of which only those points are seen for which `sees` holds.
+    /// A face of which the points for which `sees` returns true are visible.
     pub fn new(face: Face, reflectance: f64, sees: impl FnMut(Vector) -> bool) -> Self {
         Self { face, reflectance, seen: face.points().map(sees).collect() }
     }
 
-    /// A face of which those points are seen whose bits are set: bit n for the nth point of the raster, row by row.
+    /// A face of which the points with a set bit are visible: bit n is the nth point of the raster, row by row.
     #[must_use]
     pub fn from_raster(face: Face, reflectance: f64, raster: u128) -> Self {
         let seen = (0..RASTER * RASTER).map(|point| raster >> point & 1 == 1).collect();
         Self { face, reflectance, seen }
     }
 
-    /// The points that are seen, as the bits of [`Subject::from_raster`].
+    /// The visible points, as the bits of [`Subject::from_raster`].
     #[must_use]
     pub fn raster(&self) -> u128 {
         self.seen.iter().rev().fold(0, |bits, seen| bits << 1 | u128::from(*seen))
@@ -74,24 +74,24 @@ impl Subject {
         &self.face
     }
 
-    /// Share of the light that it reflects.
+    /// Reflectance: the fraction of the light that it reflects.
     #[must_use]
     pub const fn reflectance(&self) -> f64 {
         self.reflectance
     }
 
-    /// Share of the face that is seen.
+    /// Visible fraction of the face.
     #[must_use]
     pub fn share(&self) -> f64 {
         self.seen.iter().filter(|seen| **seen).count() as f64 / self.seen.len() as f64
     }
 
-    /// The points that are seen.
+    /// The visible points.
     fn seen_points(&self) -> impl Iterator<Item = Vector> {
         self.face.points().zip(&self.seen).filter(|(_, seen)| **seen).map(|(point, _)| point)
     }
 
-    /// The corners of the fields whose middles are seen.
+    /// The corners of the fields whose centres are visible.
     fn seen_corners(&self) -> impl Iterator<Item = Vector> {
         let [a, b] = self.face.edges.map(|(edge, length)| edge * (length / (2 * RASTER) as f64));
         self.seen_points().flat_map(move |point| [a + b, a - b, b - a, -a - b].map(|corner| point + corner))
@@ -131,7 +131,7 @@ impl Subject {
         })
     }
 
-    /// True if this and another are one blob in the picture: their visible areas are within `gap` of each other.
+    /// True if this part and another are one blob in the picture: their visible areas are within `gap` of each other.
     #[must_use]
     pub fn touches(&self, other: &Self, gap: f64) -> bool {
         self.seen_corners().any(|point| other.covers(&point, gap))
@@ -143,7 +143,7 @@ impl Subject {
 mod tests {
     use super::*;
 
-    /// A plate of 4 by 2 in, 20 in before the camera, of which only some points are seen.
+    /// A plate of 4 by 2 in, in front of the camera at 20 in, of which only some points are visible.
     fn plate(y: f64, z: f64, sees: impl FnMut(Vector) -> bool) -> Subject {
         let frame = Frame { position: Vector::new(20.5, y, z), ..Frame::identity() };
         Subject::new(Face::of(&frame, &Vector::new(1.0, 4.0, 2.0)), 0.5, sees)

@@ -1,7 +1,7 @@
 //! Positions of the grippers, on the robot, in a holster or on the floor, and their changes.
 //!
 //! The state of the ring decides, not the command of the controller ([`crate::quick_change`]). A gripper that the ring
-//! holds moves with the arm. A released gripper lands on the holster under it, or falls. On its holster it rests, and
+//! holds moves with the arm. A released gripper lands on the holster under it, or falls. It rests on its holster, and
 //! slides with an A plate that engages it. A gripper is *mated* while its pins touch, locked or not: only then it has
 //! air and its sensors are connected. The bodies of a gripper at rest in its holster are not simulated.
 
@@ -26,9 +26,9 @@ pub(super) const ROBOT_HANDS: [Hand; 3] = [Hand::Parts, Hand::V, Hand::Tool];
 pub(super) enum GripperPlace {
     /// The ring of the quick change holds it.
     Robot,
-    /// On a holster, right, left, centre.
+    /// It is on a holster (0 right, 1 left, 2 centre).
     Holster(usize, Perch),
-    /// It was released where there is no holster.
+    /// It was released away from a holster.
     Fallen,
 }
 
@@ -38,9 +38,9 @@ pub(super) struct Changer {
     description: QuickChange,
     ring: Ring,
     holsters: [Holster; 3],
-    /// Of the parts gripper, the v-gripper, the tool gripper.
+    /// Places of the parts gripper, the v-gripper and the tool gripper.
     places: [GripperPlace; 3],
-    /// The one whose pins touch.
+    /// The gripper whose pins touch.
     mated: Option<Hand>,
     /// The holster whose lips are over the ears of the gripper in the ring.
     under_lips: Option<usize>,
@@ -51,7 +51,7 @@ pub(super) struct Changer {
 }
 
 impl Changer {
-    /// As the description has it: one gripper may be on the robot, the others hang in the seats of their holsters.
+    /// The state in the description: one gripper may be on the robot; the others hang in the seats of their holsters.
     pub(super) fn new(cell: &CellDescription) -> Self {
         let holsters = holsters(cell);
         let mated = match cell.quick_change.mounted {
@@ -87,17 +87,17 @@ impl Changer {
         ROBOT_HANDS.into_iter().find(|hand| self.place(*hand) == Some(GripperPlace::Robot))
     }
 
-    /// Nothing is being changed: the ring is at one of its ends, and it holds what its pins touch.
+    /// True if no change is in progress: the ring is at one of its ends, and it holds the gripper whose pins touch.
     pub(super) fn rests(&self) -> bool {
         (self.ring.locked() || self.ring.unlocked()) && self.mated() == self.carried()
     }
 
-    /// Where a gripper is; `None` for a hand that the robot cannot wear.
+    /// Place of a gripper; `None` for the pedestal's hand.
     pub(super) fn place(&self, hand: Hand) -> Option<GripperPlace> {
         hand.slot().map(|slot| self.places[slot])
     }
 
-    /// Tool frame of a gripper on the robot, at `robot`, or on a holster.
+    /// Tool frame of a gripper: `robot` if the ring holds it, else its frame on the holster.
     fn frame(&self, hand: Hand, robot: &Frame) -> Option<Frame> {
         match self.place(hand)? {
             GripperPlace::Robot => Some(*robot),
@@ -106,7 +106,7 @@ impl Changer {
         }
     }
 
-    /// It must be simulated: it moves, or can be moved, or can move something.
+    /// True if it must be simulated: it moves, can be moved, or can move something.
     fn is_present(&self, hand: Hand) -> bool {
         match self.place(hand) {
             Some(GripperPlace::Holster(_, perch)) => self.mated == Some(hand) || !perch.rests(),
@@ -118,7 +118,7 @@ impl Changer {
         !self.places.iter().any(|place| matches!(place, GripperPlace::Holster(which, _) if *which == holster))
     }
 
-    /// Where a gripper lands that the ring releases at `robot`.
+    /// Where a gripper lands if the ring releases it at `robot`.
     fn land(&self, robot: &Frame) -> GripperPlace {
         let caught = self.holsters.iter().enumerate().find_map(|(which, holster)| {
             let perch = holster.catch(&holster.offset(robot)).filter(|_| self.is_empty(which))?;
@@ -127,7 +127,7 @@ impl Changer {
         caught.unwrap_or(GripperPlace::Fallen)
     }
 
-    /// The gripper that the ring has is torn off by a holster whose lips hold its ears down: where it stays.
+    /// The place of the gripper in the ring if the lips of a holster hold its ears down and tear it off; `None` if not.
     fn torn(&mut self, robot: &Frame) -> Option<GripperPlace> {
         if let Some(which) = self.under_lips {
             let holster = &self.holsters[which];
@@ -145,8 +145,8 @@ impl Changer {
         None
     }
 
-    /// A step of a gripper on its holster: it falls as far as there is room, slides with an engaged A plate,
-    /// and is caught if the ring has just locked.
+    /// A time step of a gripper on its holster: it falls as far as there is room, slides with an engaged A plate, and
+    /// is caught if the ring has just locked.
     fn step_on_holster(&mut self, hand: Hand, which: usize, mut perch: Perch, step: &Step) -> GripperPlace {
         let holster = &self.holsters[which];
         perch.fall(step.dt);
@@ -174,7 +174,7 @@ impl Changer {
         })
     }
 
-    /// Ring and pins.
+    /// The sensors of the ring and the id pins.
     pub(super) fn sensors(&mut self, hysteresis: f64) -> QuickChangeSensors {
         let [locked, unlocked] = self.ring.beyond();
         QuickChangeSensors {
@@ -189,7 +189,7 @@ impl Changer {
 struct Step {
     dt: f64,
     robot: Frame,
-    /// The ring has come to its locked end.
+    /// The ring has just reached its locked end.
     locks: bool,
 }
 
@@ -216,7 +216,7 @@ impl Cell {
         self.lead_grippers(&robot);
     }
 
-    /// Put the bodies of the grippers where they are at the start.
+    /// Move the bodies of the grippers to their start positions.
     pub(super) fn hang_grippers(&mut self) {
         let robot = self.t3.arm().tool();
         for hand in ROBOT_HANDS {
@@ -228,7 +228,7 @@ impl Cell {
         }
     }
 
-    /// Where the gripper in the ring goes, if the ring does not keep it.
+    /// New place of the gripper in the ring; `None` if the ring keeps it.
     fn keep_or_lose(&mut self, hand: Hand, robot: &Frame) -> Option<GripperPlace> {
         if self.changer.ring.unlocked() {
             self.changer.under_lips = None;
@@ -246,7 +246,7 @@ impl Cell {
         Some(place)
     }
 
-    /// A gripper loses its air when its pins disconnect.
+    /// Find the mated gripper; a gripper whose pins disconnect loses its air.
     fn mate(&mut self, robot: &Frame) {
         let mated = self.changer.find_mated(robot);
         if mated == self.changer.mated {

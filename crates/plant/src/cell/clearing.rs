@@ -13,7 +13,7 @@ use crate::{
 };
 
 impl Cell {
-    /// Once a tick: find new contacts.
+    /// Find new contacts; called once a tick.
     pub(super) fn check_clearance(&mut self) {
         let mut obstacles = self.devices();
         obstacles.extend(self.part_bodies());
@@ -41,14 +41,14 @@ impl Cell {
     }
 
     /// Contacts of the robot at the end of the last tick, and pairs nearer than the margin of
-    /// [`Cell::watch_clearance`]: each pair of names once, at its deepest point, except pairs that may always touch.
-    /// The controller does not get them: a T3 has no sensor for contacts.
+    /// [`Cell::watch_clearance`]: each pair of names once, at its deepest point, without pairs that may always touch.
+    /// The controller does not get them: a T3 has no contact sensors.
     #[must_use]
     pub fn contacts(&self) -> &[Contact] {
         self.clearance.contacts()
     }
 
-    /// From now on [`Cell::contacts`] also has pairs nearer than `margin` inches.
+    /// Report in [`Cell::contacts`] also pairs nearer than `margin` inches from now on.
     pub fn watch_clearance(&mut self, margin: f64) {
         self.clearance.watch(margin);
     }

@@ -1,7 +1,7 @@
 //! The tool drum and the tool in it.
 //!
-//! The drum fixes a tool while the drum's fingers grip it, or while only the detents hold it. While the robot holds it
-//! and the fingers are open, only the force along the drum's axis acts on it ([`crate::drum`]).
+//! The drum fixes a tool while the drum's fingers grip it, or while only the detents hold it. While the robot holds the
+//! tool and the fingers are open, only the force along the drum's axis acts on it ([`crate::drum`]).
 
 use rapier3d_f64::prelude::*;
 
@@ -16,7 +16,7 @@ use crate::{
 const NEAR: f64 = 4.0;
 
 impl Cell {
-    /// Before a step of `dt` seconds: let the drum act on its tool.
+    /// Before a step of `dt` seconds: apply the drum's force to its tool.
     pub(super) fn work_drum(&mut self, dt: f64) {
         let Some((pocketed, entering)) = self.tool_at_drum() else {
             if let Some(left) = self.drum.tool.take() {
@@ -43,7 +43,7 @@ impl Cell {
         }
     }
 
-    /// The tool in or before the drum, and its position; a new tool is admitted.
+    /// The tool in the drum or in front of it, and its position; registers a tool that arrives.
     fn tool_at_drum(&mut self) -> Option<(Pocketed, Entering)> {
         if let Some(pocketed) = self.drum.tool {
             let frame = self.parts[pocketed.part].frame(&self.world);
@@ -80,7 +80,7 @@ impl Cell {
         self.drum.tool.is_some_and(|pocketed| pocketed.part == index && pocketed.fast)
     }
 
-    /// How far a tool in the drum is from its place, in.
+    /// Distance of a tool in the drum from its place, in.
     pub(super) fn drum_error(&self, index: usize) -> Option<f64> {
         let entering = self.drum.entering(&self.parts[index].frame(&self.world))?;
         Some(libm::hypot(entering.left, entering.aside))
@@ -94,7 +94,7 @@ impl Cell {
     /// Close the fingers of the drum on the tool that is in its place, or open them.
     ///
     /// # Errors
-    /// [`WorkstationError::NothingToGrip`] if no tool is there, [`WorkstationError::NotInPlace`] if one stands in the way of the
+    /// [`WorkstationError::NothingToGrip`] if no tool is there, [`WorkstationError::NotInPlace`] if a tool blocks the
     /// fingers.
     pub(super) fn set_drum_fingers(&mut self, closed: bool) -> Result<(), WorkstationError> {
         if closed {

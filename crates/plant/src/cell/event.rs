@@ -12,34 +12,34 @@ use crate::{
     t3::{DriveError, Lamps, RobotEvent, explained},
 };
 
-/// Why a cell cannot be built.
+/// Errors of building a cell.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CellError {
-    /// The description has faults.
+    /// The description has mistakes.
     #[error(transparent)]
     Description(#[from] DescriptionError),
-    /// The arm cannot begin where the description says.
+    /// The arm cannot take the start position of the description.
     #[error("robot.start: {0}")]
     Start(#[from] DriveError),
-    /// Something stands where the robot is at the start.
+    /// The robot collides with something at the start.
     #[error("robot.start: {0}")]
     Blocked(CellEvent),
 }
 
-/// An event of the cell: an error, or something of interest to a person.
+/// An event of the cell: an error, or information for the operator.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum CellEvent {
-    /// The robot, or what it carries, has begun to touch something that it may never touch, or deeper than it ever may.
-    /// Contacts that are permitted during some commands are checked where the commands are known:
+    /// The robot, or what it carries, has begun to touch a body that it may never touch, or deeper than any command
+    /// permits. Contacts that only some commands permit are checked where the commands are known:
     /// [`Cell::contacts`](super::Cell::contacts).
     Contact(Contact),
-    /// A part slides in a hand: the load exceeds its force and friction.
+    /// A part slides in a hand: the load exceeds the hand's force and friction.
     Slipped {
         /// The part.
         part: String,
-        /// Which hand.
+        /// The hand.
         hand: String,
         /// How far it has slid since it was gripped, in.
         distance: f64,
@@ -48,7 +48,7 @@ pub enum CellEvent {
     Dropped {
         /// The part.
         part: String,
-        /// Which hand.
+        /// The hand.
         hand: String,
     },
     /// The gripper has forced a part out of the closed vise.
@@ -58,12 +58,12 @@ pub enum CellEvent {
     },
     /// The quick change has released a gripper that was not over an empty holster.
     GripperFell {
-        /// Its link.
+        /// Its link name.
         gripper: String,
     },
-    /// The robot has lifted a gripper out of the seat of its holster, whose lips have torn it off the quick change.
+    /// The robot lifted a gripper in the seat of its holster, and the lips tore it off the quick change.
     GripperTorn {
-        /// Its link.
+        /// Its link name.
         gripper: String,
     },
     /// A part lies on the floor.
@@ -79,30 +79,30 @@ pub enum CellEvent {
     Lamps(Lamps),
     /// A visible event of the robot.
     Robot(RobotEvent),
-    /// The simulated arm cannot reach a position of the robot that it follows, and stays behind.
+    /// The simulated arm cannot reach the position of the robot that it follows, and stays behind.
     CannotFollow(JointProblem),
     /// The position of a body was not finite; the body was removed from the simulation.
     Quarantined,
     /// The jaw of the vise does not move.
     ViseStuck,
-    /// A fault of the plan begins.
+    /// A fault of the fault plan begins.
     FaultBegins {
-        /// Which one of its file, from 1.
+        /// Its number in the file, from 1.
         number: usize,
-        /// As text.
+        /// The fault as text.
         text: String,
     },
-    /// A fault of the plan is over.
+    /// A fault of the fault plan ends.
     FaultEnds {
-        /// Which one of its file, from 1.
+        /// Its number in the file, from 1.
         number: usize,
-        /// As text.
+        /// The fault as text.
         text: String,
     },
 }
 
 impl CellEvent {
-    /// Something was dropped, lost or damaged.
+    /// True if something was dropped, lost or damaged.
     #[must_use]
     pub const fn is_harm(&self) -> bool {
         matches!(
@@ -116,7 +116,7 @@ impl CellEvent {
         )
     }
 
-    /// Stable short name of its kind.
+    /// Stable short name of the kind of event.
     #[must_use]
     pub const fn code(&self) -> &'static str {
         match self {

@@ -1,13 +1,13 @@
-//! Parts in hands and vise: stop, grip, slip, release.
+//! Parts in hands and vise: blocking, gripping, slipping, releasing.
 //!
-//! The robot's gripper and the pedestal's hand are of the same kind, and a part can be in both at once while it is
-//! handed over, or in a hand and in the vise. These rules decide which of them gives way:
+//! The robot's gripper and the pedestal's hand work alike. During a handover a part is in both at once; it can also be
+//! in a hand and in the vise. These rules decide which of them yields:
 //!
 //! * a hand that closes on a part held by something else stops where its nearer finger touches, and grips the part as
-//!   it lies; it draws the part to its middle when the other releases it;
-//! * the vise is stronger than a hand: the hand's springs rest at the position of the part in the vise;
+//!   it lies; it draws the part to its middle when the other holder releases it;
+//! * the vise is stronger than a hand: the rest position of the hand's springs follows the part in the vise;
 //! * two hands both hold by their springs, and each slides beyond its friction: a robot that moves with a part that the
-//!   pedestal also holds draws it out of the weaker of the two.
+//!   pedestal also holds pulls it out of the weaker of the two.
 
 use rapier3d_f64::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -24,22 +24,23 @@ use crate::{
     vise::Clamped,
 };
 
-/// Below this force of a finger, lb, nothing is held.
+/// Least force of a finger that holds a part, lb.
 const LEAST_FORCE: f64 = 0.25;
-/// Slide in the fingers that is reported, in.
+/// Slide of a part in the fingers from which it is reported, in.
 const SLIP: f64 = 0.02;
-/// Greatest distance of a pad that counts as touching a face, m.
+/// Greatest distance between a pad and a face that still counts as touching, m.
 const TOUCHING: Real = 1e-4;
-/// Ticks after which the controller of the vise gives up a jaw that does not move (2 s).
+/// Ticks after which the vise reports a jaw that does not move (2 s).
 const JAW_PATIENCE: u32 = 50;
-/// A part this far inside of a clamping face still counts as between the jaws, m.
+/// Greatest penetration of a part into a clamping face at which it still counts as between the jaws, m.
 const OUTSIDE: Real = 2e-3;
-/// A part also stands in a step if it covers this share of the largest area it covers in any step.
+/// A part also counts as in a step of the jaws if it covers this fraction of the largest area that it covers in any
+/// step.
 const WELL: Real = 0.25;
-/// Fingers and part: stiff enough that a bar sags by 0.01 mm, soft enough that friction is not a jolt.
+/// Stiffness of the springs between fingers and part: a bar sags by only 0.01 mm, and friction does not jolt it.
 const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
 
-/// A device with fingers.
+/// A pair of fingers: one of the robot's grippers, or the pedestal's hand.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub(super) enum Hand {
     /// The parts gripper, end effector 1.
@@ -61,7 +62,7 @@ impl Hand {
         HANDS.into_iter().filter(move |hand| *hand != self)
     }
 
-    /// Which of the robot's grippers it is, from 0; `None` for the pedestal's hand.
+    /// Index among the robot's grippers, from 0; `None` for the pedestal's hand.
     pub(super) const fn slot(self) -> Option<usize> {
         match self {
             Self::Parts => Some(0),
@@ -81,7 +82,7 @@ impl Hand {
         }
     }
 
-    /// Name of its link in the picture.
+    /// Its URDF link name.
     pub(super) const fn link(self) -> &'static str {
         match self {
             Self::Parts => "parts_gripper",
@@ -117,7 +118,7 @@ impl Cell {
         (gripper, &mut self.world)
     }
 
-    /// Move the fingers of a hand by the air, and grip or release the part between them.
+    /// Move the fingers of a hand by their air supply, and grip or release the part between them.
     pub(super) fn drive_fingers(&mut self, dt: f64, hand: Hand, supply: Supply) {
         let between = match &self.hand(hand).hold {
             Some((index, _)) => self.between_fingers(hand, *index).map(|squeeze| (*index, squeeze)),
@@ -129,7 +130,7 @@ impl Cell {
             && (stop - gripper.air.opening()).abs() > 1e-5
             && gripper.air.force() >= LEAST_FORCE
         {
-            // The two fingers are coupled: a part that is pushed off the middle spreads them, and they follow it back.
+            // The two fingers are coupled: a part pushed off the middle spreads them, and they follow it back.
             gripper.air.spread(stop);
         }
         gripper.air.advance(dt, supply, stop);
@@ -148,7 +149,7 @@ impl Cell {
         squeeze(&tool.inv_mul(&part.pose(&self.world)), &part.solid(), &gripper.pads())
     }
 
-    /// The widest part that stands free between the fingers of a hand.
+    /// The widest free part between the fingers of a hand, with its geometry.
     fn first_between_fingers(&self, of: Hand) -> Option<(usize, Squeeze)> {
         let hand = self.world.bodies[self.hand(of).hand()].translation();
         let opening = metres(self.hand(of).air.opening());
@@ -200,7 +201,7 @@ impl Cell {
             || HANDS.iter().any(|hand| self.is_held_by(*hand, index))
     }
 
-    /// Holders store the index of their part: update it after a change of the list.
+    /// Holders store the index of their part: update it after the list of parts has changed.
     pub(super) fn renumber(&mut self, place: impl Fn(usize) -> usize) {
         for hand in HANDS {
             if let (Gripper { hold: Some((held, _)), .. }, _) = self.hand_at_work(hand) {
@@ -224,7 +225,7 @@ impl Cell {
         self.parts[index].set_holders(&mut self.world, holders);
     }
 
-    /// Grip, tighten, loosen or release, according to force and geometry.
+    /// Grip, tighten, loosen or release, depending on force and geometry.
     fn update_grip(&mut self, hand: Hand, between: Option<(usize, Squeeze)>) {
         let gripper = self.hand(hand);
         let (force, opening) = (gripper.air.force(), gripper.air.opening());
@@ -266,7 +267,7 @@ impl Cell {
         self.note_holders(index);
     }
 
-    /// Release the part of a hand; `lost` if the fingers did not open.
+    /// Release the part of a hand; `lost` if the fingers have not opened.
     pub(super) fn let_go(&mut self, hand: Hand, lost: bool) {
         let (gripper, world) = self.hand_at_work(hand);
         let Some((index, hold)) = gripper.hold.take() else { return };
@@ -281,7 +282,7 @@ impl Cell {
         }
     }
 
-    /// The other holder has released part `index`: a hand that holds it draws it to its middle.
+    /// The other holder has released part `index`: a hand that holds it draws it to the middle of its fingers.
     pub(super) fn recover(&mut self, hand: Hand, index: usize) {
         let (gripper, world) = self.hand_at_work(hand);
         if let Some((_, hold)) = gripper.hold.as_mut().filter(|(held, _)| *held == index) {
@@ -289,7 +290,7 @@ impl Cell {
         }
     }
 
-    /// Move the jaw of the vise; it pushes a part along, and stops when the part lies against the fixed face.
+    /// Move the jaw of the vise; it pushes a part along, and stops when the part touches the fixed face.
     pub(super) fn drive_jaw(&mut self, dt: f64) {
         if !self.vise.moving() {
             return;
@@ -308,8 +309,8 @@ impl Cell {
         }
     }
 
-    /// The part between the clamping faces that stops the jaw first, and its step: the shallowest of those whose faces
-    /// it covers well, because that one stops the jaw. A bar that is pressed into the back of its step is not in the
+    /// The part that stops the jaw first, its step and its geometry: of the steps whose faces it covers well, the
+    /// shallowest, because that one stops the jaw. A bar that is pressed against the back of its step is not in the
     /// next one.
     fn between_jaws(&self) -> Option<(usize, usize, Squeeze)> {
         let standing = (0..self.parts.len()).filter_map(|index| {
@@ -331,7 +332,8 @@ impl Cell {
         standing.max_by(|a, b| stop(a).total_cmp(&stop(b)))
     }
 
-    /// Clamp a part between the jaws, or move it on: flush with the faces, its middle at `middle` (m) across them.
+    /// Clamp a part between the jaws, or move it with them: flush with the faces, its middle at `middle` (m) across
+    /// them.
     pub(super) fn clamp(&mut self, index: usize, step: usize, squeeze: &Squeeze, middle: Real) {
         let mut rest = squeeze.flush;
         rest.translation.y = middle;
@@ -361,7 +363,7 @@ impl Cell {
         body.set_angvel(Vector::ZERO, true);
     }
 
-    /// A part that the gripper pushes harder along the jaws than their friction is forced out of them.
+    /// Force a part out of the jaws if the gripper pushes it harder along them than their friction.
     fn resist_in_vise(&mut self) {
         let Some(Clamped { part, .. }) = self.vise.clamped else { return };
         let collider = self.parts[part].collider;
@@ -379,14 +381,14 @@ impl Cell {
         }
     }
 
-    /// Width and faces of part `index` between the jaws in a step.
+    /// Width and faces of part `index` between the jaws in one of their steps.
     pub(super) fn between_jaws_of(&self, index: usize, step: usize) -> Option<Squeeze> {
         let part = self.parts.get(index)?;
         let base = to_pose(self.vise.frame());
         squeeze(&base.inv_mul(&part.pose(&self.world)), &part.solid(), &self.vise.pads(step))
     }
 
-    /// Before a step: friction on parts that slide in a hand.
+    /// Before a time step: apply friction to parts that slide in a hand.
     pub(super) fn rub_holds(&mut self, dt: f64) {
         for hand in HANDS {
             let (gripper, world) = self.hand_at_work(hand);
@@ -396,7 +398,7 @@ impl Cell {
         }
     }
 
-    /// After a step: holds whose load exceeds friction slide.
+    /// After a time step: holds whose load exceeds friction slide.
     pub(super) fn let_holds_give_way(&mut self) {
         self.resist_in_vise();
         for hand in HANDS {
@@ -409,8 +411,7 @@ impl Cell {
         let (gripper, world) = self.hand_at_work(hand);
         let Some((index, hold)) = &mut gripper.hold else { return };
         if clamped == Some(*index) {
-            // The vise is the stronger: the fingers keep their force, but where the part lies in them is the
-            // vise's affair.
+            // The vise is stronger: the fingers keep their force, but the vise determines the position of the part.
             hold.relax(world);
             return;
         }
@@ -424,7 +425,7 @@ impl Cell {
         }
     }
 
-    /// The light beams between the fingers that a part breaks, one bit each.
+    /// The light beams between the fingers that a part interrupts, one bit each.
     pub(super) fn broken_beams(&self) -> u8 {
         let gripper = self.hand(Hand::Parts);
         let tool = gripper.loaded_tool(&self.world);

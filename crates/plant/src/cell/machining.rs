@@ -1,4 +1,4 @@
-//! Machining: a part at its place, clamped in the vise or standing in a nest, becomes the next one.
+//! Machining: a part at its place, clamped in the vise or in a nest, becomes the next one.
 
 use geometry::frame::{Frame, Vector as Inches, rotation_vector};
 
@@ -8,7 +8,7 @@ use crate::{
     part::{Part, nearest_square, sizes_along},
 };
 
-/// How far a part may be from its seat in the vise (ASSUMED).
+/// Greatest distance of a part from its seat in the vise (ASSUMED).
 const SEATED: Tolerance = Tolerance { inches: 0.03, degrees: 1.0 };
 /// A part farther than this from the seat of a nest is not in it, in.
 const IN_NEST: f64 = 1.0;
@@ -17,7 +17,7 @@ impl Cell {
     /// Machine the part at `location`.
     ///
     /// # Errors
-    /// [`WorkstationError`] if it is another part, or not at its seat.
+    /// [`WorkstationError`] if another part is there, or the part is not at its seat.
     pub(super) fn machine(&mut self, from: &str, to: &str, location: &str) -> Result<(), WorkstationError> {
         let next = self.description.kind(to)?.clone();
         let nest = match self.description.machine_at(location, from)? {
@@ -81,7 +81,7 @@ impl Cell {
         Ok(())
     }
 
-    /// How far a part in the vise is from its seat: inches of its middle, radians of its nearest axes.
+    /// Distance of a part in the vise from its seat: inches of its middle, radians to the nearest equivalent axes.
     pub(super) fn vise_error(&self, part: &Part) -> (f64, f64) {
         let here = self.vise.frame().inverse().compose(&part.frame(&self.world));
         let seat = self.vise.seat(self.vise.present_step(), &sizes_along(&here, &part.kind));
@@ -89,7 +89,7 @@ impl Cell {
     }
 }
 
-/// Check that a part is the expected one, and that the next one fits into it.
+/// Check that a part is the expected one, and that the next one is not larger than it.
 fn check_part(from: &str, part: &Part, next: &PartType) -> Result<(), WorkstationError> {
     if part.kind.name != from {
         return Err(WorkstationError::WrongPart { expected: from.into(), found: part.kind.name.clone() });
@@ -124,7 +124,8 @@ fn askew(here: &Frame, shape: Shape) -> f64 {
     }
 }
 
-/// The side of a part that shows to the front of the vise, from where it is machined: along one of the part's axes.
+/// The side of a part that faces the front of the vise, where it is machined: a unit vector along one of the part's
+/// axes.
 fn front(here: &Frame) -> [i8; 3] {
     let out = nearest_square(here).rotation.inverse() * -Inches::x();
     let sign = |along: f64| {

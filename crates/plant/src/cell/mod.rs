@@ -63,7 +63,7 @@ pub struct Cell {
     t3: T3Controller,
     /// The host's DTR.
     host_ready: bool,
-    /// Parts gripper, v-gripper, tool gripper.
+    /// The parts gripper, the v-gripper, the tool gripper.
     grippers: [Gripper; 3],
     changer: Changer,
     drum: Drum,
@@ -76,7 +76,7 @@ pub struct Cell {
     joystick: Joystick,
     parts: Vec<Part>,
     next_part: u32,
-    /// Fixed blocks: made again from the description when a cell is restored, like the obstacles.
+    /// Fixed blocks: like the obstacles, they are made again from the description when a cell is restored.
     #[serde(skip)]
     furniture: Vec<Block>,
     #[serde(skip)]
@@ -89,10 +89,10 @@ pub struct Cell {
     resolver_noise: Noise,
     dead_times: DeadTimes,
     faults: Injector,
-    /// Ticks in which the jaw of the vise should have moved and has not.
+    /// Number of ticks in which the jaw of the vise should have moved and did not.
     jaw_waits: u32,
     events: Vec<CellEvent>,
-    /// The arm cannot follow the robot; reported once.
+    /// The arm cannot follow the robot; this is reported once.
     stays_behind: bool,
     droop: Option<Droop>,
     #[serde(with = "crate::image::record")]
@@ -100,7 +100,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Build the cell of a description; the seed sets the noise of the sensors and where parts are put down at random.
+    /// Build the cell of a description. The seed determines the noise of the sensors and the random places of parts.
     ///
     /// # Errors
     /// [`CellError`] if the description cannot be used.
@@ -185,7 +185,7 @@ impl Cell {
         &self.description
     }
 
-    /// The sensor words after the last tick; before the first tick, those of the cell as built.
+    /// The sensor words after the last tick; before the first tick, those of the initial cell.
     #[must_use]
     pub fn inputs(&self) -> DeviceInputs {
         self.inputs
@@ -202,7 +202,7 @@ impl Cell {
         self.inputs
     }
 
-    /// Like [`Cell::step`], with a line to the robot controller that may have faults in `tick`.
+    /// Like [`Cell::step`], with injected faults on the line to the robot controller in `tick`.
     pub fn step_behind(
         &mut self,
         line: &mut LineInjector,
@@ -217,13 +217,13 @@ impl Cell {
         inputs
     }
 
-    /// Like [`Cell::step`], for a robot outside of the simulation: the simulated arm, and with it the rest of the cell,
+    /// Like [`Cell::step`], for a robot outside the simulation: the simulated arm, and with it the rest of the cell,
     /// follows `position`, which the robot has acknowledged; `None` if none is known. The simulated T3 controller is
     /// not used: the caller sends `outputs.link_tx` to the robot and fills in its answer (`link_rx` and `link_ready`
     /// are returned empty).
     ///
-    /// The arm moves as fast as its servos can, so that a distant first position causes a motion and not a jump. An
-    /// unreachable position leaves it where it is and gives a [`CellEvent::CannotFollow`].
+    /// The arm moves no faster than its servos can, so that a distant first position causes a motion and not a jump. If
+    /// a position is unreachable, the arm stays where it is and reports a [`CellEvent::CannotFollow`].
     pub fn step_following(&mut self, position: Option<&Plate>, outputs: &DeviceOutputs) -> DeviceInputs {
         let outputs = &self.begin_tick(outputs);
         let followed = position.map_or(Ok(()), |plate| self.t3.follow(plate));
@@ -238,7 +238,7 @@ impl Cell {
         self.inputs
     }
 
-    /// Begin a tick and its faults; returns the controller's commands as changed by them.
+    /// Begin a tick and its faults; returns the controller's commands with the faults applied.
     fn begin_tick(&mut self, outputs: &DeviceOutputs) -> DeviceOutputs {
         let before = self.faults.hydraulics_lost();
         let changes = self.faults.next();
@@ -251,7 +251,7 @@ impl Cell {
         self.faults.outputs(outputs)
     }
 
-    /// Report faults that begin and end.
+    /// Report faults that begin or end.
     pub(super) fn tell(&mut self, changes: Vec<Change>) {
         self.events.extend(changes.into_iter().map(|Change { number, text, begins }| {
             if begins {
@@ -262,9 +262,9 @@ impl Cell {
         }));
     }
 
-    /// Faults that begin in ticks to come, beside those of the plan that the cell was built with.
+    /// Add faults that begin in later ticks to those of the plan that the cell was built with.
     ///
-    /// A fault that displaces something is refused: the cell is already built.
+    /// Faults that displace something are ignored: the cell is already built.
     pub fn add_faults(&mut self, faults: &FaultPlan, seed: u64) {
         self.faults.add(faults, seed);
     }
@@ -275,7 +275,7 @@ impl Cell {
         self.faults.struck()
     }
 
-    /// One tick of all moving bodies.
+    /// Advance all moving bodies by one tick.
     fn advance(&mut self, outputs: &DeviceOutputs) {
         self.pedestal.table.order(&outputs.pedestal_table);
         self.step_bodies(outputs);
@@ -294,7 +294,7 @@ impl Cell {
         }
     }
 
-    /// Once a tick: new contacts, fallen parts.
+    /// Once a tick: detect new contacts and fallen parts.
     fn after_tick(&mut self) {
         self.check_clearance();
         if !self.world.quarantine().is_empty() {
@@ -310,8 +310,8 @@ impl Cell {
         *self.t3.arm().joints()
     }
 
-    /// The tool frame with the deflection of arm and fingers, inches: the middle between the fingertips; for a bare
-    /// robot the place where they would be.
+    /// The tool frame with the deflection of arm and fingers, inches: the middle between the fingertips; for a robot
+    /// without a gripper, where they would be.
     #[must_use]
     pub fn tool(&self) -> Frame {
         match self.changer.carried() {
@@ -320,21 +320,21 @@ impl Cell {
         }
     }
 
-    /// Finger opening, in, and force of a finger, lb, of the gripper that is mated: true values, not those of the
-    /// sensors. Zeros for a bare robot.
+    /// Finger opening, in, and force of a finger, lb, of the mated gripper: true values, not sensor readings. Zeros
+    /// without a gripper.
     #[must_use]
     pub fn fingers(&self) -> (f64, f64) {
         let gripper = self.changer.mated().map(|hand| self.hand(hand));
         gripper.map_or((0.0, 0.0), |gripper| (gripper.air.opening(), gripper.air.force()))
     }
 
-    /// The fingertips of the pedestal's hand, X up, Y across the fingers, in.
+    /// Frame of the fingertips of the pedestal's hand: X up, Y across the fingers; in.
     #[must_use]
     pub fn pedestal(&self) -> Frame {
         self.pedestal.frame()
     }
 
-    /// Finger opening, in, and force of a finger, lb, of the pedestal's hand: true values, not those of the sensors.
+    /// Finger opening, in, and force of a finger, lb, of the pedestal's hand: true values, not sensor readings.
     #[must_use]
     pub fn pedestal_fingers(&self) -> (f64, f64) {
         (self.pedestal.hand.air.opening(), self.pedestal.hand.air.force())
@@ -366,7 +366,7 @@ impl Cell {
     /// Press a key of the T3 controller's console, its teach pendant, or an emergency stop.
     ///
     /// # Errors
-    /// [`Refusal`]: what must be done first; then nothing has changed.
+    /// [`Refusal`]: what must be done first; the state is unchanged.
     pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
         let done = self.t3.press(key);
         self.hear_t3();
@@ -385,7 +385,7 @@ impl Cell {
         &self.t3
     }
 
-    /// Messages of the controller and motions of the robot become events, except those of normal work.
+    /// Turn messages of the controller and motions of the robot into events, except those of normal operation.
     fn hear_t3(&mut self) {
         for message in self.t3.messages() {
             match message {
@@ -409,11 +409,11 @@ impl Cell {
         self.t3.depc().state()
     }
 
-    /// Move the arm to an end-plate frame (inches) by the end of the next tick, as the teach pendant does, without the
-    /// line.
+    /// Move the arm to an end-plate frame (inches) by the end of the next tick, as with the teach pendant: not through
+    /// the line.
     ///
     /// # Errors
-    /// [`DriveError`] if the arm cannot reach the position; then it stays.
+    /// [`DriveError`] if the arm cannot reach the position; it does not move.
     pub fn drive(&mut self, plate: &Frame) -> Result<(), DriveError> {
         self.t3.drive(plate)
     }
@@ -424,7 +424,7 @@ fn place(points: &Points) -> Frame {
     points.frame().unwrap_or_else(Frame::identity)
 }
 
-/// An empty world with the steps and stiffness of the description.
+/// An empty world with the time steps and contact stiffness of the description.
 pub(crate) fn physics(description: &CellDescription) -> PhysicsWorld {
     let physics = &description.physics;
     let mut world = PhysicsWorld::new();
@@ -435,8 +435,8 @@ pub(crate) fn physics(description: &CellDescription) -> PhysicsWorld {
     parameters.num_solver_iterations = physics.solver_iterations;
     parameters.contact_softness = stiffness;
     parameters.static_contact_softness = stiffness;
-    // The job lives on gaps of a millimetre: rapier's defaults leave 5 mm of penetration, and keep contacts unexamined
-    // until something has moved by 50 mm. Faces that are more than 0.5 mm apart need not be solved for.
+    // The job has gaps of about a millimetre: rapier's defaults allow 5 mm of penetration, and do not check contacts
+    // until a body has moved by 50 mm. Faces that are more than 0.5 mm apart need not be solved for.
     parameters.normalized_allowed_linear_error = 1e-5;
     parameters.normalized_prediction_distance = 5e-4;
     parameters.contact_recycling = false;

@@ -1,6 +1,6 @@
-//! Checks of a workstation action that need only the description: whether the cell has the names in it.
+//! Checks of a workstation action against the description alone: whether the cell has the names in it.
 //!
-//! The cell checks this before it acts; a reader of jobs can check it before the first tick.
+//! The cell checks this before it acts; a job can be checked before the first tick.
 
 use diagnostics::nearest;
 use geometry::frame::Frame;
@@ -12,7 +12,7 @@ use crate::description::{CellDescription, Nest, PartType};
 pub(super) enum Spot<'c> {
     /// In a nest.
     Nest(&'c Nest),
-    /// On the floor of a tray, in a sector of this frame.
+    /// On the floor of a tray, with this frame.
     Sector(Frame),
 }
 
@@ -25,10 +25,10 @@ pub(super) enum Machine<'c> {
 }
 
 impl CellDescription {
-    /// Check that the cell has everything that an action of the workstation names.
+    /// Check that everything that a workstation action names is in the cell.
     ///
     /// # Errors
-    /// [`WorkstationError`], of which [`WorkstationError::blames`] gives the wrong word.
+    /// [`WorkstationError`]; [`WorkstationError::blames`] returns the wrong word.
     pub fn admits(&self, action: &WorkstationAction) -> Result<(), WorkstationError> {
         match action {
             WorkstationAction::Place { part, unit, sector, .. } => {
@@ -68,7 +68,7 @@ impl CellDescription {
         }
     }
 
-    /// The part of a name.
+    /// The part with a name.
     pub(super) fn kind(&self, name: &str) -> Result<&PartType, WorkstationError> {
         self.part(name).ok_or_else(|| WorkstationError::UnknownPart {
             name: name.into(),
@@ -76,7 +76,7 @@ impl CellDescription {
         })
     }
 
-    /// Where a part goes in a sector of a unit: a part that has nests goes only there.
+    /// Where a part goes in a sector of a unit: a part that has nests goes only into a nest.
     pub(super) fn spot(
         &self,
         kind: &PartType,
@@ -116,10 +116,10 @@ impl CellDescription {
         })
     }
 
-    /// The vise stands at a location.
+    /// Check that the vise is at a location.
     ///
     /// # Errors
-    /// [`WorkstationError::NoVise`].
+    /// [`WorkstationError::NoVise`] if it is not.
     pub fn has_vise_at(&self, location: &str) -> Result<(), WorkstationError> {
         if location == self.vise.location {
             return Ok(());
@@ -129,7 +129,7 @@ impl CellDescription {
 }
 
 impl PartType {
-    /// It can be made by taking something off another part.
+    /// Check that this part can be machined from a blank: same shape, no size larger.
     pub(super) fn is_made_of(&self, blank: &Self) -> Result<(), WorkstationError> {
         let larger = self.size.iter().zip(blank.size).any(|(new, old)| *new > old + 1e-9);
         if larger || self.shape != blank.shape {
@@ -140,7 +140,7 @@ impl PartType {
 }
 
 impl WorkstationError {
-    /// The wrong word of an action, and the one that may have been meant; `None` if the error is not in one word.
+    /// The wrong word of an action, and the nearest known one; `None` if no single word is wrong.
     #[must_use]
     pub fn blames(&self) -> Option<(String, Option<&str>)> {
         let near = |word: &String, known: &'_ [String]| -> Option<usize> {

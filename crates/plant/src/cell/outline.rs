@@ -1,4 +1,4 @@
-//! The grippers in the picture, on the robot and in their holsters, and their boxes.
+//! The grippers in the URDF, on the robot and in their holsters, and their boxes.
 
 use geometry::{
     frame::{Frame, Rotation, Vector as Inches},
@@ -85,8 +85,8 @@ impl Cell {
         links
     }
 
-    /// Names and values of the joints of the pedestal: the table in radians from where its fingers move
-    /// across the radial line, the fingers in metres.
+    /// Names and values of the joints of the pedestal: the table in radians, 0 where the fingers move across the radial
+    /// line; the fingers in metres.
     pub(super) fn pedestal_states(&self) -> Vec<(&'static str, f64)> {
         let table = self.pedestal.table.angle() - self.description.pedestal.table.square;
         let half = metres(body_opening(&self.world, &self.pedestal.hand) / 2.0);
@@ -126,7 +126,7 @@ impl Cell {
     }
 }
 
-/// The fingers of a hand, each on its slide.
+/// The fingers of a hand, each with a prismatic joint.
 fn urdf_fingers(urdf: &mut Urdf, gripper: &Gripper, hand: Hand) {
     let [length, thickness, width] = gripper.fingers;
     for ([finger, slide], side) in finger_names(hand).into_iter().zip([1.0, -1.0]) {

@@ -21,12 +21,12 @@ use crate::{
     solid::{Family, along},
 };
 
-/// A moving body, metres, in the coordinates of its parent.
+/// A moving body, metres, in the frame of its parent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
-    /// Its name: that of the URDF link.
+    /// The name of its URDF link.
     pub name: String,
-    /// The link that the pose is given in; `world` for the world.
+    /// The link in whose frame the pose is given; `world` for the world.
     pub parent: &'static str,
     /// x, y, z in metres.
     pub position: [f64; 3],
@@ -44,13 +44,13 @@ const ARM: [(&str, &str); 6] = [
     ("end_plate", "wrist_yaw"),
 ];
 
-/// Blocks of the furniture that belong to the link of the vise.
+/// Furniture blocks that belong to the link of the vise.
 const VISE_BLOCKS: [&str; 2] = ["vise_body", "fixed_jaw"];
 
-/// A shape of a link for the picture, in the link's frame.
+/// A shape of a link, in the link's frame.
 pub(super) enum Outline {
     Box(Inches),
-    /// Along the X axis: radius and length.
+    /// A cylinder along the X axis: radius and length.
     Cylinder(f64, f64),
 }
 
@@ -76,14 +76,14 @@ impl Cell {
         links
     }
 
-    /// Names and poses of the fixed links of the URDF, which [`Cell::links`] does not have.
+    /// Names and poses of the fixed links of the URDF, which [`Cell::links`] does not return.
     #[must_use]
     pub fn fixed_links(&self) -> Vec<Link> {
         let standing = self.furniture.iter().filter(|block| !VISE_BLOCKS.contains(&block.name.as_str()));
         standing.map(|block| link(&block.name, "world", &to_pose(&block.frame))).collect()
     }
 
-    /// Names and values of all joints of the URDF that are one number: radians, or metres for fingers and jaw.
+    /// Names and values of all revolute and prismatic joints of the URDF: radians, or metres for fingers and jaw.
     #[must_use]
     pub fn joint_states(&self) -> Vec<(&'static str, f64)> {
         let mut states: Vec<_> = JOINT_NAMES.into_iter().zip(self.joints()).collect();
@@ -99,9 +99,8 @@ impl Cell {
         self.urdf_with(&[])
     }
 
-    /// A URDF of the whole cell with the parts that will be put down later, by their names in the description and in
-    /// that order: a log gets the geometry before its first tick. Names that the description does not have are left
-    /// out.
+    /// A URDF of the whole cell with the parts that will be put down later, given by their names in the description and
+    /// in that order: so a log has the geometry before its first tick. Unknown names are left out.
     #[must_use]
     pub fn urdf_with(&self, coming: &[&str]) -> String {
         let mut urdf = Urdf::new(&self.description.name);
@@ -140,7 +139,7 @@ impl Cell {
         urdf.finish()
     }
 
-    /// Links and kinds of the present parts, and of those that will be put down: see [`Cell::urdf_with`].
+    /// Link names and kinds of the present parts, and of those that will be put down: see [`Cell::urdf_with`].
     #[must_use]
     pub fn part_kinds(&self, coming: &[&str]) -> Vec<(String, &PartType)> {
         let present = self.parts.iter().map(|part| (part.id, &part.kind));
@@ -166,7 +165,7 @@ impl Cell {
                 position: Inches::new(from + length / 2.0, 0.0, 0.0),
                 rotation: Rotation::identity(),
             };
-            // The turret stands upright.
+            // The turret is upright.
             let middle = if joint == 0 { Frame { rotation: upright(), ..Frame::identity() } } else { middle };
             urdf.begin_link(name);
             urdf.shape(&middle, &Outline::Cylinder(radius, length), ROBOT);
@@ -250,7 +249,7 @@ const MACHINE: &str = "0.30 0.52 0.58 1";
 const BENCH: &str = "0.79 0.68 0.50 1";
 const FLOOR: &str = "0.73 0.73 0.72 1";
 
-/// The colour of a block that stands still.
+/// The colour of a fixed block.
 fn colour(block: &Block) -> &'static str {
     match (block.kind, block.name.as_str()) {
         (Kind::Tray, _) => TRAY,
@@ -263,7 +262,7 @@ fn colour(block: &Block) -> &'static str {
     }
 }
 
-/// The colour of a part: that of its family.
+/// The colour of a part, by its family.
 fn part_colour(kind: &PartType) -> &'static str {
     match Family::of(kind) {
         Family::Tool => "0.82 0.23 0.20 1",
@@ -273,12 +272,12 @@ fn part_colour(kind: &PartType) -> &'static str {
     }
 }
 
-/// How a joint moves: radians or metres.
+/// Range, speed and effort of a joint: radians or metres.
 pub(super) struct Motion {
     pub axis: [f64; 3],
     /// Least and greatest value.
     pub range: (f64, f64),
-    /// Greatest speed, a second.
+    /// Greatest speed, rad/s or m/s.
     pub speed: f64,
     /// Greatest force, N, or moment, N·m; 0 where the description does not give it.
     pub effort: f64,

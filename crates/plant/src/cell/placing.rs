@@ -1,4 +1,4 @@
-//! Placing of parts, and their reported positions.
+//! Placing of parts, and reports of their positions.
 
 use geometry::frame::{Frame, Vector as Inches, rotation_by};
 use rapier3d_f64::{parry::query, prelude::*};
@@ -11,20 +11,20 @@ use crate::{
     solid::Solid,
 };
 
-/// Overlap that counts as one, when a part is put down, m.
+/// Least overlap of a new part with a body that blocks it, m.
 const OVERLAP: Real = 1e-4;
-/// Bodies whose middles are nearer than this to each other overlap, m.
+/// Bodies whose centres are nearer than this to each other overlap, m.
 const SAME_PLACE: Real = 1e-3;
 /// A part up to this height above a tray's floor counts as in the tray, in (ASSUMED: tall tools).
 const IN_TRAY: f64 = 10.0;
-/// A part whose middle is nearer than this to that of the seat of a nest is in the nest, in.
+/// A part whose centre is nearer than this to that of a nest's seat is in the nest, in.
 const IN_NEST: f64 = 1.0;
-/// A part is put down this far above what it comes to rest on, in.
+/// A part is put down this far above the surface on which it comes to rest, in.
 const DROP: f64 = 0.002;
 
 impl CellDescription {
-    /// Where a part lies that is delivered into a sector of a unit: `x` and `y` in from its place there,
-    /// turned by `angle` degrees. A part that has nests goes only there. World, in.
+    /// The frame, world, in, of a part that is delivered into a sector of a unit: offset by `x` and `y` (in) from its
+    /// place there and turned by `angle` (degrees). A part that has nests goes only into a nest.
     ///
     /// # Errors
     /// [`WorkstationError`] if the unit has no such place.
@@ -54,7 +54,7 @@ impl Cell {
     ) -> Result<Frame, WorkstationError> {
         let aside = match (*placement, self.description.spot(kind, unit, sector)?) {
             (Placement::At { x, y, angle }, _) => [x, y, angle],
-            // In a nest a part lies where the nest has it.
+            // A part in a nest has the frame of the nest's seat.
             (Placement::Random, Spot::Nest(_)) => [0.0; 3],
             (Placement::Random, Spot::Sector(_)) => {
                 let greatest = self.description.tray_shape.random_offset;
@@ -65,7 +65,7 @@ impl Cell {
         self.description.delivered(kind, unit, sector, aside)
     }
 
-    /// Put a part into a sector, with the changes of the fault plan.
+    /// Put a part into a sector, with the errors of delivery from the fault plan.
     pub(super) fn deliver(
         &mut self,
         part: &str,
@@ -103,7 +103,7 @@ impl Cell {
         let (shape, turn) = Solid::of(kind).shape();
         let pose = pose * turn;
         let overlaps = |other: &Pose, other_shape: &dyn rapier3d_f64::parry::shape::Shape| {
-            // Round shapes that lie in each other have no direction in which they are apart, and no depth.
+            // Round shapes inside each other have no separating direction, and no depth.
             let same = (pose.translation - other.translation).length() < SAME_PLACE;
             let contact = query::contact(&pose, &*shape, other, other_shape, 0.0);
             same || matches!(contact, Ok(Some(contact)) if contact.dist < -OVERLAP)

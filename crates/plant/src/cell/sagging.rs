@@ -1,9 +1,8 @@
 //! The arm without pressure: its loads, its contacts, and their report.
 //!
-//! A powered arm follows its path even through contact; a sagging arm does not. Obstacles push its rigid parts back
-//! with the stiffness of the arm, and the springs of fingers and held part push back by the contacts of the simulation.
-//! Reported depths are those of the arm's outline in the obstacle: with 2000 lb/in a tenth of an inch is two hundred
-//! pounds.
+//! A powered arm follows its path even through contact; a sagging arm does not. Obstacles push back its rigid parts
+//! with the stiffness of the arm; the simulated contacts act on fingers and held part through their springs. Reported
+//! depths are those of the arm's outline in the obstacle: at 2000 lb/in a tenth of an inch is two hundred pounds.
 
 use geometry::frame::Vector as Inches;
 use rapier3d_f64::{parry::query, prelude::*};
@@ -19,9 +18,9 @@ use crate::{
     t3::Cut,
 };
 
-/// Coefficient of friction of the robot's outline on what it lies on (ASSUMED: steel and paint).
+/// Coefficient of friction between the robot's outline and the surfaces that it rests on (ASSUMED: steel and paint).
 const FRICTION: f64 = 0.30;
-/// Bodies within this distance at the beginning of a tick may be touched in it, in.
+/// Bodies within this distance at the beginning of a tick can be touched during it, in.
 const NEAR: f64 = 0.5;
 /// Least growth of a contact that counts, in.
 const LEAST_DEPTH: f64 = 0.001;
@@ -29,22 +28,22 @@ const LEAST_DEPTH: f64 = 0.001;
 /// The droop of the arm since it lost its pressure.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Droop {
-    /// Why there is no pressure.
+    /// Cause of the loss of pressure.
     pub cause: Cut,
-    /// Where the tool point was when the pressure went, in.
+    /// Position of the tool point when the pressure was lost, in.
     pub position: [f64; 3],
     /// Contacts since then, each with its greatest depth; the deepest first.
     pub touched: Vec<Contact>,
     /// The arm has finished sagging.
     pub at_rest: bool,
-    /// The shoulder lies on the shot pin.
+    /// The shoulder rests on the shot pin.
     pub on_shot_pin: bool,
     /// Contacts when the pressure was lost.
     before: Vec<Contact>,
 }
 
 impl Droop {
-    /// Its state so far, as a text after "the arm".
+    /// Its state so far, as text to follow "the arm".
     #[must_use]
     pub fn end(&self) -> String {
         let pin = if self.on_shot_pin { ", its shoulder on the shot pin" } else { "" };
@@ -83,13 +82,13 @@ impl Cell {
         self.droop.as_ref()
     }
 
-    /// The hydraulics fail: the pressure is gone at once, without a switch being pressed.
+    /// Fail the hydraulics: the pressure is lost at once, without a switch being pressed.
     pub fn fail_hydraulics(&mut self) {
         self.t3.lose_pressure();
         self.hear_t3();
     }
 
-    /// The hydraulics are repaired; the pressure comes back by the keys of III.6.
+    /// Repair the hydraulics; the keys of III.6 restore the pressure.
     pub fn repair_hydraulics(&mut self) {
         self.t3.repair_hydraulics();
     }
@@ -112,7 +111,7 @@ impl Cell {
         }
     }
 
-    /// Once a tick: contacts of the sagging arm, and whether it is at rest.
+    /// Once a tick: record the contacts of the sagging arm, and whether it is at rest.
     pub(super) fn watch_droop(&mut self) {
         let Some(mut droop) = self.droop.take() else { return };
         droop.note(touching(&self.movers(), &self.all_obstacles()));
@@ -157,7 +156,7 @@ impl Cell {
             let chain = Chain::new(&self.joints());
             let weight = self.description.gripper.weight;
             loads.push(Load::weight(END_PLATE, chain.along(END_PLATE, TOOL_CENTRE), weight));
-            // In the axes of the tool: what the springs of fingers and held part carry, its weight included.
+            // In the axes of the tool: the load on the springs of fingers and held part, including their weight.
             let wrench = self.hand(hand).load(&self.world);
             let tool = self.t3.arm().tool();
             loads.push(Load {
@@ -199,12 +198,12 @@ impl Cell {
     }
 }
 
-/// Part of the robot's own outline: fingers and held parts are on springs.
+/// True if a body is rigidly attached to the robot: fingers and held parts are on springs.
 fn is_rigid(mover: &Body) -> bool {
     matches!(mover.kind, Kind::Arm | Kind::Gripper)
 }
 
-/// How two things penetrate, if they do.
+/// The contact of two penetrating bodies; `None` if they are apart.
 fn meet(mover: &Body, obstacle: &Body) -> Option<query::Contact> {
     if mover.is_joined_to(obstacle) || !obstacle.aabb.intersects(&mover.aabb) {
         return None;

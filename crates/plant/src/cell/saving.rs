@@ -1,8 +1,8 @@
-//! A cell as bytes, and its fingerprint.
+//! A cell as bytes, and its digest.
 //!
-//! Saved is everything on which the next tick depends: all bodies, joints and contacts with the state of the solver,
-//! all devices, the noise of the sensors, and events that were not read yet. A restored cell continues bit for bit like
-//! the saved one. Fixed bodies are made again from the description, which must be the same.
+//! The saved state is everything on which the next tick depends: all bodies, joints and contacts with the state of the
+//! solver, all devices, the noise of the sensors, and events that were not read yet. A restored cell continues bit for
+//! bit like the saved one. Fixed bodies are made again from the description, which must be the same.
 //!
 //! ```text
 //! RCSCELL\0   version u32   length u64   digest u64   the state, in postcard
@@ -16,48 +16,48 @@ use crate::{description::CellDescription, fingerprint, scene::furniture};
 
 /// First bytes of every saved cell.
 const MAGIC: [u8; 8] = *b"RCSCELL\0";
-/// Version of the saved state: to be raised with every change of what a cell consists of.
+/// Version of the saved state: increase it with every change of the fields of a cell.
 const VERSION: u32 = 4;
 /// Bytes before the state.
 const HEADER: usize = 28;
 
-/// Why a cell cannot be saved.
+/// Error of saving a cell.
 #[derive(Debug, thiserror::Error)]
 #[error("the state of the cell cannot be written: {0}")]
 pub struct SaveError(#[from] postcard::Error);
 
-/// Why bytes are not a cell that can go on.
+/// Errors of restoring a cell from bytes.
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub enum RestoreError {
-    /// They begin with something else.
+    /// The bytes do not begin with the magic number.
     #[error("this is not a saved cell: it does not begin with RCSCELL")]
     Foreign,
-    /// They were written by another version of the program.
+    /// The bytes were written in another version of the format.
     #[error("this cell was saved in version {found} of the format, expected version {VERSION}")]
     Version {
         /// The version in the header.
         found: u32,
     },
-    /// There are fewer or more than the header says.
+    /// There are fewer or more bytes than the header says.
     #[error("a saved cell of {expected} bytes was expected, found {found}")]
     Length {
-        /// Bytes that the header asks for; those of the header itself if not even that is there.
+        /// Number of bytes that the header gives; if the header is incomplete, its own length.
         expected: u64,
-        /// Bytes that are there.
+        /// Number of bytes found.
         found: u64,
     },
-    /// Some of them have changed.
+    /// The digest does not match: some bytes have changed.
     #[error("the saved cell is damaged: its digest is {found:016x}, expected {expected:016x}")]
     Damaged {
         /// The digest in the header.
         expected: u64,
-        /// That of the bytes.
+        /// Digest of the bytes.
         found: u64,
     },
-    /// They are undamaged but cannot be decoded: the version of the writing program should have been raised.
+    /// The bytes are undamaged but cannot be decoded: their writer should have increased the version.
     #[error("the saved cell cannot be read: {0}")]
     Unreadable(#[from] postcard::Error),
-    /// The cell that was saved was built from another description.
+    /// The saved cell was built from another description.
     #[error("the cell was saved from another description than the one given")]
     OtherDescription,
 }
@@ -66,7 +66,7 @@ impl Cell {
     /// The whole state as bytes, for [`Cell::restore`].
     ///
     /// # Errors
-    /// [`SaveError`] if the state is beyond what the format can hold.
+    /// [`SaveError`] if the format cannot hold the state.
     pub fn save(&self) -> Result<Vec<u8>, SaveError> {
         let mut bytes = Vec::with_capacity(256 * 1024);
         bytes.extend([0; HEADER]);
@@ -79,13 +79,13 @@ impl Cell {
         Ok(bytes)
     }
 
-    /// The cell that was saved, built from `description` as the saved one was.
+    /// Restore a saved cell; `description` is the one that it was built from.
     ///
     /// # Errors
-    /// [`RestoreError`] if the bytes are not such a cell, whole and undamaged.
+    /// [`RestoreError`] if the bytes are not a complete, undamaged cell of this description.
     pub fn restore(description: &CellDescription, bytes: &[u8]) -> Result<Self, RestoreError> {
         let mut cell: Self = postcard::from_bytes(state_in(bytes)?)?;
-        // A pedestal that was moved from its mark stands where its fault has put it.
+        // A pedestal that a fault has moved from its mark is restored at that place.
         let description = cell.faults.displaced(description);
         if cell.description != description {
             return Err(RestoreError::OtherDescription);
@@ -95,11 +95,11 @@ impl Cell {
         Ok(cell)
     }
 
-    /// Fingerprint of all positions, velocities and device states of the cell: the same in two runs as long as they are
-    /// the same.
+    /// Digest of all positions, velocities and device states of the cell: two runs have the same digest while they are
+    /// in the same state.
     ///
     /// # Panics
-    /// If a device refuses to be serialised, which is a fault of this crate.
+    /// If a device cannot be serialised, which is a fault of this crate.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut bytes = Vec::with_capacity(8 * 1024);
@@ -121,7 +121,7 @@ impl Cell {
     }
 }
 
-/// The state behind a header that fits it.
+/// The state after a valid header.
 fn state_in(bytes: &[u8]) -> Result<&[u8], RestoreError> {
     let known = MAGIC.len().min(bytes.len());
     if bytes[..known] != MAGIC[..known] {

@@ -16,19 +16,19 @@ use crate::{
     sensor::resolver,
 };
 
-/// Links of the arm that can come between the camera on its wrist and a part.
+/// Links of the arm that can be between the camera on its wrist and a part.
 const ARM_IN_VIEW: [&str; 2] = ["upper_arm", "forearm"];
 
 impl Cell {
-    /// From now on another process analyses the camera's pictures: the caller gets them by [`Cell::picture`], and
-    /// passes the answers to [`Cell::hear_vision`].
+    /// Let another process analyse the camera's pictures: the caller gets them from [`Cell::picture`], and passes the
+    /// answers to [`Cell::hear_vision`].
     #[must_use]
     pub fn with_vision_elsewhere(mut self) -> Self {
         self.vision_elsewhere = true;
         self
     }
 
-    /// From now on the noise of the sensors, and where parts are put down at random, are those of another seed.
+    /// Draw the noise of the sensors and the random places of parts from another seed from now on.
     pub fn reseed(&mut self, seed: u64) {
         self.gripper_noise = Noise::new(seed, Stream::Gripper);
         self.pedestal_noise = Noise::new(seed, Stream::Pedestal);
@@ -38,7 +38,7 @@ impl Cell {
         self.analysis.reseed(seed);
     }
 
-    /// Take a picture if one is asked for.
+    /// Take a picture if there is a new request.
     pub(super) fn look(&mut self, outputs: &DeviceOutputs) {
         if self.vision_elsewhere || !self.analysis.wants_picture(&outputs.vision) {
             return;
@@ -48,7 +48,7 @@ impl Cell {
         self.analysis.expose(&outputs.vision, &seen, expected);
     }
 
-    /// The parts that the camera sees now.
+    /// The parts now visible to the camera.
     #[must_use]
     pub fn picture(&self) -> Vec<Subject> {
         if self.faults.camera_blind() {
@@ -58,7 +58,7 @@ impl Cell {
         self.subjects(&frame).into_iter().filter(|subject| subject.raster() != 0).collect()
     }
 
-    /// Pass the answer of a vision system in another process, if its cable is connected.
+    /// Pass on the answer of a vision system in another process, if its cable is connected.
     pub fn hear_vision(&mut self, response: &VisionResponse) {
         self.inputs.vision = *response;
         self.faults.vision(&mut self.inputs);
@@ -114,8 +114,8 @@ impl Cell {
         inputs
     }
 
-    /// Sensors of the gripper that is mated. All three have their potentiometer on the same connections; beam breaks and
-    /// strain gages only the parts gripper, force gages only the tool gripper has (III.3.6 to III.3.8).
+    /// Sensors of the mated gripper. All three grippers have their potentiometer on the same connections; only the
+    /// parts gripper has beam breaks and strain gages, only the tool gripper has force gages (III.3.6 to III.3.8).
     fn sense_gripper(&mut self) -> (GripSensors, ForceSensor) {
         let Some(hand) = self.changer.mated() else { return Default::default() };
         let beams = if hand == Hand::Parts { self.broken_beams() } else { 0 };

@@ -1,12 +1,12 @@
-//! How long a step of the simulation is.
+//! Length of a step of the simulation.
 //!
-//! A tick has as many sub-steps as the description says: springs, contacts and moving air need them. Most of the time
+//! The description sets the number of sub-steps in a tick: springs, contacts and moving air need them. Most of the time
 //! nothing needs them. The servos of the arm always move in sub-steps; the physics takes several at once while
 //!
-//! * nothing moves but bodies that are led: a whole tick;
-//! * a part hangs free in the still fingers of one hand: a quarter of a tick.
+//! * only kinematic bodies move: a whole tick;
+//! * a part hangs free in the motionless fingers of one hand: a quarter of a tick.
 //!
-//! Sub-steps are taken one by one while anything is as near to the robot's hand as [`NEAR`].
+//! The physics takes single sub-steps while anything is nearer to the robot's hand than [`NEAR`].
 
 use geometry::frame::Frame;
 use interfaces::device::DeviceOutputs;
@@ -23,20 +23,20 @@ use crate::{
     jaws::Supply,
 };
 
-/// Nearer than this to hand, fingers or held part, m, something may be touched in the next sub-step, beside twice the
-/// travel of the hand in this one.
+/// Distance to hand, fingers or held part, m, below which contact is possible in the next sub-step; twice the travel of
+/// the hand in this one is added.
 const NEAR: Real = 0.004;
-/// Fingers stay farther than this from anything in a long step, m.
+/// Least distance of the fingers from anything in a long step, m.
 const SLACK: Real = 0.001;
-/// What is farther than this from hand, fingers and held part is out of their reach for a tick, m: the shipped arm
-/// moves by less with all joints at their greatest speeds.
+/// Farther than this from hand, fingers and held part, m, nothing can be reached within a tick: the shipped arm moves
+/// by less with all joints at their greatest speeds.
 const REACH: Real = 0.5;
 
-/// What the steps of a tick depend on.
+/// Data that determine the steps of a tick.
 struct Stride {
-    /// Sub-steps that the physics takes at once.
+    /// Greatest number of sub-steps that the physics takes at once.
     most: u32,
-    /// Boxes around what the hand may come near to.
+    /// Bounding boxes of everything that the hand may come near to.
     around: Vec<Aabb>,
     /// Colliders of hand and held part, and their poses in the hand.
     carried: Vec<(ColliderHandle, Pose)>,
@@ -57,8 +57,8 @@ impl Cell {
         }
     }
 
-    /// One step of the physics, of at most `left` sub-steps; returns of how many. `near` are the bodies that an arm
-    /// without pressure may touch.
+    /// Take one step of the physics of at most `left` sub-steps; returns their number. `near` are the bodies that an
+    /// arm without pressure may touch.
     fn step_physics(
         &mut self,
         outputs: &DeviceOutputs,
@@ -91,7 +91,7 @@ impl Cell {
         taken
     }
 
-    /// The steps of a tick with these commands.
+    /// The steps of a tick for these commands.
     fn stride(&self, outputs: &DeviceOutputs) -> Stride {
         let most = self.most_at_once(outputs);
         let hand = self.changer.mated().filter(|_| most > 1);
@@ -102,7 +102,7 @@ impl Cell {
         Stride { most, around, carried, tool: self.t3.arm().tool(), near }
     }
 
-    /// Sub-steps that the physics may take at once if the hand stays clear of everything.
+    /// Number of sub-steps that the physics may take at once if the hand stays clear of everything.
     fn most_at_once(&self, outputs: &DeviceOutputs) -> u32 {
         let whole = self.description.physics.substeps;
         let always_small = !self.description.physics.long_steps;
@@ -117,7 +117,7 @@ impl Cell {
         if loose.all(|(body, _)| self.hangs_free(body, outputs)) { (whole / 4).max(1) } else { 1 }
     }
 
-    /// A device moves, or is about to move, that is neither the arm nor the free fingers of its hand.
+    /// True if a device other than the arm and the free fingers of its hand moves or is about to move.
     fn something_works(&self, outputs: &DeviceOutputs) -> bool {
         let pedestal = Supply::of_bits(outputs.pedestal_hand.bits);
         self.vise.moving()
@@ -127,7 +127,7 @@ impl Cell {
             || !self.changer.rests()
     }
 
-    /// A body is a part in the still fingers of the robot that touches nothing else.
+    /// True if a body is a part in the motionless fingers of the robot and touches nothing else.
     fn hangs_free(&self, body: RigidBodyHandle, outputs: &DeviceOutputs) -> bool {
         let Some(hand) = self.changer.mated() else { return false };
         let Some((index, hold)) = &self.hand(hand).hold else { return false };
@@ -139,7 +139,7 @@ impl Cell {
             && !self.world.contact_pairs_with(part.collider).any(ContactPair::has_any_active_contact)
     }
 
-    /// Colliders of a hand and of what it holds, and their poses in the hand.
+    /// Colliders of a hand and of the part that it holds, and their poses in the hand.
     fn carried_by(&self, hand: Hand) -> Vec<(ColliderHandle, Pose)> {
         let gripper = self.hand(hand);
         let held = gripper.hold.as_ref().map(|(index, _)| self.parts[*index].collider);
@@ -151,7 +151,7 @@ impl Cell {
             .collect()
     }
 
-    /// Boxes around everything that what the hand carries may reach in a tick.
+    /// Bounding boxes of everything that the hand and its part may reach in a tick.
     fn around(&self, carried: &[(ColliderHandle, Pose)]) -> Vec<Aabb> {
         let colliders = &self.world.colliders;
         let own = carried.iter().map(|(own, _)| colliders[*own].compute_aabb());
@@ -164,7 +164,7 @@ impl Cell {
         others.map(|(_, collider)| collider.compute_aabb()).filter(|other| other.intersects(&reach)).collect()
     }
 
-    /// The hand, which the arm has moved in a sub-step, is near nothing.
+    /// True if the hand, which the arm has moved in a sub-step, is near nothing.
     fn is_clear(&self, stride: &mut Stride) -> bool {
         let tool = self.t3.arm().tool();
         let travel = metres((tool.position - stride.tool.position).norm());

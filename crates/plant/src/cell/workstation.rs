@@ -1,4 +1,4 @@
-//! Actions of the workstation besides the robot: put down and remove parts, operate the vise, machine parts.
+//! Workstation actions besides those of the robot: put down and remove parts, operate the vise, machine parts.
 
 use geometry::frame::Frame;
 
@@ -11,7 +11,7 @@ use crate::{
     vise::Jaws,
 };
 
-/// Where in a sector a part is put down.
+/// Place of a new part in a sector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Placement {
     /// At an offset from the centre of the sector.
@@ -23,7 +23,7 @@ pub enum Placement {
         /// Right-hand roll about the tool's X (down), degrees; at 0 the part's Z is the tool's Z.
         angle: f64,
     },
-    /// At random within the tray's random offset, at any angle, from the seed.
+    /// At random within the random offset of the tray, at any angle, drawn from the seed.
     Random,
 }
 
@@ -48,27 +48,27 @@ pub enum WorkstationAction {
         /// Its frame, in.
         frame: Frame,
     },
-    /// Take away the part of a number.
+    /// Remove the part with a number.
     Remove {
         /// Its number.
         id: u32,
     },
     /// Open the vise.
     ViseOpen,
-    /// Close the vise so far that a blank goes in.
+    /// Close the vise just wide enough for a blank to go in.
     VisePartial,
     /// Close the vise.
     ViseClose,
-    /// Go on with another program of the vise; the jaw stays until an opening is commanded.
+    /// Select another program of the vise; the jaw does not move until an opening is commanded.
     ViseProgram {
         /// Its name.
         name: String,
     },
-    /// Machine the part that is clamped in the vise, or stands in a nest.
+    /// Machine the part that is clamped in the vise or in a nest.
     Machine {
-        /// What it must be.
+        /// The part that must be there.
         from: String,
-        /// What it becomes.
+        /// The part that it becomes.
         to: String,
         /// Name of the location of the vise or the nest.
         location: String,
@@ -82,18 +82,18 @@ pub enum WorkstationAction {
         /// Name of a part of the description.
         part: String,
     },
-    /// Do something at the joystick box.
+    /// Operate the joystick box.
     Joystick(BoxAction),
-    /// Do something at the T3 controller, or an emergency stop.
+    /// Operate the T3 controller, or an emergency stop.
     T3(Key),
-    /// Do something at the panel of the rotary table's controller.
+    /// Operate the panel of the rotary table's controller.
     Table(TableKey),
 }
 
-/// Why the workstation refuses an action.
+/// Reasons for which the workstation refuses an action.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WorkstationError {
-    /// No part of that name in the description.
+    /// The description has no part of that name.
     #[error("no part named {name}; the cell description has {}", list(.known))]
     UnknownPart {
         /// The name.
@@ -101,7 +101,7 @@ pub enum WorkstationError {
         /// All names.
         known: Vec<String>,
     },
-    /// No unit of that name.
+    /// The description has no unit of that name.
     #[error("no unit named {name}; the cell description has {}", list(.known))]
     UnknownUnit {
         /// The name.
@@ -116,10 +116,10 @@ pub enum WorkstationError {
         unit: String,
         /// The sector asked for.
         sector: u16,
-        /// How many there are.
+        /// Number of sectors of the unit.
         sectors: usize,
     },
-    /// The part is made for a nest, and there is none.
+    /// The part needs a nest, and there is none.
     #[error("no place for {part} in sector {sector} of {unit}; the cell description has {}", places(.known))]
     NoNest {
         /// The part.
@@ -128,15 +128,15 @@ pub enum WorkstationError {
         unit: String,
         /// The sector asked for.
         sector: u16,
-        /// Locations and sectors of its nests; sector 0 is none.
+        /// Locations and sectors of its nests; sector 0 stands for a nest without a sector.
         known: Vec<(String, u16)>,
     },
-    /// The cell has its vise elsewhere.
+    /// The vise is at another location.
     #[error("there is no vise at {location}; the cell description has one at {known}")]
     NoVise {
         /// The location asked for.
         location: String,
-        /// That of the vise.
+        /// The location of the vise.
         known: String,
     },
     /// The vise has no such program.
@@ -147,7 +147,7 @@ pub enum WorkstationError {
         /// All names.
         known: Vec<String>,
     },
-    /// The part is none that fits into the drum.
+    /// The part is not a tool for the drum.
     #[error("{name} is no tool; the cell description has {}", list(.known))]
     NoTool {
         /// The name.
@@ -160,15 +160,15 @@ pub enum WorkstationError {
     NoMachine {
         /// The location asked for.
         location: String,
-        /// All locations where something can.
+        /// All locations where something can be machined.
         known: Vec<String>,
     },
-    /// Something is there already.
+    /// The place is occupied.
     #[error("{part} cannot be put there: {by} is in the way")]
     Occupied {
         /// The part.
         part: String,
-        /// What is there.
+        /// The body in that place.
         by: String,
     },
     /// There is no part of that number.
@@ -177,13 +177,13 @@ pub enum WorkstationError {
         /// The number.
         id: u32,
     },
-    /// A part that is held cannot be taken away.
+    /// A held part cannot be removed.
     #[error("{part} is held and cannot be taken away")]
     Held {
         /// The part.
         part: String,
     },
-    /// A part that the robot still has cannot be machined in a nest.
+    /// A part that the robot still holds cannot be machined in a nest.
     #[error("{part} is to be machined, but the robot still has it")]
     InHand {
         /// The part.
@@ -195,23 +195,23 @@ pub enum WorkstationError {
     /// Nothing is clamped.
     #[error("{expected} is to be machined, but nothing is clamped in the vise")]
     NotClamped {
-        /// What was expected.
+        /// The expected part.
         expected: String,
     },
     /// The nest is empty.
     #[error("{expected} is to be machined, but nothing is at {location}")]
     NothingThere {
-        /// What was expected.
+        /// The expected part.
         expected: String,
-        /// Where.
+        /// The location of the nest.
         location: String,
     },
-    /// Something else is there.
+    /// Another part is there.
     #[error("{expected} is to be machined, but {found} is there")]
     WrongPart {
-        /// What was expected.
+        /// The expected part.
         expected: String,
-        /// What is there.
+        /// The part that is there.
         found: String,
     },
     /// The fingers of the drum cannot close on the tool that is there.
@@ -219,15 +219,15 @@ pub enum WorkstationError {
     NotInPlace {
         /// The tool.
         tool: String,
-        /// How far its middle is from its place, in.
+        /// Distance of its centre from its place, in.
         distance: f64,
-        /// How far its axis is turned, degrees.
+        /// Angle of its axis to that of its place, degrees.
         degrees: f64,
     },
-    /// The fingers of the drum would close on nothing.
+    /// The fingers of the drum would close on no tool.
     #[error("the drum has nothing to grip: no tool is in its place")]
     NothingToGrip,
-    /// The side was machined before.
+    /// The side in front was machined before.
     #[error(
         "{part} is to be machined on its other side, but the one in front was machined before: turn it round first"
     )]
@@ -235,7 +235,7 @@ pub enum WorkstationError {
         /// The part.
         part: String,
     },
-    /// The part is there, but not where it belongs.
+    /// The part is too far from its seat.
     #[error(
         "{part} is {distance:.3} in and {degrees:.2} degrees from its seat; {} in and {} degrees are allowed",
         .allowed.inches, .allowed.degrees
@@ -243,20 +243,20 @@ pub enum WorkstationError {
     NotSeated {
         /// The part.
         part: String,
-        /// How far its middle is from the seat, in.
+        /// Distance of its centre from the seat, in.
         distance: f64,
-        /// How far it is turned, degrees.
+        /// Angle of the part to the seat, degrees.
         degrees: f64,
-        /// What is allowed.
+        /// The tolerance.
         allowed: Tolerance,
     },
-    /// The T3 controller does not do that now.
+    /// The T3 controller refuses the key in its present state.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// The rotary table's controller does not do that now.
+    /// The rotary table's controller refuses the key in its present state.
     #[error(transparent)]
     TableRefused(#[from] TableRefusal),
-    /// The next part does not fit into the blank.
+    /// The next part is larger than the blank.
     #[error("{to} does not fit into {from}")]
     TooLarge {
         /// The blank.
@@ -267,10 +267,10 @@ pub enum WorkstationError {
 }
 
 impl Cell {
-    /// Begin an action. The jaw of the vise then moves with the ticks; see [`Cell::workstation_busy`].
+    /// Begin an action. A jaw of the vise then moves tick by tick; see [`Cell::workstation_busy`].
     ///
     /// # Errors
-    /// [`WorkstationError`]; then nothing has changed.
+    /// [`WorkstationError`]; the state is unchanged.
     pub fn workstation(&mut self, action: &WorkstationAction) -> Result<(), WorkstationError> {
         self.description.admits(action)?;
         match action {
@@ -302,8 +302,8 @@ impl Cell {
         }
     }
 
-    /// True while the vise is moving, something at the joystick box is held down, or the T3 controller or that of the
-    /// rotary table does what a key has begun.
+    /// True while the vise moves, a control of the joystick box is held down, or the T3 controller or that of the
+    /// rotary table carries out the action of a key.
     #[must_use]
     pub fn workstation_busy(&self) -> bool {
         self.vise.moving() || self.joystick.busy() || self.t3.busy() || self.pedestal.table.is_led_by_hand()
@@ -317,7 +317,7 @@ impl Cell {
         }
         let part = self.parts.remove(index);
         self.world.remove_body(part.body);
-        // What is held is known by its place in the list.
+        // Holders know their part by its index in the list.
         self.renumber(|held| if held > index { held - 1 } else { held });
         Ok(())
     }
@@ -345,12 +345,12 @@ impl Cell {
     }
 }
 
-/// Names in a row.
+/// The names as a comma-separated list.
 fn list(names: &[String]) -> String {
     names.join(", ")
 }
 
-/// Places in a row.
+/// The places as a comma-separated list.
 fn places(places: &[(String, u16)]) -> String {
     let place = |(location, sector): &(String, u16)| match sector {
         0 => location.clone(),

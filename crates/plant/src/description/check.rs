@@ -1,7 +1,6 @@
 //! Checks of the numbers and names of a cell description.
 //!
-//! Every check names its entry by its path (`gripper.parts.body[0]`), so that it can be found and underlined in the
-//! text.
+//! Every check names its entry by its path (`gripper.parts.body[0]`), so that the message can underline it in the text.
 
 mod collector;
 mod parts;
@@ -31,7 +30,7 @@ impl CellDescription {
         Err(DescriptionError::Mistakes(Diagnostics::without_text(problems)))
     }
 
-    /// All problems of the entries that have no stand-ins, and the entries that must be more than 0.
+    /// All problems of the entries without stand-ins, and the entries that must be more than 0.
     pub(super) fn problems(&self, stand_ins: &StandIns) -> (Vec<Problem>, BTreeSet<Path>) {
         let mut check = Check { problems: Vec::new(), positive: BTreeSet::new(), stand_ins };
         self.check_physics_and_robot(&mut check);

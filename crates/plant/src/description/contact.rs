@@ -11,34 +11,34 @@ use serde::{Deserialize, Serialize};
 
 use super::CellDescription;
 
-/// What kind of thing can collide.
+/// The kinds of bodies that can collide.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Kind {
     /// A link of the arm: `turret`, `upper_arm`, `forearm`, `wrist`.
     Arm,
-    /// What hangs on the arm and is no finger: `quick_change`, `camera`, `gripper_body`.
+    /// A body on the arm that is not a finger: `quick_change`, `camera`, `gripper_body`.
     Gripper,
-    /// `left_finger`, `right_finger` of the gripper that is worn.
+    /// A finger of the gripper on the robot: `left_finger`, `right_finger`.
     Finger,
-    /// The part that the robot has, by its name.
+    /// The part that the robot holds, by its name.
     HeldPart,
     /// A box of the description, by its name.
     Fixture,
     /// Floor or wall of a tray: `UNIT_1_floor`, `UNIT_1_near_wall` and so on.
     Tray,
-    /// `vise_body`, `fixed_jaw`, `movable_jaw`.
+    /// A body of the vise: `vise_body`, `fixed_jaw`, `movable_jaw`.
     Vise,
     /// Cheek, lip or foot of a holster.
     Holster,
-    /// A gripper that the robot does not wear: `parts_gripper`, `v_gripper`, `tool_gripper`.
+    /// A gripper that is not on the robot: `parts_gripper`, `v_gripper`, `tool_gripper`.
     StoredGripper,
     /// A box of the strike plate of the tool drum, by its name.
     Drum,
     /// The hand of the pedestal without its fingers: `pedestal_hand`.
     PedestalHand,
-    /// `pedestal_left_finger`, `pedestal_right_finger`.
+    /// A finger of the pedestal's hand: `pedestal_left_finger`, `pedestal_right_finger`.
     PedestalFinger,
-    /// A part that the robot does not have, by its name.
+    /// A part that the robot does not hold, by its name.
     Part,
 }
 
@@ -60,7 +60,7 @@ impl Kind {
         Self::Part,
     ];
 
-    /// The groups that an entry can name it by.
+    /// The names of the groups that contain it.
     #[must_use]
     pub const fn groups(self) -> &'static [&'static str] {
         match self {
@@ -80,38 +80,38 @@ impl Kind {
         }
     }
 
-    /// It moves with the arm.
+    /// True if it moves with the arm.
     #[must_use]
     pub const fn is_mover(self) -> bool {
         matches!(self, Self::Arm | Self::Gripper | Self::Finger | Self::HeldPart)
     }
 
-    /// The arm can meet it.
+    /// True if the arm can collide with it.
     #[must_use]
     pub const fn is_obstacle(self) -> bool {
         !matches!(self, Self::Gripper | Self::Finger | Self::HeldPart)
     }
 
-    /// It is rigid metal, and not a part.
+    /// True if it is rigid metal, and not a part.
     #[must_use]
     pub const fn is_robot(self) -> bool {
         matches!(self, Self::Arm | Self::Gripper | Self::Finger)
     }
 }
 
-/// A name, a group, or either with one `*` for any letters.
+/// A name, a group, or either with one `*` for any characters.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
 pub struct Pattern(pub String);
 
 impl Pattern {
-    /// It matches a body of this name and kind.
+    /// True if it matches a body of this name and kind.
     #[must_use]
     pub fn matches(&self, name: &str, kind: Kind) -> bool {
         self.means_kind(kind) || self.means_name(name)
     }
 
-    /// It matches everything of a kind.
+    /// True if it matches every body of a kind.
     #[must_use]
     pub fn means_kind(&self, kind: Kind) -> bool {
         self.0 == "*" || kind.groups().contains(&self.0.as_str())
@@ -140,14 +140,14 @@ impl fmt::Display for Pattern {
 pub struct Permit {
     /// The moving bodies.
     pub mover: Vec<Pattern>,
-    /// What they may touch.
+    /// The obstacles that they may touch.
     pub obstacle: Vec<Pattern>,
-    /// While E-move or Subtask has one of these commands; always if there are none.
+    /// Commands of E-move or Subtask during which it holds; always if the list is empty.
     #[serde(default)]
     pub during: Vec<String>,
-    /// Greatest depth, in; any depth without it.
+    /// Greatest depth, in; without it any depth.
     pub depth: Option<f64>,
-    /// Why.
+    /// The reason.
     pub why: String,
 }
 
@@ -167,7 +167,7 @@ impl Permit {
     }
 }
 
-/// The list of a cell description.
+/// The permits of a cell description.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct Permits(pub Vec<Permit>);
@@ -179,7 +179,7 @@ impl Permits {
         self.0.iter().map(|permit| permit.always(mover, obstacle)).fold(0.0, f64::max)
     }
 
-    /// Permitted depth of a mover in an obstacle while E-move and Subtask have these commands, in; 0 if none.
+    /// Permitted depth of a mover in an obstacle while E-move and Subtask execute these commands, in; 0 if none.
     #[must_use]
     pub fn during(&self, mover: (&str, Kind), obstacle: (&str, Kind), commands: [&str; 2]) -> f64 {
         let now = self.0.iter().filter(|permit| {
@@ -195,7 +195,7 @@ impl Permits {
         covering.map(Permit::limit).fold(0.0, f64::max)
     }
 
-    /// True if all of one kind may touch all of another at any time to any depth: they need no check.
+    /// True if every body of one kind may always touch every body of another to any depth: no check is needed.
     #[must_use]
     pub fn ignores(&self, mover: Kind, obstacle: Kind) -> bool {
         self.0.iter().any(|permit| {
@@ -207,7 +207,7 @@ impl Permits {
     }
 }
 
-/// The commands that an entry can name: those of E-move and of Subtask.
+/// The names of the commands that an entry can list: those of E-move and of Subtask.
 pub fn commands() -> impl Iterator<Item = &'static str> {
     let emove = EmoveVerb::ALL.iter().map(|verb| verb.text());
     let subtask = SubtaskVerb::ALL.iter().map(|verb| verb.text());

@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use super::Robot;
 
-/// Drives of the joints: servos with pressure, the weight of the arm without.
+/// Drives of the joints: the servos under pressure, the hydraulics for the arm without pressure.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Actuators {
     /// First-order lag of the joint servos, s.
     pub lag_s: f64,
     /// Greatest speed of each joint under pressure, degrees/s.
     pub speeds: [f64; 6],
-    /// The rest.
+    /// Hydraulics and weights.
     pub hydraulics: Hydraulics,
 }
 
@@ -20,14 +20,14 @@ pub struct Actuators {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Hydraulics {
-    /// From MANUAL ON to the pressure, s: the short delay of IV.3.3 step 8.
+    /// Time from MANUAL ON until there is pressure, s: the short delay of IV.3.3 step 8.
     pub pump_delay_s: f64,
     /// Speed at which a joint without pressure sinks under its load at HOME, degrees/s.
     pub droop_rate: f64,
     /// Angle by which the shoulder sinks until the shot pin stops it, degrees.
     pub shot_pin: f64,
-    /// A servo's command is never farther than this from its joint, degrees: the command follows a sagging joint, which
-    /// jumps back by at most this angle when the pressure returns.
+    /// Greatest distance of a servo's command from its joint, degrees: the command follows a sagging joint, which jumps
+    /// back by at most this angle when the pressure returns.
     pub following_error: f64,
     /// Weight of the upper arm, lb.
     pub upper_arm_weight: f64,
@@ -35,7 +35,7 @@ pub struct Hydraulics {
     pub forearm_weight: f64,
     /// Weight of the wrist, lb.
     pub wrist_weight: f64,
-    /// Weight of quick change and gripper that the hydraulics are made for, lb.
+    /// Weight of quick change and gripper for which the hydraulics are designed, lb.
     pub tool_weight: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Common values of kinds of sensors; scales and offsets are with their devices.
+//! Common values of each kind of sensor; scales and offsets are given with the devices.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,9 +16,9 @@ pub struct SensorModels {
     pub force_delay: u16,
     /// Dead time of proximity sensors, light beams and limit switches, ticks.
     pub switch_delay: u16,
-    /// Hysteresis of a proximity sensor: an ear is seen until it is this much farther away than where it was first
-    /// seen, in.
+    /// Hysteresis of a proximity sensor: it detects an ear until the ear is this much farther away than where the
+    /// sensor first detected it, in.
     pub proximity_hysteresis: f64,
-    /// The same of the ring's reflectance sensors, as a share of its way.
+    /// Hysteresis of the ring's reflectance sensors, as a fraction of the ring's travel.
     pub ring_hysteresis: f64,
 }

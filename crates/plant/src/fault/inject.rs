@@ -17,7 +17,7 @@ use crate::{
     sensor::{DelayLine, Sensor},
 };
 
-/// Streams of numbers of faults begin here; those of devices are below ([`crate::noise::Stream`]).
+/// First random stream of faults; devices use lower ones ([`crate::noise::Stream`]).
 const STREAMS: u64 = 1000;
 /// Mixes the seed of the plan with that of the run: 2^64 divided by the golden ratio.
 const MIX: u64 = 0x9E37_79B9_7F4A_7C15;
@@ -37,11 +37,11 @@ struct Running {
     active: bool,
     /// The tick in which it began.
     began: u64,
-    /// The tick behind its end, if it has a rate.
+    /// The first tick after its end, if it has a rate.
     until: u64,
     /// The value at which a sensor is stuck.
     caught: Option<i64>,
-    /// Words on their way through a slow sensor.
+    /// Words on their way through a delayed sensor.
     late: DelayLine,
     times: u64,
     first: u64,
@@ -51,28 +51,28 @@ struct Running {
 /// A fault that has happened.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Struck {
-    /// Which one of its file, from 1.
+    /// Its number in the file, from 1.
     pub number: usize,
-    /// As text.
+    /// The fault as text.
     pub text: String,
-    /// How often it has begun.
+    /// Number of times that it has begun.
     pub times: u64,
-    /// The tick in which it began first.
+    /// The tick in which it first began.
     pub first: u64,
     /// The last tick in which it was present.
     pub last: u64,
 }
 
-/// Faults of a delivery.
+/// Errors of a delivery.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Delivery {
     /// Nothing is delivered.
     pub missing: bool,
     /// The part that is delivered instead.
     pub instead: Option<String>,
-    /// Beside its place along world X and Y, in.
+    /// Offset from its place along world X and Y, in.
     pub aside: [f64; 2],
-    /// Turned about the tool's X, degrees.
+    /// Rotation about the tool's X, degrees.
     pub angle: f64,
 }
 
@@ -85,7 +85,7 @@ pub(crate) struct Change {
 }
 
 impl Injector {
-    /// The faults of a plan in a run with a seed, before the first tick.
+    /// The faults of a plan before the first tick; the seed of the run is combined with that of the plan.
     #[must_use]
     pub fn new(plan: &FaultPlan, seed: u64) -> Self {
         let mut injector = Self::default();
@@ -93,7 +93,7 @@ impl Injector {
         injector
     }
 
-    /// Add the faults of another plan, except those that displace something from the beginning.
+    /// Add the faults of another plan, except initial displacements.
     pub(crate) fn add(&mut self, plan: &FaultPlan, seed: u64) {
         let stays = |fault: &&Fault| !matches!(fault.what, What::PedestalMoved { .. });
         self.push(plan.faults.iter().filter(stays), plan.seed, seed);
@@ -122,7 +122,7 @@ impl Injector {
         self.faults.iter_mut().filter_map(|running| running.turn(tick)).collect()
     }
 
-    /// The next tick.
+    /// Advance to the next tick; returns the faults that begin or end in it.
     pub(crate) fn next(&mut self) -> Vec<Change> {
         self.tick += 1;
         self.turn()
@@ -132,7 +132,7 @@ impl Injector {
         self.faults.iter().filter(|running| running.active).map(|running| &running.fault.what)
     }
 
-    /// The controller's commands, changed by faults of valves.
+    /// The controller's commands with the faults of valves applied.
     #[must_use]
     pub fn outputs(&self, outputs: &DeviceOutputs) -> DeviceOutputs {
         let mut arrives = *outputs;
@@ -143,14 +143,14 @@ impl Injector {
                 _ => {}
             }
         }
-        // A valve that stands open lets nothing through either when there is no air.
+        // Without air supply, a valve that is stuck open passes nothing either.
         if self.active().any(|what| *what == What::AirLost) {
             cut_air(&mut arrives);
         }
         arrives
     }
 
-    /// Change the sensor words.
+    /// Apply the faults to the sensor words.
     pub fn inputs(&mut self, inputs: &mut DeviceInputs) {
         let tick = self.tick;
         for running in self.faults.iter_mut().filter(|running| running.active) {
@@ -160,7 +160,7 @@ impl Injector {
         }
     }
 
-    /// Change the answer of a vision system that comes later than the sensor words.
+    /// Apply the faults to the answer of a vision system that arrives after the sensor words.
     pub(crate) fn vision(&mut self, inputs: &mut DeviceInputs) {
         let tick = self.tick;
         for running in self.faults.iter_mut().filter(|running| running.active) {
@@ -172,25 +172,25 @@ impl Injector {
         }
     }
 
-    /// The hydraulics have failed.
+    /// True if the hydraulics have failed.
     #[must_use]
     pub fn hydraulics_lost(&self) -> bool {
         self.active().any(|what| *what == What::HydraulicsLost)
     }
 
-    /// The jaw of the vise does not move.
+    /// True if the jaw of the vise is stuck.
     #[must_use]
     pub fn jaw_stuck(&self) -> bool {
         self.active().any(|what| *what == What::JawStuck)
     }
 
-    /// The camera sees nothing.
+    /// True if the camera sees nothing.
     #[must_use]
     pub fn camera_blind(&self) -> bool {
         self.active().any(|what| *what == What::CameraBlind)
     }
 
-    /// Faults of the delivery of a part, and their numbers.
+    /// Errors of the delivery of a part, and the faults that begin or end with it.
     pub(crate) fn delivery(&mut self, part: &str) -> (Delivery, Vec<Change>) {
         let tick = self.tick;
         let mut delivery = Delivery::default();
@@ -218,7 +218,7 @@ impl Injector {
         (delivery, changes)
     }
 
-    /// A description with the displacements of the faults from the beginning.
+    /// The description with the initial displacements of the faults.
     #[must_use]
     pub fn displaced(&self, description: &CellDescription) -> CellDescription {
         super::displaced(self.faults.iter().map(|running| &running.fault), description)
@@ -239,13 +239,13 @@ impl Injector {
     }
 }
 
-/// Whether a fault with a rate happens; a number is drawn only if there is a rate.
+/// True if a fault with a rate happens, or has no rate; draws a number only if there is a rate.
 fn happens(rate: Option<f64>, noise: &mut Noise) -> bool {
     rate.is_none_or(|rate| (noise.within(1.0) + 1.0) / 2.0 < rate)
 }
 
 impl Running {
-    /// Begin or end in a tick.
+    /// Begin or end the fault if it is due in this tick.
     fn turn(&mut self, tick: u64) -> Option<Change> {
         if self.fault.what.is_delivery() {
             return None;
@@ -282,7 +282,7 @@ impl Running {
         Change { number: self.fault.number, text: self.fault.what.to_string(), begins }
     }
 
-    /// Change a sensor word by a fault.
+    /// Apply an error to a sensor word.
     fn disturb(&mut self, sensor: Sensor, disorder: Disorder, tick: u64, inputs: &mut DeviceInputs) {
         let shown = sensor.read(inputs);
         let counts = |by: f64| libm::round(by) as i64;
@@ -314,7 +314,7 @@ mod tests {
         What::Sensor(Sensor::named(name).unwrap(), disorder)
     }
 
-    /// What a word that counts up by 10 every tick shows, from tick 1.
+    /// The values shown, from tick 1, for a word that counts up by 10 every tick.
     fn shown(disorder: Disorder, when: When, ticks: u16) -> Vec<i64> {
         let what = sensor("grip.potentiometer", disorder);
         let mut injector = injector(vec![(what, when)]);

@@ -2,10 +2,10 @@
 //!
 //! A [`FaultPlan`] is a seed and some [`Fault`]s; an [`Injector`] applies it tick by tick. A fault changes data between
 //! the cell and the controller (a sensor's word, a valve's command), or the delivery of a part; the rest of the cell is
-//! not changed. So the cell behaves normally, and the controller has to detect the fault.
+//! unchanged. So the cell behaves normally, and the controller has to detect the fault.
 //!
-//! Which kinds there are and how they are written is in [`text`]; faults of the line to the robot controller, which may
-//! be in the same file, are in [`depc::fault`].
+//! [`text`] describes the kinds of faults and their notation. Faults of the line to the robot controller, which may be
+//! in the same file, are in [`depc::fault`].
 
 mod inject;
 pub mod text;
@@ -34,7 +34,7 @@ pub struct FaultPlan {
 /// A fault and its time.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Fault {
-    /// Which one of its file, from 1.
+    /// Its number in the file, from 1.
     pub number: usize,
     /// Its effect.
     pub what: What,
@@ -49,17 +49,17 @@ pub struct When {
     pub from: u64,
     /// First tick after the window.
     pub until: u64,
-    /// Chance to begin in each tick of the window, or in each delivery; `None`: always present.
+    /// Probability to begin in each tick of the window, or in each delivery; `None`: always present.
     pub rate: Option<f64>,
-    /// Ticks that it then lasts, if it has a rate.
+    /// Duration in ticks, if it has a rate.
     pub ticks: u64,
 }
 
 impl When {
-    /// In all ticks of a run.
+    /// All ticks of a run.
     pub const ALWAYS: Self = Self { from: 0, until: u64::MAX, rate: None, ticks: 1 };
 
-    /// True if the window has the tick.
+    /// True if the tick is in the window.
     #[must_use]
     pub const fn covers(&self, tick: u64) -> bool {
         self.from <= tick && tick < self.until
@@ -75,7 +75,7 @@ pub enum What {
     Valve(Valve, bool),
     /// The air supply is lost.
     AirLost,
-    /// The hydraulics of the robot have failed, and can be switched on again only when the fault is over (III.6).
+    /// The hydraulics of the robot have failed, and can be switched on again only after the end of the fault (III.6).
     HydraulicsLost,
     /// The locking ring of the quick change does not move.
     RingStuck,
@@ -83,7 +83,7 @@ pub enum What {
     JawStuck,
     /// The camera sees nothing.
     CameraBlind,
-    /// A delivery to a tray: of all parts, or of one.
+    /// Deliveries to a tray go wrong: all, or those of one part.
     Delivery(Option<String>, Mishap),
     /// The stand of the pedestal is not on its mark on the floor (II.1.2.3): inches in x and y, degrees.
     PedestalMoved {
@@ -96,20 +96,20 @@ pub enum What {
     },
 }
 
-/// The error of a sensor; all in counts of its word.
+/// The error of a sensor; values are in counts of its word.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Disorder {
-    /// Nothing: 0, not seen, no power.
+    /// No signal: 0, not detected, or no power.
     Off,
-    /// Stuck: at a given value, or at the present one.
+    /// Stuck at a given value, or at the present one.
     Stuck(Option<i64>),
-    /// Noise of up to so many counts.
+    /// Noise of up to this many counts.
     Noisy(f64),
-    /// The value of so many ticks ago.
+    /// Delay: the value of this many ticks ago.
     Slow(u16),
-    /// So many counts more.
+    /// Offset, counts.
     Offset(f64),
-    /// So many counts more every second.
+    /// Drift, counts per second.
     Drift(f64),
 }
 
@@ -118,21 +118,21 @@ pub enum Disorder {
 pub enum Mishap {
     /// Nothing is delivered.
     Missing,
-    /// It lies beside its place: world X and Y, in.
+    /// The part lies beside its place: offset along world X and Y, in.
     Misplaced {
-        /// Along X.
+        /// Along X, in.
         x: f64,
-        /// Along Y.
+        /// Along Y, in.
         y: f64,
     },
-    /// It is turned: right-hand roll about the tool's X (down), degrees.
+    /// The part is turned: right-hand roll about the tool's X (down), degrees.
     Turned(f64),
     /// Another part is delivered.
     WrongPart(String),
 }
 
 impl What {
-    /// It acts on deliveries, and not for a time.
+    /// True if it acts on deliveries, and not for a time.
     #[must_use]
     pub const fn is_delivery(&self) -> bool {
         matches!(self, Self::Delivery(..))
@@ -147,7 +147,7 @@ impl FaultPlan {
     }
 }
 
-/// The description with the displacements of some faults.
+/// The description with the displacements of the given faults.
 fn displaced<'f>(faults: impl Iterator<Item = &'f Fault>, description: &CellDescription) -> CellDescription {
     let mut cell = description.clone();
     for fault in faults {

@@ -1,20 +1,20 @@
-//! Faults as files of TOML, one table a fault: of the cell, and of the line to the robot controller.
+//! Faults as TOML files with one table per fault, of the cell or of the line to the robot controller.
 //!
 //! ```toml
-//! seed = 7                        # one for all faults of the file, and the run's beside it; 1 if it is not given
+//! seed = 7                        # for all faults of the file, combined with the seed of the run; default 1
 //!
 //! [[fault]]
 //! kind = "stuck"                  # off stuck noisy slow intermittent offset drift: a sensor
 //! sensor = "grip.potentiometer"
-//! value = 900                     # stuck: at this count; at the present one if it is not given
+//! value = 900                     # stuck: at this count; default: at the present one
 //! from = 200                      # first tick, or after = 8.0 seconds ...
-//! until = 500                     # ... and the tick behind the last; or at = 200, and ticks = 300
+//! until = 500                     # ... and the first tick after the fault; or at = 200, and ticks = 300
 //!
 //! [[fault]]
 //! kind = "noisy"                  # by: counts (noisy, offset), counts a second (drift), ticks of delay (slow)
 //! sensor = "force.z"
 //! by = 40
-//! rate = 0.01                     # chance of beginning in each tick; it then lasts `ticks` ticks, 1 if not given
+//! rate = 0.01                     # probability of beginning in each tick; it then lasts `ticks` ticks, default 1
 //! ticks = 25
 //!
 //! [[fault]]
@@ -24,21 +24,21 @@
 //!
 //! [[fault]]
 //! kind = "wrong-part"             # missing misplaced turned wrong-part: a delivery to a tray
-//! object = "LINKBAR1_BH"          # of this part; of any if it is not given
+//! object = "LINKBAR1_BH"          # of this part; default: of any part
 //! part = "LCLEVIS_BH"
 //!
 //! [[fault]]
 //! kind = "flip"                   # drop flip duplicate delay insert truncate stall cts-low: the line ([`depc::fault`])
-//! direction = "to-host"           # to-host, to-controller, or both (if it is not given)
-//! rate = 0.001                    # chance of each byte (drop flip duplicate delay) or of each tick (the others)
+//! direction = "to-host"           # to-host, to-controller; default: both
+//! rate = 0.001                    # probability for each byte (drop flip duplicate delay) or each tick (others)
 //! ```
 //!
-//! Of the line also `byte = 0x06` (insert) and, before the faults, `most_per_tick`: at most so many faults in a tick
-//! and direction. Others of the cell: `stuck` with `device = "lock-ring"` or `"vise-jaw"`, `air-lost`,
-//! `hydraulics-lost`, `camera-blind`, `pedestal-moved`. A fault without a time is always present; a fault of the line
-//! needs a rate, a tick or a range of ticks.
+//! A fault of the line can also have `byte = 0x06` (insert); before the faults the file can have `most_per_tick`, the
+//! greatest number of line faults per tick and direction. Other faults of the cell: `stuck` with `device = "lock-ring"`
+//! or `"vise-jaw"`, `air-lost`, `hydraulics-lost`, `camera-blind`, `pedestal-moved`. A fault without a time is always
+//! present; a fault of the line needs a rate, a tick or a range of ticks.
 //!
-//! All mistakes of a file are found at once.
+//! Parsing reports all mistakes of a file at once.
 
 mod cell;
 mod line;
@@ -64,27 +64,27 @@ const KIND: FileKind = FileKind {
     magnitudes: [1e-6, 1e5],
 };
 
-/// A file of faults.
+/// The contents of a fault file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FaultFile {
-    /// Faults of the line to the robot controller, if there are any.
+    /// Faults of the line to the robot controller, if any.
     pub line: Option<Plan>,
     /// Faults of the cell.
     pub cell: FaultPlan,
 }
 
-/// The faults in a file for a cell.
+/// Parses a fault file for a cell.
 ///
 /// # Errors
-/// All mistakes in it.
+/// All mistakes in the file.
 pub fn parse(source: &Source, cell: &CellDescription) -> Result<FaultFile, Diagnostics> {
     sheet(source, Some(cell))
 }
 
-/// The faults in a file that has faults of the line only.
+/// Parses a file with faults of the line only.
 ///
 /// # Errors
-/// All mistakes in it, faults of the cell among them.
+/// All mistakes in the file; faults of the cell are mistakes.
 pub fn parse_line(source: &Source) -> Result<Plan, Diagnostics> {
     let read = sheet(source, None)?;
     Ok(read.line.unwrap_or_else(|| Plan::new(read.cell.seed)))
@@ -131,7 +131,7 @@ struct Form {
 }
 
 impl Form {
-    /// The keys present beside `kind`.
+    /// The keys that are present, except `kind`.
     fn keys(&self) -> impl Iterator<Item = &'static str> {
         let there = [
             ("direction", self.direction.is_some()),
@@ -195,35 +195,35 @@ impl<'de> Deserialize<'de> for Value {
     }
 }
 
-/// A fault of a file.
+/// A fault entry of a file.
 struct Entry<'f> {
     form: &'f Form,
     /// Its path: `fault[0]`.
     path: String,
-    /// Which one, from 1.
+    /// Its number in the file, from 1.
     number: usize,
 }
 
 impl Entry<'_> {
-    /// An unexpected value.
+    /// The problem of an unexpected value.
     fn unlike(&self, key: &str, expected: impl fmt::Display, found: impl fmt::Display) -> Box<Problem> {
         Box::new(Problem::unlike(KIND.value, &join(&self.path, key), expected, found))
     }
 
-    /// An unknown name.
+    /// The problem of an unknown name.
     fn unknown(&self, key: &str, found: &str, known: &[&str]) -> Box<Problem> {
         let expected = format!("one of {}", known.join(", "));
         let problem = Problem::unlike("fault.name", &join(&self.path, key), expected, format!("{found:?}"));
         Box::new(problem.near(found, known))
     }
 
-    /// Keys that contradict each other.
+    /// The problem of keys that contradict each other.
     fn says(&self, message: impl fmt::Display) -> Box<Problem> {
         let (path, kind) = (&self.path, &self.form.kind);
         Box::new(Problem::of_entry(KIND.value, path, format!("{path}: {kind} {message}")))
     }
 
-    /// A number within a range, which `expected` names.
+    /// A number within a range; `expected` describes the range in the message.
     fn within(
         &self,
         key: &str,
@@ -234,7 +234,7 @@ impl Entry<'_> {
         if range.contains(&found) { Ok(found) } else { Err(self.unlike(key, expected, found)) }
     }
 
-    /// Keys that a kind does not take.
+    /// Problems of the keys that a kind does not have.
     fn untaken(&self, takes: &[&str]) -> impl Iterator<Item = Problem> {
         self.form.keys().filter(|key| !takes.contains(key)).map(|key| {
             let message =
@@ -244,7 +244,7 @@ impl Entry<'_> {
     }
 }
 
-/// Read a file, with all its mistakes. Without a cell faults of the cell are mistakes.
+/// Reads a file and collects all its mistakes. Without a cell, faults of the cell are mistakes.
 fn sheet(source: &Source, cell: Option<&CellDescription>) -> Result<FaultFile, Diagnostics> {
     let mut file = FaultFile::default();
     Document::load(source, KIND, |sheet: &Sheet, stand_ins, problems| {
@@ -302,7 +302,7 @@ fn take(
     match cell::fault(entry, kind, cell) {
         Ok(fault) => file.cell.faults.push(fault),
         Err(problem) if problems.is_empty() => problems.push(*problem),
-        // A key that is not taken may be the one that is missing by another name.
+        // A key that the kind does not have may be a misspelling of the missing key.
         Err(_) => {}
     }
     problems

@@ -1,13 +1,13 @@
-//! Air valves by name, and the outputs when they do not follow their commands.
+//! Air valves by name, and the effect of stuck valves on the outputs.
 
 use interfaces::device::{DeviceOutputs, valve};
 use serde::{Deserialize, Serialize};
 
-/// A valve: its place in the list of all.
+/// A valve: its index in the list of all.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub struct Valve(u8);
 
-/// Which output works it.
+/// The output that drives a valve.
 #[derive(Clone, Copy)]
 enum Output {
     /// A bit of the eight valves of the parts gripper.
@@ -51,7 +51,7 @@ const VALVES: [(&str, Output); 23] = [
 ];
 
 impl Valve {
-    /// The valve of a name.
+    /// The valve with a name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let at = VALVES.iter().position(|(known, _)| *known == name)?;
@@ -73,7 +73,7 @@ impl Valve {
         self.entry().0
     }
 
-    /// The outputs with this valve stuck open or closed.
+    /// Set this valve in the outputs as stuck open or closed.
     pub const fn stick(self, outputs: &mut DeviceOutputs, open: bool) {
         match self.entry().1 {
             Output::Grip(mask) => bit_to(&mut outputs.grip.bits, mask, open),
@@ -93,7 +93,7 @@ const fn bit_to(bits: &mut u8, mask: u8, on: bool) {
     *bits = if on { *bits | mask } else { *bits & !mask };
 }
 
-/// The air supply is lost: nothing flows in, and air trapped behind the closed valves of a hand stays. The check valves
+/// Remove the air supply: nothing flows in, and air trapped behind the closed valves of a hand stays. The check valves
 /// of v-gripper and tool gripper, whose air stays on while they hold, keep their air too (ASSUMED). Venting needs no
 /// supply.
 pub const fn cut_air(outputs: &mut DeviceOutputs) {
@@ -104,7 +104,7 @@ pub const fn cut_air(outputs: &mut DeviceOutputs) {
     (outputs.quick_change.lock, outputs.quick_change.unlock) = (false, false);
 }
 
-/// The locking ring does not follow the air.
+/// Hold the locking ring: it does not follow the air.
 pub const fn hold_ring(outputs: &mut DeviceOutputs) {
     outputs.quick_change.port = false;
 }

@@ -6,42 +6,42 @@
 //!            └──power off, then on, at PROG─── on, PROG, obeys nothing
 //! ```
 //!
-//! IV.1 says that the power is turned off and on again at the end, and that the switch stands at PROG whenever it is
+//! IV.1 says that the power is turned off and on again at the end, and that the switch is at PROG whenever the power is
 //! turned on. So a controller that was at MANUAL, or was turned on there, does not obey its serial line (CHOSEN).
 
 use serde::{Deserialize, Serialize};
 
 use super::Table;
 
-/// Farther than from one limit switch to the other, steps.
+/// More steps than between the two limit switches.
 const FAR: f64 = 1e6;
 
 /// A key or switch of the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableKey {
-    /// The power on or off.
+    /// Switch the power on or off.
     Power(bool),
-    /// The mode switch to MANUAL, or to PROG.
+    /// Set the mode switch to MANUAL (true) or to PROG.
     Manual(bool),
-    /// RUN+ or RUN- is held down for so many ticks.
+    /// Hold RUN+ or RUN- down for a number of ticks.
     Run {
         /// Toward the + limit.
         plus: bool,
-        /// How long.
+        /// Duration, ticks.
         ticks: u32,
     },
-    /// STEP+ or STEP- is pressed so often: a step of the motor each (ASSUMED).
+    /// Press STEP+ or STEP- a number of times: the motor takes one step each time (ASSUMED).
     Step {
         /// Toward the + limit.
         plus: bool,
-        /// How often.
+        /// Number of presses.
         count: u32,
     },
-    /// RESET: the counter is zero here.
+    /// RESET: set the counter to zero here.
     Reset,
 }
 
-/// Why the panel refuses a key.
+/// Reasons for which the panel refuses a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableRefusal {
     /// The power is off.
@@ -55,18 +55,18 @@ pub enum TableRefusal {
     Turns,
 }
 
-/// Switches of the panel, and what they have done to the controller.
+/// Switches of the panel, and the state of the controller that they have caused.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub struct TablePanel {
-    /// It has power.
+    /// The controller has power.
     pub power: bool,
-    /// The mode switch stands at MANUAL.
+    /// The mode switch is at MANUAL.
     pub manual: bool,
-    /// It obeys the orders of its serial line.
+    /// The controller obeys the orders of its serial line.
     pub obeys: bool,
-    /// Ticks for which RUN is still held down, and one in which it is let go.
+    /// Ticks for which RUN is held down, plus one in which it is released.
     run: u32,
-    /// Number of the last order that it has not obeyed; it is not carried out later.
+    /// Number of the last order that it has not obeyed; it will not be carried out later.
     missed: u32,
 }
 
@@ -76,13 +76,13 @@ impl TablePanel {
 }
 
 impl Table {
-    /// Switches of its panel.
+    /// State of its panel.
     #[must_use]
     pub const fn panel(&self) -> TablePanel {
         self.panel
     }
 
-    /// The table does what a key has begun.
+    /// True while the table carries out the action of a key.
     #[must_use]
     pub fn is_led_by_hand(&self) -> bool {
         self.panel.manual && self.moving()
@@ -91,7 +91,7 @@ impl Table {
     /// Press a key, or turn a switch.
     ///
     /// # Errors
-    /// [`TableRefusal`]; then nothing has changed.
+    /// [`TableRefusal`]; the state is unchanged.
     pub fn press(&mut self, key: TableKey) -> Result<(), TableRefusal> {
         match key {
             TableKey::Power(on) => self.set_power(on),
@@ -128,7 +128,7 @@ impl Table {
         }
     }
 
-    /// Without power the motor stands at once.
+    /// Switch the power; without it the motor stops at once.
     fn set_power(&mut self, on: bool) {
         if on && !self.panel.power {
             self.panel = TablePanel { power: true, obeys: !self.panel.manual, ..self.panel };
@@ -139,7 +139,7 @@ impl Table {
         }
     }
 
-    /// Once a tick: RUN is let go when its time is over. True if the order of a number is to be obeyed.
+    /// Once a tick: release RUN when its time is over. Returns true if the order with this number must be obeyed.
     pub(super) fn attend(&mut self, number: u32) -> bool {
         if self.panel.run > 0 {
             self.panel.run -= 1;
@@ -166,7 +166,7 @@ mod tests {
         Table::new(&cell.pedestal.table)
     }
 
-    /// Ticks until the table stands.
+    /// Number of ticks until the table stops.
     fn wait(table: &mut Table, command: &MotorCommand) -> u32 {
         for tick in 0..10_000 {
             if !table.moving() {

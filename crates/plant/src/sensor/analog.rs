@@ -1,4 +1,4 @@
-//! A sensor with a voltage on a 12-bit converter: offset, scale, noise, and the steps and ends of the converter.
+//! A sensor with a voltage on a 12-bit converter: offset, scale, noise, and the resolution and limits of the converter.
 
 use interfaces::device::ADC_FULL_SCALE;
 
@@ -9,14 +9,14 @@ use crate::noise::Noise;
 pub struct Analog {
     /// Counts at a value of 0.
     pub offset: f64,
-    /// Counts for a unit of the value.
+    /// Counts per unit of the value.
     pub scale: f64,
     /// Greatest noise, counts.
     pub noise: f64,
 }
 
 impl Analog {
-    /// Counts at a value: beyond its range the converter shows its ends.
+    /// Counts for a value; the converter saturates at its limits.
     pub fn counts(&self, value: f64, noise: &mut Noise) -> u16 {
         let volts = self.offset + self.scale * value + noise.within(self.noise);
         libm::round(volts).clamp(0.0, f64::from(ADC_FULL_SCALE)) as u16

@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 use super::{Group, Sensor};
 use crate::description::SensorModels;
 
-/// Words on their way.
+/// Words that are being delayed.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct DelayLine(VecDeque<i64>);
 
 impl DelayLine {
-    /// Put a word in, and take the one out that went in `ticks` ago; the oldest while the line fills.
+    /// Put a word in, and return the word that went in `ticks` ago; while the line fills, the oldest one.
     pub fn pass(&mut self, word: i64, ticks: u16) -> i64 {
         self.0.push_back(word);
         if self.0.len() > usize::from(ticks) + 1 {
@@ -28,12 +28,12 @@ impl DelayLine {
     }
 }
 
-/// The dead times of a cell's sensors; those without any are not in it.
+/// The dead times of a cell's sensors; sensors without dead time are not in it.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct DeadTimes(Vec<(Sensor, u16, DelayLine)>);
 
 impl DeadTimes {
-    /// As a description has them.
+    /// The dead times of a description.
     #[must_use]
     pub fn new(models: &SensorModels) -> Self {
         let ticks = |sensor: Sensor| match sensor.group() {

@@ -1,19 +1,19 @@
-//! Sensors by name: every word that the controller reads from its sensors can be read, and changed, as a number.
+//! Sensors by name: every word that the controller reads from its sensors can be read and changed as a number.
 //!
 //! A name stands for a *connection* at the controller's boards (chapter III): the three grippers have their
 //! potentiometer on the same one (III.3.7), so `grip.potentiometer` is that of the attached gripper. A fault of a
-//! sensor, a cable or a converter changes only this word, so faults act here ([`crate::fault`]).
+//! sensor, a cable or a converter changes only this word, so the fault injector acts here ([`crate::fault`]).
 
 use core::ops::RangeInclusive;
 
 use interfaces::device::{ADC_FULL_SCALE, DeviceInputs, HolsterSensors, RESOLVER_COUNTS, VisionResponse};
 use serde::{Deserialize, Serialize};
 
-/// A sensor: its place in the list of all.
+/// A sensor: its index in the list of all.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub struct Sensor(u8);
 
-/// The word of a name.
+/// The word that a name stands for.
 #[derive(Clone, Copy)]
 enum Word {
     /// Power of the resolver box.
@@ -26,7 +26,7 @@ enum Word {
     Locked,
     Unlocked,
     GripperId,
-    /// Right, left, centre, and a bit.
+    /// A sensor of a holster: 0 right, 1 left, 2 centre, and its bit.
     Holster(usize, u8),
     /// Power of the conditioners of the force sensor.
     Force,
@@ -95,7 +95,7 @@ const SENSORS: [(&str, Word); 48] = [
     ("holster.centre", Word::Holster(2, WHOLE)),
 ];
 
-/// All four sensors of a holster together: their cable.
+/// Bit value for all four sensors of a holster together: their cable.
 const WHOLE: u8 = u8::MAX;
 /// Bits of the four sensors of a holster.
 const HOLSTER_BITS: u8 = 0x0F;
@@ -143,7 +143,7 @@ impl Sensor {
         }
     }
 
-    /// The sensor of a name.
+    /// The sensor with a name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let at = SENSORS.iter().position(|(known, _)| *known == name)?;
@@ -165,7 +165,7 @@ impl Sensor {
         self.entry().0
     }
 
-    /// The vision system, which answers in messages and not in a word: it can only be off.
+    /// True for the vision system, which answers in messages and not in a word: it can only be off.
     #[must_use]
     pub const fn is_camera(self) -> bool {
         matches!(self.entry().1, Word::Camera)
@@ -201,7 +201,7 @@ impl Sensor {
         }
     }
 
-    /// Its value.
+    /// Its present value.
     #[must_use]
     pub fn read(self, inputs: &DeviceInputs) -> i64 {
         match self.entry().1 {
@@ -231,7 +231,7 @@ impl Sensor {
         }
     }
 
-    /// Set it to a value, or the nearest possible one. A resolver wraps around.
+    /// Set it to the nearest possible value. A resolver wraps around.
     pub fn write(self, inputs: &mut DeviceInputs, value: i64) {
         let range = self.range();
         let value = match self.entry().1 {

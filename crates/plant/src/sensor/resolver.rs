@@ -1,10 +1,10 @@
-//! A joint resolver: 17 bits a turn, 0 at 0 (III.3.2).
+//! A joint resolver: 17 bits per turn, 0 at angle 0 (III.3.2).
 
 use interfaces::device::RESOLVER_COUNTS;
 
 use crate::noise::Noise;
 
-/// Counts at an angle in radians, with noise of up to `greatest` counts; no number is drawn for none.
+/// Counts at an angle in radians, with noise of up to `greatest` counts; draws no number if `greatest` is 0.
 pub fn counts(angle: f64, greatest: f64, noise: &mut Noise) -> u32 {
     let turns = angle / (2.0 * core::f64::consts::PI);
     let away = if greatest > 0.0 { noise.within(greatest) } else { 0.0 };

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 pub struct Switch(bool);
 
 impl Switch {
-    /// Update with an object `beyond` its range by a distance, negative inside of it; `hysteresis` is how much farther
-    /// the object must be to be no longer detected.
+    /// Update with the distance of an object `beyond` the range, negative within it. `hysteresis` is the extra distance
+    /// up to which a detected object stays detected.
     pub fn see(&mut self, beyond: f64, hysteresis: f64) -> bool {
         self.0 = beyond <= if self.0 { hysteresis } else { 0.0 };
         self.0

@@ -1,10 +1,10 @@
-//! Keys and switches: of the controller's console, of the teach pendant, and the emergency stops.
+//! Keys and switches of the controller's console and of the teach pendant, and the emergency stops.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// The emergency stops (III.6): one circuit, five buttons, each of which stays in until it is pulled out.
+/// The emergency stops (III.6): one circuit with five buttons, each of which stays in until it is pulled out.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum EStop {
     /// On the front panel of the controller.
@@ -36,7 +36,7 @@ impl EStop {
         }
     }
 
-    /// The button of a name.
+    /// The button with a name.
     #[must_use]
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|site| site.word() == word)
@@ -65,10 +65,10 @@ impl fmt::Display for EStop {
     }
 }
 
-/// An action at the controller's console, keyboard and teach pendant, or at the emergency stops.
+/// An action at the controller's console, keyboard or teach pendant, or at the emergency stops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// Control power (IV.3.3 step 4).
+    /// Turn control power on or off (IV.3.3 step 4).
     ControlPower(bool),
     /// FAULT RESET (step 5).
     FaultReset,
@@ -76,9 +76,9 @@ pub enum Key {
     Hydraulics(bool),
     /// MANUAL ON/OFF (step 8).
     Manual(bool),
-    /// Teach pendant: move an axis, counted from 1, to its arrow (step 9); without one, all of them.
+    /// Teach pendant: move an axis, counted from 1, to its arrow (step 9); `None` moves all of them.
     Align(Option<u8>),
-    /// Teach pendant: turn an axis, counted from 1, by so many degrees (IV.3.4).
+    /// Teach pendant: turn an axis, counted from 1, by some degrees (IV.3.4).
     Jog {
         /// The axis.
         axis: u8,
@@ -95,7 +95,7 @@ pub enum Key {
     Cancel,
     /// ENTER on the keyboard (A 2.4).
     Enter,
-    /// Hold (A 2.3).
+    /// Turn hold on or off (A 2.3).
     Hold(bool),
     /// Press an E-stop (III.6).
     Press(EStop),
@@ -105,7 +105,7 @@ pub enum Key {
     Board(bool),
     /// Repair the transmitter of the RS232 board, or break it (A 2.3, D5).
     Transmitter(bool),
-    /// Power of the Prim Interface Box (IV.1 steps 2 and 5).
+    /// Power of the Prim Interface Box on or off (IV.1 steps 2 and 5).
     PrimBox(bool),
 }
 
@@ -137,7 +137,7 @@ impl Key {
     }
 }
 
-/// Why the actuators have no pressure.
+/// Causes of the loss of pressure.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Cut {
     /// An emergency stop was pressed.
@@ -155,7 +155,7 @@ pub enum Cut {
 }
 
 impl Cut {
-    /// It is not part of normal work: an emergency stop, or a failure.
+    /// True if it is not part of normal operation: an emergency stop, or a failure.
     #[must_use]
     pub const fn is_emergency(self) -> bool {
         matches!(self, Self::EStop(_) | Self::PressureLost)

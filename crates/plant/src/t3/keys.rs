@@ -1,4 +1,4 @@
-//! Effects of the keys of the console, and refusals.
+//! Effects of the keys of the console, and reasons to refuse them.
 
 use depc::controller::ControllerState;
 use geometry::kinematics::T3;
@@ -6,10 +6,10 @@ use geometry::kinematics::T3;
 use super::{BY_EYE, Cut, EStop, Key, Lamps, Refusal, RobotEvent, Stage, T3Controller, off_home};
 
 impl T3Controller {
-    /// A key is pressed.
+    /// Press a key.
     ///
     /// # Errors
-    /// [`Refusal`]: what must be done first; then nothing has changed.
+    /// [`Refusal`]: what must be done first; the state is unchanged.
     pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
         let hardware = matches!(
             key,
@@ -51,7 +51,7 @@ impl T3Controller {
             }
             Key::PrimBox(on) => {
                 self.prim_box = on;
-                // The joystick box's E-stop is wired through it: without power the circuit is open.
+                // The joystick box's E-stop is wired through this box: without its power the circuit is open.
                 if !on {
                     self.fault(Cut::PrimBox);
                 }
@@ -68,12 +68,12 @@ impl T3Controller {
         }
     }
 
-    /// Repair the hydraulics; the start-up of III.6 then brings the pressure back.
+    /// Repair the hydraulics; the start-up of III.6 then restores the pressure.
     pub fn repair_hydraulics(&mut self) {
         self.pump = true;
     }
 
-    /// The pressure goes, and FAULT RESET lights up; without control power there is nothing to light or to lose.
+    /// Cut the pressure and light FAULT RESET; without control power there is nothing to light or to cut.
     pub(super) fn fault(&mut self, cause: Cut) {
         if self.stage != Stage::Dark {
             self.shut_off(Stage::Faulted, cause);
@@ -81,7 +81,7 @@ impl T3Controller {
         }
     }
 
-    /// Lose the pressure: motions end, and the axes are no longer aligned.
+    /// Cut the pressure: motions end, and the axes are no longer aligned.
     fn shut_off(&mut self, stage: Stage, cause: Cut) {
         if self.stage.is_live() {
             self.robot(RobotEvent::Sinks(cause));
@@ -257,7 +257,7 @@ impl T3Controller {
     fn interrupt(&mut self) -> Result<(), Refusal> {
         match self.stage {
             Stage::Depc => {
-                // Step 12 presses it while a warning stands: it changes nothing then.
+                // In step 12 it is pressed while a warning is present: it has no effect then.
                 self.keys.interrupt = true;
                 Ok(())
             }

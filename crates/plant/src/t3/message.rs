@@ -1,7 +1,7 @@
 //! Messages of the controller, and visible events of the robot.
 //!
-//! Lines of the controller's screen stand alone and are the manual's (IV.3.3, A 2.3, A 2.4); other events have their
-//! source in brackets.
+//! Texts of the controller's screen stand alone and are those of the manual (IV.3.3, A 2.3, A 2.4); texts of other
+//! events give their source in brackets.
 
 use std::fmt;
 
@@ -14,7 +14,7 @@ use super::Cut;
 /// HOME as the manual prints it (IV.3.3 step 11).
 pub const HOME: WireFrame =
     WireFrame { tool: [0, -7145, -1483], wrist_to_tool: [0, -2123, -2119], tool_to_finger: [3000, 0, 0] };
-/// How far a value of HOME may be off (IV.3.3 step 11).
+/// Greatest deviation of a value from HOME (IV.3.3 step 11).
 pub const HOME_TOLERANCE: i32 = 4;
 
 /// One message.
@@ -28,7 +28,7 @@ pub enum Message {
     Lamps(Lamps),
     /// An event of the robot.
     Robot(RobotEvent),
-    /// The position, and how far it may be off HOME.
+    /// The position, and its greatest deviation from HOME.
     Position(#[serde(with = "crate::image::record")] WireFrame),
     /// The DEPC function has begun and reported the position.
     Reported(#[serde(with = "crate::image::record")] Plate),
@@ -45,7 +45,7 @@ pub enum Lamps {
     PowerOn,
     /// Control power was turned off.
     PowerOff,
-    /// A fault has taken the hydraulics.
+    /// A fault has turned the hydraulics off.
     Fault,
     /// The fault was reset.
     FaultReset,
@@ -64,14 +64,14 @@ pub enum RobotEvent {
     WillJump,
     /// The arm has jumped to the command of the servos.
     Jumped {
-        /// How far the hand has moved, in.
+        /// Distance that the hand has moved, in.
         inches: f64,
     },
-    /// It makes the vertical motions of its program (IV.3.3 step 12).
+    /// The robot makes the vertical motions of its program (IV.3.3 step 12).
     VerticalMotions,
     /// The program was interrupted.
     Interrupted,
-    /// It moves to HOME on its own.
+    /// The robot moves to HOME by itself.
     GoesHome,
     /// The controller waits for a motion by hand.
     PreManual,
@@ -142,7 +142,7 @@ impl fmt::Display for Message {
     }
 }
 
-/// The largest difference of a value to HOME.
+/// The largest deviation of a value from HOME.
 #[must_use]
 pub fn off_home(frame: &WireFrame) -> i32 {
     let values = |frame: &WireFrame| [frame.tool, frame.wrist_to_tool, frame.tool_to_finger].concat();
@@ -170,7 +170,7 @@ pub fn explained(warning: Warning) -> String {
     format!("{} ({meaning})", screen(warning).0)
 }
 
-/// Code and problem as the table of appendix A has them.
+/// Code and problem as in the table of appendix A.
 fn screen(warning: Warning) -> (&'static str, &'static str) {
     match warning {
         Warning::None => ("", ""),

@@ -7,13 +7,13 @@
 //!                                        bytes to and from the host, once a period
 //! ```
 //!
-//! [`T3Controller::step`] is a period of the controller, [`T3Controller::advance`] lets time pass for the
-//! arm; the caller decides how finely. `rcs-cell` puts a pseudo-terminal and a console around it, the
-//! simulated cell ([`crate::cell`]) everything else.
+//! [`T3Controller::step`] is a period of the controller; [`T3Controller::advance`] lets time pass for the arm, in steps
+//! that the caller chooses. `rcs-cell` adds a pseudo-terminal and a console, the simulated cell ([`crate::cell`])
+//! everything else.
 //!
 //! The DEPC function is a part of the program, and the program runs only under pressure: without pressure there are no
 //! answers, and the controller's DTR is off (A 2.3; ASSUMED: the manual does not say what the host sees of an emergency
-//! stop). It returns by the steps of IV.3.3: fault reset, hydraulics, manual, align, AUTO, cycle start.
+//! stop). The steps of IV.3.3 restore it: fault reset, hydraulics, manual, align, AUTO, cycle start.
 
 mod key;
 mod keys;
@@ -51,11 +51,11 @@ use crate::{
 
 /// Greatest distance of each joint from its arrow before the start-up, degrees (ASSUMED).
 const LEFT_OFF: f64 = 2.0;
-/// Greatest error of a person who aligns a joint to its arrow, degrees (ASSUMED).
+/// Greatest error of an operator who aligns a joint to its arrow, degrees (ASSUMED).
 const BY_EYE: f64 = 0.5;
 
-/// Text of the screen while FAULT RESET is lit: after power-up (IV.1 step 2), and ASSUMED the same after an emergency
-/// stop, of which the manual says that an error code appears (IV.3.1).
+/// Screen text while FAULT RESET is lit: after power-up (IV.1 step 2), and ASSUMED the same after an emergency stop,
+/// for which the manual mentions an error code (IV.3.1).
 const FAULT: &str = "ERROR-E22";
 
 const fn powered() -> bool {
@@ -78,7 +78,7 @@ pub struct StepOutputs {
     pub tx: LinkBytes,
     /// The controller's DTR, the host's CTS (A.2).
     pub dtr: bool,
-    /// The step began a move or an answer.
+    /// True if the step began a move or an answer.
     pub busy: bool,
 }
 
@@ -93,13 +93,13 @@ pub struct Counts {
     pub reports: u64,
 }
 
-/// Why the arm cannot be moved to a position by hand.
+/// Errors of moving the arm to a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DriveError {
-    /// The position does not fit into the words of the controller.
+    /// The position is out of range of the controller's words.
     #[error("the position is beyond the controller's coordinates of 327.67 in")]
     OutOfRange,
-    /// The joints cannot reach it.
+    /// The joints cannot reach the position.
     #[error("the arm cannot take the position: {0:?}")]
     Joints(JointProblem),
     /// The arm has no pressure.
@@ -150,13 +150,13 @@ pub struct T3Controller {
     /// Random errors of the alignment.
     noise: Noise,
     aligned: [bool; 6],
-    /// Axes on their way to the arrow.
+    /// Axes that are moving to their arrow.
     aligning: [bool; 6],
-    /// Seconds in this stage.
+    /// Time in this stage, s.
     since: f64,
-    /// Where the hand was when the pressure came, in, for the message.
+    /// Position of the hand when the pressure came, in, for the message.
     before_jump: Option<[f64; 3]>,
-    /// Vertical motions done.
+    /// Number of vertical motions done.
     motions: u8,
     #[serde(with = "crate::image::record")]
     depc: Controller,
@@ -168,21 +168,21 @@ pub struct T3Controller {
     board: bool,
     /// Its transmitter works.
     transmitter: bool,
-    /// The emergency stops that are in.
+    /// The emergency stops that are pressed.
     estops: [bool; 5],
     /// The Prim Interface Box has power. Only the console of `rcs-cell` takes it away, so it is on in every saved cell.
     #[serde(skip, default = "powered")]
     prim_box: bool,
-    /// The pump and its lines are sound.
+    /// The pump and its lines work.
     pump: bool,
-    /// Why there is no pressure.
+    /// Cause of the loss of pressure; `None` under pressure.
     cut: Option<Cut>,
     counts: Counts,
     messages: Vec<Message>,
 }
 
 impl T3Controller {
-    /// A controller without power, with an arm near HOME that has sagged. `seed` determines the joint offsets.
+    /// A controller without power, with an arm near HOME that has sagged. `seed` determines the offsets of the joints.
     #[must_use]
     pub fn dark(limits: Limits, actuators: &Actuators, seed: u64) -> Self {
         let mut noise = Noise::new(seed, Stream::Alignment);
@@ -191,11 +191,11 @@ impl T3Controller {
         Self::of(limits, actuators, Arm::sunk_from(actuators, left), set_point, noise)
     }
 
-    /// A controller after its start-up: the axes are aligned, the arm stands at `start` (radians), and with
-    /// the first step the program comes to the DEPC function.
+    /// A controller after its start-up: the axes are aligned, the arm is at `start` (radians), and the program enters
+    /// the DEPC function with the first step.
     ///
     /// # Errors
-    /// [`DriveError::OutOfRange`] if the end plate is beyond the words of the line.
+    /// [`DriveError::OutOfRange`] if the end plate is out of range of the words of the line.
     pub fn started(
         limits: Limits,
         actuators: &Actuators,
@@ -251,7 +251,7 @@ impl T3Controller {
         (self.stage == Stage::Faulted).then_some(FAULT)
     }
 
-    /// The DEPC function; of interest in [`Stage::Depc`].
+    /// The DEPC function; it runs in [`Stage::Depc`].
     #[must_use]
     pub fn depc(&self) -> &Controller {
         &self.depc
@@ -263,38 +263,38 @@ impl T3Controller {
         &self.arm
     }
 
-    /// Axes that have their asterisk.
+    /// Axes that are aligned: their asterisk is on the screen.
     #[must_use]
     pub fn aligned(&self) -> [bool; 6] {
         self.aligned
     }
 
-    /// Hold is on.
+    /// True if hold is on.
     #[must_use]
     pub fn hold(&self) -> bool {
         self.keys.hold
     }
 
-    /// An emergency stop is in.
+    /// True if an emergency stop is pressed.
     #[must_use]
     pub fn is_pressed(&self, site: EStop) -> bool {
         self.estops[site.index()]
     }
 
-    /// Why the actuators have no pressure; `None` while they have it.
+    /// Cause of the loss of pressure; `None` under pressure.
     #[must_use]
     pub fn cut(&self) -> Option<Cut> {
         self.cut
     }
 
-    /// The arm is at rest at its commanded position.
+    /// True if the arm is at rest at its commanded position.
     #[must_use]
     pub fn at_rest(&self) -> bool {
         self.arm.settled()
     }
 
-    /// The controller executes an action that a key has begun and that ends by itself: pressure comes, axes are
-    /// aligned, the arm moves to HOME, the program makes its two motions.
+    /// True while an action that a key has started is in progress and ends by itself: pressure builds up, axes are
+    /// being aligned, the arm moves to HOME, or the program makes its two motions.
     #[must_use]
     pub fn busy(&self) -> bool {
         match self.stage {
@@ -304,7 +304,7 @@ impl T3Controller {
         }
     }
 
-    /// What was counted.
+    /// Counts since the start.
     #[must_use]
     pub fn counts(&self) -> Counts {
         self.counts
@@ -321,14 +321,14 @@ impl T3Controller {
         std::mem::take(&mut self.messages)
     }
 
-    /// Let `seconds` pass for the arm. `loads` are the forces on it beside the weight of its links.
+    /// Advance the arm by `seconds`. `loads` are the forces on it in addition to the weight of its links.
     pub fn advance(&mut self, seconds: f64, loads: &[Load]) {
         let program = matches!(self.stage, Stage::Homing | Stage::Rehearsing);
         self.arm.advance(seconds, self.keys.hold && program, loads);
         self.since += seconds;
     }
 
-    /// A period of the controller: the start-up goes on, and the DEPC function takes one step if it is reached.
+    /// One period of the controller: continues the start-up, or takes one step of the DEPC function.
     pub fn step(&mut self, inputs: &StepInputs) -> StepOutputs {
         match self.stage {
             Stage::Rising => self.rise(),
@@ -344,11 +344,11 @@ impl T3Controller {
         StepOutputs::default()
     }
 
-    /// Move the arm to an end-plate frame (inches, world) within a period as the teach pendant does, without the line
-    /// and its limits of speed.
+    /// Move the arm to an end-plate frame (inches, world) within a period as with the teach pendant, without the line
+    /// and its speed limits.
     ///
     /// # Errors
-    /// [`DriveError`]; the command stays as it was.
+    /// [`DriveError`]; the command is unchanged.
     pub fn drive(&mut self, plate: &Frame) -> Result<(), DriveError> {
         if !self.arm.has_pressure() {
             return Err(DriveError::NoPressure);
@@ -362,7 +362,7 @@ impl T3Controller {
     /// Follow the position of another robot within a period. An arm without pressure stays where it is.
     ///
     /// # Errors
-    /// [`JointProblem`] if this arm cannot reach the position; the command stays as it was.
+    /// [`JointProblem`] if this arm cannot reach the position; the command is unchanged.
     pub fn follow(&mut self, plate: &Plate) -> Result<(), JointProblem> {
         if self.arm.has_pressure() && *plate != self.set_point.plate {
             self.set_point.take(plate)?;
@@ -389,7 +389,7 @@ impl T3Controller {
     }
 }
 
-/// HOME with every joint off by a seeded angle of at most `greatest` degrees.
+/// HOME with an error of each joint of up to `greatest` degrees, from the seed.
 fn off_home(noise: &mut Noise, greatest: f64) -> Joints {
     HOME_JOINTS.map(|joint| joint + noise.within(greatest).to_radians())
 }

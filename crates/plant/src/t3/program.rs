@@ -11,11 +11,11 @@ use geometry::{
 
 use super::{Cut, Message, RobotEvent, SetPoint, Stage, StepInputs, StepOutputs, T3Controller};
 
-/// Speed of motions that the controller makes by itself, degrees/s of the fastest joint (ASSUMED).
+/// Speed of motions that the controller makes by itself: that of the fastest joint, degrees/s (ASSUMED).
 const OWN_SPEED: f64 = 10.0;
-/// The two short vertical motions of the program: up by this much, inches, and down again (ASSUMED).
+/// Height of the two short vertical motions of the program, up and down again, in (ASSUMED).
 const VERTICAL_IN: f64 = 1.0;
-/// Time for each of them, seconds (ASSUMED).
+/// Duration of each of them, s (ASSUMED).
 const VERTICAL_S: f64 = 0.5;
 
 impl T3Controller {
@@ -38,7 +38,7 @@ impl T3Controller {
         self.arm.reach(goal, longest / OWN_SPEED.to_radians());
     }
 
-    /// The pump runs; then the servos have pressure and jump to their command.
+    /// Wait while the pump starts; then the servos get pressure and jump to their command.
     pub(super) fn rise(&mut self) {
         match self.before_jump {
             None if self.since < self.pump_delay => {}
@@ -69,7 +69,7 @@ impl T3Controller {
         self.messages.push(Message::Aligned(self.aligned));
     }
 
-    /// Up, down, and on to the DEPC function.
+    /// Move up and down, then enter the DEPC function.
     pub(super) fn rehearse(&mut self, inputs: &StepInputs) -> StepOutputs {
         self.motions += 1;
         let mut raised = T3.forward(&HOME_JOINTS);
@@ -78,7 +78,7 @@ impl T3Controller {
             (1, Ok(up)) => self.arm.reach(up, VERTICAL_S),
             (2, _) => self.arm.reach(HOME_JOINTS, VERTICAL_S),
             _ => {
-                // HOME lies well within the words of the line.
+                // HOME is well within the range of the words of the line.
                 if let Ok(home) = SetPoint::at(&HOME_JOINTS) {
                     self.set_point = home;
                 }
@@ -113,7 +113,7 @@ impl T3Controller {
         StepOutputs { tx: out.tx, dtr: out.dtr, busy: out.moving || out.tx.length > 0 }
     }
 
-    /// Messages and stages that follow from a step of the function.
+    /// Add the messages and enter the stage that follow from a step of the function.
     fn tell(&mut self, tx: &[u8], state: ControllerState, warning: Warning, answered: bool) {
         match tx {
             [nak] if *nak == Response::Nak.byte() => self.counts.naks += 1,

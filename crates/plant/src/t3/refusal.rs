@@ -1,8 +1,8 @@
-//! Why a key has no effect.
+//! Reasons for which a key has no effect.
 
 use super::EStop;
 
-/// A key that was pressed at the wrong moment, and what has to be done first (IV.3.3).
+/// Refusal of a key that was pressed at the wrong time, with what must be done first (IV.3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// Control power is off.
@@ -11,16 +11,16 @@ pub enum Refusal {
     /// Control power is on already.
     #[error("control power is on already")]
     PowerIsOn,
-    /// A board is changed under power.
+    /// A board cannot be changed under power.
     #[error("boards are changed without power: control power off comes first")]
     Powered,
     /// FAULT RESET is lit.
     #[error("the FAULT RESET button is lit: fault reset comes first")]
     Fault,
-    /// An emergency stop is still in.
+    /// An emergency stop is still pressed.
     #[error("{0} is still in: release it first")]
     Pressed(EStop),
-    /// The E-stop is out already.
+    /// The E-stop is not pressed.
     #[error("{0} is not pressed")]
     NotPressed(EStop),
     /// FAULT RESET is not lit.
@@ -29,7 +29,7 @@ pub enum Refusal {
     /// The keyswitch is not at ENABLE.
     #[error("the HYDRAULICS keyswitch is not at ENABLE: hydraulics enable comes first")]
     NotEnabled,
-    /// The keyswitch is there already.
+    /// The keyswitch is already in that position.
     #[error("the HYDRAULICS keyswitch is there already")]
     KeyIsThere,
     /// The robot's hydraulics are off.
@@ -38,7 +38,7 @@ pub enum Refusal {
     /// The robot's hydraulics are on.
     #[error("the robot's hydraulics are on already")]
     PressureIsOn,
-    /// The robot moves.
+    /// The robot is moving.
     #[error("the robot moves: wait until it stands")]
     Moving,
     /// An axis is not aligned.
@@ -53,10 +53,10 @@ pub enum Refusal {
     /// There is no such axis.
     #[error("an axis from 1 to 6 was expected, found {0}")]
     NoAxis(u8),
-    /// The axis cannot turn so far.
+    /// The axis would turn beyond its limit.
     #[error("axis {0} would turn beyond its limit")]
     Limit(u8),
-    /// The E-stop circuit is open.
+    /// The E-stop circuit is open: the Prim Interface Box has no power.
     #[error("the Prim Interface Box has no power: prim box on comes first (IV.1)")]
     PrimBoxOff,
     /// The robot is not in auto mode.
@@ -68,10 +68,10 @@ pub enum Refusal {
     /// No program runs.
     #[error("no program runs")]
     NotRunning,
-    /// A warning waits for an answer.
+    /// A warning must be answered first.
     #[error("a warning is on the screen: answer it with enter, or with cancel twice")]
     Warned,
-    /// No warning to answer.
+    /// There is no warning to answer.
     #[error("there is no warning on the screen to answer")]
     NothingToAnswer,
     /// The error P-IG can only be cancelled.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How far the start-up has come.
+/// Progress of the start-up.
 ///
 /// ```text
 ///   Dark
@@ -30,11 +30,11 @@ pub enum Stage {
     Ready,
     /// The keyswitch is at ENABLE, the hydraulics are off.
     Enabled,
-    /// The pump starts; pressure comes after a short delay.
+    /// The pump is starting; the pressure comes after a short delay.
     Rising,
     /// Hydraulics on; the axes can be aligned.
     Manual,
-    /// On the way to HOME after AUTO, or after the program's end.
+    /// Moving to HOME after AUTO, or after the end of the program.
     Homing,
     /// Auto mode, at HOME.
     Auto,
@@ -42,12 +42,12 @@ pub enum Stage {
     Rehearsing,
     /// The program is in the DEPC function, see [`super::T3Controller::depc`].
     Depc,
-    /// Pre-manual mode: the program was ended, the axes are still aligned.
+    /// Pre-manual mode: the program has ended, the axes are still aligned.
     PreManual,
 }
 
 impl Stage {
-    /// For people.
+    /// As text for messages.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -65,7 +65,7 @@ impl Stage {
         }
     }
 
-    /// The hydraulics have, or are about to have, pressure.
+    /// True if the hydraulics have pressure or will have it soon.
     #[must_use]
     pub const fn is_live(self) -> bool {
         !matches!(self, Self::Dark | Self::Faulted | Self::Ready | Self::Enabled)

@@ -4,7 +4,7 @@ use super::{off_printed_home as off, *};
 use depc::controller::{ControllerState, Warning};
 use depc::wire::{DataCommand, FRAME_BYTES, Report};
 
-/// The report at HOME, worked out from appendix A.
+/// The report at HOME, calculated from appendix A.
 const HOME_REPORT: [u8; 16] =
     [0xFF, 0xFF, 0x03, 0x00, 0x00, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x7A];
 
@@ -12,7 +12,7 @@ fn t3() -> T3Controller {
     T3Controller::dark(Limits::NBS, &Actuators::default(), 1)
 }
 
-/// Let `seconds` pass in periods with a host on the line; returns what was sent.
+/// Let `seconds` pass in periods with a host on the line; returns the bytes sent.
 fn pass(t3: &mut T3Controller, seconds: f64) -> Vec<u8> {
     let mut sent = Vec::new();
     for _ in 0..(seconds / 0.04).ceil() as u32 {
@@ -99,7 +99,7 @@ fn a_missing_board_is_found_when_the_function_begins() {
     assert_eq!(pass(&mut t3, 6.0), []);
     assert_eq!((t3.depc().state(), t3.depc().warning()), (ControllerState::Warning, Warning::BoardMissing));
     assert!(t3.messages().contains(&Message::Warning(Warning::BoardMissing)));
-    // ENTER looks again.
+    // ENTER repeats the check.
     t3.press(Key::Enter).unwrap();
     assert_eq!(pass(&mut t3, 0.2), []);
     assert_eq!(t3.depc().warning(), Warning::BoardMissing);
@@ -218,7 +218,7 @@ fn steps_out_of_order_are_refused_and_change_nothing() {
         t3.press(all[done]).unwrap();
         pass(&mut t3, 4.0);
     }
-    // The last of the keys pressed was `align`.
+    // The last key pressed was `align`.
     assert_eq!(t3.press(Key::CycleStart), Err(Refusal::NotAuto));
     t3.press(Key::Auto).unwrap();
     assert_eq!(t3.press(Key::CycleStart), Err(Refusal::Moving));
@@ -265,7 +265,7 @@ fn enter_begins_again_where_the_robot_stands() {
     t3.press(Key::Enter).unwrap();
     let report = step(&mut t3, &[], true);
     assert_eq!(Report::parse(&report).unwrap().plate.words, [30, -6293, -636, -9000, 13500, 0]);
-    // A step too far: ACK, then the warning, and the robot stays.
+    // A move too far: ACK, then the warning, and the robot does not move.
     assert_eq!(step(&mut t3, &frame([90, -6293, -636, -9000, 13500, 0], [0; 2]), true), [0x06]);
     assert!(t3.messages().contains(&Message::Warning(Warning::Translation)));
     t3.press(Key::Enter).unwrap();

@@ -1,4 +1,4 @@
-//! A rig that leads the arm by hand: straight lines of the tool frame, and the gripper's valves, without a controller.
+//! A rig that moves the arm without a controller: straight lines of the tool frame, and the gripper's valves.
 #![allow(dead_code)]
 
 pub mod scenes;
@@ -39,9 +39,9 @@ pub struct Rig {
     pub log: Vec<CellEvent>,
     pub count: u64,
     pub description: CellDescription,
-    /// What the cell is given, if the rig keeps that.
+    /// The inputs of the cell, if the rig records them.
     pub tape: Option<Tape>,
-    /// For the tick to come.
+    /// Inputs of the next tick.
     beat: Beat,
     at: Frame,
 }
@@ -68,12 +68,12 @@ impl Rig {
         Self { cell, outputs, inputs, log: Vec::new(), count: 0, description, tape: None, beat, at }
     }
 
-    /// A rig that keeps what it gives to the cell.
+    /// A rig that records the inputs of the cell.
     pub fn taped(description: &CellDescription, seed: u64) -> Self {
         Self { tape: Some(Tape::default()), ..Self::new(description, seed) }
     }
 
-    /// Do something beside the robot, on tape.
+    /// Carry out a workstation action and record it.
     pub fn work(&mut self, action: WorkstationAction) {
         self.cell.workstation(&action).unwrap();
         self.beat.actions.push(action);
@@ -101,7 +101,7 @@ impl Rig {
         }
     }
 
-    /// Lead the tool to a frame in a straight line at `speed` in/s; a radian counts as 14 in.
+    /// Move the tool to a frame in a straight line at `speed` in/s; a radian counts as 14 in.
     pub fn go(&mut self, to: Frame, speed: f64) {
         let from = self.at;
         let turn = rotation_vector(&(from.rotation.inverse() * to.rotation));
@@ -127,7 +127,7 @@ impl Rig {
         self.beat.plate = Some(plate);
     }
 
-    /// Lead the tool and wait until the servos have caught up.
+    /// Move the tool and wait until the servos have settled.
     pub fn go_and_stop(&mut self, to: Frame, speed: f64) {
         self.go(to, speed);
         self.ticks(30);
@@ -189,7 +189,7 @@ impl Rig {
         panic!("the pedestal's hand does not open: {:?}", self.cell.pedestal_fingers());
     }
 
-    /// Give the rotary table an order and wait until its motor stands.
+    /// Give the rotary table an order and wait until its motor stops.
     pub fn table(&mut self, order: MotorOrder, steps: i32) {
         let number = self.outputs.pedestal_table.number + 1;
         self.outputs.pedestal_table = MotorCommand { number, order, steps };
@@ -203,8 +203,8 @@ impl Rig {
         panic!("the table turns on: {:?}", self.inputs.pedestal);
     }
 
-    /// As the pedestal's controller does: find the + limit, set the counter, turn to where the fingers move across the
-    /// radial line.
+    /// As the pedestal's controller does: find the + limit, set the counter, turn to the angle at which the fingers
+    /// move across the radial line.
     pub fn table_square(&mut self) {
         self.table(MotorOrder::Turn, 100_000);
         self.table(MotorOrder::SetCounter, 0);
@@ -233,7 +233,8 @@ impl Rig {
         PFIX.to_frame().unwrap().inverse().compose(&self.part_frame())
     }
 
-    /// Over a part in a tray as the controller would stand there: LK-GRP-1 on the part's place, backed off by `up` in.
+    /// The grip frame over a part in a tray as the controller computes it: LK-GRP-1 on the part's place, backed off by
+    /// `up` in.
     pub fn grip_frame(&self, sector: u16, x: f64, y: f64, angle: f64, up: f64) -> Frame {
         let sector = description().tray("UNIT_1").unwrap().sector(sector).unwrap();
         let place = Frame {
@@ -254,7 +255,7 @@ impl Rig {
         self.go(self.grip_frame(4, x, y, angle, 8.0), 4.0);
     }
 
-    /// Carry to the front of the fixture.
+    /// Move to the front of the fixture.
     pub fn carry(&mut self) {
         for via in [UNIT_V1, HOM_SAF_3, HOM_SAF_1, FIX_V1] {
             self.go(via.to_frame().unwrap(), 10.0);
@@ -267,7 +268,7 @@ impl Rig {
         Frame { position: frame.position + Vector::new(0.0, 0.0, up), ..frame }
     }
 
-    /// Into the vise as LK-GRP-FX1 has it.
+    /// Insert into the vise as LK-GRP-FX1 does.
     pub fn insert(&mut self) {
         self.go(Self::fixture(&FX1, 10.0, 0.0), 10.0);
         self.go(Self::fixture(&FX1, 5.0, 0.0), 4.0);

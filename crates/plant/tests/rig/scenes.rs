@@ -1,4 +1,4 @@
-//! Scenes full of contacts, on tape: what determinism is tested and speed is measured with.
+//! Recorded scenes with many contacts, for the determinism tests and the speed measurements.
 
 use geometry::{
     frame::{Frame, Vector},
@@ -23,7 +23,7 @@ pub fn with_tool_gripper() -> CellDescription {
     CellDescription::from_toml(&CELL.replace("mounted = \"parts\"", "mounted = \"tool\"")).unwrap()
 }
 
-/// Four blanks in a tray, three of them where the seed has them; the fourth is picked, carried to the vise, dropped onto its
+/// Four blanks in a tray, three of them at random places; the fourth is picked, carried to the vise, dropped onto its
 /// ledge, gripped there while the vise closes, held, and pushed to the back.
 pub fn clamping(seed: u64) -> Rig {
     let mut rig = Rig::taped(&description(), seed);
@@ -51,12 +51,12 @@ pub fn clamping(seed: u64) -> Rig {
     rig
 }
 
-/// Tool point on the axis of the drum, in from its place.
+/// Frame with the tool point on the axis of the drum, `x` in from its place.
 fn at_drum(rig: &Rig, x: f64) -> Frame {
     rig.description.drum.pose.frame().unwrap().shifted(Vector::new(x, 0.0, 0.0))
 }
 
-/// A tool in the drum that the robot has gripped; the drum has let go of it.
+/// A tool in the drum, gripped by the robot; the fingers of the drum are open.
 fn gripped_in_drum(seed: u64) -> Rig {
     let mut rig = Rig::taped(&with_tool_gripper(), seed);
     rig.work(DrumTool { part: "ENDMILL-1".into() });
@@ -71,7 +71,8 @@ fn gripped_in_drum(seed: u64) -> Rig {
     rig
 }
 
-/// A tool is gripped in the drum, drawn half out against the detents, pushed back, and left to the fingers of the drum.
+/// A tool is gripped in the drum, pulled half out against the detents, pushed back, and gripped by the fingers of the
+/// drum.
 pub fn drumming(seed: u64) -> Rig {
     let mut rig = gripped_in_drum(seed);
     rig.go_and_stop(at_drum(&rig, -0.2), 0.1);
@@ -82,7 +83,7 @@ pub fn drumming(seed: u64) -> Rig {
     rig
 }
 
-/// A tool out of the drum, in the tool gripper.
+/// A tool taken out of the drum, in the tool gripper.
 pub fn with_tool_in_hand(seed: u64) -> Rig {
     let mut rig = gripped_in_drum(seed);
     rig.go_and_stop(at_drum(&rig, -6.0), 0.5);

@@ -1,20 +1,20 @@
-//! What a cell was given in each tick and what became of it, so that a cell that was restored can be given the same.
+//! Inputs of a cell in each tick and its digests, so that a restored cell can be given the same inputs.
 
 use geometry::frame::Frame;
 use interfaces::device::DeviceOutputs;
 use plant::{Cell, WorkstationAction};
 
-/// What the cell was given for a tick.
+/// The inputs of a cell in one tick.
 #[derive(Clone, Debug, Default)]
 pub struct Beat {
     pub actions: Vec<WorkstationAction>,
-    /// The end-plate frame to which the arm was led.
+    /// The end-plate frame to which the arm was driven.
     pub plate: Option<Frame>,
     pub outputs: DeviceOutputs,
 }
 
 impl Beat {
-    /// Give it to another cell.
+    /// Apply them to another cell.
     pub fn play(&self, cell: &mut Cell) {
         if let Some(plate) = &self.plate {
             cell.drive(plate).unwrap();
@@ -41,7 +41,7 @@ impl Tape {
         self.digests.push(cell.digest());
     }
 
-    /// One number for all ticks.
+    /// One digest of all ticks.
     pub fn chain(&self) -> u64 {
         let mut chain = rcs_core::digest::Digest::new();
         self.digests.iter().for_each(|digest| chain.add(&digest.to_le_bytes()));

@@ -1,4 +1,4 @@
-//! Compares values of a description with expected ones, and collects the problems.
+//! Checks values of a description and collects the problems.
 
 use std::collections::BTreeSet;
 
@@ -33,7 +33,7 @@ impl Check<'_> {
         self.that(inside, path, &format!("{low} to {high}"), || value.to_string());
     }
 
-    /// From 0 to the value of another entry.
+    /// Checks that a value is from 0 to the value of another entry.
     pub(super) fn up_to(&mut self, path: &str, value: f64, (other, greatest): (&str, f64)) {
         if self.trusts(other) {
             let expected = format!("0 to the {greatest} of {other}");
@@ -57,14 +57,14 @@ impl Check<'_> {
         });
     }
 
-    /// Some keys of a table.
+    /// Some keys of a table must be more than 0.
     pub(super) fn positive(&mut self, table: &str, values: &[(&str, f64)]) {
         for (key, value) in values {
             self.above_zero(join(table, key), *value);
         }
     }
 
-    /// All elements of an array.
+    /// All elements of an array must be more than 0.
     pub(super) fn all_positive(&mut self, array: &str, values: &[f64]) {
         for (number, value) in values.iter().enumerate() {
             self.above_zero(element(array, number), *value);
@@ -76,7 +76,7 @@ impl Check<'_> {
         self.positive.insert(path);
     }
 
-    /// Check that a name is known. If a known name could not be read, it may be the meant one.
+    /// Check that a name is known. If a known name could not be read, the name may refer to it.
     pub(super) fn known(&mut self, path: &str, expected: &str, name: &str, known: &[&str]) {
         let names_are_read =
             !self.stand_ins.iter().any(|path| path.ends_with("name") || path.ends_with("unit"));

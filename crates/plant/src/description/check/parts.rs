@@ -8,7 +8,7 @@ use rcs_core::name::Name16;
 use super::Check;
 use crate::description::{CellDescription, Kind, Nest, PartType, Pattern, Shape, commands, known};
 
-/// Nests whose seats are so near to each other are at one place, in: less than any part is wide.
+/// Nests whose seats are within this distance are at the same place, in; it is less than the width of any part.
 const SAME_PLACE: f64 = 0.1;
 
 impl CellDescription {
@@ -41,7 +41,7 @@ impl CellDescription {
         }
     }
 
-    /// Check that names are given, fit, and are unique.
+    /// Check that names are present, valid and unique.
     pub(super) fn check_names(&self, check: &mut Check<'_>) {
         let named = |list: &'static str, key: &'static str, names: Vec<&String>| {
             let paths = (0..names.len()).map(move |number| join(&element(list, number), key));
@@ -117,7 +117,7 @@ impl CellDescription {
             let same = |other: &Nest| {
                 let is_there = other.location == nest.location && other.sector == nest.sector;
                 let near = (other.frame().position - nest.frame().position).norm() < SAME_PLACE;
-                // Parts of another size lie elsewhere in the same nest.
+                // Parts of another size have another seat in the same nest.
                 (is_there || near) && other.parts.iter().any(|part| nest.parts.contains(part))
             };
             if let Some(other) = earlier.position(same) {

@@ -1,4 +1,4 @@
-//! Faults of the cell.
+//! Entries for faults of the cell.
 
 use diagnostics::Problem;
 use rcs_core::tick::TICK_S;
@@ -10,14 +10,14 @@ use crate::{
     sensor::Sensor,
 };
 
-/// A kind of fault, and its keys besides those for the time.
+/// A kind of fault, and its keys except those for the time.
 pub(super) struct Kind {
     name: &'static str,
     keys: &'static [&'static str],
     when: &'static [&'static str],
 }
 
-/// Keys for the time of a fault that lasts.
+/// Keys for the time of a fault with a duration.
 const LASTING: [&str; 6] = ["at", "from", "after", "until", "rate", "ticks"];
 /// Keys for the time of a fault of a delivery.
 const DELIVERY: [&str; 5] = ["at", "from", "after", "until", "rate"];
@@ -47,9 +47,9 @@ const KINDS: [Kind; 15] = [
     delivery("wrong-part", &["object", "part"]),
     Kind { name: "pedestal-moved", keys: &["x", "y", "angle"], when: &[] },
 ];
-/// Devices that can be stuck, besides sensors and valves.
+/// Devices that can be stuck, other than sensors and valves.
 const DEVICES: [&str; 2] = ["lock-ring", "vise-jaw"];
-/// The longest time of a fault with a rate, ticks.
+/// The longest duration of a fault with a rate, ticks.
 const MOST_TICKS: u32 = 100_000;
 /// The longest delay of a sensor, ticks.
 const MOST_LATE: f64 = 1000.0;
@@ -59,7 +59,7 @@ const MOST_COUNTS: f64 = 100_000.0;
 const MOST_ASIDE: f64 = 100.0;
 
 impl Kind {
-    /// The keys that it takes.
+    /// The keys that it can have.
     pub(super) fn takes(&self) -> Vec<&'static str> {
         self.keys.iter().chain(self.when).copied().collect()
     }
@@ -70,12 +70,12 @@ pub(super) fn kinds() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|kind| kind.name)
 }
 
-/// The kind of a name.
+/// The kind with a name.
 pub(super) fn kind(name: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.name == name)
 }
 
-/// The fault of an entry.
+/// The fault that an entry describes.
 pub(super) fn fault(entry: &Entry<'_>, kind: &Kind, cell: &CellDescription) -> Result<Fault, Box<Problem>> {
     let what = what(entry, kind.name, cell)?;
     Ok(Fault { number: entry.number, what, when: when(entry)? })

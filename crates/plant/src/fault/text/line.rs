@@ -1,4 +1,4 @@
-//! Faults of the line to the robot controller.
+//! Entries for faults of the line to the robot controller.
 
 use depc::fault::{ALWAYS, Direction, FaultKind, MOST_TICKS, Plan, Rule};
 
@@ -14,18 +14,18 @@ pub(super) fn kinds() -> impl Iterator<Item = &'static str> {
     FaultKind::ALL.iter().map(|kind| kind.text())
 }
 
-/// The kind of a name.
+/// The kind with a name.
 pub(super) fn kind(name: &str) -> Option<FaultKind> {
     FaultKind::ALL.iter().copied().find(|kind| kind.text() == name)
 }
 
-/// A plan without a rule.
+/// A plan without rules.
 pub(super) fn empty(seed: u64, most_per_tick: Option<u8>) -> Plan {
     let plan = Plan::new(seed);
     most_per_tick.map_or(plan, |most| plan.most_per_tick(most))
 }
 
-/// The rule of an entry.
+/// The rule that an entry describes.
 pub(super) fn rule(entry: &Entry<'_>, kind: FaultKind) -> Result<Rule, Box<Problem>> {
     let form = entry.form;
     let mut rule = Rule::new(kind);
@@ -63,7 +63,7 @@ pub(super) fn rule(entry: &Entry<'_>, kind: FaultKind) -> Result<Rule, Box<Probl
     Ok(form.byte.map_or(rule, |byte| rule.byte(byte)))
 }
 
-/// A chance in millionths.
+/// A probability in millionths.
 fn millionths(rate: f64) -> u32 {
     libm::round(rate * f64::from(ALWAYS)) as u32
 }

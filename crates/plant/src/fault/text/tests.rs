@@ -97,7 +97,7 @@ fn every_rule_of_the_line_is_read() {
     assert_eq!(parse_line(&source("[[fault]]\nkind = \"drop\"\nat = 1\n")).unwrap().seed(), 1);
 }
 
-/// What is said of a second fault behind a good one.
+/// The messages for a second fault entry after a correct one.
 fn said(entry: &str) -> String {
     let text = format!("[[fault]]\nkind = \"flip\"\nrate = 0.1\n[[fault]]\n{entry}\n");
     parse(&source(&text), &cell()).unwrap_err().in_line()
