@@ -1,5 +1,5 @@
-//! The command of the workstation controller (V.4.2). Texts have blanks behind them; CHOSEN: zeros do as
-//! well.
+//! The command of the workstation controller (V.4.2). Texts are padded with blanks; zeros are accepted as padding, too
+//! (CHOSEN).
 
 use interfaces::HwsCommand;
 
@@ -51,21 +51,21 @@ impl Codec<'_, ()> for Length {
     }
 }
 
-/// Why bytes are not a command.
+/// Errors of decoding a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CommandError {
     /// Wrong size or field.
     #[error(transparent)]
     Layout(#[from] LayoutError),
-    /// 0 stands for no command.
+    /// The command number is 0, which means no command.
     #[error("a number from 1 on was expected for command-#-in, found 0")]
     NoNumber,
-    /// Nothing is commanded.
+    /// The command name is blank.
     #[error("the name of a command was expected for command-16, found blanks")]
     NoCommand,
 }
 
-/// The bytes of a command.
+/// Encodes a command as the data of its mailbox.
 ///
 /// # Errors
 /// [`RangeError`] for a grip or a sector that two bytes cannot hold.
@@ -73,7 +73,7 @@ pub fn encode(command: &HwsCommand) -> Result<[u8; CommandLayout::BYTES], RangeE
     CommandLayout::check(command).map(|()| CommandLayout::encode(command))
 }
 
-/// Read the bytes of a command. Task checks the words.
+/// Decodes the data of the mailbox. Task checks the words.
 ///
 /// # Errors
 /// [`CommandError`] for the first wrong field.

@@ -17,16 +17,18 @@
 //!                     +---- error, a retry is left ----> PAUSE ----> Sent
 //! ```
 //!
-//! An emergency ([`Workstation::emergency`]) ends the job at once, unless the job itself resets it further down, by a
-//! line with `** panel fault-reset`: then a command that fails meanwhile is noted as failed, and the job goes on. It
-//! must finish when the job sends it again, or the job has failed.
+//! An emergency ([`Workstation::emergency`]) ends the job at once, unless the current or a later line of the job resets
+//! it with `** panel fault-reset`. Then a command that fails meanwhile is recorded as failed, and the job continues.
+//! The job fails if that command has not finished when it is sent again later.
 //!
-//! A command whose line ends with `expect error` must fail: the job goes on when it has, and ends when it finishes.
+//! A command whose line ends with `expect error` must fail: the job continues after the failure, and fails if the
+//! command finishes.
 //!
-//! Actions that happen while the robot executes a command are in the job before that command. They are kept until it is
-//! sent, and begin at their time, during whatever step. A job ends only after they have ended.
+//! An action that happens while the robot executes a command comes before that command in the job. It starts its number
+//! of ticks after the command is sent, whichever step is current then. The job ends only after all these actions have
+//! ended.
 //!
-//! An operator can stop the job, command the robot meanwhile, and let the job go on ([`operator`]).
+//! An operator can stop the job, command the robot meanwhile, and continue the job ([`operator`]).
 //!
 //! The emulator uses only Task's mailboxes: it reads a [`Status`], and writes a command ([`Hwsc::mailgram`]). So it can
 //! run in the controller's process or in another one, and a real workstation controller can replace it.
@@ -59,23 +61,23 @@ pub trait Workstation {
     /// A sentence, if the workstation cannot do it.
     fn begin(&mut self, action: &Action, line: &str) -> Result<(), String>;
 
-    /// True while an action goes on.
+    /// True while an action is in progress.
     fn busy(&self) -> bool;
 
-    /// What is wrong with the workstation, in a sentence; `None` if nothing is.
+    /// The fault of the workstation as a sentence; `None` without a fault.
     fn fault(&self) -> Option<String>;
 
-    /// The emergency that has stopped the robot, in a sentence; `None` while there is none.
+    /// The emergency that has stopped the robot, as a sentence; `None` without an emergency.
     fn emergency(&self) -> Option<String> {
         None
     }
 }
 
-/// Ticks that a step may take: five minutes, three times the longest step of the linkbar.
+/// Time limit of a step, ticks: five minutes, three times the longest step of the linkbar job.
 pub const TIME_LIMIT: u64 = 5 * 60 * 1000 / TICK_MS;
 
-/// Ticks from the PAUSE after an error to the command that is sent again: the cause of the error may pass in this time.
-/// An operator would not be faster. CHOSEN: 1 s.
+/// Ticks from the PAUSE after an error to the repeated command: the cause of the error may end in this time. An
+/// operator would not be faster. CHOSEN: 1 s.
 pub const RETRY_TICKS: u64 = 1000 / TICK_MS;
 
 /// The emulator of the workstation controller.
@@ -87,42 +89,42 @@ pub struct Hwsc {
     began: Option<Tick>,
     commander: Commander,
     command: HwsCommand,
-    /// Ticks in which a command must be echoed.
+    /// Time limit for the echo of a command, ticks.
     answer_ticks: u64,
-    /// The command has been sent twice.
+    /// The command has already been sent a second time.
     repeated: bool,
-    /// The command is to be sent.
+    /// The command has not been written into the mailbox yet.
     to_send: bool,
     begun_steps: Vec<BegunStep>,
-    /// Which of them is the current step.
+    /// Index of the current step in `begun_steps`.
     entry: usize,
-    /// Commands that have failed while the job went on.
+    /// Commands that failed while the job continued.
     failed: Vec<FailedCommand>,
     progress: Progress,
     time_limit: u64,
     later: Vec<Later>,
-    /// Retries that a line has.
+    /// Greatest number of retries per line.
     retries: u32,
-    /// Retries that the current line has had.
+    /// Retries of the current line so far.
     tried: u32,
-    /// A PAUSE is executed before the current step begins, or begins again.
+    /// The PAUSE before the current step, or before its retry, is in progress.
     pausing: bool,
     retried: Vec<Retry>,
     /// State of an operator's intervention.
     intervention: Intervention,
 }
 
-/// A command that has failed while the job went on.
+/// A command that failed while the job continued.
 #[derive(Debug)]
 struct FailedCommand {
-    /// Which one of the steps that were begun.
+    /// Index in `begun_steps`.
     step: usize,
     tick: Tick,
     reason: Reason,
 }
 
 impl Hwsc {
-    /// An emulator that will play `steps`, each within `time_limit` ticks.
+    /// An emulator that plays `steps`, each within `time_limit` ticks.
     #[must_use]
     pub fn new(steps: Vec<JobLine>, time_limit: u64) -> Self {
         let begun_steps = Vec::with_capacity(steps.len() + 1);
@@ -149,34 +151,34 @@ impl Hwsc {
         }
     }
 
-    /// After a command that has failed send PAUSE and the same command again, so many times a line, unless a
-    /// person has to do something first ([`Reason::remedy`]).
+    /// After a failed command, sends PAUSE and the same command again, up to this number of times per line. There is no
+    /// retry if the failure needs a person's action first ([`Reason::remedy`]).
     #[must_use]
     pub const fn with_retries(mut self, retries: u32) -> Self {
         self.retries = retries;
         self
     }
 
-    /// The commands that were sent again, the oldest first.
+    /// The commands that were sent again, oldest first.
     #[must_use]
     pub fn retried(&self) -> &[Retry] {
         &self.retried
     }
 
-    /// Wait so many ticks for the echo of a command before it is sent again, instead of the three of a neighbour in the
-    /// same process: a network is slower.
+    /// Sets the time limit for the echo of a command, ticks; after it the command is sent again. The default is the
+    /// three ticks of a neighbour in the same process; a network is slower.
     #[must_use]
     pub const fn with_answer_ticks(mut self, ticks: u64) -> Self {
         self.answer_ticks = ticks;
         self
     }
 
-    /// Put a line before the next one of the job.
+    /// Inserts a line before the next line of the job.
     pub fn insert(&mut self, line: JobLine) {
         self.steps.insert(self.current.min(self.steps.len()), line);
     }
 
-    /// Replace the next command of the job by a line. False, and nothing has changed, if there is none.
+    /// Replaces the next command of the job by a line. Returns false, without a change, if no command is left.
     #[must_use]
     pub fn replace_command(&mut self, line: JobLine) -> bool {
         let coming = self.steps.iter_mut().skip(self.current);
@@ -184,18 +186,18 @@ impl Hwsc {
         command.map(|command| *command = line).is_some()
     }
 
-    /// The command that was sent last.
+    /// The last command sent.
     #[must_use]
     pub const fn command(&self) -> &HwsCommand {
         &self.command
     }
 
-    /// The command to write into the mailbox now, if there is one: each is returned once.
+    /// The command to write into the mailbox now, if any; each command is returned once.
     pub fn mailgram(&mut self) -> Option<&HwsCommand> {
         std::mem::take(&mut self.to_send).then_some(&self.command)
     }
 
-    /// All steps that were begun, the first PAUSE included.
+    /// All steps begun so far, the first PAUSE included.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {
         &self.begun_steps
@@ -213,13 +215,14 @@ impl Hwsc {
         self.steps.len() + 1
     }
 
-    /// A job has one step at least.
+    /// Always false: a job has at least one step, the first PAUSE.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         false
     }
 
-    /// Once a tick, after the controller: read Task's status of `tick`, and write the command for the next tick.
+    /// Called once per tick, after the controller: reads Task's status of `tick` and prepares the command for the next
+    /// tick.
     pub fn step(&mut self, tick: Tick, task: &Status<'_>, workstation: &mut impl Workstation) -> &Progress {
         if self.progress != Progress::Running {
             return &self.progress;
@@ -275,17 +278,17 @@ impl Hwsc {
         &self.progress
     }
 
-    /// The present step, or a later one, resets a fault of the robot controller.
+    /// True if the current step or a later one resets a fault of the robot controller.
     fn resets(&self) -> bool {
         let reset = Step::Workstation(Action::Panel(Panel::FaultReset));
         self.steps.iter().skip(self.current.saturating_sub(1)).any(|line| line.step == reset)
     }
 
-    /// The current step, or a PAUSE before it, has failed.
+    /// Handles a failure of the current step or of the PAUSE before it: retries, or fails the job.
     fn failed(&mut self, tick: Tick, failure: JobFailure, workstation: &mut impl Workstation) {
         let JobFailure::Command(reason) = failure else { return self.fail(failure) };
         if self.pausing && self.tried > 0 {
-            // The command that follows tells whether that matters.
+            // The repeated command shows whether the failed PAUSE matters.
             self.finish(Outcome::Failed);
             return self.begin(tick, workstation);
         }
@@ -307,7 +310,7 @@ impl Hwsc {
         }
     }
 
-    /// The present command has to fail.
+    /// True if the current command must fail.
     fn expects_error(&self) -> bool {
         !self.pausing
             && self
@@ -315,7 +318,7 @@ impl Hwsc {
                 .is_some_and(|line| line.expects_error && matches!(line.step, Step::Command(_)))
     }
 
-    /// How the present step ended; `None` while it is executed.
+    /// Outcome of the current step; `None` while it is in progress.
     fn end_of_step(
         &mut self,
         tick: Tick,
@@ -361,9 +364,9 @@ impl Hwsc {
         }
     }
 
-    /// Task's status of the last command.
+    /// Evaluates Task's status for the last command.
     fn read(&self, tick: Tick, task: &Status<'_>) -> Lower {
-        // The mailbox has the lower part of the number.
+        // The mailbox carries only the low two bytes of the number.
         let last = self.commander.number;
         let echo = if command_number(last) == task.echo { last } else { u32::from(task.echo) };
         let lost = task.task == TaskState::Lost;
@@ -380,7 +383,7 @@ impl Hwsc {
         }
     }
 
-    /// Begin the actions whose time has come.
+    /// Starts the delayed actions that are due.
     fn begin_later(&mut self, tick: Tick, workstation: &mut impl Workstation) -> Result<(), String> {
         for later in self.later.extract_if(.., |later| later.is_due(tick)) {
             workstation.begin(&later.action, &later.line)?;
@@ -388,14 +391,14 @@ impl Hwsc {
         Ok(())
     }
 
-    /// After the last step: the last actions may still wait for their time.
+    /// Called after the last step: delayed actions may still be waiting.
     fn end(&mut self, workstation: &impl Workstation) {
         if self.later.is_empty() && !workstation.busy() {
             self.progress = self.unfinished().map_or(Progress::Over, Progress::Failed);
         }
     }
 
-    /// The first command whose last attempt has failed.
+    /// The first command that failed and was not repeated successfully.
     fn unfinished(&self) -> Option<JobFailure> {
         self.failed.iter().find_map(|FailedCommand { step, tick, reason }| {
             let (failed, later) = self.begun_steps.get(*step..)?.split_first()?;
@@ -410,8 +413,8 @@ impl Hwsc {
         self.steps.get(position.checked_sub(1)?)
     }
 
-    /// The workstation controller commands instead of the job, whose line `** workstation` has begun. The emulator is
-    /// not to be stepped until [`Self::take_back`] or [`Self::refuse`].
+    /// Hands the commands over to the workstation controller, whose line `** workstation` has begun. Do not call
+    /// [`Self::step`] until [`Self::take_back`] or [`Self::refuse`].
     #[must_use]
     pub fn is_handed_over(&self) -> bool {
         let hands_over = |line: &JobLine| line.step == Step::Workstation(Action::HandOver);
@@ -419,8 +422,8 @@ impl Hwsc {
         is_begun && self.step_at(self.current).is_some_and(hands_over)
     }
 
-    /// The workstation controller has disconnected: the job sends PAUSE, and goes on with its next line. `commands` are
-    /// those that were sent meanwhile, `last` is the number of the last one.
+    /// Takes over again after the workstation controller has disconnected: sends PAUSE, and continues with the next
+    /// line of the job. `commands` are the commands sent meanwhile, `last` is the number of the last one.
     pub fn take_back(&mut self, tick: Tick, last: u32, commands: Vec<BegunStep>) {
         self.took(tick);
         self.finish(Outcome::Finished);
@@ -430,17 +433,17 @@ impl Hwsc {
         self.pause(tick);
     }
 
-    /// The workstation controller cannot take over, and the job ends.
+    /// Ends the job because the workstation controller cannot take over.
     pub fn refuse(&mut self, tick: Tick, why: String) {
         self.took(tick);
         self.fail(JobFailure::Workstation(why));
     }
 }
 
-/// The command that comes first, and before a command is sent again.
+/// Text of the command sent first, and before every retry.
 const PAUSE: &str = "PAUSE";
 
-/// PAUSE (V.4.1).
+/// The PAUSE command (V.4.1).
 #[must_use]
 pub fn pause() -> HwsCommand {
     HwsCommand { command: Name16::clipped(PAUSE), ..HwsCommand::default() }

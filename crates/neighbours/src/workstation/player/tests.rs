@@ -1,4 +1,4 @@
-//! The emulator against a Task that answers as the test says.
+//! Tests of the emulator against a Task with scripted answers.
 
 use super::*;
 use geometry::frame::Frame;
@@ -19,13 +19,13 @@ struct Task {
     left: u64,
     received: Vec<String>,
     fails_at: Option<usize>,
-    /// The commands from `fails_at` on that fail; one if it is 0.
+    /// Number of commands, from `fails_at` on, that fail; 0 means one.
     failing: usize,
-    /// Why they fail; GraspMissed if none is named.
+    /// Reason of the failures; `GraspMissed` if `None`.
     reason: Option<Reason>,
     silent: bool,
     joystick: bool,
-    /// Mailgrams that do not arrive.
+    /// Number of mailgrams to lose.
     losing: u32,
     /// Numbers of all mailgrams.
     sent: Vec<u32>,
@@ -38,7 +38,7 @@ impl Task {
         self.fails_at.is_some_and(|from| (from..last(from)).contains(&self.received.len()))
     }
 
-    /// What the emulator has sent reaches Task in the next tick, unless it is lost.
+    /// Delivers the emulator's command to Task in the next tick, unless it is lost.
     fn step(&mut self, hwsc: &mut Hwsc) -> Status<'static> {
         let mut status = HwsStatus::default();
         if let Some(command) = hwsc.mailgram() {
@@ -75,7 +75,7 @@ impl Task {
     }
 }
 
-/// What the emulator reads when Task runs and nothing was refused.
+/// Task's status as the emulator reads it when Task runs and nothing was refused.
 fn answer(status: &HwsStatus) -> Status<'static> {
     Status {
         command: status.command,
@@ -89,7 +89,7 @@ fn answer(status: &HwsStatus) -> Status<'static> {
     }
 }
 
-/// A vise that takes six looks, and what it was told.
+/// A vise whose action takes six calls of `busy`, and the lines it received.
 #[derive(Default)]
 struct Vise {
     busy: std::cell::Cell<u32>,
@@ -129,7 +129,7 @@ impl Workstation for Vise {
     }
 }
 
-/// What ends the emergency of a [`Vise`].
+/// The action that ends the emergency of a [`Vise`].
 const RESET: Action = Action::Panel(Panel::FaultReset);
 
 fn command(verb: &str) -> JobLine {
@@ -158,7 +158,7 @@ fn vise(opening: ViseOpening) -> JobLine {
     action(opening, "PFIXTURE")
 }
 
-/// Plays a job for at most 200 ticks; the last tick comes back.
+/// Plays a job for at most 200 ticks; returns the last tick.
 fn play(hwsc: &mut Hwsc, task: &mut Task, vise: &mut Vise) -> u64 {
     play_on(hwsc, task, vise, 1)
 }
@@ -257,7 +257,7 @@ fn an_error_of_task_ends_the_job_with_its_reason_and_nothing_more_is_sent() {
 
 #[test]
 fn a_command_that_fails_is_paused_and_sent_again() {
-    // What is to happen later, and has, does not happen again.
+    // A delayed action that has happened does not happen again.
     let steps = vec![later(1, ViseOpening::Open), command("MOVE"), command("ACQUIRE")];
     let mut task = Task { fails_at: Some(2), ..Task::default() };
     let (mut hwsc, mut jaws) = (Hwsc::new(steps, 100).with_retries(1), Vise::default());
@@ -276,7 +276,7 @@ fn a_command_that_fails_is_paused_and_sent_again() {
     assert_eq!(outcomes, [finished, failed, finished, finished, finished]);
 }
 
-/// A PAUSE that fails is no reason not to try: the command says whether it can be executed.
+/// A failed PAUSE does not prevent the retry: the command itself shows whether it can be executed.
 #[test]
 fn a_line_has_so_many_retries_and_the_next_line_has_as_many() {
     let received = |failing: usize| {
