@@ -1,48 +1,48 @@
-//! Errors of the fields of a mailbox's data, and the numbers of commands.
+//! Errors of fields of mailbox data, and command numbers.
 
 use std::fmt;
 
 use rcs_core::name::Name16;
 
-/// Why a field cannot be read.
+/// Errors of decoding a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldError {
-    /// The data end before the field does.
+    /// The data end before the end of the field.
     End {
         /// The field, in the manual's words.
         field: &'static str,
     },
-    /// A character that a name cannot have.
+    /// A character that is not allowed in a name.
     Character {
         /// The field, in the manual's words.
         field: &'static str,
-        /// Where the character stands in the data, bytes from 0.
+        /// Offset of the character in the data, bytes.
         at: usize,
         /// The character.
         found: u8,
     },
-    /// A word that is not a value of the field.
+    /// The word is not a value of the field.
     Word {
         /// The field, in the manual's words.
         field: &'static str,
         /// The word.
         found: Name16,
     },
-    /// An integer that must be another one.
+    /// The integer differs from the required one.
     Expected {
         /// The field, in the manual's words.
         field: &'static str,
-        /// What it must be.
+        /// The required value.
         expected: &'static str,
         /// The integer.
         found: u16,
     },
-    /// A floating-point number that is infinite or not a number.
+    /// The floating-point number is infinite or NaN.
     Infinite {
         /// The field, in the manual's words.
         field: &'static str,
     },
-    /// A code that is not a value of the field.
+    /// The code is not a value of the field.
     Code {
         /// The field, in the manual's words.
         field: &'static str,
@@ -73,7 +73,7 @@ impl fmt::Display for FieldError {
 
 impl std::error::Error for FieldError {}
 
-/// An integer that two bytes cannot hold.
+/// The integer does not fit into two bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("an integer of two bytes was expected for {field}, found {found}")]
 pub struct RangeError {
@@ -83,15 +83,15 @@ pub struct RangeError {
     pub found: i32,
 }
 
-/// The command number of a mailbox: the manual's integers have two bytes, the controller counts with four.
-/// From 65535 it goes to 1, since 0 means none.
+/// Converts the controller's four-byte command number to the manual's two bytes. 1 follows 65535, because 0 means no
+/// command.
 #[must_use]
 pub fn command_number(number: u32) -> u16 {
     let wrapped = number.checked_sub(1).map_or(0, |before| before % u32::from(u16::MAX) + 1);
     u16::try_from(wrapped).unwrap_or_default()
 }
 
-/// The command number that comes after another one.
+/// The command number after this one.
 #[must_use]
 pub fn successor(number: u16) -> u16 {
     number.checked_add(1).unwrap_or(1)

@@ -1,13 +1,13 @@
 //! The neighbours of the controller: systems that it reaches through mailboxes of the factory network (chapter IX).
 //!
-//! * [`mailbox`]: the eight mailboxes of Table IX.1 and the words before their data;
-//! * [`mod@layout`]: how the data of a mailbox are defined, once for encoding, decoding and documentation;
+//! * [`mailbox`]: the eight mailboxes of Table IX.1 and their heads;
+//! * [`mod@layout`]: layouts of mailbox data, defined once for encoding, decoding and documentation;
 //! * [`workstation`]: the command and the status of V.4.2 as bytes, and the check of commands;
 //! * [`data_system`]: the command of Figure IX.2 as bytes, its status, and a server that keeps the items of the
 //!   workstation in SQLite.
 //! * [`pedestal`]: the Active Pedestal as a separate system, its mailboxes as bytes, and both ends of them.
 //! * [`vision`]: the areas of the vision mailbox (IX.4), which E-move reads and writes;
-//! * [`network`]: how mailboxes travel to other processes.
+//! * [`network`]: transport of mailboxes to other processes.
 //!
 //! A level never uses a mailbox: Task's request to the Data System is a record of common memory
 //! ([`interfaces::DataBaseCommand`]), which this crate encodes.

@@ -1,8 +1,8 @@
 //! Mailboxes of the factory network (IX, Table IX.1).
 //!
 //! A mailbox is a piece of common memory of fixed size at a fixed address: its length, a mailgram number, a read and a
-//! write lock, and data. Figure IX.1, which gave the order and sizes of the first four, is lost. CHOSEN here: four
-//! 16-bit words in the order in which the text names them, low byte first as the boards' processors have them.
+//! write lock, and data. Figure IX.1, which gave order and sizes of the first four, is lost. CHOSEN here: four 16-bit
+//! words in the order in which the text names them, low byte first as in the processors of the boards.
 //!
 //! ```text
 //!   byte  0        2            4          6           8 ...
@@ -11,17 +11,17 @@
 
 use std::fmt;
 
-/// Bytes in front of the data (CHOSEN, see above).
+/// Bytes before the data (CHOSEN, see above).
 pub const HEAD: usize = 8;
 
 /// A mailbox of Table IX.1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// What the table calls it.
+    /// Name in the table.
     pub name: &'static str,
-    /// Its address in common memory.
+    /// Address in common memory.
     pub address: u32,
-    /// Its size with the head, bytes.
+    /// Size including the head, bytes.
     pub size: usize,
 }
 
@@ -46,7 +46,7 @@ pub const PEDESTAL_GRIPPER_STATUS: Place =
 pub const PEDESTAL_TABLE_STATUS: Place =
     Place { name: "Pedestal Table to RCS Status", address: 0xF_5900, size: 256 };
 
-/// Workstation to Cell Command: not in the table. Actions of the workstation itself (vise, trays, machine), for the
+/// Workstation to Cell Command: not in the table. Actions of the workstation itself (vise, trays, machine) for the
 /// simulated cell.
 pub const CELL_COMMAND: Place = Place { name: "Workstation to Cell Command", address: 0xF_6400, size: 256 };
 /// Workstation from Cell Status: not in the table.
@@ -65,7 +65,7 @@ pub const VISION_RESPONSE: Place = Place { name: "Vision to RCS Response", addre
 pub const VISION_PICTURE: Place =
     Place { name: "Vision from Cell Picture", address: 0xF_8400, size: MAX_SIZE };
 
-/// All of Table IX.1, in its order.
+/// The mailboxes of Table IX.1, in its order.
 pub const TABLE: [Place; 8] = [
     HWSC_COMMAND,
     HWSC_STATUS,
@@ -77,20 +77,20 @@ pub const TABLE: [Place; 8] = [
     PEDESTAL_TABLE_STATUS,
 ];
 
-/// Why bytes are not a mailbox, or not data for one.
+/// Errors of mailbox images and data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MailboxError {
-    /// More data than the mailbox holds.
+    /// The data do not fit into the mailbox.
     #[error("{mailbox}: at most {room} bytes of data were expected, found {found}")]
     TooLong {
         /// The mailbox.
         mailbox: Place,
-        /// Bytes that it has for data.
+        /// Bytes available for data.
         room: usize,
-        /// Bytes that were to be written.
+        /// Bytes to write.
         found: usize,
     },
-    /// The image of a mailbox has another size.
+    /// The image of the mailbox has the wrong size.
     #[error("{mailbox}: {} bytes were expected, found {found}", .mailbox.size)]
     Size {
         /// The mailbox.
@@ -98,7 +98,7 @@ pub enum MailboxError {
         /// Bytes found.
         found: usize,
     },
-    /// The length word is more than the mailbox holds, or less than its head.
+    /// The length word is greater than the mailbox size or less than the head.
     #[error("{mailbox}: a length of {HEAD} to {} was expected, found {found}", .mailbox.size)]
     Length {
         /// The mailbox.
@@ -121,11 +121,12 @@ pub const MAX_SIZE: usize = 4096;
 #[derive(Debug)]
 pub struct Mailbox {
     place: Place,
-    /// Zero behind the size of the mailbox.
+    /// The bytes after the size of the mailbox are zero.
     bytes: [u8; MAX_SIZE],
 }
 
-/// Most mailboxes are far smaller than the largest, and are copied and compared in every tick.
+/// `clone_from` copies only the bytes of this mailbox: most are far smaller than the largest, and are copied every
+/// tick.
 impl Clone for Mailbox {
     fn clone(&self) -> Self {
         Self { place: self.place, bytes: self.bytes }
@@ -150,7 +151,7 @@ impl PartialEq for Mailbox {
 impl Eq for Mailbox {}
 
 impl Mailbox {
-    /// A mailbox as initialization leaves it (IX): its length, zeros, and no data.
+    /// A mailbox after initialization (IX): its length word, zeros, and no data.
     #[must_use]
     pub fn initialized(place: Place) -> Self {
         let mut mailbox = Self { place, bytes: [0; MAX_SIZE] };
@@ -158,13 +159,13 @@ impl Mailbox {
         mailbox
     }
 
-    /// Which mailbox it is.
+    /// The place of this mailbox.
     #[must_use]
     pub const fn place(&self) -> Place {
         self.place
     }
 
-    /// Initialize the mailbox again (IX): no data, and the mailgram number from zero.
+    /// Initializes the mailbox again (IX): no data, mailgram number 0.
     pub fn initialize(&mut self) {
         *self = Self::initialized(self.place);
     }
@@ -187,7 +188,7 @@ impl Mailbox {
         }
     }
 
-    /// Take head and data from the network, without the unused rest. An error changes nothing.
+    /// Copies head and data received from the network, without the unused rest. After an error nothing has changed.
     ///
     /// # Errors
     /// [`MailboxError::Length`] if the length word is not the number of bytes, or more than the mailbox holds.
@@ -209,8 +210,8 @@ impl Mailbox {
         &self.bytes[..usize::from(self.word(0))]
     }
 
-    /// Write data and increment the mailgram number, so that the network sends it (IX): from 65535 it goes to 1,
-    /// because 0 is the value after initialization.
+    /// Writes data and increments the mailgram number, so that the network sends the mailbox (IX). After 65535 the
+    /// number is 1, because 0 is the value after initialization.
     ///
     /// # Errors
     /// [`MailboxError::TooLong`]; the mailbox stays as it was.
@@ -234,7 +235,7 @@ impl Mailbox {
         &self.bytes[HEAD..usize::from(self.word(0))]
     }
 
-    /// How often data were written since initialization; 0 if never.
+    /// Mailgram number: 0 after initialization, incremented by each write.
     #[must_use]
     pub fn mailgram(&self) -> u16 {
         self.word(2)
@@ -250,7 +251,7 @@ impl Mailbox {
         u16::from_le_bytes([self.bytes[at], self.bytes[at + 1]])
     }
 
-    /// `length` is at most the size of the mailbox, which a word holds.
+    /// Sets the length word; `length` is at most the size of the mailbox, which fits into a word.
     fn set_length(&mut self, length: usize) {
         let length = u16::try_from(length).unwrap_or(u16::MAX);
         self.bytes[..2].copy_from_slice(&length.to_le_bytes());

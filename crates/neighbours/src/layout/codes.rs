@@ -1,4 +1,4 @@
-//! How values are coded: integers low byte first, texts with blanks behind them.
+//! Codes of the values in mailbox data: integers low byte first, texts padded with blanks.
 
 use std::fmt::{self, Write as _};
 
@@ -12,7 +12,7 @@ use rcs_core::{
 use super::{At, Codec, Width};
 use crate::fields::{FieldError, command_number};
 
-/// The character that fills a field after its text.
+/// Pads a text field.
 const BLANK: u8 = b' ';
 
 /// Declare codes and their bytes.
@@ -56,7 +56,7 @@ codes! {
     Coded<W> = W;
 }
 
-/// An optional value: blank or 0 for none, in the code `C`.
+/// An optional value in the code `C`: blank or 0 means `None`.
 #[derive(Clone, Copy, Debug)]
 pub struct Given<C>(std::marker::PhantomData<C>);
 
@@ -88,7 +88,7 @@ impl<const W: usize> Codec<'_, ()> for Unused<W> {
     }
 }
 
-/// The bytes of an integer; a layout gives each field as many as it has.
+/// The bytes of an integer field as an array.
 fn chunk<const N: usize>(at: At, from: &[u8]) -> Result<[u8; N], FieldError> {
     from.try_into().map_err(|_| FieldError::End { field: at.field })
 }
@@ -126,7 +126,7 @@ impl Codec<'_, Tick> for U64 {
     }
 }
 
-/// At most 255.
+/// The value fits into one byte.
 impl Codec<'_, u8> for U16 {
     fn put(value: &u8, to: &mut [u8]) {
         Self::put(&u16::from(*value), to);
@@ -178,7 +178,7 @@ impl Codec<'_, u32> for Number {
     }
 }
 
-/// The characters in front of blanks and zeros, if all are `legal`.
+/// The characters before the padding of blanks and zeros, if all are `legal`.
 fn characters(at: At, from: &[u8], legal: impl Fn(u8) -> bool) -> Result<&str, FieldError> {
     let length = from.iter().rposition(|&byte| byte != BLANK && byte != 0).map_or(0, |last| last + 1);
     match from[..length].iter().position(|&byte| !legal(byte)) {
@@ -189,7 +189,7 @@ fn characters(at: At, from: &[u8], legal: impl Fn(u8) -> bool) -> Result<&str, F
 
 fn put_text(text: &dyn fmt::Display, to: &mut [u8]) {
     to.fill(BLANK);
-    // A text that is cut off is what was wanted.
+    // An error only means that the text was cut off, as intended.
     let _ = write!(Clipped { rest: to }, "{text}");
 }
 
@@ -213,7 +213,7 @@ impl<'a, const W: usize> Codec<'a, &'a str> for Text<W> {
     }
 }
 
-/// Writes as much as there is room for.
+/// Writes as much text as fits into the rest.
 struct Clipped<'a> {
     rest: &'a mut [u8],
 }
@@ -229,7 +229,7 @@ impl fmt::Write for Clipped<'_> {
     }
 }
 
-/// The variants of an enum.
+/// The schema of an enum.
 fn variants<T: Plain>() -> &'static EnumSchema {
     match T::SCHEMA {
         Schema::Enum(variants) => variants,
@@ -270,12 +270,12 @@ impl<const W: usize, T: Plain> Codec<'_, T> for Coded<W> {
     }
 }
 
-/// A reason or another sentence, as long as a field, for a text that is not written yet. Does not allocate.
+/// A reason or another sentence, cut to the length of a field; formatting does not allocate.
 #[derive(Clone, Copy, Debug)]
 pub struct Sentence<const W: usize>([u8; W]);
 
 impl<const W: usize> Sentence<W> {
-    /// What is shown, cut to `W` characters.
+    /// Formats a value, cut to `W` characters.
     #[must_use]
     pub fn of(shown: &dyn fmt::Display) -> Self {
         let mut bytes = [BLANK; W];

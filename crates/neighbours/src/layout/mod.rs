@@ -1,9 +1,9 @@
 //! Layouts of mailbox data (V.4.2, VI.7.2, IX.4): one definition gives encoding, decoding and the table in
 //! docs/neighbours.md.
 //!
-//! [`layout!`](crate::layout!) lists the fields in their order: the manual's variable, where its value is in
-//! a Rust record, how it is coded, and what it holds. Offsets follow from the sizes. Integers are low byte
-//! first, behind a text stand blanks. Nothing here allocates but [`Table::markdown`].
+//! [`layout!`](crate::layout!) lists the fields in their order: the manual's variable, the place of its value in a Rust
+//! record, its code, and its meaning. Offsets follow from the sizes. Integers are low byte first; texts are padded with
+//! blanks. Nothing here allocates but [`Table::markdown`].
 //!
 //! ```
 //! use neighbours::layout::{Chars, I16, Unused};
@@ -39,52 +39,52 @@ pub use codes::{
 
 use crate::fields::FieldError;
 
-/// Why the data of a mailbox cannot be decoded.
+/// Errors of decoding the data of a mailbox.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
-    /// Another number of bytes.
+    /// The data have the wrong size.
     #[error("{what} of {expected} bytes was expected, found {found}")]
     Size {
-        /// What was expected.
+        /// Kind of data expected.
         what: &'static str,
-        /// Its bytes.
+        /// Bytes expected.
         expected: usize,
         /// Bytes found.
         found: usize,
     },
-    /// A field with a wrong value.
+    /// A field has an invalid value.
     #[error(transparent)]
     Field(#[from] FieldError),
 }
 
-/// A field in a page of documentation.
+/// A row of the documentation: one field.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// The manual's name.
+    /// The manual's name of the field.
     pub variable: &'static str,
-    /// Its bytes.
+    /// Size of the field, bytes.
     pub bytes: usize,
-    /// What it holds.
+    /// Meaning of the field.
     pub text: &'static str,
 }
 
-/// A layout in a page of documentation.
+/// The documentation of a layout.
 #[derive(Clone, Copy, Debug)]
 pub struct Table {
-    /// What it is a layout of.
+    /// Kind of data.
     pub what: &'static str,
     /// The fields.
     pub rows: &'static [Row],
 }
 
 impl Table {
-    /// The table: where a field stands, its bytes, its variable, what it holds.
+    /// The table as Markdown: offset, size, variable and meaning of each field.
     #[must_use]
     pub fn markdown(&self) -> String {
         let mut page = "| at | bytes | variable | |\n|---|---|---|---|\n".to_owned();
         let mut at = 0;
         for Row { variable, bytes, text } in self.rows {
-            // A text takes whatever is written.
+            // Writing to a `String` cannot fail.
             let _ = writeln!(page, "| {at} | {bytes} | `{variable}` | {text} |");
             at += bytes;
         }
@@ -92,44 +92,43 @@ impl Table {
     }
 }
 
-/// Which field, for errors.
+/// Position of a field, for errors.
 #[derive(Clone, Copy, Debug)]
 pub struct At {
-    /// The manual's name.
+    /// The manual's name of the field.
     pub field: &'static str,
-    /// Its first byte in the data.
+    /// Offset of the field in the data, bytes.
     pub byte: usize,
 }
 
-/// How many bytes a code has.
+/// Size of a code.
 pub trait Width {
-    /// Bytes.
+    /// Size, bytes.
     const BYTES: usize;
 }
 
-/// How a value is coded in [`Width::BYTES`] bytes.
+/// Code of a value in [`Width::BYTES`] bytes.
 pub trait Codec<'a, T>: Width {
-    /// The value, if the bytes cannot hold it; then they hold the nearest value that they can.
+    /// The value, if it does not fit; [`Codec::put`] then writes the nearest value that fits.
     #[must_use]
     fn misfit(_value: &T) -> Option<i32> {
         None
     }
 
-    /// Write the value.
+    /// Encodes the value.
     fn put(value: &T, to: &mut [u8]);
 
-    /// Read a value.
+    /// Decodes a value.
     ///
     /// # Errors
-    /// [`FieldError`] if the bytes are not a value.
+    /// [`FieldError`] if the bytes are not a valid value.
     fn take(at: At, from: &'a [u8]) -> Result<T, FieldError>;
 }
 
-/// Define a layout: a type with `BYTES`, `TABLE`, `encode`, `decode` and `check`. See the
-/// [module](mod@crate::layout).
+/// Defines a layout: a type with `BYTES`, `TABLE`, `encode`, `decode` and `check`. See the [module](mod@crate::layout).
 ///
-/// A place is a path in parentheses; `()` for a field without a value; or `[get, set]`, two functions of the
-/// record.
+/// The place of a value is a path in parentheses; `()` for a field without a value; or `[get, set]`, two functions of
+/// the record.
 #[macro_export]
 macro_rules! layout {
     (
@@ -142,7 +141,7 @@ macro_rules! layout {
         pub struct $name;
 
         impl $name {
-            /// Bytes of the data.
+            /// Size of the data, bytes.
             pub const BYTES: usize = 0 $( + <$codec as $crate::layout::Width>::BYTES )+;
             /// The layout as a table.
             pub const TABLE: $crate::layout::Table = $crate::layout::Table {
@@ -154,7 +153,7 @@ macro_rules! layout {
                 } ),+ ],
             };
 
-            /// The bytes. A value that its field cannot hold becomes the nearest that it can.
+            /// Encodes a record. A value that does not fit its field becomes the nearest value that fits.
             #[must_use]
             pub fn encode(record: &$type) -> [u8; Self::BYTES] {
                 let mut bytes = [0; Self::BYTES];
@@ -167,10 +166,10 @@ macro_rules! layout {
                 bytes
             }
 
-            /// Refuse a value that its field cannot hold.
+            /// Checks that every value fits its field.
             ///
             /// # Errors
-            /// [`RangeError`]($crate::fields::RangeError) for the first one.
+            /// [`RangeError`]($crate::fields::RangeError) for the first value that does not fit.
             pub fn check(record: &$type) -> Result<(), $crate::fields::RangeError> {
                 $(
                     let value = &$crate::layout!(@get record, $type, $place);
@@ -181,10 +180,10 @@ macro_rules! layout {
                 Ok(())
             }
 
-            /// Read the bytes.
+            /// Decodes the data.
             ///
             /// # Errors
-            /// [`LayoutError`]($crate::layout::LayoutError) for the size, or the first wrong field.
+            /// [`LayoutError`]($crate::layout::LayoutError) for a wrong size or the first invalid field.
             pub fn decode(bytes: &[u8]) -> Result<$type, $crate::layout::LayoutError> {
                 let mut record = <$type>::default();
                 $crate::layout::sized($what, Self::BYTES, bytes)?;
@@ -215,7 +214,7 @@ macro_rules! layout {
     }};
 }
 
-/// Refuse data of another size.
+/// Checks the size of the data.
 ///
 /// # Errors
 /// [`LayoutError::Size`].

@@ -1,13 +1,13 @@
 //! The controller's side of a pedestal in another process: the mailboxes of Subtask and Diagnostics (IX.3).
 //!
-//! Once a tick it sends the command of Subtask and receives the pedestal's statuses, as an input of the next tick. The
-//! processes of the controller read common memory, where the pedestal answers or is lost:
+//! Once per tick it sends the command of Subtask and receives the pedestal's statuses, as an input of the next tick.
+//! The processes of the controller read from common memory whether the pedestal answers or is lost:
 //!
-//! | what happens                                       | common memory                                                   |
+//! | event                                              | common memory                                                   |
 //! |----------------------------------------------------|-----------------------------------------------------------------|
 //! | it is connected and has written a status           | its buffers, with the stamp of the tick                         |
 //! | on the 40 ms grid its status is not there yet      | its last buffers, republished until the echo comes, 2 s at most |
-//! | it is not connected, or writes invalid data  | its last buffers with their old stamp: it is lost               |
+//! | it is not connected, or writes invalid data        | its last buffers with their old stamp: it is lost               |
 
 use interfaces::{OutsidePedestal, device::PedestalSensors, pedestal::PedestalCommand};
 use rcs_core::tick::Tick;
@@ -28,28 +28,28 @@ use crate::{
     network::{ClockKind, Endpoint, NetEvent},
 };
 
-/// Ticks in which a command must be echoed over a network on the 40 ms grid: 2 s. In fast clock every tick waits for
-/// the answer.
+/// Time limit for the echo of a command over a network on the 40 ms grid: 2 s, in ticks. In fast clock every tick waits
+/// for the answer.
 const ECHO_TICKS: u64 = 50;
 
 /// A remark about the pedestal for the log.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Remark {
-    /// It has connected or disconnected, or a connection was refused.
+    /// The pedestal has connected or disconnected, or a connection was refused.
     Network(NetEvent),
-    /// It refuses a command.
+    /// The pedestal refuses a command.
     Refuses(String),
-    /// Its status cannot be read: it counts as not answering.
+    /// The pedestal's status cannot be decoded: it counts as not answering.
     Garbled(Place, PedestalError),
-    /// It is connected but does not echo a command.
+    /// The pedestal is connected but does not echo a command.
     Silent(u32),
     /// The data to send do not fit the mailbox.
     Unsent(MailboxError),
 }
 
 impl Remark {
-    /// Stable short name of its kind.
+    /// Short, stable name of the kind of remark.
     #[must_use]
     pub const fn code(&self) -> &'static str {
         match self {
@@ -78,15 +78,15 @@ impl std::fmt::Display for Remark {
     }
 }
 
-/// The controller's side. Does not allocate but for remarks.
+/// The controller's side. Allocates only for remarks.
 pub struct Agent {
     endpoint: Endpoint,
     sent: OutsidePedestal,
-    /// What it refuses: its verdict, and the mailgram number that it names.
+    /// The pedestal's last verdict, and the mailgram number that it refers to.
     refused: (Verdict, u16),
     /// The mailbox that cannot be read, if there is one.
     garbled: Option<Place>,
-    /// Since when the last command has not been echoed.
+    /// Tick since which the last command has no echo.
     waiting: Option<Tick>,
     /// The missing echo was reported.
     silent: bool,
@@ -94,7 +94,7 @@ pub struct Agent {
 }
 
 impl Agent {
-    /// Works with an endpoint.
+    /// Creates the controller's side at an endpoint.
     #[must_use]
     pub fn new(endpoint: Endpoint) -> Self {
         Self {
@@ -108,19 +108,19 @@ impl Agent {
         }
     }
 
-    /// Input of the next tick from the pedestal.
+    /// The input from the pedestal for the next tick.
     #[must_use]
     pub const fn sent(&self) -> &OutsidePedestal {
         &self.sent
     }
 
-    /// The remarks since the last call.
+    /// Takes the remarks since the last call.
     pub fn remarks(&mut self) -> Vec<Remark> {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Between two ticks: send the command that stands in common memory and the sensor words that the tick `next`
-    /// reads, and receive the pedestal's statuses for it.
+    /// Called between two ticks: sends the command in common memory and the sensor words that the tick `next` reads,
+    /// and receives the pedestal's statuses for that tick.
     pub fn exchange(&mut self, next: Tick, command: &PedestalCommand, sensors: &PedestalSensors) {
         self.put(PEDESTAL_COMMAND, &CommandLayout::encode(command));
         self.put(PEDESTAL_SENSORS, &SensorsLayout::encode(sensors));
@@ -158,8 +158,8 @@ impl Agent {
         }
     }
 
-    /// Read its four mailboxes, all or none of them. False if it has not written a status yet; an optional mailbox that
-    /// it does not write counts as initial.
+    /// Reads the pedestal's four mailboxes, all or none. Returns false if the pedestal has not written a status yet; an
+    /// optional mailbox that it does not write counts as initial.
     fn receive(&mut self) -> Result<bool, (Place, PedestalError)> {
         let endpoint = &self.endpoint;
         let Some(status) = read(endpoint, PEDESTAL_STATUS, Status::decode)? else { return Ok(false) };
@@ -179,7 +179,8 @@ impl Agent {
         Ok(true)
     }
 
-    /// It echoes the last command, or the time limit has not passed. Until then its status belongs to another command.
+    /// True if the pedestal echoes the last command or the time limit has not passed. Until the echo its status belongs
+    /// to an earlier command.
     fn is_heard(&mut self, next: Tick, number: u32) -> bool {
         if number == 0 || self.sent.pedestal.status.echo == number || self.endpoint.clock() == ClockKind::Fast
         {
@@ -197,7 +198,7 @@ impl Agent {
     }
 }
 
-/// Decode a mailbox; `None` if it was not written since it was initialized.
+/// Decodes a mailbox; `None` if it was not written since its initialization.
 fn read<'a, T, E: Into<PedestalError>>(
     endpoint: &'a Endpoint,
     place: Place,
@@ -224,7 +225,7 @@ mod tests {
         network::{Disconnect, Role, endpoint::tests::TestSession},
     };
 
-    /// The controller's side on the 40 ms grid, and a pedestal that writes what a test wants.
+    /// The controller's side on the 40 ms grid, and a pedestal that writes what the test specifies.
     struct Bench {
         agent: Agent,
         session: TestSession,
@@ -250,7 +251,8 @@ mod tests {
             self.write(&Status { status, ..Status::default() }.encode());
         }
 
-        /// The next tick with command `number`: does it answer, and is what it has sent republished?
+        /// Runs a tick with command `number`: returns whether the pedestal answers, and whether its outputs are
+        /// republished.
         fn tick(&mut self, number: u32) -> (bool, bool) {
             self.tick += 1;
             let command =

@@ -1,6 +1,6 @@
-//! The status of the pedestal's gripper for Diagnostics (IX.3). CHOSEN: the manual gives no layout. The
-//! gripper is nearly identical to the parts gripper (III.9.2), so the variables are those of Grip (VI.3.2),
-//! the status first and behind it the command that it belongs to.
+//! The status of the pedestal's gripper for Diagnostics (IX.3). CHOSEN: the manual gives no layout. The gripper is
+//! nearly identical to the parts gripper (III.9.2), so the variables are those of Grip (VI.3.2): first the status, then
+//! the command that it belongs to.
 
 use interfaces::{
     GripOutputs,
@@ -10,7 +10,7 @@ use interfaces::{
 use super::{STEP, WORD, row, set_row, set_table, table};
 use crate::layout::{Chars, Coded, Flag, Given, I32, Spelled, U16, U32, U64};
 
-/// What the hand process has written, without an order to its valves, and its command.
+/// Outputs of the hand process, without the order to its valves, and its command.
 pub type HandAndCommand = (GripOutputs, GripCommand);
 
 crate::layout! {
@@ -60,7 +60,7 @@ fn scales(sent: &HandAndCommand) -> Calibration {
     sent.0.calibration.unwrap_or_default()
 }
 
-/// Scales that are not known are not read.
+/// Sets a scale if the calibration is known; otherwise ignores it.
 fn set(read: &mut HandAndCommand, set: impl FnOnce(&mut Calibration)) {
     if let Some(calibration) = &mut read.0.calibration {
         set(calibration);

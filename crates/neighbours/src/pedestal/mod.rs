@@ -7,15 +7,15 @@
 //!                   <--TableLayout---- Pedestal Table to RCS Status      <-- the rotary table, for Diagnostics
 //! ```
 //!
-//! [`Agent`] is the controller's end, [`System`] the pedestal's: the same three processes that the controller steps
-//! itself if the pedestal is in its own process. What the agent gets is an input of the next tick
+//! [`Agent`] is the controller's end. [`System`] is the pedestal's: the same three processes that the controller steps
+//! itself if the pedestal is in its own process. What the agent receives is an input of the next tick
 //! ([`interfaces::OutsidePedestal`]), so that boards, logs and replays do not depend on the network.
 //!
-//! A pedestal of the simulated cell has its devices there: their words are sent in two further mailboxes ([`cell`]). A
-//! real one has its own devices.
+//! In the simulated cell the pedestal's devices are part of the cell: two further mailboxes carry their words
+//! ([`cell`]). A real pedestal has its own devices.
 //!
-//! All integers have four bytes, `cycle-cnt` eight, as in the controller (CHOSEN: the manual gives no widths): so the
-//! mailboxes can hold every command, and a run is the same, bit for bit, in whichever process its pedestal is.
+//! All integers have four bytes, `cycle-cnt` eight, as in the controller (CHOSEN: the manual gives no widths). So the
+//! mailboxes can hold every command, and a run is bit-identical whichever process runs its pedestal.
 
 mod agent;
 pub mod cell;
@@ -39,10 +39,10 @@ const WORD: usize = 10;
 /// Characters of a step.
 const STEP: usize = 16;
 
-/// Why the data of a mailbox of the pedestal cannot be decoded.
+/// Errors of decoding the pedestal's mailboxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PedestalError {
-    /// Number and status contradict each other: only one of them means "no command".
+    /// Number and status contradict each other: exactly one of them means "no command".
     #[error("executing, done, can't-do or error was expected for the command {0}, found idle")]
     Idle(u32),
     /// Wrong size or field.
@@ -59,7 +59,7 @@ fn set_table(header: &mut Header, table: u8) {
     header.decided = (table != 0).then_some(Decided { table, row: 0 });
 }
 
-/// The row that fired; 0 for none.
+/// Number of the row that fired; 0 for none.
 fn row(header: &Header) -> u8 {
     header.decided.map_or(0, |decided| decided.row)
 }

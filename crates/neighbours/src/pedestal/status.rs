@@ -1,5 +1,5 @@
-//! The status of the pedestal (VI.7.2). Fields that the manual does not have are CHOSEN; of `status-code` it
-//! says "not currently used".
+//! The status of the pedestal (VI.7.2). Fields that are not in the manual are CHOSEN; the manual calls `status-code`
+//! "not currently used".
 
 use interfaces::{
     Header,
@@ -13,7 +13,7 @@ use crate::layout::{Chars, Coded, Flag, Given, I32, Spelled, Text, U16, U32, U64
 /// Bytes of `reason`.
 pub const REASON: usize = 160;
 
-/// `verdict`.
+/// The field `verdict`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Verdict {
     /// The last mailgram was accepted.
@@ -26,7 +26,7 @@ pub enum Verdict {
     NoSensors,
 }
 
-/// A status as it is read.
+/// A decoded status.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Status<'a> {
     /// The variables of VI.7.2.
@@ -78,7 +78,7 @@ crate::layout! {
         "CHOSEN: 1: GRIP was ordered, and no opening since";
 }
 
-/// An angle that is not known is none.
+/// Removes the angle if it is not known.
 fn set_known(read: &mut Status<'_>, known: bool) {
     if !known {
         read.status.table_position = None;
@@ -86,13 +86,13 @@ fn set_known(read: &mut Status<'_>, known: bool) {
 }
 
 impl<'a> Status<'a> {
-    /// The bytes; a reason longer than [`REASON`] is cut off.
+    /// Encodes the status; a reason longer than [`REASON`] is cut off.
     #[must_use]
     pub fn encode(&self) -> [u8; StatusLayout::BYTES] {
         StatusLayout::encode(self)
     }
 
-    /// Read the bytes.
+    /// Decodes the data of the mailbox.
     ///
     /// # Errors
     /// [`PedestalError`] for the first wrong field.

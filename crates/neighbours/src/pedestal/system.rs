@@ -1,5 +1,4 @@
-//! The pedestal's own system (II.2, IV.5): its three processes, their common memory, and its ends of the
-//! mailboxes.
+//! The pedestal's own system (II.2, IV.5): its three processes, their common memory, and its ends of the mailboxes.
 //!
 //! ```text
 //!   command, sensor words --> | pedestal |
@@ -7,12 +6,12 @@
 //!                             | hand table
 //! ```
 //!
-//! A step is a tick of the controller: the pedestal runs on the pulses that it gets, with its own cycle count.
+//! A step is a tick of the controller: the pedestal runs once per pulse received, with its own cycle count.
 //!
 //! When it connects to a controller, it adopts the number of the command in the mailbox without executing it (IX.1:
-//! numbers are synchronized): it reports *restarted* for it, and executes the next number. So a command that was given
-//! up while the line was cut is not executed later. A pedestal that has just been started uses the number to tell two
-//! cases apart:
+//! numbers are synchronized): it reports *restarted* for this number, and executes the next one. So it does not execute
+//! a command that was abandoned while the connection was down. A pedestal that has just started uses the number to
+//! distinguish two cases:
 //!
 //! | command number | what it means                             | hand and table                                            |
 //! |----------------|-------------------------------------------|-----------------------------------------------------------|
@@ -41,7 +40,7 @@ use crate::{
     mailbox::{Mailbox, PEDESTAL_GRIPPER_STATUS, PEDESTAL_ORDERS, PEDESTAL_STATUS, PEDESTAL_TABLE_STATUS},
 };
 
-/// Command number that hand and table find in a pedestal that replaces another one; they did not execute it.
+/// Command number that hand and table find in a replacement pedestal; they have not executed that command.
 const OF_THE_LAST_ONE: u32 = 1;
 
 /// The pedestal's system.
@@ -52,10 +51,10 @@ pub struct System {
     memory: Box<CommonMemory>,
     external: Box<ExternalInputs>,
     tick: Tick,
-    /// Mailgram number of the command mailbox that was read last.
+    /// Mailgram number of the command mailbox read last.
     read: u16,
     refused: Option<(Verdict, LayoutError)>,
-    /// The number in the command mailbox has to be adopted.
+    /// The number in the command mailbox has not been adopted yet.
     joining: bool,
     outgoing: [Mailbox; 4],
 }
@@ -79,13 +78,13 @@ impl Default for System {
 }
 
 impl System {
-    /// A connection to a controller begins: the command in its mailbox must not be executed.
+    /// Called when a connection to a controller begins: the command in its mailbox must not be executed.
     pub const fn join(&mut self) {
         (self.read, self.joining) = (0, true);
     }
 
-    /// One tick on the mailboxes. If the command mailbox or the sensor words cannot be read, no process is stepped, and
-    /// the status says why.
+    /// Runs one tick on the mailboxes. If the command mailbox or the sensor words cannot be decoded, no process is
+    /// stepped, and the status says why.
     pub fn step(&mut self, command_box: &Mailbox, sensors_box: &Mailbox) {
         if command_box.mailgram() == 0 || sensors_box.mailgram() == 0 {
             return;
@@ -97,19 +96,19 @@ impl System {
         self.write();
     }
 
-    /// What it writes: the mailboxes of its statuses, and that of the orders to its devices.
+    /// The mailboxes that the pedestal writes: its statuses and the orders to its devices.
     #[must_use]
     pub const fn outgoing(&self) -> &[Mailbox; 4] {
         &self.outgoing
     }
 
-    /// What its processes have written.
+    /// Outputs of the three processes.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
         &self.memory
     }
 
-    /// The command that its pedestal process has.
+    /// The command of the pedestal process.
     #[must_use]
     pub const fn command(&self) -> &PedestalCommand {
         &self.memory.subtask.pedestal
@@ -144,7 +143,7 @@ impl System {
         }
     }
 
-    /// Adopt the number in the mailbox as that of a finished command.
+    /// Adopts the number in the mailbox as that of a finished command.
     fn adopt(&mut self, number: u32) {
         self.joining = false;
         let mut state = *Process::<()>::state(&self.pedestal);
@@ -156,7 +155,7 @@ impl System {
         }
     }
 
-    /// True if they can be read.
+    /// Decodes the sensor words; false if they are invalid.
     fn read_sensors(&mut self, mailbox: &Mailbox) -> bool {
         let sensors = SensorsLayout::decode(mailbox.data());
         if matches!(self.refused, Some((Verdict::NoSensors, _))) {
@@ -169,7 +168,7 @@ impl System {
         sensors.is_ok()
     }
 
-    /// A tick of the three processes: each reads the buffers of the tick before.
+    /// Runs a tick of the three processes: each reads the buffers of the previous tick.
     fn run(&mut self) {
         self.tick = self.tick.next();
         let before = *self.memory;
@@ -198,10 +197,10 @@ impl System {
     }
 }
 
-/// Write the data if they have changed.
+/// Writes the data into the mailbox if they have changed.
 fn put(mailbox: &mut Mailbox, data: &[u8]) {
     if mailbox.data() != data {
-        // The layouts are shorter than the mailboxes, as a test holds.
+        // The layouts are shorter than the mailboxes; a test checks this.
         let _ = mailbox.write(data);
     }
 }

@@ -1,12 +1,12 @@
-//! The status of the pedestal's rotary table for Diagnostics (IX.3). CHOSEN: the manual gives no layout, and of the
-//! table process only that it exists.
+//! The status of the pedestal's rotary table for Diagnostics (IX.3). CHOSEN: the manual gives no layout, and says of
+//! the table process only that it exists.
 
 use interfaces::{TableOutputs, pedestal::TableCommand};
 
 use super::{STEP, WORD, row, set_row, set_table, table};
 use crate::layout::{Chars, Coded, Flag, Given, I32, Spelled, U16, U32};
 
-/// What the table process has written, without an order to its motor, and its command.
+/// Outputs of the table process, without the order to its motor, and its command.
 pub type TableAndCommand = (TableOutputs, TableCommand);
 
 crate::layout! {
@@ -33,14 +33,14 @@ crate::layout! {
         "potentiometer of the table at the + limit, counts; 0 if it is not known";
 }
 
-/// An angle that is not known is none.
+/// Removes the angle if it is not known.
 fn set_angle_known(read: &mut TableAndCommand, known: bool) {
     if !known {
         read.0.status.position = None;
     }
 }
 
-/// A reading that is not known is none.
+/// Sets the reading at the limit if it is known; otherwise ignores it.
 fn set_at_limit(read: &mut TableAndCommand, counts: u16) {
     if let Some(at_limit) = &mut read.0.at_limit {
         *at_limit = counts;

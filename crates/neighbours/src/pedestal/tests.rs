@@ -1,4 +1,4 @@
-//! Layouts to the byte, and the pedestal's system behind them.
+//! Tests of the layouts, byte by byte, and of the pedestal's system.
 
 use interfaces::{
     Decided, GripOutputs, Header, Reason, TableOutputs,
@@ -228,21 +228,21 @@ proptest! {
         let _ = OrdersLayout::decode(&bytes);
     }
 
-    /// Nearly right bytes: one of a good layout is another one. What is taken for good says what the bytes say.
+    /// Changes one byte of a valid command: if the result decodes, encoding it gives the same bytes.
     #[test]
     fn what_is_taken_is_what_stands_there(at in any::<prop::sample::Index>(), byte in any::<u8>()) {
         let mut bytes = CommandLayout::encode(&flip(7));
         let at = at.index(bytes.len());
         bytes[at] = byte;
         if let Ok(taken) = CommandLayout::decode(&bytes) {
-            // A zero behind a text does as well as a blank.
+            // Zeros are accepted as padding of a text, too.
             let blank = bytes.map(|byte| if byte == 0 { b' ' } else { byte });
             prop_assert_eq!(CommandLayout::encode(&taken).map(|byte| if byte == 0 { b' ' } else { byte }), blank);
         }
     }
 
-    /// Whatever is written into its mailboxes, and whichever process joins when: the pedestal goes on, and what it
-    /// sends can be read.
+    /// With arbitrary mailbox data and processes that join at any time, the pedestal continues and its output can be
+    /// decoded.
     #[test]
     fn no_mailgram_stops_the_pedestal(
         events in prop::collection::vec((0_u8..6, prop::collection::vec(any::<u8>(), 0..40)), 1..60),
@@ -268,7 +268,7 @@ proptest! {
     }
 }
 
-/// A pedestal, and the other side of its mailboxes.
+/// A pedestal and the controller's side of its mailboxes.
 struct Bench {
     system: System,
     command_box: Mailbox,
@@ -286,7 +286,7 @@ impl Default for Bench {
 }
 
 impl Bench {
-    /// One that finds a command and has sensor words.
+    /// A pedestal that finds a command and sensor words when it joins.
     fn joining(number: u32) -> Self {
         let mut bench = Self::default();
         bench.command(&PedestalCommand { number, ..flip(number) });
@@ -310,7 +310,7 @@ impl Bench {
         Status::decode(self.system.outgoing()[0].data()).unwrap()
     }
 
-    /// Bits to the valves, and the order to the motor.
+    /// The orders to the valves and to the motor.
     fn orders(&self) -> (GripValves, MotorCommand) {
         OrdersLayout::decode(self.system.outgoing()[3].data()).unwrap()
     }
@@ -329,7 +329,7 @@ fn a_pedestal_that_is_booted_calibrates_and_one_that_replaces_another_moves_noth
     }
     let PedestalStatus { echo, report, reason, .. } = replaced.status().status;
     assert_eq!((echo, report, reason), (7, PedestalReport::Error, Reason::Restarted));
-    // FLIP needs to know where the table is, PRE-GRIP finds out, and calibrates the hand before it.
+    // FLIP needs the position of the table. PRE-GRIP determines it, and calibrates the hand first.
     replaced.command(&flip(8));
     replaced.tick();
     assert_eq!(replaced.status().status.reason, Reason::TableAngleUnknown);

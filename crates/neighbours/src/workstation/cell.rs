@@ -1,5 +1,5 @@
-//! Actions of the workstation itself in a simulated cell (an extension: the manual's workstation has its own lines to
-//! vise, trays and machine).
+//! Actions of the workstation itself in a simulated cell: an extension. The manual's workstation has its own
+//! connections to vise, trays and machine.
 
 use rcs_core::Plain;
 
@@ -8,13 +8,13 @@ use crate::{
     layout::{At, Codec as _, Coded, Flag, LayoutError, Text, U16, Width as _},
 };
 
-/// Bytes of a text.
+/// Bytes of the text of a line or a status.
 pub const TEXT: usize = 240;
 
-/// What is wrong.
+/// Kind of trouble in the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Trouble {
-    /// Nothing.
+    /// No trouble.
     #[text = ""]
     None,
     /// The last line was refused.
@@ -28,17 +28,17 @@ pub enum Trouble {
 /// The status of the cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CellStatus<'a> {
-    /// Number of the line that was begun last, or refused.
+    /// Number of the last line that was begun or refused.
     pub echo: u16,
-    /// The cell is busy with a line.
+    /// An action is in progress.
     pub busy: bool,
-    /// What is wrong.
+    /// Kind of trouble.
     pub trouble: Trouble,
-    /// The same in a sentence.
+    /// The trouble as a sentence.
     pub text: &'a str,
 }
 
-/// A line for the cell.
+/// A line for the cell, with its number.
 pub type NumberedLine<'a> = (u16, &'a str);
 
 crate::layout! {
@@ -61,25 +61,25 @@ crate::layout! {
     "text"     (text)     Text<TEXT>,  "what is wrong";
 }
 
-/// The bytes of a line; a text longer than [`TEXT`] is cut off.
+/// Encodes a line; a text longer than [`TEXT`] is cut off.
 #[must_use]
 pub fn encode_line(number: u16, line: &str) -> [u8; LineLayout::BYTES] {
     LineLayout::encode(&(number, line))
 }
 
-/// A line with its number, which is known even if the rest cannot be read.
+/// A received line. Its number is known even if the rest cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellLine<'a> {
-    /// The number.
+    /// Number of the line.
     pub number: u16,
-    /// The line, or why it cannot be read.
+    /// The line, or the error of decoding it.
     pub text: Result<&'a str, LayoutError>,
 }
 
-/// Read a line.
+/// Decodes a line.
 ///
 /// # Errors
-/// [`FieldError`] if it has no number.
+/// [`FieldError`] if the number is missing.
 pub fn decode_line(bytes: &[u8]) -> Result<CellLine<'_>, FieldError> {
     let number = bytes.get(..U16::BYTES).ok_or(FieldError::End { field: "number" })?;
     let number = U16::take(At { field: "number", byte: 0 }, number)?;
@@ -87,13 +87,13 @@ pub fn decode_line(bytes: &[u8]) -> Result<CellLine<'_>, FieldError> {
 }
 
 impl<'a> CellStatus<'a> {
-    /// The bytes.
+    /// Encodes the status.
     #[must_use]
     pub fn encode(&self) -> [u8; CellStatusLayout::BYTES] {
         CellStatusLayout::encode(self)
     }
 
-    /// Read the bytes.
+    /// Decodes the data of the mailbox.
     ///
     /// # Errors
     /// [`LayoutError`] for the first wrong field.

@@ -3,7 +3,7 @@
 //!
 //! A command is executed once. Its number decides:
 //!
-//! | number of the mailgram                    | what becomes of it                                                   |
+//! | number of the mailgram                    | result                                                               |
 //! |-------------------------------------------|----------------------------------------------------------------------|
 //! | the last one, and the same fields         | repeated: answered with the present status, not executed again       |
 //! | the last one, and other fields            | refused                                                              |
@@ -25,21 +25,21 @@ use crate::{
     mailbox::{HWSC_COMMAND, HWSC_STATUS, Mailbox},
 };
 
-/// Why a mailgram with a command was refused.
+/// Why a command mailgram was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// The bytes are not a command.
+    /// The bytes cannot be decoded.
     Garbled(CommandError),
-    /// The number was given to another command.
+    /// The number belongs to another command.
     Changed {
-        /// Both have it.
+        /// The number of both commands.
         number: u16,
     },
-    /// Another number comes next.
+    /// The number is out of order.
     OutOfOrder {
-        /// The one that comes next.
+        /// The expected number.
         expected: u16,
-        /// The one of the command.
+        /// The number of the command.
         found: u16,
     },
 }
@@ -77,13 +77,13 @@ impl fmt::Display for Refusal {
 /// Task's end of the two mailboxes. Does not allocate.
 #[derive(Clone, Debug)]
 pub struct Gate {
-    /// Mailgram number that was read last.
+    /// Mailgram number read last.
     read: u16,
     refused: Option<Refusal>,
     command: HwsCommand,
     /// No command was taken since the mailboxes were initialized.
     fresh: bool,
-    /// Task's last status, with the details of its reason.
+    /// Task's last status, with the details of its reason at the tick in which it came.
     told: (HwsStatus, Detail),
     status_box: Mailbox,
 }
@@ -114,19 +114,19 @@ impl Gate {
         &self.status_box
     }
 
-    /// The mailboxes are initialized (block 641, IX.1): the next command may have any number but the last.
-    /// The command that Task has stays.
+    /// Initializes the mailboxes (block 641, IX.1): the next command may have any number but the last. Task keeps its
+    /// command.
     pub fn initialize(&mut self) {
         (self.read, self.refused, self.fresh) = (0, None, true);
         self.status_box.initialize();
     }
 
-    /// Skip the command in the mailbox: it was sent while the mailbox was not read, and must not be executed.
+    /// Skips the command in the mailbox: it was sent while the mailbox was not read, and must not be executed.
     pub fn pass_over(&mut self, command_box: &Mailbox) {
         self.read = command_box.mailgram();
     }
 
-    /// READ-HWS-COMMAND, once a tick: read the mailbox. `Some` if a mailgram is refused.
+    /// READ-HWS-COMMAND, called once per tick: reads the mailbox. Returns `Some` if a mailgram is refused.
     pub fn read(&mut self, command_box: &Mailbox) -> Option<Refusal> {
         debug_assert_eq!(command_box.place(), HWSC_COMMAND);
         let mailgram = command_box.mailgram();
@@ -155,8 +155,8 @@ impl Gate {
         Ok(())
     }
 
-    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, once a tick: write Task's status into the mailbox if it has changed; true
-    /// if it has. Names and distances of a reason are those of the tick in which the reason came.
+    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, called once per tick: writes Task's status into the mailbox if it has
+    /// changed, and returns true then. Names and distances of a reason are those of the tick in which the reason came.
     pub fn write(&mut self, memory: &CommonMemory, state: TaskState) -> bool {
         let task = memory.task.status;
         if task != self.told.0 {
@@ -170,7 +170,7 @@ impl Gate {
     }
 }
 
-/// A number that came out of a mailbox has two bytes.
+/// Converts a number from a mailbox, which has two bytes.
 fn word(number: u32) -> u16 {
     u16::try_from(number).unwrap_or(u16::MAX)
 }
@@ -182,7 +182,7 @@ mod tests {
 
     use super::{super::command::tests::transfer, *};
 
-    /// A workstation controller that writes whatever it is told.
+    /// A workstation controller that writes what the test specifies.
     struct Bench {
         gate: Gate,
         command_box: Mailbox,

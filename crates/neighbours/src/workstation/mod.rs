@@ -1,15 +1,16 @@
 //! The workstation controller (HWSC) and Task (V.4.2, IX.1).
 //!
-//! The manual names the fields of the two interfaces with their widths, in an order; the mailboxes hold them in that order,
-//! without gaps. What it does not say is marked CHOSEN in [`command`] and [`status`].
+//! The manual names the fields of the two interfaces, their widths and their order; the mailboxes hold them in that
+//! order, without gaps. Values that the manual does not give are marked CHOSEN in [`command`] and [`status`].
 //!
 //! ```text
 //!   HWSC --command::encode--> F6000 --Gate--> HwsCommand --> Task
 //!   HWSC <--status::decode--- F6200 <-------- HwsStatus  <-- Task
 //! ```
 //!
-//! [`Gate`] does the work of Task's READ-HWS-COMMAND and WRITE-HWS-STATUS (Figure IV.1). A refused mailgram never
-//! reaches Task: the command in progress goes on. [`player`] is an emulator of the other end, that plays jobs.
+//! [`Gate`] implements Task's READ-HWS-COMMAND and WRITE-HWS-STATUS (Figure IV.1). A refused mailgram never reaches
+//! Task, which continues the command in progress. [`player`] is an emulator of the workstation controller that plays
+//! jobs.
 
 pub mod cell;
 pub mod command;

@@ -366,7 +366,7 @@ impl Hwsc {
 
     /// Evaluates Task's status for the last command.
     fn read(&self, tick: Tick, task: &Status<'_>) -> Lower {
-        // The mailbox carries only the low two bytes of the number.
+        // The mailbox carries the number in two bytes.
         let last = self.commander.number;
         let echo = if command_number(last) == task.echo { last } else { u32::from(task.echo) };
         let lost = task.task == TaskState::Lost;

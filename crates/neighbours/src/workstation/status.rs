@@ -1,6 +1,6 @@
-//! The status to the workstation controller (V.4.2). Fields that the manual does not have are CHOSEN: its status has
-//! neither an echo of the number nor a word for failure. A refused mailgram changes nothing in the fields before
-//! `verdict`: they still describe the command that Task has.
+//! The status to the workstation controller (V.4.2). Fields that are not in the manual are CHOSEN: the manual's status
+//! has neither an echo of the command number nor a word for failure. A refused mailgram does not change the fields
+//! before `verdict`: they still describe the command that Task has.
 
 use interfaces::{
     Detail, Reason,
@@ -17,18 +17,18 @@ use crate::{
 /// Bytes of `reason`.
 pub const REASON: usize = 160;
 
-/// `task-state`.
+/// The field `task-state`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskState {
     /// Task runs.
     Runs,
-    /// Its switch on the joystick box holds it (III.3.3): it does not read its commands.
+    /// Task's switch on the joystick box holds Task (III.3.3): it does not read its commands.
     Held,
-    /// It has not run in the last tick.
+    /// Task did not run in the last tick.
     Lost,
 }
 
-/// A status as it is read.
+/// A decoded status.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Status<'a> {
     /// `"command-echo"`.
@@ -39,7 +39,7 @@ pub struct Status<'a> {
     pub echo: u16,
     /// `mailgram-echo`.
     pub mailgram_echo: u16,
-    /// `verdict`: 0 taken.
+    /// `verdict`: 0 if the mailgram was accepted.
     pub verdict: u16,
     /// `status-code`.
     pub code: Reason,
@@ -73,7 +73,7 @@ crate::layout! {
         "CHOSEN: why the mailgram was refused, or else why the command failed, with names and distances";
 }
 
-/// `status-length>w`, which is not read.
+/// `status-length>w`; decoding ignores it.
 #[derive(Clone, Copy, Debug)]
 struct Length;
 
@@ -91,7 +91,7 @@ impl Codec<'_, ()> for Length {
     }
 }
 
-/// The bytes of a status. `detail` goes with its reason.
+/// Encodes a status as the data of its mailbox. `detail` adds names and distances to the reason.
 #[must_use]
 pub fn encode(
     status: &HwsStatus,
@@ -117,7 +117,7 @@ pub fn encode(
     })
 }
 
-/// Read the bytes of a status.
+/// Decodes the data of the mailbox.
 ///
 /// # Errors
 /// [`LayoutError`] for the first wrong field.

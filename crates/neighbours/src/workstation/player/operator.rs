@@ -1,4 +1,4 @@
-//! Interventions of an operator in a job: stop it between two lines, command Task meanwhile, and let it go on (IV.3).
+//! Interventions of an operator in a job: stop it between two lines, command Task meanwhile, and continue it (IV.3).
 //!
 //! ```text
 //!            wait: at the end of the line; a command: at once;
@@ -10,8 +10,8 @@
 //! ```
 //!
 //! There is one sequence of command numbers: commands of the operator and of the job take theirs from the same
-//! [`Commander`](rcs_core::handshake::Commander). While an operator is connected, a command that fails, a joystick box
-//! that is on, an emergency, and a refused action do not end the job: it waits.
+//! [`Commander`](rcs_core::handshake::Commander). While an operator is connected, the job waits instead of ending if a
+//! command fails, the joystick box is on, an emergency occurs, or the workstation refuses an action.
 
 use std::fmt;
 
@@ -28,7 +28,7 @@ pub(super) struct Intervention {
     /// An operator is connected.
     attended: bool,
     state: State,
-    /// Why the job waits, if it was not reported yet.
+    /// Why the job waits, until it is reported.
     news: Option<WaitReason>,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct Intervention {
 pub enum WaitReason {
     /// The operator commands the robot.
     Commanded,
-    /// The operator has asked for it.
+    /// The operator has asked the job to wait.
     Asked,
     /// A line has failed.
     Failed(JobFailure),
@@ -53,21 +53,21 @@ impl fmt::Display for WaitReason {
     }
 }
 
-/// Whether the job plays.
+/// Whether the job runs or waits for the operator.
 #[derive(Debug, Default)]
 enum State {
-    /// It does.
+    /// The job runs.
     #[default]
     Plays,
-    /// It waits when the present line has ended.
+    /// The job runs, and will wait when the current line has ended.
     Asked,
-    /// It waits.
+    /// The job waits.
     Waits {
-        /// Why the line has failed, if it has.
+        /// Failure of the line, if it has failed.
         failure: Option<JobFailure>,
-        /// The line has not been begun.
+        /// The job waits before a line that has not been begun.
         before_line: bool,
-        /// The operator's command that is executed: which one of the steps that were begun.
+        /// Index of the operator's command in progress, among the steps begun.
         command: Option<usize>,
     },
 }
@@ -75,15 +75,15 @@ enum State {
 /// Why an operator's request is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OperatorError {
-    /// The job plays.
+    /// The job is running.
     #[error(
         "the job plays already; `job wait` stops it at the end of its line, any command stops it at once"
     )]
     Plays,
-    /// A command of the operator is executed.
+    /// A command of the operator is in progress.
     #[error("{0} is still executed: wait for its end, or send PAUSE")]
     Executes(String),
-    /// There is nothing to skip.
+    /// The job has no line left to skip.
     #[error("the job has no line left to skip; `job go` ends it")]
     NoLine,
     /// The job has ended.
@@ -92,14 +92,14 @@ pub enum OperatorError {
 }
 
 impl Hwsc {
-    /// The job waits for an operator before its first line.
+    /// Makes the job wait for an operator before its first line.
     #[must_use]
     pub fn on_stand_by(mut self) -> Self {
         self.intervention.state = State::Asked;
         self
     }
 
-    /// An operator has connected, or the last one has disconnected. Then a job that waits because a line has failed
+    /// Sets whether an operator is connected. When the operator disconnects, a job that waits because of a failed line
     /// ends with that failure.
     pub fn attend(&mut self, is_there: bool) {
         self.intervention.attended = is_there;
@@ -110,18 +110,18 @@ impl Hwsc {
         }
     }
 
-    /// The job waits for an operator.
+    /// True if the job waits for an operator.
     #[must_use]
     pub const fn is_waiting(&self) -> bool {
         matches!(self.intervention.state, State::Waits { .. })
     }
 
-    /// Why the job has begun to wait; each reason is given once.
+    /// The reason for which the job has begun to wait; each reason is returned once.
     pub fn operator_news(&mut self) -> Option<WaitReason> {
         self.intervention.news.take()
     }
 
-    /// Make the job wait when the present line has ended, or before its first line.
+    /// Makes the job wait when the current line has ended, or before its first line.
     ///
     /// # Errors
     /// [`OperatorError::Ended`].
@@ -133,8 +133,8 @@ impl Hwsc {
         Ok(())
     }
 
-    /// The job goes on with the line that was interrupted or has failed: PAUSE comes first, as after every
-    /// interruption. An action of the workstation that has not ended is not begun again.
+    /// Continues the job with the line that was interrupted or has failed, after a PAUSE as after every interruption.
+    /// An action of the workstation that is still in progress is not started again.
     ///
     /// # Errors
     /// [`OperatorError`].
@@ -142,8 +142,8 @@ impl Hwsc {
         self.resume(tick, false)
     }
 
-    /// The job goes on with the line behind the one that was interrupted or has failed. The caller must make sure that
-    /// the cell is as if that line had finished.
+    /// Continues the job with the line after the one that was interrupted or has failed. The caller must make sure that
+    /// the cell is in the state that the skipped line would have produced.
     ///
     /// # Errors
     /// [`OperatorError`].
@@ -151,8 +151,8 @@ impl Hwsc {
         self.resume(tick, true)
     }
 
-    /// Play other lines instead of the rest of the job, which waits: PAUSE, then the first of them. Waiting actions and
-    /// noted failures of the job are dropped, too.
+    /// Replaces the rest of the waiting job by other lines: sends PAUSE, then the first of them. Drops the job's
+    /// delayed actions and recorded failures.
     ///
     /// # Errors
     /// [`OperatorError`].
@@ -180,19 +180,19 @@ impl Hwsc {
         Ok(())
     }
 
-    /// An emulator without a job, for commands of an operator instead of a workstation controller, whose last command
-    /// had this number.
+    /// An emulator without a job, for commands of an operator in place of a workstation controller. `last` is the
+    /// number of the last command of that controller.
     #[must_use]
     pub fn stand_alone(last: u32, time_limit: u64) -> Self {
         let mut hwsc = Self::new(Vec::new(), time_limit);
-        // The last command may not be echoed yet: its number is known, and the next one follows it.
+        // Task may not have echoed the last command yet; the next command takes the number after it.
         (hwsc.commander.number, hwsc.commander.started) = (last, true);
         hwsc.attend(true);
         hwsc.wait_without_job();
         hwsc
     }
 
-    /// The played job is over, or has failed: the emulator waits for an operator.
+    /// Makes the emulator wait for an operator after the job is over or has failed.
     pub fn wait_without_job(&mut self) {
         self.steps.clear();
         self.later.clear();
@@ -202,7 +202,7 @@ impl Hwsc {
         self.intervention.state = State::Waits { failure: None, before_line: true, command: None };
     }
 
-    /// Send a command of the operator; the job waits from now on.
+    /// Sends a command of the operator; the job waits from now on.
     ///
     /// # Errors
     /// [`OperatorError::Ended`].
@@ -250,13 +250,13 @@ impl Hwsc {
         }
     }
 
-    /// A command of the job is executed, or the PAUSE before its line.
+    /// True if a command of the job, or the PAUSE before its line, is in progress.
     fn is_commanding(&self) -> bool {
         let line = self.step_at(self.current).map(|line| line.step);
         self.pausing || self.current == 0 || matches!(line, Some(Step::Command(_)))
     }
 
-    /// At the end of a line: the job waits if it was asked to.
+    /// Called at the end of a line: makes the job wait if the operator has asked for it; true if it waits.
     pub(super) fn waits_here(&mut self) -> bool {
         if !matches!(self.intervention.state, State::Asked) {
             return false;
@@ -266,7 +266,7 @@ impl Hwsc {
         true
     }
 
-    /// The present line has failed: true if the job waits for an operator instead of ending.
+    /// Called when the current line has failed: true if the job waits for an operator instead of ending.
     pub(super) fn waits_for_operator(&mut self, failure: &JobFailure) -> bool {
         let can_be_mended = match failure {
             JobFailure::Command(_)
@@ -290,7 +290,7 @@ impl Hwsc {
         waits
     }
 
-    /// Once a tick while the job waits: follow the operator's command.
+    /// Called once per tick while the job waits: checks the operator's command.
     pub(super) fn follow_operator(&mut self, tick: Tick, task: &Status<'_>) {
         let State::Waits { command: Some(entry), .. } = self.intervention.state else { return };
         let outcome = match self.read(tick, task) {
@@ -310,7 +310,7 @@ impl Hwsc {
         self.end_operators(tick, Some(entry), outcome);
     }
 
-    /// A command of the operator has ended.
+    /// Records the outcome of the operator's command.
     fn end_operators(&mut self, tick: Tick, entry: Option<usize>, outcome: Outcome) {
         if let Some(step) = entry.and_then(|entry| self.begun_steps.get_mut(entry)) {
             step.ticks = tick.since(step.began);

@@ -8,20 +8,20 @@ use rcs_core::tick::{TICK_MS, Tick};
 /// How a step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It is executed.
+    /// The step is in progress.
     Executing,
-    /// It has finished.
+    /// The step has finished.
     Finished,
-    /// It failed.
+    /// The step has failed.
     Failed,
-    /// It failed, as its line says.
+    /// The command failed, as its line expects.
     FailedAsExpected,
-    /// An operator's command took its place.
+    /// A command of the operator has replaced the step.
     Interrupted,
 }
 
 impl Outcome {
-    /// The word in reports.
+    /// The word for reports.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -37,15 +37,15 @@ impl Outcome {
 /// A step that was begun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BegunStep {
-    /// The line as it stands in the job; `PAUSE` for the first one.
+    /// The line as written in the job; `PAUSE` for the first step.
     pub text: String,
-    /// It was a command for Task, not an action of the workstation.
+    /// True for a command for Task, false for an action of the workstation.
     pub is_command: bool,
-    /// The tick after which it was begun.
+    /// The tick after which the step was begun.
     pub began: Tick,
-    /// How it ended.
+    /// Outcome of the step.
     pub outcome: Outcome,
-    /// Ticks from the one in which it was begun to the one in which its end was seen.
+    /// Ticks from the start of the step to the tick in which its end was seen.
     pub ticks: u64,
 }
 
@@ -58,26 +58,26 @@ pub enum JobFailure {
     /// Task does not answer.
     #[error("Task does not answer")]
     Lost,
-    /// The mailbox of the command is refused.
+    /// The controller refuses the mailbox of the command.
     #[error("the controller refuses the command: {0}")]
     Refused(String),
     /// The joystick box is on: the operator moves the robot.
     #[error("the joystick box is on")]
     Joystick,
-    /// A command has finished that should have failed.
+    /// A command has finished although its line expects an error.
     #[error("finished, but its line expects an error")]
     Unexpected,
-    /// A command has failed, and was not sent again with success.
+    /// A command has failed, and no repetition of it has finished.
     #[error("{why}; the command has not finished since (`expect error` marks a line that has to fail)")]
     Unfinished {
-        /// Its line.
+        /// Line of the command.
         line: String,
-        /// When it ended.
+        /// Tick of the failure.
         tick: Tick,
-        /// Why it failed.
+        /// Reason of the failure.
         why: &'static str,
     },
-    /// A step took too long.
+    /// A step has exceeded its time limit, ticks.
     #[error("not finished within {} s", .0 * TICK_MS / 1000)]
     TimeLimit(u64),
     /// The workstation cannot do an action, or has a fault.
@@ -94,7 +94,7 @@ pub enum JobFailure {
 /// Progress of a job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// It is played.
+    /// The job is in progress.
     Running,
     /// All steps are finished.
     Over,
@@ -102,18 +102,18 @@ pub enum Progress {
     Failed(JobFailure),
 }
 
-/// A command that had failed and was sent again, after a PAUSE.
+/// A failed command that was sent again after a PAUSE.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Retry {
-    /// The tick in which its failure was seen.
+    /// The tick in which the failure was seen.
     pub tick: Tick,
     /// The line of the job.
     pub line: String,
-    /// Why it had failed.
+    /// Reason of the failure.
     pub reason: Reason,
-    /// Which retry of the line this is, from 1.
+    /// Number of this retry of the line, from 1.
     pub number: u32,
-    /// Retries that a line has.
+    /// Greatest number of retries per line.
     pub of: u32,
 }
 
@@ -129,8 +129,8 @@ impl fmt::Display for Retry {
 }
 
 impl JobFailure {
-    /// What a person has to do before the job can go on, as far as it is known; `None` if PAUSE and the same
-    /// command may be enough, or if the failure says it itself.
+    /// What a person has to do before the job can continue, if it is known. `None` if PAUSE and the same command may be
+    /// enough, or if the text of the failure already contains it.
     #[must_use]
     pub const fn remedy(&self) -> Option<&'static str> {
         match self {

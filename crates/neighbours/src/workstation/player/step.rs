@@ -1,4 +1,4 @@
-//! Steps of a job as they begin and end, and actions that wait for their time.
+//! Start and end of the steps of a job, and delayed actions.
 
 use interfaces::HwsCommand;
 use rcs_core::tick::Tick;
@@ -6,15 +6,15 @@ use taskdata::load::job::{JobLine, Step, Workstation as Action};
 
 use super::{BegunStep, Hwsc, JobFailure, Outcome, PAUSE, Progress, Workstation, pause};
 
-/// An action that waits for its time.
+/// A delayed action.
 #[derive(Debug)]
 pub struct Later {
-    /// Ticks from the command.
+    /// Delay from the command to the action, ticks.
     pub ticks: u64,
     pub action: Action,
-    /// The line without `after` and its number.
+    /// The line without `after` and the number of ticks.
     pub line: String,
-    /// When the command was sent; `None` as long as it was not.
+    /// Tick in which the command was sent; `None` before.
     pub since: Option<Tick>,
 }
 
@@ -100,12 +100,12 @@ impl Hwsc {
     }
 }
 
-/// A line for the workstation without the asterisks in front of it.
+/// A line for the workstation without its asterisks.
 fn spoken(line: &str) -> &str {
     line.trim_start().trim_start_matches('*').trim_start()
 }
 
-/// A line without the `after` and the number in front of it.
+/// A line without `after` and the number of ticks.
 fn after(line: &str) -> &str {
     let words = |line| str::split_once(line, char::is_whitespace).map_or("", |(_, rest)| rest.trim_start());
     words(words(line))
