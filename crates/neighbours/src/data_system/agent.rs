@@ -93,7 +93,7 @@ pub struct Agent {
     exchanges: u64,
     /// command-id# of the command that was sent last; 0 before the first.
     command_id: u16,
-    /// That command has not been answered.
+    /// The last command has no answer yet.
     open: bool,
     /// Mailgram number of the status in the mailbox when the command was first sent: that status answers an earlier
     /// command.
@@ -119,7 +119,7 @@ impl Agent {
         }
     }
 
-    /// With another patience.
+    /// Sets the time limit for an answer.
     #[must_use]
     pub const fn with_patience(mut self, patience: Duration) -> Self {
         self.patience = patience;
@@ -137,7 +137,7 @@ impl Agent {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Between commands: check whether a server is connected.
+    /// Called between commands: checks whether a server is connected.
     pub fn idle(&mut self) {
         self.exchange();
     }
@@ -156,20 +156,20 @@ impl Agent {
         Some(Answer { status: Status { command_id, ..answer.status }, ..answer })
     }
 
-    /// STARTUP, and then the kept updates.
+    /// Executes STARTUP, then sends the stored updates.
     fn start_up(&mut self, bytes: &[u8]) -> Option<Answer> {
         let answer = self.ask(bytes)?;
         if answer.status.summary != Summary::Done {
             return Some(answer);
         }
-        // What the server refuses of an earlier run is told, and does not keep this one from beginning.
+        // A refused update of an earlier run is reported, but does not prevent this run from starting.
         let told = self.tell_all()?;
         let why =
             told.filter(|told| told.status.summary != Summary::Done).map_or(String::new(), |told| told.why);
         Some(Answer { why, ..answer })
     }
 
-    /// Keep an update, and send all kept ones.
+    /// Stores an update, then sends all stored updates.
     fn update(&mut self, bytes: &[u8]) -> Option<Answer> {
         let kept = bytes.try_into().map_err(|_| format!("{DML} bytes were expected, found {}", bytes.len()));
         let kept: Result<_, String> =

@@ -42,7 +42,7 @@ impl Channel {
         self.socket.check_user()
     }
 
-    /// The system has accepted all bytes to send.
+    /// True if the system has accepted all bytes to send.
     pub const fn is_flushed(&self) -> bool {
         self.pending.is_empty()
     }
@@ -52,7 +52,7 @@ impl Channel {
         self.send_bytes(session.output())
     }
 
-    /// The same with bytes, which are taken out.
+    /// Like [`Channel::send`] for plain bytes, which are removed from `plain`.
     pub fn send_bytes(&mut self, plain: &mut Vec<u8>) -> io::Result<()> {
         match &mut self.tls {
             None => self.pending.append(plain),
@@ -89,7 +89,7 @@ impl Channel {
         self.receive_bytes(|bytes| session.receive(bytes, now))
     }
 
-    /// The same for bytes.
+    /// Like [`Channel::receive`], passing the bytes to `take`.
     ///
     /// # Errors
     /// As [`Channel::receive`].

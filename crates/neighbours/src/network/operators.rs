@@ -22,14 +22,15 @@ use rustix::{
 
 use super::{Disconnect, NetEvent, channel::Channel};
 
-/// An operator that sends nothing for so long is disconnected, so that another one can command.
+/// Time limit of silence: an operator that sends nothing for this time is disconnected, so that another one can
+/// command.
 pub(super) const SILENCE: Duration = Duration::from_secs(10);
-/// How long the run, or the client, may leave what has come unread.
+/// Time limit for a write to a stream whose reader does not read.
 const UNREAD: Duration = Duration::from_secs(1);
 /// Bytes that are read at once.
 const CHUNK: usize = 4096;
 
-/// Begins a session with the run: the other end of it.
+/// Begins a session with the run and returns its other end.
 type Enter = Box<dyn Fn() -> io::Result<UnixStream> + Send + Sync>;
 
 /// How operators of a network reach a run.
@@ -40,13 +41,13 @@ pub struct Operators {
 }
 
 impl Operators {
-    /// Operators are refused until the run is [open](Self::open).
+    /// Creates the access for operators, who are refused until the run is [open](Self::open).
     #[must_use]
     pub fn new(events: Sender<NetEvent>) -> Self {
         Self { enter: Arc::default(), events }
     }
 
-    /// From now on operators are let in, if they were not before.
+    /// Admits operators from now on. Only the first call has an effect.
     pub fn open(&self, enter: impl Fn() -> io::Result<UnixStream> + Send + Sync + 'static) {
         // A run is opened once.
         let _ = self.enter.set(Box::new(enter));
@@ -58,14 +59,14 @@ impl Operators {
         enter.ok_or_else(|| io::Error::other("the run has not begun: connect again when it has"))?()
     }
 
-    /// Tell the run what happened.
+    /// Sends an event to the run.
     pub(super) fn tell(&self, event: NetEvent) {
-        // A run that is over does not listen.
+        // A run that has ended does not receive it.
         let _ = self.events.send(event);
     }
 }
 
-/// Carries the stream of an operator; its end waits until the last byte was sent.
+/// Carries the stream of an operator; dropping it waits until the last byte is sent.
 #[derive(Debug)]
 pub struct Carrier {
     thread: Option<JoinHandle<()>>,
@@ -86,8 +87,8 @@ impl Drop for Carrier {
     }
 }
 
-/// Carry bytes between a connection and a stream until one of them ends; why it did. `unread` has come already. If
-/// nothing comes from the connection for the time of `silence`, that is the end, too.
+/// Carries bytes between a connection and a stream until one of them ends, and returns the reason. `unread` are bytes
+/// already received. The connection also ends if it delivers nothing for the time `silence`.
 pub(super) fn carry(
     channel: &mut Channel,
     stream: &UnixStream,
@@ -130,7 +131,7 @@ fn try_to_carry(
     }
 }
 
-/// Take what a stream has, if it has something; false at its end.
+/// Reads the available bytes of a stream; false at its end.
 fn take(stream: &UnixStream, bytes: &mut Vec<u8>) -> io::Result<bool> {
     let mut buffer = [0; CHUNK];
     match recv(stream, &mut buffer[..], RecvFlags::DONTWAIT) {

@@ -22,7 +22,7 @@ use super::{
 };
 use crate::mailbox::{Mailbox, MailboxError, Place};
 
-/// Between two attempts to connect.
+/// Time between two attempts to connect.
 const PAUSE: Duration = Duration::from_millis(50);
 /// How long the end of a connection may take.
 const FAREWELL: Duration = Duration::from_secs(1);
@@ -46,7 +46,7 @@ pub enum PeerError {
         /// Why.
         source: Box<rustls::Error>,
     },
-    /// The other side is no controller, or breaks the protocol.
+    /// The other side is not a controller, or breaks the protocol.
     #[error("{address}: {source}")]
     Session {
         /// Where.

@@ -104,7 +104,7 @@ enum Side {
     Neighbour { role: Role, clock: ClockKind },
 }
 
-/// See the head of the module.
+/// State of a session; see the diagram of the module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Hello,
@@ -118,7 +118,7 @@ enum State {
 struct Pulses {
     sent: u64,
     answered: u64,
-    /// Since then an answer is due.
+    /// Time since which an answer is due.
     due: Instant,
 }
 
@@ -136,7 +136,7 @@ pub struct Session {
     heard: Instant,
 }
 
-/// Since when is the other side silent, how long may it be, and what is wrong then?
+/// Start of the silence, its time limit, and the error after it.
 type Limit = (Instant, Duration, fn(Duration) -> SessionError);
 
 /// An event, with positions in the input instead of bytes.
@@ -349,7 +349,7 @@ impl Session {
         error
     }
 
-    /// When to check the time again; `None` if there is no time limit.
+    /// Time of the next check of the time limits; `None` if there is none.
     #[must_use]
     pub fn deadline(&self) -> Option<Instant> {
         self.limit().and_then(|(since, limit, _)| since.checked_add(limit))
@@ -387,7 +387,7 @@ impl Session {
         }
     }
 
-    /// What has come and was not read: what follows an admission that this protocol does not rule.
+    /// Takes the received bytes that follow the admission and are not part of this protocol.
     pub fn take_unread(&mut self) -> Vec<u8> {
         let unread = self.input.split_off(self.read);
         self.input.clear();
@@ -395,7 +395,7 @@ impl Session {
         unread
     }
 
-    /// What is to be sent; the caller takes it out.
+    /// Bytes to send; the caller removes them.
     pub const fn output(&mut self) -> &mut Vec<u8> {
         &mut self.output
     }

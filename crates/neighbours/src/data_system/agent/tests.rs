@@ -31,7 +31,7 @@ use crate::{
 
 /// What a server writes, one mailgram after the other.
 type Written = Vec<Vec<u8>>;
-/// What becomes of a status.
+/// Change made to a status before it is sent.
 type Garble = fn(&mut Vec<u8>);
 
 /// A server on a thread, until the run is over or the connection ends; `answer` gets the number of the
