@@ -20,7 +20,7 @@ impl Problems {
     }
 }
 
-/// An error or a warning about a piece of a file.
+/// An error or a warning about a piece of text in a file.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
     pub(super) problem: Problem,
@@ -73,13 +73,13 @@ impl Diagnostic {
         self.problem.help.as_deref()
     }
 
-    /// What was expected, where one thing or one range was.
+    /// What was expected, if the message names one thing or one range.
     #[must_use]
     pub fn expected(&self) -> Option<&str> {
         self.problem.expected.as_deref()
     }
 
-    /// What was found, where the message compares it with what was expected.
+    /// What was found, if the message compares it with what was expected.
     #[must_use]
     pub fn found(&self) -> Option<&str> {
         self.problem.found.as_deref()
@@ -91,7 +91,7 @@ impl Diagnostic {
         self.problem.entry.as_deref()
     }
 
-    /// The piece that is underlined.
+    /// The piece of text to underline.
     #[must_use]
     pub const fn at(&self) -> Option<At> {
         self.problem.at
@@ -109,7 +109,7 @@ impl Diagnostic {
         &self.file
     }
 
-    /// The block, if it stands in one.
+    /// The block, if the piece is in one.
     #[must_use]
     pub fn block(&self) -> Option<BlockNumber> {
         self.position.and_then(|position| position.block)

@@ -14,15 +14,15 @@ pub struct Finding {
     pub code: String,
     /// The file, relative to the data directory; as given for files that could not be read.
     pub file: String,
-    /// `OFFSET`, if it stands in a block.
+    /// `OFFSET`, if the finding is in a block.
     pub offset: Option<u32>,
-    /// `BLOCK#`, if it stands in a block.
+    /// `BLOCK#`, if the finding is in a block.
     pub block: Option<u32>,
     /// Line of the block from 0, as the manual counts, or of the file from 1 where there is no block.
     pub line: Option<u32>,
     /// Column from 1.
     pub column: Option<u32>,
-    /// Number of bytes from there on.
+    /// Number of bytes of the underlined text.
     pub length: Option<u32>,
     /// File, block, line and column as text.
     pub place: String,
@@ -30,9 +30,9 @@ pub struct Finding {
     pub entry: Option<String>,
     /// One sentence: what was found and what was expected.
     pub message: String,
-    /// What was expected there.
+    /// What was expected.
     pub expected: Option<String>,
-    /// What was found there, where the message compares the two.
+    /// What was found, if the message compares it with what was expected.
     pub found: Option<String>,
     /// The nearest known name.
     pub nearest: Option<String>,

@@ -7,13 +7,13 @@ use crate::source::{At, BlockLines, BlockNumber, Source, lines_of};
 /// A place as a person counts it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Position {
-    /// Block and offset, if it lies in a block.
+    /// Block and offset, if the place is in a block.
     pub block: Option<BlockNumber>,
     /// Line in the block from 0 (as the manual counts), or line in the file from 1 if there is no block.
     pub line: u32,
     /// Column from 1, in characters.
     pub column: u32,
-    /// First byte of the line in the source; that of a listing is behind the line number.
+    /// First byte of the line in the source; in a listing, the first byte after the line number.
     pub begin: u32,
 }
 
@@ -28,12 +28,12 @@ struct Lines<'s> {
 /// The places of pieces of some sources. Each source is scanned once, when its first piece is needed.
 pub struct Places<'s> {
     sources: &'s [Source],
-    /// The blocks of a source, if its lines count in them.
+    /// Finds the blocks of a source; `None` if lines are counted in the file.
     blocks: Option<fn(&Source) -> Vec<BlockLines>>,
     known: HashMap<u32, Lines<'s>>,
 }
 
-/// How many of the items in ascending order begin at a byte or before it, without the last of them: the position of the last.
+/// Index of the last of the ascending items that begins at or before `byte`.
 fn last_begun<T>(items: &[T], start: impl Fn(&T) -> u32, byte: u32) -> Option<usize> {
     items.partition_point(|item| start(item) <= byte).checked_sub(1)
 }
@@ -67,7 +67,7 @@ impl<'s> Places<'s> {
         self.sources.get(usize::try_from(at.source).ok()?)
     }
 
-    /// Where a piece begins; `None` if there is no such source.
+    /// Position of the start of a piece; `None` if there is no such source.
     pub fn position(&mut self, at: At) -> Option<Position> {
         let source = self.source(at)?;
         let lines = self.known.entry(at.source).or_insert_with(|| Lines {
@@ -109,7 +109,7 @@ impl<'s> Places<'s> {
 }
 
 impl Lines<'_> {
-    /// The place in the lines of a block. Headers, and what stands between lines, are in none.
+    /// The place in the lines of a block; `None` for headers and for text between lines.
     fn in_block(&self, byte: u32) -> Option<Position> {
         let block = self.blocks.get(last_begun(&self.blocks, |block| block.start, byte)?)?;
         let number = last_begun(&block.lines, |line| line.start, byte)?;

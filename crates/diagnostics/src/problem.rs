@@ -1,4 +1,4 @@
-//! A finding before it is tied to the text of its source.
+//! A problem before its place in the text is resolved.
 
 use std::fmt::Display;
 
@@ -9,7 +9,7 @@ use crate::{names::nearest, source::At};
 pub enum Severity {
     /// The data cannot be used.
     Error,
-    /// The data can be used, but look at it.
+    /// The data can be used, but should be checked.
     Warning,
 }
 
@@ -24,14 +24,14 @@ impl Severity {
     }
 }
 
-/// A finding before it is tied to the text of its source.
+/// A problem before its place in the text is resolved.
 #[derive(Clone, Debug)]
 pub struct Problem {
     /// Severity.
     pub severity: Severity,
     /// Stable short name of the kind of problem.
     pub code: &'static str,
-    /// Where; `None` for a file that could not be read.
+    /// The piece of text; `None` for a file that could not be read.
     pub at: Option<At>,
     /// The path of the entry in a TOML file: `gripper.parts.body[0]`; lists count from 0.
     pub entry: Option<String>,
@@ -39,15 +39,15 @@ pub struct Problem {
     pub message: String,
     /// What to do, or the nearest known name.
     pub help: Option<String>,
-    /// Another place that belongs to it, with the words before it; it becomes the help.
+    /// Another place related to the problem, with the words before it; it becomes the help.
     pub elsewhere: Option<(String, At)>,
-    /// What was expected in its place, for programs; the message says it too.
+    /// What was expected, for programs; the message contains it, too.
     pub expected: Option<String>,
-    /// What was found, for programs, where the message compares it with what was expected.
+    /// What was found, for programs, if the message compares it with what was expected.
     pub found: Option<String>,
-    /// The nearest known name, for programs; the help says it too.
+    /// The nearest known name, for programs; the help contains it, too.
     pub nearest: Option<String>,
-    /// Key of equal findings in several lines; without one the message.
+    /// Key that equal problems in several lines share; `None`: the message is the key.
     pub same: Option<String>,
 }
 
@@ -82,7 +82,7 @@ impl Problem {
         Self { expected: Some(expected), found: Some(found), ..Self::of_entry(code, entry, message) }
     }
 
-    /// The same with the nearest of the known names, if one is near.
+    /// Adds the nearest of the known names, if one is near.
     #[must_use]
     pub fn near(mut self, wanted: &str, known: &[&str]) -> Self {
         if let Some(name) = nearest(wanted, known.iter().copied()) {
@@ -97,7 +97,7 @@ impl Problem {
     }
 }
 
-/// A list of problems that is filled while forms are read and checked.
+/// A list of problems, filled while forms are read and checked.
 #[derive(Clone, Debug, Default)]
 pub struct Problems {
     pub(super) list: Vec<Problem>,
@@ -116,35 +116,35 @@ impl Extend<Problem> for Problems {
 }
 
 impl Problems {
-    /// Add one.
+    /// Adds a problem.
     pub fn add(&mut self, problem: Problem) {
         self.list.push(problem);
     }
 
-    /// All of them.
+    /// All problems.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Problem> {
         self.list.iter_mut()
     }
 
-    /// Set the place of problems of entries that have none.
+    /// Sets the place of the problems of entries that have no place yet.
     pub(crate) fn place_entries(&mut self, place: impl Fn(&str) -> At) {
         for problem in self.list.iter_mut().filter(|problem| problem.at.is_none()) {
             problem.at = problem.entry.as_deref().map(&place);
         }
     }
 
-    /// True if there are none.
+    /// True if there are no problems.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// Add an error.
+    /// Adds an error.
     pub fn error(&mut self, code: &'static str, at: At, message: impl Into<String>) {
         self.push(Severity::Error, code, at, message.into(), None);
     }
 
-    /// Add an error with help.
+    /// Adds an error with help.
     pub fn error_help(
         &mut self,
         code: &'static str,
@@ -155,25 +155,25 @@ impl Problems {
         self.push(Severity::Error, code, at, message.into(), Some(help.into()));
     }
 
-    /// Add an error of something that is there already.
+    /// Adds an error for something that is already defined at `first`.
     pub fn duplicate(&mut self, at: At, message: impl Into<String>, first: At) {
         self.error("duplicate", at, message);
         self.elsewhere("the first is in", first);
     }
 
-    /// Name another place that belongs to the last problem; it becomes the help.
+    /// Adds another place related to the last problem; it becomes the help.
     pub fn elsewhere(&mut self, before: impl Into<String>, at: At) {
         if let Some(last) = self.list.last_mut() {
             last.elsewhere = Some((before.into(), at));
         }
     }
 
-    /// Add a warning.
+    /// Adds a warning.
     pub fn warning(&mut self, code: &'static str, at: At, message: impl Into<String>, help: Option<String>) {
         self.push(Severity::Warning, code, at, message.into(), help);
     }
 
-    /// Add an error with help where there is some.
+    /// Adds a problem, with optional help.
     pub fn push(
         &mut self,
         severity: Severity,
@@ -185,19 +185,19 @@ impl Problems {
         self.list.push(Problem { help, ..Problem::new(severity, code, Some(at), message) });
     }
 
-    /// Move all problems of another list behind these.
+    /// Moves all problems of another list to the end of this one.
     pub fn append(&mut self, others: &mut Self) {
         self.list.append(&mut others.list);
     }
 
-    /// Give the last problem a help line.
+    /// Sets the help of the last problem.
     pub fn help(&mut self, help: String) {
         if let Some(last) = self.list.last_mut() {
             last.help = Some(help);
         }
     }
 
-    /// Add to the help of a problem that was noted at a place.
+    /// Adds text to the help of a problem with this code and place.
     pub fn add_help(&mut self, code: &str, at: At, more: &str) {
         let noted = self.list.iter_mut().find(|problem| problem.code == code && problem.at == Some(at));
         if let Some(problem) = noted {
@@ -208,38 +208,38 @@ impl Problems {
         }
     }
 
-    /// Set the key by which the last problem is equal to others.
+    /// Sets the key that the last problem shares with equal ones.
     pub fn same_as(&mut self, key: String) {
         if let Some(last) = self.list.last_mut() {
             last.same = Some(key);
         }
     }
 
-    /// Note what was expected in the place of the last problem.
+    /// Sets what was expected in place of the last problem.
     pub fn expected(&mut self, what: impl Into<String>) {
         if let Some(last) = self.list.last_mut() {
             last.expected = Some(what.into());
         }
     }
 
-    /// Note the nearest name, of the sort `what`, to the one of the last problem; it becomes the help too.
+    /// Sets the name nearest to that of the last problem; `what` is its kind. It becomes the help, too.
     pub fn nearest(&mut self, what: &str, name: &str) {
         if let Some(last) = self.list.last_mut() {
             last.set_nearest(what, name);
         }
     }
 
-    /// Add an error that belongs to no piece of text.
+    /// Adds an error without a place in a text.
     pub fn general(&mut self, code: &'static str, message: String) {
         self.list.push(Problem::new(Severity::Error, code, None, message));
     }
 
-    /// Add an error of the operating system about a file.
+    /// Adds an error of the operating system about a file.
     pub fn unreadable(&mut self, path: &str, error: &std::io::Error) {
         self.general("file", format!("{path} cannot be read: {error}"));
     }
 
-    /// True if an error is among them.
+    /// True if the list contains an error.
     #[must_use]
     pub fn has_errors(&self) -> bool {
         self.list.iter().any(|p| p.severity == Severity::Error)
