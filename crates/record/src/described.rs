@@ -27,7 +27,7 @@ impl Described {
         }
     }
 
-    /// Pass the channels to a tap. A channel without its schema is left out.
+    /// Passes the channels to a tap; a channel without a schema is left out.
     pub fn tell(&self, tap: &mut dyn Tap) {
         for (id, channel) in &self.channels {
             let Some((header, schema)) = self.schemas.get(&channel.schema_id) else { continue };

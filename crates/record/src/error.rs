@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Why a log ended before the run did, or never began.
+/// Errors of writing a log: it ended before the run did, or never began.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
@@ -52,7 +52,7 @@ fn deepest(error: &dyn std::error::Error) -> String {
     }
 }
 
-/// Why a file is not a log.
+/// Errors of opening a file as a log.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
@@ -113,7 +113,7 @@ fn by(version: &str) -> String {
     if version.is_empty() { String::new() } else { format!(" (version {version})") }
 }
 
-/// Why a log cannot be replayed.
+/// Errors of replaying a log.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
     /// The log cannot be read.

@@ -10,9 +10,9 @@ use taskdata::load::Source;
 
 use crate::{error::RecordError, proto::foxglove::Transform};
 
-/// Links that move, at most.
+/// Greatest number of moving links.
 pub const MAX_LINKS: usize = 64;
-/// Joints at most.
+/// Greatest number of joints.
 pub const MAX_JOINTS: usize = 16;
 
 /// Time of tick 0 of a log.
@@ -149,7 +149,7 @@ pub struct Name {
     pub text: String,
     /// The link that it moves with.
     pub frame: String,
-    /// Where, in the frame of the link, metres.
+    /// Position in the frame of the link, metres.
     pub position: [f64; 3],
 }
 
@@ -189,7 +189,7 @@ impl CellModel {
 pub struct CellFrame {
     /// The tick.
     pub tick: Tick,
-    /// Places of the links in their parents, in the order of [`CellModel::links`].
+    /// Poses of the links in their parents, in the order of [`CellModel::links`].
     pub transforms: [Transform; MAX_LINKS],
     /// Positions of the joints, radians or metres, in the order of [`CellModel::joints`].
     pub joints: [f64; MAX_JOINTS],
@@ -232,9 +232,9 @@ pub struct Touch {
     pub mover: String,
     /// What it touches.
     pub obstacle: String,
-    /// Where they are deepest in each other, world, inches.
+    /// Point of deepest penetration, world, inches.
     pub point: [f64; 3],
-    /// How deep, inches.
+    /// Depth of penetration, inches.
     pub depth: f64,
     /// The contact is not permitted by the cell description.
     pub collides: bool,

@@ -72,7 +72,7 @@ impl Leaf {
         number && RECORD_NUMBERS.contains(&name)
     }
 
-    /// True if the field has not the same value in two images.
+    /// True if the values of the field in two images differ.
     #[must_use]
     pub fn differs(&self, was: &[u8], is: &[u8]) -> bool {
         self.bytes(was) != self.bytes(is) && (self.is_in(was) || self.is_in(is))

@@ -26,15 +26,15 @@ const REFUSED: u32 = 4;
 /// A request of an operator.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OperatorLine {
-    /// The first tick that sees it.
+    /// The first tick that reads the request.
     pub tick: Tick,
-    /// Who.
+    /// Name of the operator.
     pub source: String,
-    /// What.
+    /// Line of the request.
     pub line: String,
     /// Text of the answer; may be empty.
     pub answer: String,
-    /// Why it was refused, if it was.
+    /// Why the request was refused; `None` if it was accepted.
     pub refused: Option<String>,
 }
 

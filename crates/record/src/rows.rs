@@ -47,7 +47,7 @@ pub fn values_text(table: &'static Table, values: Values) -> String {
 }
 
 impl Rows {
-    /// One channel a process.
+    /// Opens one channel per process.
     pub fn open<W: Write + Seek>(output: &mut Output<W>) -> McapResult<Self> {
         let fields = vec![
             field("process", 1, Type::String),

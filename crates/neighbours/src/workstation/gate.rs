@@ -81,7 +81,7 @@ pub struct Gate {
     read: u16,
     refused: Option<Refusal>,
     command: HwsCommand,
-    /// No command was taken since the mailboxes were initialized.
+    /// No command was accepted since the mailboxes were initialized.
     fresh: bool,
     /// Task's last status, with the details of its reason at the tick in which it came.
     told: (HwsStatus, Detail),

@@ -102,7 +102,7 @@ pub enum GoldenError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// The bytes are not those of a golden.
+    /// The bytes are not a golden run.
     #[error("{} is no golden run of this format: {what}", path.display())]
     NotAGolden {
         /// The file.
@@ -110,7 +110,7 @@ pub enum GoldenError {
         /// What is wrong with it.
         what: String,
     },
-    /// It was made with another layout of buffers.
+    /// The golden was made with another layout of buffers.
     #[error(
         "the golden was made with layout {found}, this program has layout {expected}: make it again from a run"
     )]
@@ -132,7 +132,7 @@ pub enum GoldenError {
     /// The log cannot be read.
     #[error(transparent)]
     Log(#[from] ReadError),
-    /// Its task data do not load, or some are missing.
+    /// The task data do not load, or some are missing.
     #[error(transparent)]
     Replay(#[from] ReplayError),
 }
@@ -153,7 +153,7 @@ pub struct Played {
 }
 
 impl Played {
-    /// How many times faster than the run in real time.
+    /// Ratio of the run's duration in real time to the time of the replay.
     #[must_use]
     pub fn speed(&self) -> f64 {
         let simulated = Duration::from_millis(self.ticks.saturating_mul(TICK_MS));

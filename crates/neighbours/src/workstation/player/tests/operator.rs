@@ -4,7 +4,7 @@ use super::*;
 
 const MOVE_AND_ACQUIRE: [&str; 2] = ["MOVE", "ACQUIRE"];
 
-/// A job that is played tick by tick.
+/// A job that the test plays tick by tick.
 struct Stage {
     hwsc: Hwsc,
     task: Task,
