@@ -14,6 +14,7 @@
 #![expect(clippy::print_stdout, reason = "the figures of a search are printed")]
 
 mod data;
+mod emove;
 mod fingers;
 mod hand;
 mod image;
@@ -21,7 +22,7 @@ mod pedestal;
 mod search;
 mod task;
 
-use interfaces::pedestal::PedestalVerb;
+use interfaces::{emove::EmoveVerb, pedestal::PedestalVerb};
 use search::{Found, World, search};
 
 /// Everything, or what an ordinary run has time for.
@@ -109,4 +110,23 @@ fn task_and_subtask_tell_the_data_system() {
 #[test]
 fn task_and_subtask_with_a_mishap() {
     tasks("task and subtask, a mishap", 1, &["PAUSE", "MOVE -- +0 -- 0 +0 HOME 0 -- 0"], 1_000_000);
+}
+
+#[test]
+fn emove_and_grip() {
+    let found =
+        is_sound("E-move and Grip", emove::Pair::first(&[EmoveVerb::GraspObj, EmoveVerb::Pause]), 1_000_000);
+    assert!(found.states > 1000, "{} states", found.states);
+    assert!(found.pause <= 21 && found.any <= 30, "{} and {}", found.pause, found.any);
+}
+
+#[test]
+fn emove_and_grip_release() {
+    let found = is_sound(
+        "E-move and Grip, release",
+        emove::Pair::first(&[EmoveVerb::Release, EmoveVerb::Pause]),
+        1_000_000,
+    );
+    assert!(found.states > 1000, "{} states", found.states);
+    assert!(found.pause <= 21 && found.any <= 30, "{} and {}", found.pause, found.any);
 }
