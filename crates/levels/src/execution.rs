@@ -243,7 +243,8 @@ impl Execution {
         };
         match halt(self.halt, &Replaced { intake, ..*replaced }) {
             Verdict::Passed(()) if self.waiting => {
-                (self.waiting, self.last_order) = (false, None);
+                // A command can come into the middle of a stop that the joystick box has ended.
+                (self.waiting, self.halt, self.last_order) = (false, Halt::Clear, None);
                 Ok(Course::Begin)
             }
             Verdict::Passed(()) => Ok(course),

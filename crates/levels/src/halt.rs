@@ -4,7 +4,8 @@
 //!              new command, something is under way below: Stop
 //!   Clear -----------------------------------------------------> Stopping
 //!     ^                                                              |
-//!     |                  what is below has come to rest              |
+//!     |      what is below has come to rest, or a command is         |
+//!     |      accepted while the operator has the robot               |
 //!     '--------------------------------------------------------------'
 //! ```
 //!

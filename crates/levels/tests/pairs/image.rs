@@ -38,27 +38,26 @@ impl Image {
 
     /// Add what counts of a field; its size.
     fn walk(&mut self, schema: &Schema, name: &str, bytes: &[u8]) -> usize {
-        let size = schema.size();
         match schema {
-            Schema::Struct(record) if matches!(record.name, "Rows" | "Header") => {}
+            Schema::Struct(record) if matches!(record.name, "Rows" | "Header") => schema.size(),
             Schema::Struct(record) => {
                 let mut at = 0;
                 for field in record.fields {
                     at += self.walk(&field.schema, field.name, &bytes[at..]);
                 }
+                at
             }
             Schema::Option(of) => {
                 self.bytes.push(bytes[0]);
-                if bytes[0] != 0 {
-                    self.walk(of, name, &bytes[1..]);
-                }
+                1 + if bytes[0] == 0 { of.size() } else { self.walk(of, name, &bytes[1..]) }
             }
             Schema::Array(of, count) => {
-                (0..*count).for_each(|nth| {
-                    self.walk(of, name, &bytes[nth * of.size()..]);
-                });
+                let mut at = 0;
+                for _ in 0..*count {
+                    at += self.walk(of, name, &bytes[at..]);
+                }
+                at
             }
-            Schema::U64 if name.starts_with("cycle") => {}
             Schema::U64 if name != "variables" => {
                 let mut word = [0; 8];
                 word.copy_from_slice(&bytes[..8]);
@@ -68,15 +67,22 @@ impl Image {
                     "sent" => age.min(EXACT + 1),
                     _ => 0,
                 };
-                self.bytes.push(u8::try_from(rank).unwrap_or(u8::MAX));
+                if !name.starts_with("cycle") {
+                    self.bytes.push(u8::try_from(rank).unwrap_or(u8::MAX));
+                }
+                8
             }
             Schema::U8 => {
                 let greatest = self.counters.iter().find(|(counter, _)| *counter == name);
                 self.bytes.push(greatest.map_or(bytes[0], |(_, greatest)| bytes[0].min(*greatest)));
+                1
             }
-            _ => self.bytes.extend_from_slice(&bytes[..size]),
+            _ => {
+                let size = schema.size();
+                self.bytes.extend_from_slice(&bytes[..size]);
+                size
+            }
         }
-        size
     }
 }
 

@@ -13,11 +13,16 @@
 
 #![expect(clippy::print_stdout, reason = "the figures of a search are printed")]
 
+mod data;
+mod emove;
+mod fingers;
+mod hand;
 mod image;
 mod pedestal;
 mod search;
+mod task;
 
-use interfaces::pedestal::PedestalVerb;
+use interfaces::{emove::EmoveVerb, pedestal::PedestalVerb};
 use search::{Found, World, search};
 
 /// Everything, or what an ordinary run has time for.
@@ -54,4 +59,74 @@ fn pedestal_and_table_with_a_mishap() {
     let commands = if is_full() { SOME } else { &[PedestalVerb::Flip, PedestalVerb::Pause] };
     let found = is_sound("pedestal and table, a mishap", pedestal::Pair::first(1, commands), 8_000_000);
     assert!(found.states > 1000, "{} states", found.states);
+}
+
+const HOLDING: &[PedestalVerb] = &[PedestalVerb::Grip, PedestalVerb::Release, PedestalVerb::Pause];
+
+#[test]
+fn pedestal_and_hand() {
+    let commands = if is_full() { PedestalVerb::ALL } else { HOLDING };
+    let found = is_sound("pedestal and hand", hand::Pair::first(0, commands), 1_000_000);
+    assert!(found.states > 1000, "{} states", found.states);
+    assert!(found.pause <= 21 && found.any <= 29, "{} and {}", found.pause, found.any);
+}
+
+#[test]
+fn pedestal_and_hand_with_a_mishap() {
+    let commands = if is_full() { HOLDING } else { &[PedestalVerb::Grip, PedestalVerb::Pause] };
+    let found = is_sound("pedestal and hand, a mishap", hand::Pair::first(1, commands), 1_000_000);
+    assert!(found.states > 1000, "{} states", found.states);
+}
+
+/// Commands that handle an object.
+const HANDLING: &[&str] = &[
+    "PAUSE",
+    "TRANSFER LINKBAR1 +2 PFIXTURE 0 +2 UNIT_1 1 SAFE 0",
+    "POSITION LINKBAR1 +2 PFIXTURE 0 +0 -- 0 -- 0",
+    "MOVE -- +0 -- 0 +0 HOME 0 -- 0",
+    "ACQUIRE LINKBAR1 +2 PFIXTURE 0 +0 -- 0 -- 0",
+];
+/// Commands that need the Data System.
+const TELLING: &[&str] = &["PAUSE", "STARTUP", "POSITION LINKBAR1 +2 PFIXTURE 0 +0 -- 0 -- 0", "SHUTDOWN"];
+
+fn tasks(name: &str, mishaps: u8, lines: &[&str], most: usize) {
+    let found = is_sound(name, task::Pair::first(mishaps, data::commands(lines)), most);
+    assert!(found.states > 1000, "{} states", found.states);
+    assert!(found.pause <= 14 && found.any <= 23, "{} and {}", found.pause, found.any);
+}
+
+#[test]
+fn task_and_subtask_handle_an_object() {
+    let some = if is_full() { 5 } else { 3 };
+    tasks("task and subtask, an object", 0, &HANDLING[..some], 4_000_000);
+}
+
+#[test]
+fn task_and_subtask_tell_the_data_system() {
+    let some = if is_full() { 4 } else { 3 };
+    tasks("task and subtask, the Data System", 0, &TELLING[..some], 4_000_000);
+}
+
+#[test]
+fn task_and_subtask_with_a_mishap() {
+    tasks("task and subtask, a mishap", 1, &["PAUSE", "MOVE -- +0 -- 0 +0 HOME 0 -- 0"], 1_000_000);
+}
+
+#[test]
+fn emove_and_grip() {
+    let found =
+        is_sound("E-move and Grip", emove::Pair::first(&[EmoveVerb::GraspObj, EmoveVerb::Pause]), 1_000_000);
+    assert!(found.states > 1000, "{} states", found.states);
+    assert!(found.pause <= 21 && found.any <= 30, "{} and {}", found.pause, found.any);
+}
+
+#[test]
+fn emove_and_grip_release() {
+    let found = is_sound(
+        "E-move and Grip, release",
+        emove::Pair::first(&[EmoveVerb::Release, EmoveVerb::Pause]),
+        1_000_000,
+    );
+    assert!(found.states > 1000, "{} states", found.states);
+    assert!(found.pause <= 21 && found.any <= 30, "{} and {}", found.pause, found.any);
 }

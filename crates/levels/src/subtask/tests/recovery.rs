@@ -55,6 +55,29 @@ fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
     }
 }
 
+/// The joystick box takes the robot while a stop is waited for. The next command must not wait for that stop.
+#[test]
+fn a_stop_that_the_box_has_ended_is_not_waited_for_again() {
+    let mut bench = Bench::grasped("PART", 1);
+    bench.command(SubtaskVerb::GotoDest, "", (0, 0), "SAFE");
+    (0..3).for_each(|_| {
+        bench.step();
+    });
+    bench.emove.mishap = Some((EmoveVerb::Pause, Mishap::Special(Reason::JoystickOn)));
+    bench.command(SubtaskVerb::GotoDest, "", (0, 0), "HOME");
+    while bench.emove.outputs.status.report != StatusReport::JoystickOn {
+        bench.step();
+    }
+    bench.emove.mishap = None;
+    while bench.sent().last() != Some(&EmoveVerb::MovToLoc.text()) {
+        bench.step();
+    }
+    bench.command(SubtaskVerb::Pause, "", (0, 0), "");
+    bench.step();
+    assert_eq!(bench.memory.subtask.emove.command, EmoveVerb::Pause);
+    assert_eq!(bench.finish(), DONE);
+}
+
 #[test]
 fn a_restarted_subtask_stops_what_it_had_commanded() {
     for ticks in 1..60 {

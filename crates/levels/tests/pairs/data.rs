@@ -1,0 +1,61 @@
+//! The task data, and the commands of the workstation controller that the searches send.
+
+use std::{path::Path, sync::OnceLock};
+
+use interfaces::{
+    HwsCommand,
+    emove::{EmoveCommand, EmoveVerb},
+};
+use rcs_core::name::Name16;
+use taskdata::{
+    files::{Location, TaskData},
+    load::{Step, Store, job::own_command},
+};
+
+fn store() -> &'static Store {
+    static STORE: OnceLock<Store> = OnceLock::new();
+    STORE.get_or_init(|| match Store::load(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))) {
+        Ok((store, _)) => store,
+        Err(report) => panic!("{report}"),
+    })
+}
+
+/// The data of the cell.
+pub fn data() -> TaskData<'static> {
+    store().view()
+}
+
+/// Commands by their lines in a job, without `==`.
+pub fn commands(lines: &[&str]) -> Vec<HwsCommand> {
+    let read = |line: &&str| match own_command(line, store()).map(|line| line.step) {
+        Ok(Step::Command(command)) => command,
+        other => panic!("{line}: {other:?}"),
+    };
+    lines.iter().map(read).collect()
+}
+
+/// A command of Subtask about an object at a location.
+pub fn emove_command(verb: EmoveVerb, object: &str, grip: i32, location: &str) -> EmoveCommand {
+    let (object, at) = (Name16::new(object).expect("a name"), place(location));
+    EmoveCommand {
+        number: 0,
+        command: verb,
+        object: Some(object),
+        grip,
+        object_parameters: data().object(&object, grip).map(|(id, _)| id.number()),
+        object_grips: data().obj_grips_id(&object).map(|id| id.number()),
+        object_vision: None,
+        location: at.name,
+        location_kind: at.place.kind,
+        location_record: at.place.locpt.to_option(),
+        location_array: at.place.array.to_option(),
+        pose: None,
+        end_effector_id: Some(1),
+    }
+}
+
+/// A location by name.
+pub fn place(name: &str) -> Location {
+    let name = Name16::new(name).expect("a name");
+    data().resolve_location(&name, None, None::<&Name16>).expect("the data have the location")
+}
