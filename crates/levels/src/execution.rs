@@ -381,16 +381,28 @@ impl Execution {
         }
     }
 
-    /// The outcome as `status-report` (V.2.2, V.3.2).
+    /// The outcome and its reason, as the process above is to see them: a process that was restarted executes until
+    /// what it had commanded is at rest.
     #[must_use]
-    pub const fn report(&self) -> StatusReport {
-        match self.outcome {
+    pub const fn end(&self) -> (Outcome, Reason) {
+        match (self.outcome, self.halt) {
+            (Outcome::Error, Halt::Stopping) => (Outcome::Executing, Reason::None),
+            (outcome, _) => (outcome, self.reason),
+        }
+    }
+
+    /// The same as `status-report` (V.2.2, V.3.2).
+    #[must_use]
+    pub const fn report(&self) -> (StatusReport, Reason) {
+        let (outcome, reason) = self.end();
+        let report = match outcome {
             Outcome::Idle => StatusReport::Idle,
             Outcome::Executing => StatusReport::Executing,
             Outcome::Done => StatusReport::Done,
             Outcome::Error => StatusReport::Error,
             Outcome::Joystick => StatusReport::JoystickOn,
-        }
+        };
+        (report, reason)
     }
 
     /// The header of the outputs of this tick; `step` is the text of the command's step.
@@ -413,7 +425,7 @@ mod tests {
             let arrival = e.receiver.observe(number);
             let course = e.course(arrival);
             end(&mut e);
-            (course, e.report(), e.reason)
+            (course, e.report().0, e.reason)
         };
         assert_eq!(course(0, |_| {}), (Course::Rest, StatusReport::Idle, Reason::None));
         assert_eq!(course(1, |_| {}), (Course::Begin, StatusReport::Executing, Reason::None));
@@ -430,11 +442,11 @@ mod tests {
         let mut e = Execution::default();
         e.course(Arrival::New);
         assert!(e.accepts(&Verdict::<Refusal, (), ()>::Passed(())));
-        assert_eq!((e.report(), e.rows.decided), (StatusReport::Executing, None));
+        assert_eq!((e.report().0, e.rows.decided), (StatusReport::Executing, None));
         let action = Refusal::Fail(Reason::UnknownCommand);
         let refusal = Decision { row: 2, action, next: (), values: Values::default() };
         assert!(!e.accepts(&Verdict::Decided(refusal)));
-        assert_eq!((e.report(), e.reason), (StatusReport::Error, Reason::UnknownCommand));
+        assert_eq!(e.report(), (StatusReport::Error, Reason::UnknownCommand));
         assert_eq!(e.rows.decided, Some(Decided { table: ACCEPT_NUMBER, row: 2 }));
         assert!(!e.begins(Arrival::New));
     }

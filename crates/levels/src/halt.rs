@@ -136,7 +136,7 @@ decision_table! {
         Clear {
             5:  joystick: Off, intake: Asked, kind: Pause                       => consult;
             6:  joystick: Off, intake: Asked | Adopted, below: AtRest           => consult;
-            7:  joystick: Off, intake: Adopted, below: Pausing                  => consult;
+            7:  joystick: Off, intake: Adopted, below: Pausing                  => Wait -> Stopping;
             8:  joystick: Off, intake: Asked, kind: Other, below: Pausing       => Wait -> Stopping;
             9:  joystick: Off, intake: Asked | Adopted, below: UnderWay         => Stop -> Stopping;
         }

@@ -316,7 +316,7 @@ impl State {
                     self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
                 (StatusReport::Done, if below == Lower::Error { prim.status.reason } else { Reason::None })
             }
-            _ => (execution.report(), execution.reason),
+            _ => execution.report(),
         }
     }
 

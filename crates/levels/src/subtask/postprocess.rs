@@ -161,7 +161,7 @@ impl State {
             // A link that fails while S-PAUSE stands is no failure of it.
             (StatusReport::Done, below.reason)
         } else {
-            (execution.report(), execution.reason)
+            execution.report()
         };
         outputs.header = execution.header(inputs.tick, self.step.text());
         outputs.status = SubtaskStatus {

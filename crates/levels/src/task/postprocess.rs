@@ -203,16 +203,17 @@ impl State {
     /// Write the status to the HWSC.
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
         let execution = &self.execution;
-        let (report, reason) = match (self.control, execution.outcome) {
+        let (outcome, reason) = execution.end();
+        let (report, reason) = match (self.control, outcome) {
             (Control::Manual, _) => (HwsReport::JoystickOn, Reason::JoystickOn),
-            (Control::Automatic, Outcome::Idle) => (HwsReport::Idle, execution.reason),
-            (Control::Automatic, Outcome::Executing) => (HwsReport::Executing, execution.reason),
+            (Control::Automatic, Outcome::Idle) => (HwsReport::Idle, reason),
+            (Control::Automatic, Outcome::Executing) => (HwsReport::Executing, reason),
             // A link that fails while PAUSE stands is no failure of it.
             (Control::Automatic, Outcome::Done) if self.plan.verb == TaskVerb::Pause => {
                 (HwsReport::Finished, inputs.memory.subtask.status.reason)
             }
-            (Control::Automatic, Outcome::Done) => (HwsReport::Finished, execution.reason),
-            (Control::Automatic, Outcome::Error | Outcome::Joystick) => (HwsReport::Error, execution.reason),
+            (Control::Automatic, Outcome::Done) => (HwsReport::Finished, reason),
+            (Control::Automatic, Outcome::Error | Outcome::Joystick) => (HwsReport::Error, reason),
         };
         let executing = Some(self.plan.verb).filter(|_| execution.outcome == Outcome::Executing);
         outputs.connection = self.data_system.connection(executing);

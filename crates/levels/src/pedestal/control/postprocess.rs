@@ -86,14 +86,15 @@ impl State {
     /// Write the status to Subtask.
     pub(super) fn report<Data: ?Sized>(&self, inputs: &Inputs<'_, Data>, outputs: &mut PedestalOutputs) {
         let execution = &self.execution;
+        let (outcome, reason) = execution.end();
         let hand = &inputs.memory.hand.status;
         let force = f64::midpoint(f64::from(hand.left_force), f64::from(hand.right_force));
         outputs.header = execution.header(inputs.tick, self.step.text());
         outputs.status = PedestalStatus {
             cycle_echo: self.cycle,
             echo: execution.receiver.echo,
-            report: report_of(execution.outcome, execution.reason),
-            reason: execution.reason,
+            report: report_of(outcome, reason),
+            reason,
             grip_size: hand.position,
             grip_force: rounded(force),
             table_position: table_position(inputs),

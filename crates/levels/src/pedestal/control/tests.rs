@@ -355,12 +355,12 @@ fn a_restarted_process_adopts_the_command_and_stops_the_table() {
     let before = bench.step();
     bench.hand(GripReport::Done, 256).table(PedestalReport::Executing);
     bench.process = Pedestal::default();
-    assert_eq!(bench.end(), (PedestalReport::Error, Reason::Restarted));
+    assert_eq!(bench.end(), EXECUTING);
     let PedestalOutputs { hand, table, .. } = bench.memory.pedestal;
     assert_eq!((hand, table.command), (before.hand, TableVerb::Pause), "the hand is told nothing");
-    assert_eq!(bench.end(), (PedestalReport::Error, Reason::Restarted));
+    assert_eq!(bench.end(), EXECUTING, "the table stops");
     assert_eq!(bench.memory.pedestal.table, table, "it is stopped once");
-    bench.table(PedestalReport::Done).step();
+    assert_eq!(bench.table(PedestalReport::Done).end(), (PedestalReport::Error, Reason::Restarted));
     bench.send(PedestalVerb::Flip, 0, 0, 100);
     bench.step();
     assert_eq!(bench.table(PedestalReport::Done).end(), DONE, "whatever the hand holds");
@@ -471,6 +471,15 @@ fn every_row_fires() {
     bench.process = Pedestal::default();
     bench.step();
     bench.step();
+    // HALT 7.
+    let mut bench_in_pause = Bench::new();
+    bench_in_pause.send(PedestalVerb::Flip, 0, 0, 100);
+    bench_in_pause.step();
+    bench_in_pause.table(PedestalReport::Executing).send(PedestalVerb::Pause, 0, 0, 0);
+    bench_in_pause.step();
+    bench_in_pause.table(PedestalReport::Executing).process = Pedestal::default();
+    bench_in_pause.step();
+    bench.rows.append(&mut bench_in_pause.rows);
     // HALT 8 to 11.
     for paused in [false, true] {
         bench.rows.append(&mut replaced(PedestalVerb::Release, paused).rows);

@@ -171,6 +171,17 @@ fn every_row_of_every_table_fires() {
     bench.process = Task::default();
     bench.finish();
     rows.append(&mut bench.rows);
+    let mut bench = Bench::default();
+    bench.command(TO_TRAY);
+    bench.step();
+    bench.step();
+    bench.command("PAUSE -- +0 -- 0 +0 -- 0 -- 0");
+    (0..2).for_each(|_| {
+        bench.step();
+    });
+    bench.process = Task::default();
+    bench.finish();
+    rows.append(&mut bench.rows);
     // The task data have no gripper numbers but 1 to 3. The look-up of a location needs no grip. No process is above.
     assert_eq!(rows.missing(TABLES), ["ACCEPT 4", "ACCEPT 9", "HALT 4"]);
 }
