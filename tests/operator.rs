@@ -21,6 +21,13 @@ const SPEED: u8 = 20;
 /// Longest time for anything to happen.
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// A name for a run beside those of the other tests.
+fn unused_name() -> RunName {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    format!("operated-{}-{count}", std::process::id()).parse().unwrap()
+}
+
 /// A run that goes on in a thread, and its directory.
 struct Cell {
     directory: TempDir,
@@ -31,13 +38,11 @@ struct Cell {
 
 impl Cell {
     fn start(job: &str, change: impl FnOnce(RunConfig) -> RunConfig) -> Self {
-        static COUNT: AtomicU64 = AtomicU64::new(0);
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("operated.job");
         std::fs::write(&path, job).unwrap();
         let log = directory.path().join("operated.mcap");
-        let count = COUNT.fetch_add(1, Ordering::Relaxed);
-        let name: RunName = format!("operated-{}-{count}", std::process::id()).parse().unwrap();
+        let name = unused_name();
         let config = RunConfig {
             clock: ClockKind::Real,
             speed: SPEED,
@@ -133,6 +138,7 @@ fn assert_repeats_with(
     let again = directory.path().join("again.mcap");
     let config = RunConfig {
         inputs: Some(log.clone()),
+        name: Some(unused_name()),
         log: LogTarget::File(again.clone()),
         ticks: Some(outcome.result.ticks),
         shared_memory: false,
@@ -242,6 +248,51 @@ fn boards_are_stopped_executed_and_started_again() {
     assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
     assert_repeats(&outcome, &log, &directory);
     // Each board is a process of it.
+    let program = rcs_run().to_path_buf();
+    let split = |config| RunConfig { boards: Boards::Split, program, ..config };
+    assert_repeats_with(split, &outcome, &log, &directory);
+}
+
+/// `<=` and DB-DONE (IV.2.6, IV.3.2): values are written while their processes stand, the log has the old and the new
+/// one, and gives the same run, on one board and on five.
+#[test]
+fn values_are_written_while_their_processes_stand() {
+    let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
+    let mut client = cell.client("anna");
+    wait_ticks(&mut client, 150);
+    ask(&mut client, &["PAUSE"]);
+    wait_ticks(&mut client, 100);
+    for line in ["write task.ledger NONE", "write emove.beliefs.located NONE", "db-done on"] {
+        let refused = client.ask(line).unwrap().unwrap_err();
+        assert!(refused.contains(" runs: `board "), "{line}: {refused}");
+    }
+    ask(&mut client, &["board 2 stop", "board 6 stop", "board 8 stop"]);
+    wait_ticks(&mut client, 5);
+    for (line, why) in [
+        ("write emove.status.held NONE", "one of task.ledger, "),
+        ("write emove.beliefs.placed LINKBAR1", "write emove.beliefs.placed NONE was expected"),
+        ("write emove.beliefs.held LINKBAR1_BH 9", "a grip of LINKBAR1_BH was expected"),
+        ("write emove.beliefs.held LINKBAR1_BH 2", "the sensors of the gripper"),
+    ] {
+        let refused = client.ask(line).unwrap().unwrap_err();
+        assert!(refused.contains(why), "{line}: {refused}");
+    }
+    ask(&mut client, &["write task.ledger NONE", "write emove.beliefs.located NONE", "db-done on"]);
+    let answer = client.ask("write grip.calibration NONE").unwrap().unwrap();
+    assert!(answer.ends_with("grip.calibration was known, is NONE"), "{answer}");
+    wait_ticks(&mut client, 5);
+    let answer = client.ask("write grip.calibration NONE").unwrap().unwrap();
+    assert!(answer.ends_with("grip.calibration was NONE, is NONE"), "{answer}");
+    ask(&mut client, &["board 8 go", "board 2 go", "board 6 go"]);
+    go_on(&mut client);
+    drop(client);
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
+    let lines: Vec<OperatorLine> = Log::open(&log).unwrap().operator_lines().collect();
+    let written = lines.iter().find(|line| line.line == "write grip.calibration NONE").unwrap();
+    assert_eq!((written.source.as_str(), written.refused.as_ref()), ("anna", None));
+    assert_eq!(written.answer, "grip.calibration was known, is NONE");
+    assert_repeats(&outcome, &log, &directory);
     let program = rcs_run().to_path_buf();
     let split = |config| RunConfig { boards: Boards::Split, program, ..config };
     assert_repeats_with(split, &outcome, &log, &directory);

@@ -7,10 +7,12 @@
 //! | `^C` on board 0; `SSGO` | bit 0 of `stopped`: there is no pulse, and no process is stepped |
 //! | `PRIM-LEVEL` and the like on a board that is stopped | the bit of the process in `executed`, for a tick |
 //! | `.R` on board 2 | `robot_init` changes: E-move gives Prim ROBOT-INIT (SPECNOTES.md, contradiction 13) |
+//! | DB-DONE in block 903 | `db_done` |
+//! | `<= VALUE` of a variable of a process that is not stepped | an entry of `writes`, for a tick |
 
-use rcs_core::Plain;
+use rcs_core::{Plain, name::Name16};
 
-use crate::ProcessId;
+use crate::{CommonMemory, ProcessId};
 
 /// Numbers of the boards on which something runs (IV.2.2), in the order of their bits.
 pub const BOARDS: [u8; 5] = [0, 2, 4, 6, 8];
@@ -25,6 +27,96 @@ pub struct OperatorInputs {
     pub executed: u16,
     /// Changes with each `.R`; 0 before the first.
     pub robot_init: u32,
+    /// DB-DONE (Figure IV.1): Task reads each command to the Data System as done.
+    pub db_done: bool,
+    /// Values that are written in this tick, in this order.
+    pub writes: [Option<Write>; WRITES],
+}
+
+/// Most values that are written in a tick.
+pub const WRITES: usize = 4;
+
+/// The variables that a person may write (IV.2.6; SPECNOTES.md): beliefs that no sensor tells alone. None of them moves
+/// the robot, fingers or air by itself, and each counts only as long as no sensor contradicts it. The text is the
+/// variable's path in common memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Variable {
+    /// Task: the command that is not finished. Without it the same command begins from the start.
+    #[text = "task.ledger"]
+    Ledger,
+    /// Task: the updates that the Data System has not taken. Without them it is not told of those moves.
+    #[text = "task.beliefs.owed"]
+    Owed,
+    /// Subtask: the part in the pedestal's hand.
+    #[text = "subtask.regrip"]
+    Regrip,
+    /// E-move: what the gripper holds. Without it what is felt has no name.
+    #[text = "emove.beliefs.held"]
+    Held,
+    /// E-move: the object that was let go last, and where. Without it an interrupted command places it again.
+    #[text = "emove.beliefs.placed"]
+    Placed,
+    /// E-move: what vision has located. Without it a new picture is taken.
+    #[text = "emove.beliefs.located"]
+    Located,
+    /// Grip: scale and offset of the sensors. Without them the next motion that needs an opening calibrates.
+    #[text = "grip.calibration"]
+    Calibration,
+}
+
+/// The values that a variable takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Form {
+    /// NONE.
+    #[text = "NONE"]
+    Nothing,
+    /// NONE, or an object.
+    #[text = "NONE or OBJECT"]
+    Object,
+    /// NONE, or an object and its grip.
+    #[text = "NONE or OBJECT GRIP"]
+    ObjectGrip,
+}
+
+impl Variable {
+    /// The process that owns it.
+    #[must_use]
+    pub const fn owner(self) -> ProcessId {
+        match self {
+            Self::Ledger | Self::Owed => ProcessId::Task,
+            Self::Regrip => ProcessId::Subtask,
+            Self::Held | Self::Placed | Self::Located => ProcessId::Emove,
+            Self::Calibration => ProcessId::Grip,
+        }
+    }
+
+    /// The values that it takes.
+    #[must_use]
+    pub const fn form(self) -> Form {
+        match self {
+            Self::Regrip => Form::Object,
+            Self::Held => Form::ObjectGrip,
+            Self::Ledger | Self::Owed | Self::Placed | Self::Located | Self::Calibration => Form::Nothing,
+        }
+    }
+}
+
+/// A value that a person writes into a variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct Write {
+    /// The variable.
+    pub variable: Variable,
+    /// The object; `None` writes NONE.
+    pub object: Option<Name16>,
+    /// Grip number of the object, where one belongs to the value.
+    pub grip: i32,
+}
+
+/// True if the variables of a process may be written in the tick after `before`: it was not stepped (held by its
+/// switch, on a stopped board, dormant, or suspended while a recorded pose is looked at).
+#[must_use]
+pub const fn may_be_written(process: ProcessId, before: &CommonMemory) -> bool {
+    before.header(process).republished
 }
 
 /// The bit of a board; 0 for a number without a board.
@@ -58,11 +150,17 @@ impl OperatorInputs {
     pub fn executes(&self, process: ProcessId) -> bool {
         self.executed & process_bit(process) != 0
     }
+
+    /// The values that are written into the variables of a process in this tick.
+    pub fn writes_to(&self, process: ProcessId) -> impl Iterator<Item = &Write> {
+        self.writes.iter().flatten().filter(move |write| write.variable.owner() == process)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rcs_core::plain::Schema;
 
     #[test]
     fn each_board_and_each_process_has_a_bit_of_its_own() {
@@ -71,6 +169,19 @@ mod tests {
         assert!(ProcessId::ALL.iter().all(|process| BOARDS.contains(&process.board())));
         let all = ProcessId::ALL.iter().fold(0, |all, process| all + u32::from(process_bit(*process)));
         assert_eq!(all, (1 << ProcessId::ALL.len()) - 1);
+    }
+
+    #[test]
+    fn a_variable_is_a_buffer_of_its_owner() {
+        let memory = CommonMemory::STRUCT;
+        for variable in Variable::ALL {
+            let mut path = variable.text().split('.');
+            assert_eq!(path.next(), Some(variable.owner().field()));
+            let of_process = memory.fields.iter().find(|field| field.name == variable.owner().field());
+            let Schema::Struct(outputs) = of_process.unwrap().schema else { panic!("{variable}") };
+            let buffer = path.next().unwrap();
+            assert!(outputs.fields.iter().any(|field| field.name == buffer), "{variable}");
+        }
     }
 
     #[test]

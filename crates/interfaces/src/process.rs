@@ -3,7 +3,7 @@
 
 use rcs_core::{Plain, table::Table, tick::Tick};
 
-use crate::{CommonMemory, ExternalInputs};
+use crate::{CommonMemory, ExternalInputs, operator::Write};
 
 /// Inputs of a process in a tick. `Data` is the task data, on which this crate does not depend.
 #[derive(Debug)]
@@ -52,6 +52,10 @@ pub trait Process<Data: ?Sized> {
         inputs: &Inputs<'_, Data>,
         outputs: &mut Self::Outputs,
     );
+
+    /// Take over a value that a person writes while the process is not stepped (IV.2.6). `outputs` holds what was
+    /// written in the tick before.
+    fn write(&mut self, _: &Write, _: &Inputs<'_, Data>, _: &mut Self::Outputs) {}
 
     /// The state of the process.
     fn state(&self) -> &Self::State;

@@ -26,7 +26,7 @@ macro_rules! for_each_process {
                 failure: reason;
                 board: 6;
                 commander: ;
-                reads: ["data_base"];
+                reads: ["data_base", "operator.db_done"];
             }
             /// Subtask (V.3).
             Subtask "Subtask" {

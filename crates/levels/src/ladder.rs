@@ -10,6 +10,7 @@ use interfaces::{
     CommonMemory, Decided, ExternalInputs, OutsidePedestal,
     device::{LinkBytes, single_step},
     for_each_process,
+    operator::may_be_written,
     process::{Inputs, Process},
 };
 use rcs_core::{
@@ -91,6 +92,18 @@ macro_rules! ladder {
                 after: &mut CommonMemory,
             ) {
                 match process { $( ProcessId::$id => self.$field.step(inputs, &mut after.$field), )+ }
+            }
+
+            /// Give a process the values that a person writes into it (IV.2.6).
+            fn write_into(
+                &mut self,
+                process: ProcessId,
+                inputs: &Inputs<'_, TaskData<'_>>,
+                after: &mut CommonMemory,
+            ) {
+                for write in inputs.external.operator.writes_to(process) {
+                    match process { $( ProcessId::$id => self.$field.write(write, inputs, &mut after.$field), )+ }
+                }
             }
 
             /// Restart a process: it forgets everything, as after a crash.
@@ -223,6 +236,9 @@ impl Ladder {
         let pressed = buttons & !self.buttons;
         self.buttons = buttons;
         for &process in order {
+            if may_be_written(process, before) {
+                self.write_into(process, &inputs, after);
+            }
             let is_pedestal =
                 matches!(process, ProcessId::Pedestal | ProcessId::Hand | ProcessId::RotaryTable);
             if is_pedestal && external.pedestal.elsewhere {

@@ -14,11 +14,13 @@ use geometry::{
     kinematics::{HOME_JOINTS, Joints, T3},
 };
 use interfaces::{
-    CommonMemory, ExternalInputs, Header, HwsCommand, OutsidePedestal, Reason,
+    CommonMemory, DataBaseCommand, ExternalInputs, Header, HwsCommand, OutsidePedestal, Reason,
     device::{LinkBytes, RESOLVER_COUNTS, single_step},
-    hws::HwsReport,
-    operator::{BOARDS, board_bit, process_bit},
+    emove::{Grasped, Located, PlacedObject},
+    hws::{HwsReport, Ledger},
+    operator::{BOARDS, Variable, Write, board_bit, process_bit},
     prim::{PrimReport, PrimVerb},
+    subtask::Regrip,
 };
 use levels::ladder::{Ladder, LadderState, PROCESS_COUNT, ProcessId};
 use proptest::prelude::*;
@@ -523,6 +525,123 @@ fn a_process_of_a_stopped_board_is_executed_once() {
             }
         }
     }
+}
+
+/// A ladder in which every variable that may be written has a value.
+fn believing() -> Rig {
+    let mut rig = Rig::new();
+    rig.command("PAUSE", "");
+    assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
+    let mut state = rig.ladder.state();
+    state.subtask.regrip = Some(Regrip::default());
+    state.task.data_system.beliefs.owed[0] = Some(DataBaseCommand::default());
+    state.emove.beliefs.placed = Some(PlacedObject::default());
+    state.emove.beliefs.located = Some(Located::default());
+    state.emove.beliefs.held = Some(Grasped::default());
+    rig.ladder.restore(&state);
+    rig.before.task.ledger = Some(Ledger::default());
+    rig.before.task.beliefs.owed = state.task.data_system.beliefs.owed;
+    rig.before.subtask.regrip = state.subtask.regrip;
+    rig.before.emove.beliefs = state.emove.beliefs;
+    rig
+}
+
+/// The variables that have a value.
+fn believed(memory: &CommonMemory) -> Vec<Variable> {
+    let beliefs = &memory.emove.beliefs;
+    let has = |variable: &Variable| match variable {
+        Variable::Ledger => memory.task.ledger.is_some(),
+        Variable::Owed => memory.task.beliefs.owed[0].is_some(),
+        Variable::Regrip => memory.subtask.regrip.is_some(),
+        Variable::Held => beliefs.held.is_some(),
+        Variable::Placed => beliefs.placed.is_some(),
+        Variable::Located => beliefs.located.is_some(),
+        Variable::Calibration => memory.grip.calibration.is_some(),
+    };
+    Variable::ALL.iter().copied().filter(has).collect()
+}
+
+/// NONE for a variable.
+const fn forget(variable: Variable) -> Option<Write> {
+    Some(Write { variable, object: None, grip: 0 })
+}
+
+/// `<=` (IV.2.6): a value is written while the process stands, and nothing else changes.
+#[test]
+fn a_value_is_written_into_a_process_that_stands() {
+    let upward: Vec<_> = ProcessId::ALL.iter().rev().copied().collect();
+    for &variable in Variable::ALL {
+        for order in [ProcessId::ALL, &upward] {
+            let mut rig = believing();
+            assert_eq!(believed(&rig.before), Variable::ALL, "the test needs a value of each");
+            rig.external.operator.stopped = board_bit(0);
+            rig.step(order);
+            let stood = rig.before;
+            rig.external.operator.writes[0] = forget(variable);
+            rig.step(order);
+            let rest: Vec<_> = Variable::ALL.iter().copied().filter(|other| *other != variable).collect();
+            assert_eq!(believed(&rig.before), rest, "{variable}");
+            for &process in ProcessId::ALL {
+                rig.before.header_mut(process).stamp = stood.header(process).stamp;
+            }
+            assert_eq!(changes(&stood, &rig.before), [variable.owner().field()], "{variable}");
+        }
+    }
+}
+
+/// Nothing is written into a process that runs: the bits are those of a run without.
+#[test]
+fn nothing_is_written_into_a_process_that_runs() {
+    for &variable in Variable::ALL {
+        let digests = [None, forget(variable)].map(|write| {
+            let mut rig = believing();
+            rig.external.operator.writes[0] = write;
+            (0..3).for_each(|_| rig.step(ProcessId::ALL));
+            rig.digest.value()
+        });
+        assert_eq!(digests[0], digests[1], "{variable}");
+    }
+}
+
+/// The buffers that differ, by their process.
+fn changes(one: &CommonMemory, other: &CommonMemory) -> Vec<&'static str> {
+    let images = [one, other].map(|memory| {
+        let mut image = vec![0; CommonMemory::SIZE];
+        memory.encode(&mut Writer::new(&mut image));
+        image
+    });
+    let mut at = 0;
+    let mut changed = Vec::new();
+    for field in CommonMemory::STRUCT.fields {
+        let size = field.schema.size();
+        if images[0][at..at + size] != images[1][at..at + size] {
+            changed.push(field.name);
+        }
+        at += size;
+    }
+    changed
+}
+
+/// A value that is written in the tick in which the board runs again is written first.
+#[test]
+fn a_process_is_written_before_it_is_stepped() {
+    let mut rig = Rig::new();
+    rig.command("PAUSE", "");
+    assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
+    rig.external.operator.stopped = board_bit(8);
+    rig.step(ProcessId::ALL);
+    rig.external.operator.stopped = 0;
+    rig.external.operator.writes[0] = forget(Variable::Calibration);
+    assert!(rig.before.grip.status.initialized);
+    rig.step(ProcessId::ALL);
+    assert!(!rig.header(ProcessId::Grip).republished && !rig.before.grip.status.initialized);
+    rig.external.operator.writes[0] = None;
+    (0..50).for_each(|_| rig.step(ProcessId::ALL));
+    assert_eq!(
+        (rig.before.grip.calibration, rig.before.grip.valves.bits),
+        (None, 0),
+        "nothing moves by itself"
+    );
 }
 
 /// `.R` on board 2 (IV.3.3 step 2): E-move, which pauses, gives Prim ROBOT-INIT, and pauses again.

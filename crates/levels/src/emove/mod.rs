@@ -50,9 +50,11 @@ pub mod tables;
 mod tests;
 pub mod way;
 pub mod whereabouts;
+mod written;
 
 use interfaces::{
     EmoveOutputs,
+    operator::Write,
     process::{Inputs, Process},
 };
 use rcs_core::table::{Table, Variables as _, Verdict};
@@ -119,6 +121,10 @@ impl<'d> Process<TaskData<'d>> for Emove {
         }
         state.act(action, seen, inputs, outputs);
         state.report(inputs, outputs);
+    }
+
+    fn write(&mut self, write: &Write, inputs: &Inputs<'_, TaskData<'d>>, outputs: &mut EmoveOutputs) {
+        self.state.write(write, inputs, outputs);
     }
 
     fn state(&self) -> &State {

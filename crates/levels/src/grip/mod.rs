@@ -64,6 +64,7 @@ use core::marker::PhantomData;
 
 use interfaces::{
     GripOutputs,
+    operator::{Variable, Write},
     process::{Inputs, Process},
 };
 use rcs_core::table::{Table, Verdict};
@@ -71,7 +72,9 @@ use rcs_core::table::{Table, Verdict};
 use self::{
     site::{PartsGripper, Site},
     state::State,
-    tables::{Action, Duty, Seen, Situation, Step, accept::accept, number, of_command, up_init::up_init},
+    tables::{
+        Action, Duty, Phase, Seen, Situation, Step, accept::accept, number, of_command, up_init::up_init,
+    },
 };
 use crate::execution::Course;
 
@@ -139,6 +142,16 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
         self.state.act(action, seen, inputs.tick);
         self.state.execution.reason = S::reason(self.state.execution.reason);
         *outputs = self.state.report(action, seen, inputs.tick);
+    }
+
+    /// Without a calibration the sensors do not agree with it: UP_INIT row 5 forgets it.
+    fn write(&mut self, write: &Write, _: &Inputs<'_, Data>, outputs: &mut GripOutputs) {
+        if write.variable == Variable::Calibration {
+            (self.state.calibration, outputs.calibration) = (None, None);
+            if self.state.phase == Phase::Valid {
+                self.state.phase = Phase::Adopting;
+            }
+        }
     }
 
     fn state(&self) -> &State {

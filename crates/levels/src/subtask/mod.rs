@@ -31,7 +31,9 @@ pub(crate) mod tests;
 
 use interfaces::{
     SubtaskOutputs,
+    operator::{Variable, Write},
     process::{Inputs, Process},
+    subtask::Regrip,
 };
 use rcs_core::table::{Table, Variables as _};
 use taskdata::files::TaskData;
@@ -80,6 +82,13 @@ impl<'d> Process<TaskData<'d>> for Subtask {
         }
         state.act(action, seen, inputs, outputs);
         state.report(inputs, outputs);
+    }
+
+    fn write(&mut self, write: &Write, _: &Inputs<'_, TaskData<'d>>, outputs: &mut SubtaskOutputs) {
+        if write.variable == Variable::Regrip {
+            outputs.regrip = write.object.map(|object| Regrip { object });
+            self.state.regrip = outputs.regrip;
+        }
     }
 
     fn state(&self) -> &State {

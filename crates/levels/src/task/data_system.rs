@@ -1,13 +1,14 @@
 //! Task and the Data System (IV.4.2, IX.2): commands, repetitions, and updates that are kept until they are accepted.
 //!
-//! While no Data System is connected, Task sends no updates and does not wait, as with DB-DONE (Figure IV.1). Once
-//! connected, Task sends an update after each completed move from or to the MBD, and after the release of an object
-//! that the data base has as held by the robot. An update that is not accepted is kept, also when another command
-//! replaces the one that sent it. It is sent again before the next object is moved, or at the end of the next STARTUP,
-//! so that the data base is never more than one command behind.
+//! While no Data System is connected, Task sends no updates and does not wait. Once connected, Task sends an update
+//! after each completed move from or to the MBD, and after the release of an object that the data base has as held by
+//! the robot. An update that is not accepted is kept, also when another command replaces the one that sent it. It is
+//! sent again before the next object is moved, or at the end of the next STARTUP, so that the data base is never more
+//! than one command behind. With DB-DONE (Figure IV.1) each command is sent once and taken as done: the data base may
+//! lack it.
 
 use interfaces::{
-    DataBaseCommand, DataBaseStatus, TaskOutputs,
+    DataBaseCommand, DataBaseStatus, ExternalInputs, TaskOutputs,
     data_base::{Carried, Connection, DataBaseBeliefs, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
     emove::Standing,
 };
@@ -52,9 +53,18 @@ impl DataSystem {
         self.commander = Commander { number, sent: tick, started: number != 0 };
     }
 
+    /// What the Data System says. With DB-DONE (Figure IV.1) the last command is done, whatever it says.
+    pub fn read(&mut self, external: &ExternalInputs) -> DataBaseStatus {
+        self.commander.start(external.data_base.echo);
+        if external.operator.db_done {
+            DataBaseStatus { echo: self.commander.number, report: DataBaseReport::Done }
+        } else {
+            external.data_base
+        }
+    }
+
     /// Once a tick, before anything else: an update that is taken is owed no longer.
     pub fn observe(&mut self, status: &DataBaseStatus, tick: Tick) {
-        self.commander.start(status.echo);
         let [first, second] = self.beliefs.owed;
         let told = self.request.command == DataBaseVerb::Update
             && first.is_some_and(|first| {

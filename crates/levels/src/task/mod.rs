@@ -34,6 +34,8 @@ mod tests;
 
 use interfaces::{
     TaskOutputs,
+    data_base::KEPT_UPDATES,
+    operator::{Variable, Write},
     process::{Inputs, Process},
 };
 use rcs_core::table::{Table, Verdict};
@@ -113,6 +115,17 @@ impl<'d> Process<TaskData<'d>> for Task {
         state.take_over(takeover, inputs, outputs);
         state.act(action, seen, inputs, outputs);
         state.report(inputs, outputs);
+    }
+
+    fn write(&mut self, write: &Write, _: &Inputs<'_, TaskData<'d>>, outputs: &mut TaskOutputs) {
+        match write.variable {
+            Variable::Ledger => outputs.ledger = None,
+            Variable::Owed => {
+                outputs.beliefs.owed = [None; KEPT_UPDATES];
+                self.state.data_system.beliefs = outputs.beliefs;
+            }
+            _ => {}
+        }
     }
 
     fn state(&self) -> &State {

@@ -28,8 +28,9 @@ use crate::{
 impl State {
     /// Read the inputs of a tick.
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> Seen {
-        let (command, data_base) = (&inputs.external.hws, &inputs.external.data_base);
+        let command = &inputs.external.hws;
         self.adopt(inputs);
+        let data_base = &self.data_system.read(inputs.external);
         self.data_system.observe(data_base, inputs.tick);
         let arrival = self.execution.observe(inputs.tick, command.number);
         let asked = self.execution.asked(arrival);

@@ -13,6 +13,7 @@
 mod request;
 mod source;
 mod terminals;
+mod written;
 
 use std::path::{self, Path};
 
@@ -269,7 +270,7 @@ impl Operator {
             }
             Request::StandAlone { now } => around.neighbours.take_command(tick, around.memory, now),
             Request::Workstation => around.neighbours.give_command(tick, around.memory),
-            Request::Terminal(entry) => self.terminals.enter(entry, around.memory),
+            Request::Terminal(entry) => self.terminals.enter(entry, around.memory, &around.store.view()),
             Request::Cell(action, line) => around.workstation.begin_line(&action, &line).map(|()| done),
         }
     }

@@ -1,14 +1,17 @@
 //! Entries at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3): boards are stopped and started, a level is executed
 //! once, the link is initialized. The record goes to the controller with the other inputs of the tick.
 
-use std::collections::VecDeque;
+use std::{collections::VecDeque, mem};
 
 use interfaces::{
     CommonMemory, OperatorInputs, ProcessId,
     emove::EmoveVerb,
-    operator::{BOARDS, board_bit, process_bit},
+    operator::{BOARDS, WRITES, Write, board_bit, process_bit},
 };
 use rcs_core::handshake::successor;
+use taskdata::files::TaskData;
+
+use super::written;
 
 /// Most passes of a process in one request.
 pub const PASSES: u8 = 100;
@@ -24,6 +27,10 @@ pub enum Entry {
     Execute(ProcessId, u8),
     /// `.R` on board 2.
     RobotInit,
+    /// DB-DONE of block 903: in or out.
+    DbDone(bool),
+    /// `<= VALUE` of a variable.
+    Write(Write),
 }
 
 /// The name of a process in requests.
@@ -50,6 +57,10 @@ impl Entry {
                 Err("execute PROCESS [PASSES] was expected, such as execute PRIM 2".to_owned())
             }
             ["robot-init"] => Ok(Self::RobotInit),
+            ["db-done", "on"] => Ok(Self::DbDone(true)),
+            ["db-done", "off"] => Ok(Self::DbDone(false)),
+            ["db-done", ..] => Err(format!("db-done on or off was expected; found {}", words.join(" "))),
+            ["write", ref rest @ ..] => written::read(rest).map(Self::Write),
             _ => return None,
         })
     }
@@ -79,6 +90,8 @@ pub struct Terminals {
     shown: OperatorInputs,
     /// Processes that are executed in the next ticks, a tick each.
     passes: VecDeque<u16>,
+    /// Values that are written in the next tick.
+    writes: [Option<Write>; WRITES],
 }
 
 impl Terminals {
@@ -91,13 +104,19 @@ impl Terminals {
     /// Once a tick, after all requests.
     pub fn end_tick(&mut self) {
         self.shown.executed = self.passes.pop_front().unwrap_or_default();
+        self.shown.writes = mem::take(&mut self.writes);
     }
 
-    /// Enter something. `memory` holds what the last tick has left.
+    /// Enter something. `memory` holds what the last tick has left, `data` are the task data of the next one.
     ///
     /// # Errors
     /// Why it is refused.
-    pub fn enter(&mut self, entry: Entry, memory: &CommonMemory) -> Result<String, String> {
+    pub fn enter(
+        &mut self,
+        entry: Entry,
+        memory: &CommonMemory,
+        data: &TaskData<'_>,
+    ) -> Result<String, String> {
         match entry {
             Entry::Stop(board) => {
                 self.shown.stopped |= board_bit(board);
@@ -114,6 +133,8 @@ impl Terminals {
             }
             Entry::Execute(process, passes) => self.execute(process, passes),
             Entry::RobotInit => self.initialize(memory),
+            Entry::DbDone(on) => self.db_done(on, memory),
+            Entry::Write(write) => self.write(write, memory, data),
         }
     }
 
@@ -129,6 +150,27 @@ impl Terminals {
         }
         self.passes.extend(std::iter::repeat_n(process_bit(process), passes.into()));
         Ok(format!("{process} is executed, passes: {passes}"))
+    }
+
+    /// Block 903 is edited while its board is stopped (IV.2.3, IV.3.2 step 1).
+    fn db_done(&mut self, on: bool, memory: &CommonMemory) -> Result<String, String> {
+        written::stands(ProcessId::Task, memory)?;
+        self.shown.db_done = on;
+        Ok(if on {
+            "Task takes what it asks of the Data System as done: the data base may lack moves from now on"
+        } else {
+            "Task waits for the Data System"
+        }
+        .to_owned())
+    }
+
+    /// A value is written in the next tick, before the process is stepped again.
+    fn write(&mut self, write: Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
+        let answer = written::check(&write, memory, data)?;
+        let free = self.writes.iter_mut().find(|slot| slot.is_none());
+        *free.ok_or_else(|| format!("{WRITES} values are written in the next tick: ask again"))? =
+            Some(write);
+        Ok(answer)
     }
 
     /// E-move gives Prim ROBOT-INIT during E-PAUSE. On a stopped board each process is executed as often as needed.
@@ -163,6 +205,11 @@ const fn what_stops(board: u8) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
+
+    use interfaces::{emove::Located, grip::Felt};
+    use rcs_core::name::Name16;
+    use taskdata::load::Store;
 
     fn entry(line: &str) -> Result<Entry, String> {
         Entry::read(&line.split(' ').collect::<Vec<_>>()).unwrap()
@@ -182,6 +229,13 @@ mod tests {
             ("execute PRIMS", "TASK, SUBTASK"),
             ("execute PRIM 0", "1 to 100"),
             ("execute", "execute PROCESS"),
+            ("db-done", "db-done on or off"),
+            ("write", "write VARIABLE VALUE"),
+            ("write emove.status.held NONE", "task.ledger, task.beliefs.owed, subtask.regrip"),
+            ("write emove.beliefs.placed BLOCK", "write emove.beliefs.placed NONE was expected; found BLOCK"),
+            ("write emove.beliefs.held BLOCK", "NONE or OBJECT GRIP"),
+            ("write emove.beliefs.held BLOCK 100", "found BLOCK 100"),
+            ("write subtask.regrip BLOCK 1", "NONE or OBJECT was expected"),
         ] {
             assert!(entry(line).unwrap_err().contains(word), "{line}: {:?}", entry(line));
         }
@@ -191,22 +245,29 @@ mod tests {
     fn a_pass_is_of_one_tick_and_of_a_board_that_is_stopped() {
         let (mut terminals, memory) = (Terminals::default(), CommonMemory::default());
         let prim = Entry::Execute(ProcessId::Prim, 2);
-        assert!(terminals.enter(prim, &memory).unwrap_err().contains("Prim runs"));
-        terminals.enter(Entry::Stop(2), &memory).unwrap();
-        terminals.enter(prim, &memory).unwrap();
+        assert!(terminals.enter(prim, &memory, &TaskData::default()).unwrap_err().contains("Prim runs"));
+        terminals.enter(Entry::Stop(2), &memory, &TaskData::default()).unwrap();
+        terminals.enter(prim, &memory, &TaskData::default()).unwrap();
         let executed = [1, 2, 3].map(|_| {
             terminals.end_tick();
             terminals.inputs().executes(ProcessId::Prim)
         });
         assert_eq!(executed, [true, true, false]);
-        assert!(terminals.enter(Entry::Execute(ProcessId::Emove, PASSES), &memory).is_ok());
-        assert!(terminals.enter(prim, &memory).unwrap_err().contains("100 passes are waiting"));
+        assert!(
+            terminals.enter(Entry::Execute(ProcessId::Emove, PASSES), &memory, &TaskData::default()).is_ok()
+        );
+        assert!(
+            terminals
+                .enter(prim, &memory, &TaskData::default())
+                .unwrap_err()
+                .contains("100 passes are waiting")
+        );
     }
 
     #[test]
     fn a_board_goes_when_there_is_the_pulse() {
         let (mut terminals, memory) = (Terminals::default(), CommonMemory::default());
-        let mut enter = |entry| terminals.enter(entry, &memory);
+        let mut enter = |entry| terminals.enter(entry, &memory, &TaskData::default());
         assert_eq!(enter(Entry::Go(6)).unwrap(), "board 6 runs", "it did before");
         enter(Entry::Stop(6)).unwrap();
         enter(Entry::Stop(0)).unwrap();
@@ -217,13 +278,99 @@ mod tests {
     #[test]
     fn the_link_is_initialized_while_e_move_pauses() {
         let (mut terminals, mut memory) = (Terminals::default(), CommonMemory::default());
-        terminals.enter(Entry::RobotInit, &memory).unwrap();
+        terminals.enter(Entry::RobotInit, &memory, &TaskData::default()).unwrap();
         assert_eq!(terminals.inputs().robot_init, 1);
-        terminals.enter(Entry::Stop(2), &memory).unwrap();
-        terminals.enter(Entry::RobotInit, &memory).unwrap();
+        terminals.enter(Entry::Stop(2), &memory, &TaskData::default()).unwrap();
+        terminals.enter(Entry::RobotInit, &memory, &TaskData::default()).unwrap();
         terminals.end_tick();
         assert!(terminals.inputs().executes(ProcessId::Emove) && terminals.inputs().robot_init == 2);
         memory.subtask.emove.command = EmoveVerb::MovToLoc;
-        assert!(terminals.enter(Entry::RobotInit, &memory).unwrap_err().contains("PAUSE first"));
+        assert!(
+            terminals
+                .enter(Entry::RobotInit, &memory, &TaskData::default())
+                .unwrap_err()
+                .contains("PAUSE first")
+        );
+    }
+
+    /// A memory in which these processes have not been stepped.
+    fn standing(processes: &[ProcessId]) -> CommonMemory {
+        let mut memory = CommonMemory::default();
+        processes.iter().for_each(|process| memory.header_mut(*process).republished = true);
+        memory
+    }
+
+    #[test]
+    fn a_value_is_written_for_a_tick_and_told_with_the_old_one() {
+        let mut terminals = Terminals::default();
+        let mut memory = standing(&[ProcessId::Emove]);
+        let located = Located { object: Name16::clipped("LINKBAR1"), ..Located::default() };
+        memory.emove.beliefs.located = Some(located);
+        let mut enter = |line: &str, memory: &CommonMemory| {
+            terminals.enter(entry(line).unwrap(), memory, &TaskData::default())
+        };
+        let located = "write emove.beliefs.located NONE";
+        assert_eq!(enter(located, &memory).unwrap(), "emove.beliefs.located was LINKBAR1, is NONE");
+        for line in ["placed", "held", "placed"] {
+            let line = format!("write emove.beliefs.{line} NONE");
+            assert!(enter(&line, &memory).unwrap().ends_with("was NONE, is NONE"), "{line}");
+        }
+        assert!(enter(located, &memory).unwrap_err().contains("4 values are written"));
+        let why = enter("write task.ledger NONE", &memory).unwrap_err();
+        assert!(why.contains("Task runs: `board 6 stop` or `joystick hold TASK`"), "{why}");
+        let shown = [(); 2].map(|()| {
+            terminals.end_tick();
+            terminals.inputs().writes_to(ProcessId::Emove).count()
+        });
+        assert_eq!(shown, [4, 0]);
+    }
+
+    #[test]
+    fn db_done_changes_while_task_stands() {
+        let mut terminals = Terminals::default();
+        let mut enter = |line: &str, memory: &CommonMemory| {
+            terminals.enter(entry(line).unwrap(), memory, &TaskData::default())?;
+            Ok::<_, String>(terminals.inputs().db_done)
+        };
+        assert!(enter("db-done on", &standing(&[])).unwrap_err().contains("Task runs: `board 6 stop`"));
+        let memory = standing(&[ProcessId::Task]);
+        assert_eq!(enter("db-done on", &memory), Ok(true));
+        assert_eq!(enter("db-done off", &memory), Ok(false));
+    }
+
+    #[test]
+    fn only_what_is_felt_gets_a_name_and_one_of_the_task_data() {
+        let (store, _) = Store::load(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))).unwrap();
+        let mut memory = standing(&[ProcessId::Emove, ProcessId::Subtask]);
+        let ask = |line: &str, memory: &CommonMemory| {
+            Terminals::default().enter(entry(line).unwrap(), memory, &store.view())
+        };
+        let held = "write emove.beliefs.held LINKBAR1_BH 2";
+        assert!(ask(held, &memory).unwrap_err().contains("the gripper holds nothing"));
+        memory.quick_change.status.end_effector_id = Some(1);
+        memory.grip.status.felt = Felt::NotKnown;
+        assert!(ask(held, &memory).unwrap_err().contains("board 8"));
+        memory.grip.status.felt = Felt::Something;
+        (memory.grip.status.initialized, memory.grip.status.position) = (true, 20);
+        assert!(ask(held, &memory).unwrap_err().contains("they stand at 0.20 in"));
+        memory.grip.status.position = 400;
+        assert_eq!(ask(held, &memory).unwrap(), "emove.beliefs.held was NONE, is LINKBAR1_BH 2");
+        memory.grip.header.republished = true;
+        assert!(ask(held, &memory).unwrap_err().contains("must run"), "its sensors are not read");
+        for (line, why) in [
+            ("write emove.beliefs.held LINKBAR9 2", "no object form"),
+            ("write emove.beliefs.held LINKBAR1_BH 9", "a grip of LINKBAR1_BH was expected: +2; found +9"),
+            ("write subtask.regrip LCLEVIS_IH", "the pedestal's hand holds nothing"),
+        ] {
+            let found = ask(line, &memory).unwrap_err();
+            assert!(found.contains(why), "{line}: {found}");
+        }
+        memory.pedestal.status.felt = Felt::Something;
+        assert!(ask("write subtask.regrip LCLEVIS_IH", &memory).is_err(), "it was not told to grip");
+        memory.pedestal.status.gripped = true;
+        assert_eq!(
+            ask("write subtask.regrip LCLEVIS_IH", &memory).unwrap(),
+            "subtask.regrip was NONE, is LCLEVIS_IH"
+        );
     }
 }

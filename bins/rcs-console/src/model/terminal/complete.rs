@@ -3,6 +3,7 @@
 
 use std::{collections::BTreeSet, path::Path};
 
+use interfaces::operator::Variable;
 use taskdata::load::{BlockNumber, Source, Store, job::TASK_COMMANDS, source::blocks};
 
 /// The names of the task data of a run, and its blocks and jobs.
@@ -67,8 +68,9 @@ fn runtime_jobs(directory: &Path) -> Vec<String> {
 }
 
 /// What follows the first words of a line. A word of an entry can be `*`, which is any.
-static FOLLOWING: [(&[&str], &[&str]); 27] = [
+static FOLLOWING: [(&[&str], &[&str]); 28] = [
     (&["job"], &["wait", "go", "skip"]),
+    (&["db-done"], ON_OFF),
     (&["board"], &["0", "2", "4", "6", "8"]),
     (&["board", "*"], &["stop", "go"]),
     (
@@ -125,8 +127,9 @@ const LEVELS: &[&str] = &["TASK", "SUBTASK", "EMOVE", "PRIM"];
 const ESTOPS: &[&str] = &["control-panel", "teach-pendant", "terminals", "joystick-box", "pedestal"];
 const ON_OFF: &[&str] = &["on", "off"];
 /// Requests in words of today.
-const REQUESTS: [&str; 22] = [
+const REQUESTS: [&str; 24] = [
     "board",
+    "db-done",
     "drum",
     "estop",
     "execute",
@@ -148,6 +151,7 @@ const REQUESTS: [&str; 22] = [
     "table",
     "tray",
     "vise",
+    "write",
 ];
 /// What stands behind one or more numbers.
 const BEHIND_NUMBERS: [&str; 7] = ["EDIT", "LINE-LOAD", "LIST", "LOAD", "OFFSET", "OLOAD", "TEACH"];
@@ -174,6 +178,9 @@ fn candidates(words: &[&str], names: &Names, terminal: &[&str]) -> Vec<String> {
         ["machine", _, _] => names.locations.clone(),
         ["send" | "==", ref rest @ ..] if !rest.is_empty() => candidates(rest, names, &[]),
         [verb, ref fields @ ..] if TASK_COMMANDS.contains(&verb) => field(fields, names),
+        ["write"] => owned(&Variable::ALL.iter().map(|variable| variable.text()).collect::<Vec<_>>()),
+        ["write", _] | [.., "<="] => values(names),
+        ["write", _, object] => grips(object, names),
         [.., last] if last.parse::<u32>().is_ok() && words.iter().all(|word| word.parse::<u32>().is_ok()) => {
             owned(&BEHIND_NUMBERS)
         }
@@ -196,13 +203,23 @@ fn field(fields: &[&str], names: &Names) -> Vec<String> {
         0 => names.objects.iter().cloned().chain([null()]).collect(),
         1 | 4 => {
             let object = fields.first().copied().unwrap_or_default();
-            let grips = names.grips.iter().filter(|(name, _)| name == object);
-            let grips: BTreeSet<String> = grips.map(|(_, grip)| format!("{grip:+}")).collect();
-            grips.into_iter().chain(["0".to_owned()]).collect()
+            grips(object, names).into_iter().chain(["0".to_owned()]).collect()
         }
         2 | 5 | 7 => names.locations.iter().cloned().chain([null()]).collect(),
         _ => Vec::new(),
     }
+}
+
+/// The values of a variable that may be written.
+fn values(names: &Names) -> Vec<String> {
+    std::iter::once("NONE".to_owned()).chain(names.objects.iter().cloned()).collect()
+}
+
+/// The grips of an object.
+fn grips(object: &str, names: &Names) -> Vec<String> {
+    let grips = names.grips.iter().filter(|(name, _)| name == object);
+    let grips: BTreeSet<String> = grips.map(|(_, grip)| format!("{grip:+}")).collect();
+    grips.into_iter().collect()
 }
 
 /// What Tab makes of a line, and what the word at its end could become. `terminal` are the words of the terminal.
@@ -256,6 +273,11 @@ mod tests {
             ("863 LIS", "863 LIST "),
             ("TA", "TAI "),
             ("LOC SAFE-", "LOC SAFE-P "),
+            ("wr", "write "),
+            ("write emove.beliefs.h", "write emove.beliefs.held "),
+            ("write emove.beliefs.held NO", "write emove.beliefs.held NONE "),
+            (":S held <= LINKBAR1_B", ":S held <= LINKBAR1_BH "),
+            ("write emove.beliefs.held LINKBAR1_BH +2", "write emove.beliefs.held LINKBAR1_BH +2 "),
             ("xyz", "xyz"),
         ] {
             assert_eq!(completed(line), full, "{line}");

@@ -11,7 +11,11 @@ mod words;
 
 use std::path::PathBuf;
 
-use interfaces::{ProcessId, hws::HwsReport, operator::BOARDS as RUNNING};
+use interfaces::{
+    ProcessId,
+    hws::HwsReport,
+    operator::{BOARDS as RUNNING, Variable},
+};
 use taskdata::load::{BlockNumber, commands};
 
 use self::{
@@ -53,12 +57,21 @@ pub struct Board {
     pub vocabulary: &'static str,
     /// The show word that was entered last.
     pub shown: Option<&'static ShowWord>,
+    /// The variable that was shown last, if it can be written.
+    pub variable: Option<Variable>,
 }
 
 impl Default for Board {
     /// Board 6: the commands for Task are entered there.
     fn default() -> Self {
-        Self { number: 6, mode: Mode::Run, offset: commands::OFFSET, vocabulary: "SDEF", shown: None }
+        Self {
+            number: 6,
+            mode: Mode::Run,
+            offset: commands::OFFSET,
+            vocabulary: "SDEF",
+            shown: None,
+            variable: None,
+        }
     }
 }
 
@@ -74,6 +87,12 @@ impl Board {
     pub fn processes(&self) -> impl Iterator<Item = ProcessId> + use<> {
         let number = self.number;
         ProcessId::ALL.iter().copied().filter(move |process| process.board() == number)
+    }
+
+    /// The variables of its processes that a person may write.
+    fn variables(&self) -> impl Iterator<Item = Variable> + use<> {
+        let number = self.number;
+        Variable::ALL.iter().copied().filter(move |variable| variable.owner().board() == number)
     }
 
     /// The buffers that its processes read and write.

@@ -23,12 +23,12 @@ static OLD: [(&[&str], &str); 12] = [
         "block 903, 907: --outside workstation and the job line ** workstation connect the HWSC (IV.4.1)",
     ),
     (
-        &["READ-DAS-STATUS", "WRITE-DAS-COMMAND", "UPDATE-MAILGRAM->DAS-?", "DB-DONE", "Parse-das-status"],
+        &["READ-DAS-STATUS", "WRITE-DAS-COMMAND", "UPDATE-MAILGRAM->DAS-?", "Parse-das-status"],
         "block 903, 907: STARTUP (667 0 0 LINE-LOAD) connects the Data System, SHUTDOWN drops it (IV.4.2)",
     ),
     (
         &["lld", "DIAGNOSTIC"],
-        "each level relies on sensors: to leave out a lower level would change nothing (IV.3.2)",
+        "each level relies on sensors: a lower level that is left out would not change them (IV.3.2)",
     ),
     (
         &["READ-AP-STATUS", "WRITE-AP-COMMAND"],
@@ -45,7 +45,7 @@ static BLOCKS: [(u32, &str); 5] = [
     (28, "28 LOAD initialized a board: each process does it in its first tick (IV.2.8)"),
     (188, "188 LOAD prepared the network for the HWSC: connecting does it (IV.4.1)"),
     (641, "641 LOAD initialized the mailboxes: they are when the HWSC connects (IV.4.1, IX.1)"),
-    (903, "block 903 chose what preprocess reads: the run's options choose it (IV.3.2)"),
+    (903, "block 903 chose what is read: the run's options and DB-DONE do (IV.3.2)"),
     (907, "block 907 chose what postprocess writes: the run's options choose it (IV.3.2)"),
 ];
 

@@ -50,6 +50,10 @@ fn about(operating: Option<&Operating>, picture: &Picture, is_used: bool) -> Vec
     let boards: Vec<String> = RUNNING.iter().map(|board| format!("{board} {}", state(*board))).collect();
     let tone = if operator.stopped == 0 { Tone::Plain } else { Tone::Marked };
     let mut lines = vec![Text::new(tone, format!(" boards  {}", boards.join("   ")))];
+    if operator.db_done {
+        let text = " DB-DONE is in: Task does not wait for the Data System; % DB-DONE takes it out";
+        lines.push(Text::new(Tone::Marked, text));
+    }
     match operating {
         Some(operating) => {
             lines.push(Text::plain(format!(" {}", operating.status)));

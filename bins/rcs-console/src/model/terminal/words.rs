@@ -1,7 +1,7 @@
 //! The words of a board's terminal (IV.2, IV.3): numbers go onto a stack, words take them from it, as in FORTH. What a
 //! word asks of the run becomes a request in words of today ([`operator`]); what it shows is said at once.
 
-use interfaces::ProcessId;
+use interfaces::{ProcessId, operator::Variable};
 use levels::ladder::Ladder;
 use taskdata::load::{BlockNumber, source::BLOCK_LINES};
 
@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// Words that take no name behind them.
-const WORDS: [&str; 15] = [
+const WORDS: [&str; 17] = [
     "GO",
     "SSGO",
     "^C",
@@ -31,6 +31,8 @@ const WORDS: [&str; 15] = [
     "BOARD",
     "EDIT",
     "TEACH",
+    "DB-DONE",
+    "%",
 ];
 
 /// A word that executes a process once, as PRIM-LEVEL (IV.3.3 step 13; VI.2, VI.5; the others are ours).
@@ -84,7 +86,8 @@ pub fn is_of_terminal(line: &str, mode: Mode) -> bool {
         || SHOW_WORDS.iter().any(|word| word.word == first)
         || VOCABULARIES.iter().any(|(word, _)| *word == first)
         || said::of_word(first).is_some();
-    is_word || mode == Mode::Show || first.parse::<u32>().is_ok()
+    let writes = line.split_whitespace().any(|word| word == "<=");
+    is_word || writes || mode == Mode::Show || first.parse::<u32>().is_ok()
 }
 
 /// The words of the terminal of a board that Tab completes.
@@ -159,6 +162,9 @@ impl<'a> Interpreter<'a> {
             "OFFSET" => return self.offset(behind),
             "LOC" => return self.locate(behind),
             "BOARD" => return self.turn_to(behind),
+            "<=" => return self.write(rest),
+            "DB-DONE" => self.on(6).map(|()| self.outcome.asks.push("db-done on".to_owned()))?,
+            "%" => return self.comment(rest),
             _ => return self.named(word),
         }
         Ok(0)
@@ -192,13 +198,6 @@ impl<'a> Interpreter<'a> {
             self.say(format!("  {name}: {about}"));
             return Ok(0);
         }
-        if word == "<=" {
-            return Err(
-                "values cannot be written into buffers: use commands, the joystick box, or the blocks of the \
-                 task data"
-                    .to_owned(),
-            );
-        }
         if let Some(text) = said::of_word(word) {
             self.say(format!("  {text}"));
             return Ok(0);
@@ -214,8 +213,15 @@ impl<'a> Interpreter<'a> {
         let picture = self.picture.ok_or("the run has published no tick yet")?;
         let here: Vec<&str> = self.board.buffers();
         let mut fields = fields_named(name, &here);
+        let variable = variable_named(name);
+        self.board.variable = variable.filter(|variable| variable.owner().board() == self.board.number);
+        if let Some(whole) = self.board.variable.map(Variable::text) {
+            fields.retain(|field| *field != whole);
+            fields.push(whole);
+        }
         if fields.is_empty() {
-            if let Some(path) = fields_named(name, &[]).first() {
+            let elsewhere = fields_named(name, &[]).into_iter().chain(variable.map(Variable::text)).next();
+            if let Some(path) = elsewhere {
                 let board = ProcessId::ALL.iter().find(|process| path.starts_with(process.field()));
                 return Err(board.map_or_else(
                     || format!("it is the input {path}"),
@@ -226,9 +232,41 @@ impl<'a> Interpreter<'a> {
                 "there is no such variable; names are those of chapters V and VI, or of screen 2".to_owned()
             );
         }
-        fields.truncate(BLOCK_LINES);
-        self.outcome.said.extend(lines(&fields, picture, self.last));
+        let shown = lines(&fields, picture, self.last);
+        self.outcome.said.extend(shown.into_iter().take(BLOCK_LINES));
+        if let Some(variable) = self.board.variable {
+            let (form, owner) = (variable.form(), variable.owner());
+            self.say(format!("  {variable} <= {form}, while {owner} is stopped or held"));
+        }
         Ok(0)
+    }
+
+    /// `% r DB-DONE`: the routine of block 903 is commented out (IV.3.2 step 1).
+    fn comment(&mut self, rest: &[&str]) -> Result<usize, String> {
+        match rest {
+            ["r", "DB-DONE", ..] | ["DB-DONE", ..] => {
+                self.on(6)?;
+                self.outcome.asks.push("db-done off".to_owned());
+                Ok(1 + usize::from(rest.first() == Some(&"r")))
+            }
+            _ => Err("% DB-DONE was expected: no other routine can be commented out".to_owned()),
+        }
+    }
+
+    /// `<= VALUE`: write the variable that was shown last (IV.2.6).
+    fn write(&mut self, value: &[&str]) -> Result<usize, String> {
+        let known: Vec<&str> = self.board.variables().map(Variable::text).collect();
+        let variable = self.board.variable.ok_or_else(|| {
+            let number = self.board.number;
+            match known.as_slice() {
+                [] => format!("board {number} has no variable that can be written"),
+                known => {
+                    format!("a variable that can be written was expected before it: {}", known.join(", "))
+                }
+            }
+        })?;
+        self.outcome.asks.push(format!("write {variable} {}", value.join(" ")));
+        Ok(value.len())
     }
 
     pub(super) fn pop(&mut self, form: &str) -> Result<u32, String> {
@@ -291,6 +329,15 @@ impl<'a> Interpreter<'a> {
     }
 }
 
+/// The variable that can be written and that a name means: its path, or the end of it.
+fn variable_named(name: &str) -> Option<Variable> {
+    let end = name.replace('-', "_").to_lowercase();
+    let is_named = |variable: &Variable| {
+        variable.text().strip_suffix(&end).is_some_and(|front| front.is_empty() || front.ends_with('.'))
+    };
+    Variable::ALL.iter().copied().find(is_named)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -344,6 +391,11 @@ mod tests {
             (2, "PRIM-LEVEL EMOVE-LEVEL", "execute PRIM; execute EMOVE"),
             (8, "QC-LEVEL GO", "execute QUICK-CHANGE; board 8 go"),
             (6, "188 LOAD 641 LOAD GO", "board 6 go"),
+            (6, "DB-DONE", "db-done on"),
+            (6, "% r DB-DONE", "db-done off"),
+            (2, ":S located <= NONE", "write emove.beliefs.located NONE"),
+            (2, ":S emove.beliefs.held <= LINKBAR1_BH 2", "write emove.beliefs.held LINKBAR1_BH 2"),
+            (6, ":S regrip <= LCLEVIS_IH", "write subtask.regrip LCLEVIS_IH"),
         ] {
             assert_eq!(Bench::new(board).asks(line), requests, "{board}: {line}");
         }
@@ -362,7 +414,13 @@ mod tests {
             (4, "TDEF", "word of board 6"),
             (6, "NONSENSE", "not a word of the terminal"),
             (6, "BOARD 3", "BOARD 0, 2, 4, 6, 8 or 12"),
-            (6, ":S command-in <= MOVE", "values cannot be written into buffers"),
+            (6, ":S command-in <= MOVE", "task.ledger, task.beliefs.owed, subtask.regrip"),
+            (6, "% lld", "no other routine"),
+            (2, "DB-DONE", "word of board 6"),
+            (6, ":S located <= NONE", "a variable that can be written was expected"),
+            (6, ":S calibration <= NONE", "board 8 has it"),
+            (4, ":S <= NONE", "board 4 has no variable"),
+            (2, "located <= NONE", "not a word of the terminal; :S shows variables"),
         ] {
             let mut bench = Bench::new(board);
             let outcome = bench.enter(line);

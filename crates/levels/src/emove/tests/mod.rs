@@ -11,6 +11,7 @@ mod nonsense;
 mod pausing;
 mod recovery;
 mod together;
+mod written;
 
 use self::bench::ROWS;
 use super::tables::TABLES;

@@ -47,6 +47,18 @@ fn a_data_system_that_is_not_connected_is_not_waited_for() {
 }
 
 #[test]
+fn with_db_done_no_answer_is_waited_for() {
+    let mut bench = Bench::connected();
+    bench.data_system.answer = Answer::Absent;
+    bench.external.operator.db_done = true;
+    assert_eq!(bench.run(TO_TRAY), FINISHED);
+    assert_eq!(bench.asked(), ["UPDATE"], "it is sent once");
+    assert!(bench.memory.task.beliefs.owed.iter().all(Option::is_none), "it counts as taken");
+    bench.external.operator.db_done = false;
+    assert_eq!(bench.run(FROM_TRAY), error(Reason::DataBaseSilent));
+}
+
+#[test]
 fn moves_from_and_to_the_mbd_are_told_and_no_others() {
     let mut bench = Bench::connected();
     assert_eq!(bench.run(TO_TRAY), FINISHED);
