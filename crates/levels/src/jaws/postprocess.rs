@@ -16,7 +16,7 @@ use crate::execution::Outcome;
 
 impl State {
     /// Carry out what a row asks for. Air stays on when the fingers have arrived: a part is held as long as
-    /// they press. Without the gripper there is none.
+    /// they press. Without the gripper there is none; id pins that have lost their contact leave it as it is.
     pub(super) fn act(&mut self, action: Action, seen: &Seen) {
         const NONE: JawValves = JawValves { open: false, close: false };
         match action {
@@ -32,10 +32,12 @@ impl State {
             Action::Refuse(reason) | Action::Fail(reason) => self.execution.fail(reason),
         }
         let air = match (seen.situation.gripper, action) {
-            (Gripper::Detached, _) | (Gripper::Attached, Action::Fail(_)) => NONE,
+            _ if seen.has_gone => NONE,
+            (Gripper::Attached, Action::Fail(_)) => NONE,
             (Gripper::Attached, Action::Close) => JawValves { close: true, ..NONE },
             (Gripper::Attached, Action::Open) => JawValves { open: true, ..NONE },
-            (Gripper::Attached, Action::Wait | Action::Report(_) | Action::Wrong(_) | Action::Refuse(_)) => {
+            (Gripper::Detached, _)
+            | (Gripper::Attached, Action::Wait | Action::Report(_) | Action::Wrong(_) | Action::Refuse(_)) => {
                 self.valves
             }
         };

@@ -45,6 +45,10 @@ impl State {
         let command = K::command(inputs.memory);
         let devices = &inputs.external.devices;
         let gripper = gripper(&devices.quick_change, &K::PARAMETERS);
+        if !self.execution.receiver.started {
+            // A restarted process leaves the air on: the fingers may hold a part.
+            self.valves = outputs.valves;
+        }
         if outputs.header.republished {
             self.execution.wake();
             self.found = None;
@@ -68,6 +72,7 @@ impl State {
                 gripper,
             },
             situation: Situation { gripper, motion, stop, size: self::size(opening, size) },
+            has_gone: has_gone(&devices.quick_change, &K::PARAMETERS),
             felt: self.felt(motion, stop, opening, &K::PARAMETERS),
             size,
             opening,
@@ -126,6 +131,12 @@ fn gripper(quick_change: &QuickChangeSensors, parameters: &Parameters) -> Grippe
     } else {
         Gripper::Detached
     }
+}
+
+/// The ring is not locked, or on another gripper. Id pins without contact on a locked ring say nothing of the gripper.
+fn has_gone(quick_change: &QuickChangeSensors, parameters: &Parameters) -> bool {
+    let id = quick_change.end_effector_id;
+    !quick_change.locked || quick_change.unlocked || (matches!(id, 1..=3) && id != parameters.end_effector_id)
 }
 
 fn addressee(command: &JawsCommand, parameters: &Parameters) -> Addressee {

@@ -302,6 +302,27 @@ fn without_the_gripper_commands_fail_and_there_is_no_air() {
     assert_eq!(bench.finish(), (JawsReport::Stuck, Reason::WrongGripper), "meant for another gripper");
 }
 
+/// A part in the fingers is pressed while the id pins have no contact, and while the process is restarted.
+#[test]
+fn the_air_stays_on_without_the_id_and_after_a_restart() {
+    for id in [0, 7] {
+        let mut bench = VBench::new(3.5);
+        bench.fingers.object = Some(2.0);
+        bench.send(JawsVerb::Grasp, 1.95);
+        bench.wait(3);
+        bench.external.devices.quick_change.end_effector_id = id;
+        assert_eq!(bench.finish(), (JawsReport::Stuck, Reason::WrongGripper));
+        assert!(bench.wait(30).valves.close, "id {id}");
+        bench.process = Jaws::default();
+        assert!(bench.wait(2).valves.close, "id {id}, restarted");
+        bench.attach(true);
+        bench.wait(2);
+        assert_eq!(bench.execute(JawsVerb::Grasp, 1.95), CLOSED);
+        bench.external.devices.quick_change.end_effector_id = 3;
+        assert!(!bench.step().valves.close, "another gripper");
+    }
+}
+
 #[test]
 fn a_process_that_starts_or_wakes_adopts_the_command_and_gives_no_air() {
     let mut bench = VBench::new(3.5);

@@ -31,10 +31,11 @@ decision_table! {
         }
         /// The quick change of the bare robot is unlocking.
         Unlocking {
-            14: mate: None, along: Above | Out | Coming, lock: Locked | Between => FailRing;
+            14: mate: None, along: Above | Out | Coming | Seat, lock: Locked | Between => FailRing;
         }
         any {
-            15: mate: None, along: Above | Out | Coming, lock: Locked | Between => Unlock -> Unlocking;
+            // At the seat the ring may hold a gripper whose id pins have no contact.
+            15: mate: None, along: Above | Out | Coming | Seat, lock: Locked | Between => Unlock -> Unlocking;
         }
         /// The robot is moving close to the gripper.
         Approaching {

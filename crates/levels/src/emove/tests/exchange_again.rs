@@ -233,6 +233,15 @@ fn what_cannot_be_attached_is_named() {
     assert_eq!(bench.log()[0], "DELTA-MOVE QCA-FAST");
 }
 
+/// Id pins without contact read as a bare robot. The ring opens before the robot leaves the seat: it may hold a gripper
+/// that is in its holster.
+#[test]
+fn a_locked_ring_at_the_seat_is_opened_before_the_robot_leaves() {
+    let mut bench = halfway(SEAT, 0, true, 0b1111);
+    send(&mut bench, ATTACH);
+    assert_eq!(bench.log()[0], "QC-UNLOCK", "{:?}", bench.log());
+}
+
 #[test]
 fn an_order_without_effect_ends_the_command() {
     for (at, mated, locked, bits, word) in [

@@ -110,6 +110,8 @@ pub struct Seen {
     pub request: Request,
     /// The state variables of the command's table.
     pub situation: Situation,
+    /// The ring is open, or on another gripper: there is no use for air.
+    pub has_gone: bool,
     /// What is between the fingers.
     pub felt: Felt,
     /// `commanded-size` that counts once the command is accepted, 0.01 in.
