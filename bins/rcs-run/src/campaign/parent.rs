@@ -25,7 +25,7 @@ pub enum Ticks {
     Changes,
     /// The first tick of each state of the control processes: their steps, and the rows that they fired last.
     States,
-    /// Every n-th tick, and the ticks of [`Self::Changes`].
+    /// Every n-th tick, and the ticks of `Changes`.
     Both(u64),
 }
 
