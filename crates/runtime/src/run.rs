@@ -161,8 +161,7 @@ impl Run {
         self.workstation.cell.digest()
     }
 
-    /// Start the clock before the first tick. The 40 ms grid begins here: the time of the preparations counts as part of
-    /// the first tick.
+    /// Start the clock and prepare the first tick. The 40 ms grid begins with the clock, so the preparation counts.
     fn begin(&mut self) {
         self.started = Some(Instant::now());
         if self.config.clock == ClockKind::Real {
