@@ -116,7 +116,7 @@ impl Story {
         }
     }
 
-    /// Add messages derived from two successive ticks, for a source without lines of its own.
+    /// Add messages derived from two successive ticks, for a source that has no lines on `/log`.
     pub fn remark(&mut self, before: &Picture, now: &Picture) {
         let said = remarks::remarks(&self.headers, &now.external.hws, &before.memory, &now.memory);
         for remark in said {

@@ -153,7 +153,7 @@ impl Default for RunConfig {
     }
 }
 
-/// Who may operate a run (`docs/operator.md`).
+/// Access of operators to a run (`docs/operator.md`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
@@ -275,7 +275,7 @@ fn silence(part: &str) -> Result<u16, String> {
     })
 }
 
-/// How processes are distributed.
+/// Distribution of the control processes over boards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]

@@ -44,7 +44,7 @@ use crate::load::LoadError;
 /// loaded on top of it.
 ///
 /// # Errors
-/// The report of the first that has errors now.
+/// The report of the first reload that has errors now.
 pub fn insert(
     base: &Store,
     reloads: &[Reload],
@@ -188,7 +188,7 @@ type Reloads = Arc<Vec<Reload>>;
 /// A load that a board has checked: its number, and the reloads with it, or `None` if there are errors.
 type Candidate = (u32, Option<(Reloads, u64)>);
 
-/// The task data of a board in a process of its own.
+/// The task data of a board in a separate process.
 pub struct BoardFiles {
     run: RunName,
     store: Store,

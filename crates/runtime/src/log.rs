@@ -52,7 +52,7 @@ pub struct Log {
     recorder: Recorder,
     /// Names of the moving links, in the order of the log.
     links: Vec<String>,
-    /// Number of faults on the line so far; below it their kinds in the last tick.
+    /// Number of faults on the line so far, and their kinds in the last tick.
     faults: Counts,
     kinds: Vec<&'static str>,
     vision: Vision,

@@ -97,7 +97,8 @@ impl Run {
         Some(Failure { stopped: true, ..outside(emergency.tick, "T3", text) })
     }
 
-    /// Why the job failed: the reason of the process that reports it, or what the workstation controller saw.
+    /// The failure of the job: the reason of the process that reports it, or the observation of the workstation
+    /// controller.
     pub(super) fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Failure {
         match failure {
             JobFailure::Emergency(what) => {

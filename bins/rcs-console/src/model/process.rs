@@ -58,7 +58,7 @@ pub fn table(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     Section { title, lines, at }
 }
 
-/// The values of the table's variables at the last decision, of those in its conditions.
+/// Values of the variables in the table's conditions at the last decision.
 fn asked(table: &Table, values: Values) -> String {
     let asked: Vec<&str> = table.asked().map(|variable| variable.name).collect();
     let known = table.values(values).filter(|(variable, _)| asked.contains(&variable.name));
@@ -67,7 +67,7 @@ fn asked(table: &Table, values: Values) -> String {
     format!("       values: {}", step.into_iter().chain(values).collect::<Vec<_>>().join(", "))
 }
 
-/// The single change of a variable with which a row would have fired; `None` if there is none.
+/// The single changes of a variable with which a row would have fired; `None` if there is none.
 fn near(table: &Table, row: &Row, values: Values) -> Option<String> {
     let misses = table.near_misses(values).filter(|miss| miss.row.number == row.number);
     let misses: Vec<String> =

@@ -155,7 +155,7 @@ struct Control {
     check: ContactCheck,
     inputs: DeviceInputs,
     line: RobotLine,
-    /// Generation of the task data; below it the reload requests that wait for the end of a command.
+    /// Generation of the task data, and the requested reloads that wait for the end of a command.
     generation: u32,
     asked: Vec<u32>,
     /// Statements that Task has sent to the Data System, with their ticks.
@@ -221,7 +221,7 @@ impl<'f> Branch<'f> {
         })
     }
 
-    /// A branch that goes on from a state.
+    /// A branch that continues from a state.
     ///
     /// # Errors
     /// [`Error`] if the cell or its data base cannot be built.

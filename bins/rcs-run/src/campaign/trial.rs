@@ -197,7 +197,7 @@ impl Trial<'_, '_> {
     fn play(mut self, doing: Vec<String>, observer: &mut impl Observer) -> BranchResult {
         let mut script = self.begin(observer);
         loop {
-            // A stop is not ended again.
+            // A stop continues: the later steps of its script, which would release it, are skipped.
             if self.motion.as_ref().is_none_or(Motion::has_just_begun)
                 && let Some(refused) = script.step(&mut self.branch)
             {

@@ -64,7 +64,7 @@ pub struct Editor {
     path: PathBuf,
     /// Text of the file when the editor was opened.
     before: String,
-    /// All texts of the task data; below them the index of the file.
+    /// All texts of the task data, and the index of the file among them.
     sources: Vec<Source>,
     at: usize,
     /// The lines when the editor was opened.
