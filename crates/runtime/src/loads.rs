@@ -40,7 +40,7 @@ use taskdata::{
 
 use crate::load::LoadError;
 
-/// The reloads of a run with one more inserted after the first `done`, which have led to `base`. The later ones are
+/// Insert a reload into the reloads of a run, after the first `done` ones, which have led to `base`. The later ones are
 /// loaded on top of it.
 ///
 /// # Errors

@@ -174,7 +174,7 @@ pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<Workstation
         Action::Release(site) => WorkstationAction::T3(Key::Release(estop(*site))),
         Action::Panel(key) => WorkstationAction::T3(at_the_panel(*key)),
         Action::Table(key) => WorkstationAction::Table(at_the_table(*key)),
-        // The cell takes no part in these actions.
+        // These actions do not affect the cell.
         Action::Wait { .. } | Action::Load { .. } | Action::HandOver => return Ok(Vec::new()),
     }])
 }

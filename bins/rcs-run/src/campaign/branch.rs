@@ -266,7 +266,7 @@ impl<'f> Branch<'f> {
         control.course.sum_up(&control.external);
         let mut outputs = control.course.memory().device_outputs();
         if !control.course.levels().processes.contains(&ProcessId::T3i) {
-            // The frame that it sent last goes out once.
+            // The last frame of a lost process goes out only once.
             outputs.link_tx = LinkBytes::ZERO;
         }
         control.inputs = control.line.advance(control.course.tick(), &mut self.workstation.cell, &outputs);

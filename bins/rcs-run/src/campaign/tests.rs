@@ -376,7 +376,7 @@ fn a_draw_repeats_and_another_seed_draws_other_branches() {
 fn a_series_is_made_as_small_as_it_goes() {
     let facility = facility("linkbar");
     let drawn = series(&facility, "hold+100:pause+70:nudge");
-    // It takes a nudge, 10 ticks after something else at least.
+    // The test fails with a nudge at least 10 ticks after another interruption.
     let fails = |series: &Series| {
         let all = series.interruptions();
         let nudge = all.iter().position(|one| one.kind == Kind::Nudge);

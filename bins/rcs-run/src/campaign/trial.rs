@@ -57,7 +57,7 @@ pub enum Verdict {
     /// An arm without pressure, its alignment, its own travel to HOME or a person has touched something, or let a part
     /// slide in the fingers.
     Apart,
-    /// A commanded point has done damage, or a command that finished has not done what it says.
+    /// A commanded point has done damage, or a finished command has not had its effect.
     Hurt,
 }
 
