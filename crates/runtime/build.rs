@@ -1,4 +1,4 @@
-//! Puts the commit into the program, so that a log says which sources made it.
+//! Compiles the commit into the program, so that a log names the sources of the program.
 
 use std::process::Command;
 

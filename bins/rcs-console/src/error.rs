@@ -1,43 +1,43 @@
-//! Why the console does not begin, or ends.
+//! Errors of the console.
 
 use std::{io, path::PathBuf};
 
 use executive::memory::SharedMemoryError;
 
-/// Why the console does not begin, or ends.
+/// Errors of the console.
 #[derive(Debug, thiserror::Error)]
 pub enum ConsoleError {
-    /// No such run, or it cannot be read.
+    /// The run does not exist, or cannot be read.
     #[error(transparent)]
     SharedMemory(#[from] SharedMemoryError),
-    /// A run that takes no operator.
+    /// The run accepts no operator.
     #[error(transparent)]
     Operator(#[from] operator::ClientError),
-    /// A log is no run.
+    /// A log cannot be operated.
     #[error("a log cannot be operated: leave --operate out, or name a run")]
     OperateLog,
-    /// A log that cannot be read.
+    /// The log cannot be read.
     #[error("{}: {source}", path.display())]
     Log {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Error of reading it.
         source: record::ReadError,
     },
-    /// A log without ticks.
+    /// The log has no ticks.
     #[error("{}: the log holds no tick: nothing can be shown", .0.display())]
     Empty(PathBuf),
-    /// A tick that the log does not have.
+    /// The log does not contain the tick.
     #[error("tick {tick} is not there; there are ticks {first} to {last}")]
     NoTick {
-        /// As asked for.
+        /// The requested tick.
         tick: u64,
-        /// First tick there.
+        /// First tick of the log.
         first: u64,
-        /// Last tick there.
+        /// Last tick of the log.
         last: u64,
     },
-    /// Nothing was named to be looked at once.
+    /// `--once` needs a run or a log.
     #[error("--once needs a run or a log: --run NAME or --log FILE")]
     NothingNamed,
     /// The run has not published a tick yet.

@@ -1,5 +1,4 @@
-//! The session of an operator with a run: requests go out, answers come back, and the run is told that the operator is
-//! there.
+//! The session of an operator with a run: sends requests, receives answers, and keeps the session alive.
 
 use std::time::{Duration, Instant};
 
@@ -8,30 +7,30 @@ use operator::{Client, ClientError, Name};
 
 use crate::model::Operating;
 
-/// Time between two questions about the status, which say that the operator is there, too: well within the time that a
-/// run waits for a sign of life.
+/// Time between two questions about the status, which also keep the session alive: well below the time after which a
+/// run considers the operator silent.
 const ASK: Duration = Duration::from_millis(100);
 
-/// A session.
+/// The session.
 pub struct Hand {
     client: Client,
     asked: Option<Instant>,
-    /// The number of the question where the task data are.
+    /// Number of the question for the directory of the task data.
     data: Option<u32>,
 }
 
 impl Hand {
-    /// Begin a session.
+    /// Open the session.
     ///
     /// # Errors
-    /// [`ClientError`] if the run takes no operator.
+    /// [`ClientError`] if the run accepts no operator.
     pub fn reach(run: &RunName) -> Result<Self, ClientError> {
         let name = format!("console-{}", std::process::id());
         let name: Name = name.parse().map_err(operator::protocol::ProtocolError::from)?;
         Ok(Self { client: Client::connect(&operator_socket(run), &name)?, asked: None, data: None })
     }
 
-    /// Send what is asked for, and take what has been answered.
+    /// Send the queued requests, and receive the answers.
     pub fn work(&mut self, operating: &mut Operating, is_over: bool) {
         if operating.lost.is_some() {
             return;

@@ -1,4 +1,4 @@
-//! The operator's console (IV, VI.6): what every control process does and why.
+//! The operator's console (IV, VI.6) shows what every control process does and why.
 //!
 //! ```text
 //!  run ---> source::Live ----.
@@ -8,14 +8,14 @@
 //! ```
 //!
 //! * [`source`]: gives a [`Picture`](picture::Picture) for a tick, and the [`Story`](story::Story) of all ticks;
-//! * [`model`]: what is shown, without a terminal: keys and pictures in, lines and choices out;
+//! * [`model`]: the state of the console without a terminal: keys and pictures in, lines and choices out;
 //! * [`view`]: the model as a frame of text, on any terminal of at least 80 x 24;
-//! * [`terminal`]: keys, signals, and the terminal as it was before.
+//! * [`terminal`]: keys, signals, and restoring the terminal at the end.
 //!
-//! * `watch`: what a person watches, from one session to the next;
-//! * `hand`: the session with a run of an operator, with `--operate`.
+//! * `watch`: saves the watched fields between sessions;
+//! * `hand`: the session of an operator with a run, with `--operate`.
 //!
-//! Without `--operate` the console only reads. A run never waits for it.
+//! Without `--operate` the console only reads. A run never waits for the console.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

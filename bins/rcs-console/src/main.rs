@@ -1,4 +1,4 @@
-//! `rcs-console`: shows what every control process of a run does and why, or of a log.
+//! `rcs-console`: shows what every control process of a run or a log does and why.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! One screen as text: for scripts, tests and bug reports.
+//! Prints one screen as text, for scripts, tests and bug reports.
 
 use crate::{
     cli::Cli,
@@ -8,10 +8,10 @@ use crate::{
     view::{LEAST, Look, Scene, compose},
 };
 
-/// Print a screen of the run or log that the command line names.
+/// Print a screen of the run or log on the command line.
 ///
 /// # Errors
-/// [`ConsoleError`] if it cannot be read, or if the tick is not there.
+/// [`ConsoleError`] if it cannot be read, or does not contain the tick.
 pub fn print(cli: &Cli, screen: Screen) -> Result<(), ConsoleError> {
     let (source, name): (Box<dyn Source>, String) = match (&cli.run, &cli.log) {
         (Some(run), _) => (Box::new(Live::open(run, None)?), run.to_string()),
@@ -29,7 +29,7 @@ pub fn print(cli: &Cli, screen: Screen) -> Result<(), ConsoleError> {
     os_io::console::answer(&text).map_err(ConsoleError::Output)
 }
 
-/// The screen of a model as lines of text, without colour, in the least size of a terminal.
+/// The screen of a model as lines of text, without colour, in the smallest size of a terminal.
 #[must_use]
 pub fn screen_text(model: &Model, source: &dyn Source, look: Look) -> String {
     let (lines, _) = compose(&Scene::Source(model, source), look, LEAST.0.into(), LEAST.1.into());

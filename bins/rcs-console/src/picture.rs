@@ -1,30 +1,30 @@
-//! Everything that is shown of one tick.
+//! The data of one tick that the screens show.
 
 use executive::failure;
 use interfaces::{CommonMemory, ExternalInputs, Fault, ProcessId};
 use rcs_core::tick::{TICK_S, Tick};
 
-/// One tick: what came in, what the processes wrote, and how punctual it was. All of it belongs to the same tick.
+/// One tick: inputs, outputs and times, all of the same tick.
 #[derive(Clone)]
 pub struct Picture {
     /// The tick.
     pub tick: Tick,
-    /// What the processes read from outside.
+    /// The external inputs of the processes.
     pub external: ExternalInputs,
-    /// What they wrote.
+    /// Common memory after the tick.
     pub memory: CommonMemory,
-    /// How punctual the tick was; none in a log of a run in fast clock.
+    /// Times of the tick; `None` in a log of a run in fast clock.
     pub timing: Option<Timing>,
 }
 
-/// How punctual a tick was.
+/// Times of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timing {
-    /// Time that the controller took, nanoseconds.
+    /// Time of the controller, ns.
     pub controller_ns: u64,
-    /// Slots of the 40 ms grid that were skipped since the start of the run.
+    /// Number of skipped slots of the 40 ms grid since the start of the run.
     pub skipped: u64,
-    /// Heap allocations of the controller since the start; none where they are not known.
+    /// Heap allocations of the controller since the start; `None` if not known.
     pub allocations: Option<u64>,
 }
 
@@ -35,7 +35,7 @@ impl Picture {
         self.tick.0 as f64 * TICK_S
     }
 
-    /// The command that a process has, in the manual's words; empty for none.
+    /// The command of a process, in the manual's spelling; empty for none.
     #[must_use]
     pub fn command(&self, process: ProcessId) -> String {
         failure::command(process, &self.external.hws, &self.memory)
@@ -47,13 +47,13 @@ impl Picture {
         self.memory.command_number(process).unwrap_or(self.external.hws.number)
     }
 
-    /// Why a process failed; none if it did not.
+    /// The reason why a process failed, if it did.
     #[must_use]
     pub fn fault(&self, process: ProcessId) -> Option<Fault> {
         Some(self.memory.said(process).fault).filter(|fault| !fault.is_none())
     }
 
-    /// What keeps a process from deciding in this tick; none if it was stepped.
+    /// The reason why a process was not executed in this tick; `None` if it was.
     #[must_use]
     pub fn absence(&self, process: ProcessId) -> Option<Absence> {
         let header = self.memory.header(process);
@@ -68,16 +68,16 @@ impl Picture {
     }
 }
 
-/// What keeps a process from deciding in a tick.
+/// Reason why a process was not executed in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Absence {
     /// Its gripper is not on the robot (II.2.3).
     Dormant,
-    /// Its switch on the joystick box is on, or a recorded pose is looked at (III.3.3).
+    /// Its switch on the joystick box is on, or the screen shows a recorded pose (III.3.3).
     Held,
     /// Its board is stopped, or there is no pulse (IV.2.6).
     Stopped,
-    /// Nothing has come from it in this tick.
+    /// It has written nothing in this tick.
     Lost,
     /// It runs in another system.
     Elsewhere,

@@ -1,4 +1,4 @@
-//! Control-L and Control-Z: the terminal is drawn anew, now or when the shell continues this program.
+//! Control-L and Control-Z: draw the terminal again, at once or when the shell continues this program.
 
 use std::io;
 
@@ -15,7 +15,7 @@ use signal_hook::{consts::SIGTSTP, low_level::emulate_default_handler};
 
 use crate::error::ConsoleError;
 
-/// The letter that was pressed together with Control.
+/// The letter that was pressed with Control.
 pub fn with_control(event: &Event) -> Option<char> {
     match event {
         Event::Key(KeyEvent { code: KeyCode::Char(letter), modifiers, kind, .. })
@@ -27,15 +27,15 @@ pub fn with_control(event: &Event) -> Option<char> {
     }
 }
 
-/// Clear the terminal, so that the next picture is drawn as a whole. `Terminal::clear` would wait for the terminal to
-/// report its cursor.
+/// Clear the terminal, so that the next picture is drawn completely. `Terminal::clear` would wait for the terminal's
+/// cursor report.
 pub fn cleared() -> io::Result<DefaultTerminal> {
     execute!(io::stdout(), Clear(ClearType::All))?;
     DefaultTerminal::new(CrosstermBackend::new(io::stdout()))
 }
 
-/// Give the terminal back to the shell until it continues this program. The console sends nothing meanwhile, so the run
-/// releases stick and buttons.
+/// Give the terminal back to the shell until it continues this program. The console sends nothing in the meantime, so
+/// the run releases stick and buttons.
 pub fn suspended(terminal: DefaultTerminal) -> Result<DefaultTerminal, ConsoleError> {
     drop(terminal);
     ratatui::try_restore().map_err(ConsoleError::Terminal)?;

@@ -1,4 +1,4 @@
-//! The search for a run that can be shown.
+//! Searches for runs to show.
 
 use std::time::{Duration, Instant};
 
@@ -6,18 +6,18 @@ use executive::{boards, memory, memory::RunName};
 
 use crate::view::Waiting;
 
-/// Runs are looked for this often.
+/// Time between two searches.
 const SEARCH: Duration = Duration::from_secs(1);
 
-/// Looks for runs, again and again.
+/// Searches for runs periodically.
 pub struct Search {
-    /// The only run that is wanted, if one was named.
+    /// The run that was named, if any.
     wanted: Option<RunName>,
     looked: Instant,
 }
 
 impl Search {
-    /// Begin a search, and look for the first time.
+    /// Start with a first search.
     #[must_use]
     pub fn begin(wanted: Option<RunName>) -> (Waiting, Self) {
         let search = Self { wanted, looked: Instant::now() };
@@ -26,7 +26,7 @@ impl Search {
         (waiting, search)
     }
 
-    /// Look again, if it is time; the run to attach to, if there is no choice.
+    /// Search again, if it is time. Returns the run to attach to, if there is only one.
     pub fn go_on(&mut self, waiting: &mut Waiting) -> Option<RunName> {
         if self.looked.elapsed() >= SEARCH {
             self.look(waiting);
@@ -45,7 +45,7 @@ impl Search {
                 waiting.take(
                     alive.filter(|name| self.wanted.as_ref().is_none_or(|wanted| wanted == name)).collect(),
                 );
-                // A run that has just begun may take operators only a moment later: without a choice it is tried again.
+                // A new run may accept operators a moment after its start: if it is the only one, try again.
                 waiting.refused.take_if(|_| waiting.runs.len() == 1);
                 waiting.boards = waiting.chosen().and_then(boards::coming_up).unwrap_or_default();
             }

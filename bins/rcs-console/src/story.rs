@@ -1,4 +1,4 @@
-//! What happened from tick to tick, kept by change: rows, commands, reports, failures, re-starts, messages.
+//! The history of a run, stored by change: rows, commands, reports, failures, re-starts, messages.
 
 use executive::{
     failure::{Failure, Watch},
@@ -16,10 +16,10 @@ use record::{
 
 use crate::picture::Picture;
 
-/// What a process does, from the tick on in which it began to.
+/// State of a process from a tick on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Doing {
-    /// The tick.
+    /// First tick of the state.
     pub tick: u64,
     /// Number of its command; 0 for T3 Interface, which gets a new one in every tick.
     pub number: u32,
@@ -29,16 +29,16 @@ pub struct Doing {
     pub step: Option<Name16>,
     /// `executing`, `done`, `not-detected` ...
     pub report: &'static str,
-    /// Why it failed.
+    /// Reason of its failure.
     pub fault: Fault,
 }
 
-/// A failure that has arrived at Task.
+/// A failure that has reached Task.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trouble {
-    /// Tick in which Task reported it first.
+    /// Tick in which Task first reported it.
     pub tick: u64,
-    /// The lowest process that reported it, when, and by which row.
+    /// The lowest process that reported it, with tick and row.
     pub failure: Failure,
 }
 
@@ -47,22 +47,22 @@ pub struct Trouble {
 pub struct Restart {
     /// The tick.
     pub tick: u64,
-    /// Why.
+    /// Reason.
     pub reason: String,
 }
 
-/// The first thing that went wrong.
+/// The first cause of a failure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cause {
     /// The tick.
     pub tick: u64,
-    /// The process that knows why; none if it happened in the cell.
+    /// The process that reports the reason; `None` for an event in the cell.
     pub process: Option<ProcessId>,
-    /// What, in one sentence.
+    /// Description in one sentence.
     pub text: String,
 }
 
-/// The story of a run.
+/// The history of a run.
 pub struct Story {
     doings: [Vec<Doing>; PROCESS_COUNT],
     troubles: Vec<Trouble>,
@@ -75,7 +75,7 @@ pub struct Story {
 }
 
 impl Story {
-    /// A story that keeps at least the last `limit` entries of each kind.
+    /// A history that keeps at least the last `limit` entries of each kind.
     #[must_use]
     pub fn new(limit: usize) -> Self {
         Self {
@@ -90,7 +90,7 @@ impl Story {
         }
     }
 
-    /// Take a tick in. `before` is the picture of the tick before.
+    /// Add a tick. `before` is the picture of the tick before.
     pub fn note(&mut self, before: &Picture, now: &Picture) {
         for process in ProcessId::ALL.iter().copied() {
             let doing = doing(process, now);
@@ -116,7 +116,7 @@ impl Story {
         }
     }
 
-    /// Take in what is said of a tick by comparing it with the one before: for a source that has no lines of its own.
+    /// Add messages derived from two successive ticks, for a source that has no lines on `/log`.
     pub fn remark(&mut self, before: &Picture, now: &Picture) {
         let said = remarks::remarks(&self.headers, &now.external.hws, &before.memory, &now.memory);
         for remark in said {
@@ -131,25 +131,25 @@ impl Story {
         }
     }
 
-    /// Take in the lines of a log.
+    /// Add the lines of a log.
     pub fn tell(&mut self, lines: impl Iterator<Item = LogLine>) {
         self.lines.extend(lines);
         self.lines.sort_by_key(|line| line.tick);
     }
 
-    /// What a process did in a tick, and since when.
+    /// State of a process in a tick, with its first tick.
     #[must_use]
     pub fn doing(&self, process: ProcessId, tick: u64) -> Option<&Doing> {
         self.doings(process, tick).last()
     }
 
-    /// What a process did up to a tick, oldest first.
+    /// States of a process up to a tick, oldest first.
     #[must_use]
     pub fn doings(&self, process: ProcessId, tick: u64) -> &[Doing] {
         until(&self.doings[process.position()], tick, |doing| doing.tick)
     }
 
-    /// The rows that decided in a process up to a tick, oldest first: what it did without its reports.
+    /// The rows that decided in a process up to a tick, oldest first, without changes of its reports only.
     #[must_use]
     pub fn rows(&self, process: ProcessId, tick: u64) -> Vec<Doing> {
         let mut rows: Vec<Doing> = Vec::new();
@@ -162,15 +162,14 @@ impl Story {
         rows
     }
 
-    /// The next or the previous tick in which something changed in one of the processes.
+    /// The next or previous tick in which something changed in one of the processes.
     #[must_use]
     pub fn change(&self, processes: &[ProcessId], tick: u64, forward: bool) -> Option<u64> {
         let ticks = |process: &ProcessId| self.doings[process.position()].iter().map(|doing| doing.tick);
         nearest(processes.iter().flat_map(ticks), tick, forward)
     }
 
-    /// The next or the previous tick in which trouble began: a process failed, or a warning came. The lowest process
-    /// that failed then, if one did.
+    /// The next or previous tick with a new failure or warning, and the lowest process that failed in it, if any.
     #[must_use]
     pub fn trouble(&self, tick: u64, forward: bool) -> Option<(u64, Option<ProcessId>)> {
         let failed = ProcessId::ALL.iter().flat_map(|process| {
@@ -188,7 +187,8 @@ impl Story {
         Some((found, lowest))
     }
 
-    /// The trouble of a picture: what Task reports, or what will arrive at Task in the next ticks of a log.
+    /// The failure that belongs to a picture: the one that Task reports, or that will reach Task in the next ticks of a
+    /// log.
     #[must_use]
     pub fn present_trouble(&self, picture: &Picture) -> Option<&Trouble> {
         let tick = picture.tick.0;
@@ -197,8 +197,8 @@ impl Story {
         begun.last().filter(|trouble| is_told || tick < trouble.tick)
     }
 
-    /// The first cause of the last failure: what the cell or the robot controller said with an error before, else what
-    /// the lowest process says.
+    /// The first cause of the last failure: an earlier error of the cell or the robot controller, else the report of
+    /// the lowest process.
     #[must_use]
     pub fn first_cause(&self) -> Option<Cause> {
         let failed = self.troubles.last().map(|Trouble { failure, .. }| Cause {
@@ -206,7 +206,7 @@ impl Story {
             process: process_named(&failure.process),
             text: failure.text.clone(),
         });
-        // The cell tells with the next tick what happened in one.
+        // The cell reports the events of a tick with the next tick.
         let grave = self.lines.iter().find(|line| line.source == "cell" && line.level == Level::Error);
         let world = grave.map(|line| Cause {
             tick: line.tick.0.saturating_sub(1),
@@ -231,14 +231,14 @@ impl Story {
         until(&self.lines, tick, |line| line.tick.0)
     }
 
-    /// Times of the controller in all ticks that were seen.
+    /// Times of the controller in all observed ticks.
     #[must_use]
     pub const fn times(&self) -> &Histogram {
         &self.times
     }
 }
 
-/// A process by the manual's name.
+/// The process with the manual's name.
 #[must_use]
 pub fn process_named(name: &str) -> Option<ProcessId> {
     let named = Ladder::processes().iter().zip(ProcessId::ALL).find(|(process, _)| process.name == name);
@@ -258,7 +258,7 @@ fn doing(process: ProcessId, picture: &Picture) -> Doing {
     }
 }
 
-/// Why the link was started again.
+/// Reason of a re-start of the link.
 fn restart(before: &Picture, now: &Picture) -> String {
     if remarks::is_restart_ordered(&before.memory) {
         return format!("Prim ordered it, as {} asks: no fault", before.command(ProcessId::Prim));
@@ -270,7 +270,7 @@ fn restart(before: &Picture, now: &Picture) -> String {
     }
 }
 
-/// Add an entry; the oldest go in bulk when there are twice as many as are to be kept.
+/// Add an entry. When there are twice as many entries as must be kept, the oldest half is removed.
 fn keep<T>(entries: &mut Vec<T>, entry: T, limit: usize) {
     if entries.len() >= limit.saturating_mul(2) {
         entries.drain(..entries.len() - limit);

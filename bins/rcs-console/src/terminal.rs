@@ -1,6 +1,6 @@
-//! The terminal: keys in, frames out, and everything as it was before at the end, whatever the end is.
+//! Runs the console in the terminal: reads keys, draws frames, and restores the terminal at the end.
 //!
-//! The terminal is restored by quitting, by an error, by a panic (the hook of `ratatui`) and by the signals that ask a
+//! The terminal is restored after quitting, an error, a panic (by the hook of `ratatui`) and the signals that ask a
 //! program to end.
 
 use std::{
@@ -40,21 +40,21 @@ use crate::{
     watch,
 };
 
-/// A run is looked at once a tick.
+/// Time between two reads of a run: a tick.
 const LOOK_AT: Duration = Duration::from_millis(40);
-/// The screen is drawn every other tick (VI.6).
+/// Time between two frames: every other tick (VI.6).
 const DRAW: Duration = Duration::from_millis(80);
-/// Time that a console has to end in order after a signal.
+/// Time limit for an orderly end after a signal.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Show what the command line names until it is quit.
+/// Show the source on the command line until the user quits.
 ///
 /// # Errors
-/// [`ConsoleError`] if it cannot be read, or if the terminal cannot be used.
+/// [`ConsoleError`] if the source cannot be read, or if the terminal cannot be used.
 pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
     let stop = Arc::new(AtomicBool::new(false));
     end_by_signal(Arc::clone(&stop)).map_err(ConsoleError::Signals)?;
-    // What cannot be read is told before the terminal changes.
+    // Errors of the source are reported before the terminal changes.
     let scene = Console::open(cli)?;
     let screen = ratatui::try_init().map_err(ConsoleError::Terminal)?;
     let ended = Session {
@@ -74,9 +74,9 @@ pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
     ended
 }
 
-/// What is shown.
+/// The content of the screen.
 enum Console {
-    /// A run or a log, and the session with the run of an operator.
+    /// A run or a log, and the session of an operator with the run.
     Source(Box<Model>, Box<dyn Source>, Option<Hand>),
     /// The choice of a run.
     Waiting(Waiting, Search),
@@ -87,7 +87,7 @@ impl Console {
         let mut model = Model::new(Screen::Ladder);
         let mut hand = None;
         let source: Box<dyn Source> = match (&cli.run, &cli.log) {
-            // Its boards come up: it can be looked at from its first tick on.
+            // The boards of the run are starting: it can be shown from its first tick on.
             (Some(run), _) if boards::coming_up(run).is_some() => return Ok(Self::search(Some(run.clone()))),
             (Some(run), _) => {
                 hand = cli.operate.then(|| Hand::reach(run)).transpose()?;
@@ -111,15 +111,15 @@ impl Console {
     }
 }
 
-/// A signal sets `stop`, which ends this program in order. A terminal that takes no more output (Ctrl-S, a line
-/// that hangs) keeps it from that: then the modes of the terminal are restored, and the program ends.
+/// Let a signal set `stop`, which ends this program in order. If the terminal blocks output (Ctrl-S, a hanging line),
+/// the modes of the terminal are restored, and the program ends after a time limit.
 fn end_by_signal(stop: Arc<AtomicBool>) -> io::Result<()> {
     let mut signals = Signals::new([SIGTERM, SIGHUP, SIGINT, SIGQUIT])?;
     let wait = move || {
         if signals.forever().next().is_some() {
             stop.store(true, Ordering::Relaxed);
             thread::sleep(PATIENCE);
-            // Nothing can be said: the program ends because the terminal takes nothing.
+            // No message is possible: the program ends because the terminal blocks output.
             let _ = terminal::disable_raw_mode();
             process::exit(1);
         }
@@ -137,34 +137,34 @@ fn stuck(limit: Duration) {
     process::exit(2);
 }
 
-/// The console at work.
+/// The running console.
 struct Session {
     console: Console,
     look: Look,
     stop: Arc<AtomicBool>,
-    /// When the screen was drawn last.
+    /// Time of the last frame.
     drawn: Option<Instant>,
-    /// The log of the run, if it was named.
+    /// Path of the run's log, if it was named.
     log: Option<PathBuf>,
-    /// Work on the run that is attached to.
+    /// True to operate the run.
     operate: bool,
-    /// The task data whose blocks are listed, if neither run nor log says others.
+    /// Directory of the task data for listing blocks, if neither run nor log names one.
     data: PathBuf,
-    /// Where the list of what is watched is kept.
+    /// File with the list of watched fields.
     watch: Option<PathBuf>,
-    /// The list as it is kept.
+    /// The list in that file.
     watched: Vec<String>,
 }
 
 impl Session {
-    /// With what was watched last, and with the blocks of the data.
+    /// Set the saved watched fields and the blocks of the data.
     fn prepared(mut self) -> Self {
         self.watched = self.watch.as_deref().map(watch::load).unwrap_or_default();
         self.equip();
         self
     }
 
-    /// Give a new model the list of what is watched, and the blocks.
+    /// Give a new model the list of watched fields, and the blocks.
     fn equip(&mut self) {
         if let Console::Source(model, source, _) = &mut self.console {
             model.watch.clone_from(&self.watched);
@@ -175,7 +175,7 @@ impl Session {
         }
     }
 
-    /// Keep the list of what is watched when it has changed.
+    /// Save the list of watched fields when it has changed.
     fn keep_watch(&mut self) {
         let Console::Source(model, ..) = &mut self.console else { return };
         let old = mem::replace(&mut self.watched, model.watch.clone());
@@ -207,7 +207,7 @@ impl Session {
                     }
                     self.drawn = None;
                 }
-                // A signal: the flag tells what it was.
+                // A signal: the flag tells which.
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => return Err(ConsoleError::Terminal(error)),
             }
@@ -215,7 +215,7 @@ impl Session {
         Ok(())
     }
 
-    /// Look at the source, or for runs.
+    /// Read the source, or search for runs.
     fn refresh(&mut self) {
         match &mut self.console {
             Console::Source(model, source, hand) => {
@@ -284,7 +284,7 @@ impl Session {
         effect
     }
 
-    /// A key while there is a choice of runs.
+    /// Carry out a key while runs can be chosen.
     fn choose(&mut self, key: Key) -> Effect {
         let Console::Waiting(waiting, _) = &mut self.console else { return Effect::Draw };
         match key {
@@ -304,7 +304,7 @@ impl Session {
         Effect::Draw
     }
 
-    /// Open the log of the run that is shown, at the first cause of its failure.
+    /// Open the log of the present run, at the first cause of its failure.
     fn open_log(&mut self) {
         let Console::Source(model, source, hand) = &mut self.console else { return };
         match log_of(source.as_ref(), self.log.as_deref()) {
@@ -320,8 +320,8 @@ impl Session {
     }
 }
 
-/// The log of a run: the one that was named, or the one of its job in `runs/`. It must have the last tick of the run,
-/// bit for bit: a log of an older run of the same job is not taken for it.
+/// The log of a run: the one that was named, or the one of its job in `runs/`. It must contain the last tick of the
+/// run, bit for bit, so that a log of an older run of the same job is not used.
 fn log_of(source: &dyn Source, named: Option<&Path>) -> Result<Recorded, String> {
     let about = source.about();
     if about.state == State::Log {
@@ -343,7 +343,7 @@ fn log_of(source: &dyn Source, named: Option<&Path>) -> Result<Recorded, String>
     }
 }
 
-/// A key of the terminal; none for what the console does not know.
+/// The key of an event; `None` for keys without a meaning.
 fn key(pressed: &KeyEvent) -> Option<Key> {
     if pressed.kind == KeyEventKind::Release {
         return None;

@@ -1,4 +1,4 @@
-//! The list of what is watched, from one session to the next: a line a field or buffer, in the person's configuration.
+//! The list of watched fields, saved between sessions in the user's configuration, one field or buffer per line.
 
 use std::{
     env, fs, io,
@@ -7,7 +7,7 @@ use std::{
 
 use crate::model::buffers::{is_within, paths};
 
-/// Where the list is kept; none without a home.
+/// Path of the list; `None` without a home directory.
 #[must_use]
 pub fn place() -> Option<PathBuf> {
     let set = |name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
@@ -15,7 +15,7 @@ pub fn place() -> Option<PathBuf> {
     configuration.map(|directory| directory.join("rcs-ii").join("watch"))
 }
 
-/// The list; empty if there is none. Names of another version of the buffers are left out.
+/// The saved list; empty if there is none. Names of another version of the buffers are skipped.
 #[must_use]
 pub fn load(path: &Path) -> Vec<String> {
     let text = fs::read_to_string(path).unwrap_or_default();
@@ -23,10 +23,10 @@ pub fn load(path: &Path) -> Vec<String> {
     text.lines().map(str::trim).filter(known).map(str::to_owned).collect()
 }
 
-/// Keep the list.
+/// Save the list.
 ///
 /// # Errors
-/// What the system says.
+/// The error of the system.
 pub fn save(path: &Path, list: &[String]) -> io::Result<()> {
     path.parent().map_or(Ok(()), fs::create_dir_all)?;
     let text: String = list.iter().flat_map(|name| [name.as_str(), "\n"]).collect();

@@ -1,4 +1,4 @@
-//! The procedures: what the console sees of a step, what a person says, and what is asked of the run.
+//! The procedures: the steps that the console detects, the confirmations of a person, and the requests to the run.
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ const PLAIN: Look = Look { colour: false, ascii: false };
 const HOME: WireFrame =
     WireFrame { tool: [0, -7142, -1485], wrist_to_tool: [0, -2121, -2121], tool_to_finger: [3000, 0, 0] };
 
-/// A run that shows one picture and one cell.
+/// A run with one fixed picture and one fixed cell.
 struct Stage {
     picture: Picture,
     view: Option<CellView>,
@@ -56,7 +56,7 @@ impl Source for Stage {
 }
 
 impl Stage {
-    /// A run whose processes are all stepped and have PAUSE, and whose robot controller is at a stage.
+    /// A run in which all processes are executed with PAUSE, and the robot controller is at a stage.
     fn at(stage: &str) -> Self {
         let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
         let picture = Picture { tick: Tick(100), external, memory, timing: None };
@@ -93,7 +93,7 @@ impl Stage {
     }
 }
 
-/// A console with a procedure open.
+/// A console with an open procedure.
 fn open(section: &str, title: &str, operates: bool) -> Model {
     let mut model = Model::new(Screen::Procedures);
     model.operating = operates.then(Operating::default);
@@ -103,7 +103,7 @@ fn open(section: &str, title: &str, operates: bool) -> Model {
     model
 }
 
-/// A tick passes, and the console looks.
+/// Advance by a tick, and update the console.
 fn look(model: &mut Model, stage: &mut Stage) {
     stage.pass(1);
     model.take(stage);
@@ -119,7 +119,7 @@ fn cursor(model: &Model) -> &'static str {
     model.procedures.tracks[model.procedures.cursor].step().map_or("", |step| step.id)
 }
 
-/// What the console has asked for; the run takes all of it.
+/// The requests of the console; the run accepts all of them.
 fn asked(model: &mut Model) -> String {
     let operating = model.operating.as_mut().expect("it operates");
     let lines = std::mem::take(&mut operating.outbox);
@@ -160,9 +160,9 @@ fn the_start_up_is_seen_step_by_step() {
     assert_eq!(asked(&mut model), "board 2 stop");
     stage.hold(&[ProcessId::Emove, ProcessId::Prim], true);
     look(&mut model, &mut stage);
-    // Knob and frames of the box are as they should be already.
+    // Knob and frames of the box are in the required state already.
     assert_eq!([word(&model, "1b"), word(&model, "2"), cursor(&model)], ["seen", "seen", "4"]);
-    // A step that is undone loses its mark.
+    // A step whose state is lost loses its mark.
     stage.picture.external.devices.joystick.velocity = 100;
     look(&mut model, &mut stage);
     assert_eq!(word(&model, "2"), "");
@@ -172,13 +172,13 @@ fn the_start_up_is_seen_step_by_step() {
         look(&mut model, &mut stage);
     }
     assert_eq!([word(&model, "4"), word(&model, "5"), cursor(&model)], ["seen", "seen", "6"]);
-    // Only a person can know that the work volume is clear; what is said stands in the log.
+    // Only a person can know that the work volume is clear; the log contains the confirmation.
     model.key(Key::Char('y'), &stage);
     assert_eq!([word(&model, "6"), cursor(&model)], ["said", "7"]);
     assert!(asked(&mut model).starts_with("note IV.3.3 6: the work volume is clear"));
     stage.turn_to("hydraulics enabled");
     look(&mut model, &mut stage);
-    // A step that moves the robot warns first.
+    // A step that moves the robot shows a warning first.
     assert_eq!(cursor(&model), "8");
     model.key(Key::Enter, &stage);
     assert!(

@@ -1,4 +1,4 @@
-//! Every screen and state as text, from the log of a short run that fails: no blank lies on the tray.
+//! Every screen and state as text, from the log of a short run that fails because no blank is on the tray.
 
 use std::{
     path::{Path, PathBuf},
@@ -23,7 +23,7 @@ use rcs_console::{
 use runtime::{Ending, LogTarget, Observer, Run, RunConfig};
 
 const PLAIN: Look = Look { colour: false, ascii: false };
-/// The tick in which E-move gives up.
+/// Tick in which E-move fails.
 const FAILURE: u64 = 623;
 
 struct Silent;
@@ -49,7 +49,7 @@ fn log() -> Recorded {
     Recorded::open(&LOG.1).expect("the log can be read")
 }
 
-/// The log as if it were a run in some state.
+/// The log in the role of a run in some state.
 struct As(Recorded, State);
 
 impl Source for As {
@@ -76,7 +76,7 @@ impl Source for As {
     }
 }
 
-/// A run with a simulated cell, whose robot controller has been started up.
+/// A run with a simulated cell, whose robot controller has been started.
 struct Operated(As);
 
 impl Source for Operated {
@@ -117,7 +117,7 @@ impl Source for Operated {
     }
 }
 
-/// A screen that shows a tick after the one before it.
+/// A screen with a tick, after the tick before it.
 fn model(screen: Screen, process: ProcessId, tick: u64, source: &dyn Source) -> Model {
     let mut model = Model::new(screen);
     model.process = process;
@@ -175,7 +175,7 @@ fn a_wide_ladder_has_the_text_of_the_rows() {
     insta::assert_snapshot!("ladder-wide", drawn(&Scene::Source(&model, &log), PLAIN, 160, 30));
 }
 
-/// VI.6.2: boxes with lines between them, where there is room.
+/// VI.6.2: boxes with lines between them, if there is room for them.
 #[test]
 fn a_large_ladder_has_boxes() {
     let log = log();
@@ -196,7 +196,7 @@ fn process_with_the_text_of_its_table() {
     assert!(!model.shows_source);
 }
 
-/// The workstation controller of another process commands: a console that wants to is asked how.
+/// The workstation controller of another process commands: the console asks how to take over.
 #[test]
 fn the_command_is_taken_over_from_a_workstation_controller() {
     let run = As(log(), State::Runs);
@@ -277,7 +277,7 @@ fn cell_drawn_from_above_and_from_the_side() {
     assert!(model.drawing.is_none());
 }
 
-/// A console that operates a run in which a command was sent and another one refused.
+/// A console that operates a run, with one accepted and one refused command.
 fn operating(kind: Screen, run: &dyn Source) -> Model {
     let mut model = model(kind, ProcessId::Emove, 300, run);
     model.place = Place::Last;
@@ -286,7 +286,7 @@ fn operating(kind: Screen, run: &dyn Source) -> Model {
     operating
         .answered(0, Ok("tick 624: the job waits; console-4711 commands; knob 1000; connected 1".into()));
     model.operating = Some(operating);
-    // What it becomes is what the run answers below.
+    // The test gives the answers of the run below.
     keys(&mut model, run, if kind == Screen::Terminal { ":863 12 12 LINE-LOAD\n" } else { ":PAUSE\n" });
     let mut operating = model.operating.take().expect("it operates");
     let line = operating.outbox.pop().expect("a request");
@@ -334,13 +334,13 @@ fn the_keys_of_an_operator_ask_the_run() {
     model.key(Key::Up, &run);
     model.key(Key::PageDown, &run);
     assert_eq!(asked(&mut model), "joystick stick 192 0 3; joystick down 3");
-    // What looks only asks for nothing.
+    // A console without `--operate` sends nothing.
     model.operating = None;
     keys(&mut model, &run, "\x1b :");
     assert!(model.prompt.is_none());
 }
 
-/// The pictures of the page are those of this run, with one process under the cursor.
+/// The pictures of the documentation are those of this run, with one process under the cursor.
 #[test]
 fn the_page_shows_these_screens() {
     let log = log();
@@ -361,11 +361,11 @@ fn the_page_shows_these_screens() {
     for (shown, drawn) in shown.iter().zip(&drawn) {
         assert_eq!(shown, drawn);
     }
-    // The last one is that of `procedures.rs`.
+    // The last picture is made by `procedures.rs`.
     assert_eq!(shown.len(), drawn.len() + 1);
 }
 
-/// A console with the blocks of the data, that looks at a log.
+/// A console that shows a log and has the blocks of the data.
 fn at_the_terminal(log: &dyn Source, typed: &str) -> Model {
     let mut model = model(Screen::Terminal, ProcessId::Task, FAILURE, log);
     model.terminal.library = Library::with(log.blocks().expect("a log has its blocks").to_vec());
@@ -379,7 +379,7 @@ fn terminal_with_a_block_of_commands() {
     insta::assert_snapshot!("terminal-list", screen(&at_the_terminal(&log, ":863 LIST\n"), &log));
 }
 
-/// IV.2.3: the board is stopped first; the checker's messages stand at their lines, then the change is shown.
+/// IV.2.3: the board is stopped first; the editor shows the checker's messages at their lines, then the diff.
 #[test]
 fn a_block_is_edited_while_its_board_is_stopped() {
     let data = tempfile::tempdir().expect("a directory can be made");
@@ -421,7 +421,7 @@ fn a_block_is_edited_while_its_board_is_stopped() {
     assert!(text.contains("\n== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n"), "{text}");
 }
 
-/// Tab knows the names of the task data.
+/// Completion knows the names of the task data.
 #[test]
 fn names_are_completed_in_the_terminal() {
     let log = log();
@@ -600,7 +600,7 @@ fn ladder_in_every_state_of_a_run() {
     }
 }
 
-/// Screens for work, on a console that looks only; and all screens in ASCII.
+/// The screens for operators on a console without `--operate`, and all screens in ASCII.
 #[test]
 fn every_screen_without_an_operator_and_in_ascii() {
     let log = log();

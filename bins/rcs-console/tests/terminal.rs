@@ -1,4 +1,4 @@
-//! The program in a terminal: over a pseudo-terminal, read back by a terminal parser.
+//! The program in a terminal: a pseudo-terminal, whose output a terminal parser reads.
 
 use std::{
     fs::File,
@@ -26,12 +26,12 @@ use rustix::{
     termios::{Action, Termios, Winsize, tcflow, tcgetattr, tcsetwinsize},
 };
 
-/// The least terminal.
+/// Lines of the smallest terminal.
 const LINES: NonZero<u16> = NonZero::new(24).unwrap();
 const COLUMNS: NonZero<u16> = NonZero::new(80).unwrap();
 /// A job of one command.
 const TO_SAFE: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
-/// Longest time for anything to appear, on a machine that has much else to do.
+/// Time limit for a text to appear, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 struct Silent;
@@ -40,7 +40,7 @@ impl Observer for Silent {
     fn message(&mut self, _: &str) {}
 }
 
-/// What a program has written, and when.
+/// Output of a program, each piece with its time.
 type Written = Vec<(Duration, Vec<u8>)>;
 
 /// A program in a terminal.
@@ -49,7 +49,7 @@ struct Terminal {
     keys: File,
     slave: OwnedFd,
     parser: Arc<Mutex<vt100::Parser>>,
-    /// All that was written to the terminal, and when.
+    /// All output to the terminal, with times.
     written: Arc<Mutex<Written>>,
     before: Termios,
 }
@@ -57,7 +57,7 @@ struct Terminal {
 impl Terminal {
     /// Start the console in a directory, with an environment of its own.
     fn start(arguments: &[&str], directory: &Path, environment: &[(&str, &Path)]) -> Self {
-        // No other program that this one starts keeps the terminal open.
+        // Programs that this one starts must not keep the terminal open.
         let flags = pty::OpenptFlags::RDWR | pty::OpenptFlags::NOCTTY | pty::OpenptFlags::CLOEXEC;
         let master = pty::openpt(flags).unwrap();
         pty::unlockpt(&master).unwrap();
@@ -91,7 +91,7 @@ impl Terminal {
         Self { child, keys: File::from(master), slave, parser, written, before }
     }
 
-    /// All that was written to the terminal up to now.
+    /// All output to the terminal so far.
     fn written(&self) -> Written {
         locked(&self.written).clone()
     }
@@ -100,13 +100,13 @@ impl Terminal {
         locked(&self.parser).screen().contents()
     }
 
-    /// Wait until the screen holds a text.
+    /// Wait until the screen contains a text.
     fn wait_for(&self, text: &str) {
         self.wait_while(|screen| !screen.contains(text), &format!("{text:?} did not appear"));
     }
 
-    /// Press Escape, and wait until the text that it closes is gone. A key that is read together with Escape
-    /// would be taken for that key with Alt.
+    /// Press Escape, and wait until the text that it closes is gone. The terminal would take a key that is read
+    /// together with Escape for that key with Alt.
     fn escape(&mut self, closes: &str) {
         self.press("\x1b");
         self.wait_while(|screen| screen.contains(closes), &format!("{closes:?} did not go away"));
@@ -124,7 +124,7 @@ impl Terminal {
         self.keys.write_all(keys.as_bytes()).unwrap();
     }
 
-    /// Wait for the end; the modes of the terminal must be as they were before.
+    /// Wait for the end; the modes of the terminal must be restored.
     fn status(&mut self) -> Option<i32> {
         let begun = Instant::now();
         let status = loop {
@@ -140,11 +140,11 @@ impl Terminal {
         status.code()
     }
 
-    /// Wait for the end; the whole terminal must be as it was before.
+    /// Wait for the end; the whole terminal must be restored.
     fn end(mut self) -> Option<i32> {
         let status = self.status();
         let begun = Instant::now();
-        // The parser may have to read the last bytes yet.
+        // The parser may not have read the last bytes yet.
         let is_back = || {
             let parser = locked(&self.parser);
             !parser.screen().alternate_screen() && !parser.screen().hide_cursor()
@@ -157,10 +157,10 @@ impl Terminal {
     }
 }
 
-/// A test that fails leaves no program behind.
+/// A failed test leaves no program running.
 impl Drop for Terminal {
     fn drop(&mut self) {
-        // It has ended already if the test went well.
+        // After a successful test it has ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -170,7 +170,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A run in a thread of its own, which returns the outcome of each step; and what ends it.
+/// A run in its own thread, which returns the outcome of each step; and the flag that ends it.
 type Running = (thread::JoinHandle<Vec<&'static str>>, Arc<AtomicBool>);
 
 /// A run in real time, `speed` times as fast.
@@ -211,7 +211,7 @@ fn begin(config: RunConfig) -> Running {
         let outcome = Run::new(config, Box::new(Silent)).unwrap().complete();
         outcome.steps.iter().map(|step| step.outcome.text()).collect()
     });
-    // A run is there when it has published its first tick.
+    // A run exists when it has published its first tick.
     let begun = Instant::now();
     let listed = || executive::memory::list().unwrap().iter().any(|run| run.name == name && run.alive);
     while !listed() {
@@ -270,7 +270,7 @@ fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_fi
     console.wait_for("JOB WAITS");
     console.press(" ");
     console.wait_for("knob 100 %");
-    // The words of board 6: a command of a block, ^C, GO, a listing, a show word.
+    // Words of board 6: a command of a block, ^C, GO, a listing, a show word.
     console.press("5:863 12 12 LINE-LOAD\r");
     console.wait_for(": line-load 863 12 12");
     console.wait_for("Finished");
@@ -288,7 +288,7 @@ fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_fi
     console.wait_for("refused: job wait, job go or job skip was expected");
     console.press("6");
     console.wait_for("no frame is on");
-    // Prim is held, stepped once, and goes on.
+    // Prim is held, executed once, and released.
     console.press("h");
     console.wait_while(|screen| screen.contains("holds   no process"), "Prim is not held");
     console.press("z");
@@ -336,7 +336,7 @@ fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_fi
     assert_eq!(outcomes.last(), Some(&"finished"), "{outcomes:?}");
 }
 
-/// The data of the repository, to be changed.
+/// A copy of the repository's data, to be changed.
 fn own_data(directory: &Path) -> PathBuf {
     let data = directory.join("data");
     for from in [shipped(), shipped().join("objects")] {
@@ -351,7 +351,7 @@ fn own_data(directory: &Path) -> PathBuf {
     data
 }
 
-/// Lead the robot up with the joystick box, record the pose there as VIA-1 of block 610, and lead the robot down again;
+/// Move the robot up with the joystick box, record the pose there as VIA-1 of block 610, and move the robot down again,
 /// with a pause between the keys.
 fn teach(console: &mut Terminal, pause: Duration) {
     thread::sleep(pause);
@@ -398,7 +398,7 @@ fn teach(console: &mut Terminal, pause: Duration) {
     console.wait_for("generation 1");
 }
 
-/// III.3.3: a via point is taught with the joystick box, a trajectory is led through it, and the job uses it.
+/// III.3.3: a via point is taught with the joystick box and added to a trajectory, and the job uses it.
 #[test]
 fn a_via_point_is_taught_and_the_job_goes_through_it() {
     let directory = tempfile::tempdir().unwrap();
@@ -429,7 +429,7 @@ fn a_via_point_is_taught_and_the_job_goes_through_it() {
     assert!(text("trajectories.blk").contains("pos    VIA-1"));
 }
 
-/// IV.2.1, IV.2.8: a run that waits for its boards is named, with those that are missing.
+/// IV.2.1, IV.2.8: the console shows a run that waits for its boards, and the missing boards.
 #[test]
 fn a_run_whose_boards_come_up_is_waited_for() {
     let directory = tempfile::tempdir().unwrap();
@@ -468,7 +468,7 @@ fn what_cannot_be_operated_is_said() {
 #[test]
 fn a_signal_leaves_the_terminal_as_it_was() {
     let directory = tempfile::tempdir().unwrap();
-    // No run lies under a directory of its own.
+    // A directory of its own contains no run.
     for signal in [Signal::TERM, Signal::HUP, Signal::INT] {
         let console = Terminal::start(&["--ascii"], directory.path(), &[("TMPDIR", directory.path())]);
         console.wait_for("Looking for runs");
@@ -477,7 +477,7 @@ fn a_signal_leaves_the_terminal_as_it_was() {
     }
 }
 
-/// ^Z gives the terminal back, and the console draws everything again when it goes on.
+/// ^Z gives the terminal back, and the console draws everything again when it continues.
 #[test]
 fn a_console_is_suspended_and_goes_on() {
     let directory = tempfile::tempdir().unwrap();
@@ -518,7 +518,7 @@ fn a_signal_ends_it_while_the_terminal_takes_no_output() {
     let directory = tempfile::tempdir().unwrap();
     let mut console = Terminal::start(&["--ascii"], directory.path(), &[("TMPDIR", directory.path())]);
     console.wait_for("Looking for runs");
-    // As Ctrl-S does it; what is drawn from now on waits.
+    // The same as Ctrl-S: further output waits.
     tcflow(&console.slave, Action::OOff).unwrap();
     thread::sleep(Duration::from_millis(300));
     kill_process(Pid::from_child(&console.child), Signal::TERM).unwrap();

@@ -1,4 +1,4 @@
-//! `rcs-run board`: one board of a run, in this process.
+//! `rcs-run board`: runs one board of a run in this process.
 
 use std::{
     process::ExitCode,
@@ -24,15 +24,16 @@ use crate::{
     memory_fault::stuck,
 };
 
-/// Take a board's place in a run until the run is over.
+/// Take a board's place in a run until the run has ended.
 ///
 /// # Errors
-/// [`Error`] if the board cannot take part, or if the run did what no run does.
+/// [`Error`] if the board cannot take part, or if the run violates the protocol of the boards.
 pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
     let stop = match arguments.parent {
         None => interruption()?,
         Some(parent) => {
-            // A terminal and a service manager send their signals to all processes of a run; board 0 ends it in order.
+            // A terminal and a service manager send signals to all processes of a run; only board 0 acts on them, and
+            // ends the run.
             for signal in [SIGINT, SIGHUP, SIGTERM] {
                 signal_hook::flag::register(signal, Arc::default()).map_err(Error::Signals)?;
             }
@@ -44,7 +45,8 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
     };
     let TaskFiles { store, job, .. } = TaskFiles::load(&arguments.data, arguments.played())?;
     let fingerprint = boards::fingerprint(&store, &job);
-    // Generation 0 is what was loaded before the first tick, each reload of the job or of an operator the next.
+    // Generation 0 is the task data loaded before the first tick; each reload by the job or an operator is the next
+    // one.
     let mut files = BoardFiles::new(&arguments.run, store, job.reloads)
         .map_err(|source| Error::Start(StartError::Thread(source)))?;
     let join = || Member::join(&arguments.run, arguments.board, fingerprint);

@@ -1,4 +1,4 @@
-//! `rcs-run check`: loads everything that a run needs, and prints what was found.
+//! `rcs-run check`: loads everything that a run needs, and prints the findings.
 
 #[cfg(test)]
 #[path = "../tests/common/data.rs"]
@@ -40,7 +40,7 @@ use crate::{
     ways,
 };
 
-/// The outcome, for scripts.
+/// The outcome as JSON.
 #[derive(Serialize)]
 struct Outcome {
     ok: bool,
@@ -51,7 +51,7 @@ struct Outcome {
     records: serde_json::Map<String, serde_json::Value>,
     jobs: Vec<String>,
     findings: Vec<Finding>,
-    /// What the arm of `--robot` reaches.
+    /// Reach of the arm of `--robot`.
     #[serde(skip_serializing_if = "Option::is_none")]
     reach: Option<Reach>,
 }
@@ -98,7 +98,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::from(if outcome.ok && is_reached { 0 } else { UNUSABLE }))
 }
 
-/// What is wrong with a data directory, in words: errors, and warnings.
+/// Errors and warnings of a data directory, as text.
 pub fn findings(data: &Path) -> (Vec<String>, Vec<String>) {
     let checked = Checked::of(data, &Flights::default());
     let all = checked.reports.iter().flat_map(|(_, report)| report.diagnostics());
@@ -111,7 +111,7 @@ pub fn findings(data: &Path) -> (Vec<String>, Vec<String>) {
     (errors.into_iter().map(words).collect(), warnings.into_iter().map(words).collect())
 }
 
-/// Flights of all checks of this process, by the text of the cell description.
+/// Motions that the checks of this process have simulated, by the text of the cell description.
 #[derive(Default)]
 struct Flights(Mutex<HashMap<Arc<str>, Arc<Known>>>);
 
@@ -122,18 +122,18 @@ impl Flights {
     }
 }
 
-/// A data directory, looked at.
+/// The findings of a data directory.
 struct Checked {
-    /// The reports, each with what it is about: task data, the jobs, the cell description, faults and robots.
+    /// Reports with their titles: task data, jobs, cell description, faults and robots.
     reports: Vec<(String, Diagnostics)>,
     jobs: Vec<String>,
-    /// The cell, if its description is sound.
+    /// The cell, if its description has no errors.
     cell: Option<Cell>,
 }
 
 impl Checked {
-    /// Look at everything under a data directory. Ways that earlier checks of the same cell have flown are not flown
-    /// again.
+    /// Check everything under a data directory. Motions that earlier checks of the same cell have simulated are not
+    /// simulated again.
     fn of(data: &Path, flights: &Flights) -> Self {
         let (store, report) = match Store::load_part(data) {
             Ok((store, report)) => (Ok(store), report),
@@ -184,7 +184,7 @@ impl Checked {
         Self { reports, jobs: names, cell: cell.map(|(cell, _)| cell) }
     }
 
-    /// The same for scripts.
+    /// The findings as JSON.
     fn outcome(&self) -> Outcome {
         let all = || self.reports.iter().map(|(_, report)| report);
         let (errors, warnings) = (
@@ -207,7 +207,8 @@ impl Checked {
     }
 }
 
-/// The cell of a description with its text, and what is wrong with that, by itself and beside the task data.
+/// The cell and the text of its description, and the findings in the description, alone and together with the task
+/// data.
 fn cell(path: &Path, store: Option<&Store>) -> (Option<(Cell, Source)>, Diagnostics) {
     let mut problems = Problems::default();
     let text = match files::read_text(path) {
@@ -234,7 +235,7 @@ fn cell(path: &Path, store: Option<&Store>) -> (Option<(Cell, Source)>, Diagnost
     (cell.ok().map(|cell| (cell, source)), report)
 }
 
-/// What is wrong with the files of faults in a data directory.
+/// The findings in the fault files of a data directory.
 fn faults(data: &Path, cell: &CellDescription) -> Diagnostics {
     let mut all = Diagnostics::default();
     for path in toml_files(&data.join("faults")) {
@@ -248,7 +249,7 @@ fn faults(data: &Path, cell: &CellDescription) -> Diagnostics {
     all
 }
 
-/// What is wrong with the files of robots in a data directory.
+/// The findings in the robot files of a data directory.
 fn robots(data: &Path) -> Diagnostics {
     let mut all = Diagnostics::default();
     for path in toml_files(&data.join("robots")) {
@@ -263,14 +264,14 @@ fn robots(data: &Path) -> Diagnostics {
     all
 }
 
-/// The files of TOML in a directory, which need not be there.
+/// The TOML files in a directory; none if there is no such directory.
 fn toml_files(directory: &Path) -> Vec<PathBuf> {
     let mut paths = files::list(directory).unwrap_or_default();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     paths
 }
 
-/// A report that says one thing of a file.
+/// A report with one error of a file.
 fn one(path: &Path, error: &dyn std::error::Error) -> Diagnostics {
     let mut problems = Problems::default();
     problems.general("file", format!("{}: {error}", path.display()));

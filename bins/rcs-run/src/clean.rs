@@ -1,4 +1,4 @@
-//! `rcs-run clean`: removes what killed runs left in shared memory.
+//! `rcs-run clean`: removes shared memory that killed runs have left.
 
 use std::process::ExitCode;
 
@@ -6,7 +6,7 @@ use os_io::console;
 
 use crate::error::{Error, UNUSABLE};
 
-/// Remove, and say what was done.
+/// Remove the remains of killed runs, and print what was removed.
 pub fn clean() -> Result<ExitCode, Error> {
     let cleaned = executive::memory::clean()?;
     let objects = executive::memory::clean_objects()?;

@@ -1,4 +1,4 @@
-//! `rcs-run --console`: the operator's console beside the run, on the same terminal.
+//! `rcs-run --console`: starts the operator's console on the terminal of the run.
 
 use std::{
     env, io,
@@ -15,7 +15,7 @@ use executive::memory::RunName;
 
 use crate::error::Error;
 
-/// The program, which is installed beside this one.
+/// Name of the console program, which is installed in the same directory.
 const PROGRAM: &str = "rcs-console";
 
 /// The console of a run.
@@ -24,7 +24,7 @@ pub struct Console {
 }
 
 impl Console {
-    /// Where the program is.
+    /// Path of the console program.
     ///
     /// # Errors
     /// [`Error::NoConsole`] if it is not beside this program.
@@ -33,7 +33,7 @@ impl Console {
         if program.is_file() { Ok(program) } else { Err(Error::NoConsole(program)) }
     }
 
-    /// Show a run that shares its memory. When the person leaves the console, `stop` is set: the robot ramps to rest, and
+    /// Show a run with shared memory. When the operator leaves the console, `stop` is set: the robot ramps to rest, and
     /// the run ends.
     ///
     /// # Errors
@@ -42,14 +42,14 @@ impl Console {
         let mut command = Command::new(program);
         let mut child = command.args(["--operate", "--run", run.as_str()]).spawn().map_err(Error::Console)?;
         let waiting = thread::spawn(move || {
-            // However it ends, no one watches the robot any more.
+            // However the console ends, nobody watches the robot any more.
             let _ = ended(&mut child);
             stop.store(true, Ordering::Relaxed);
         });
         Ok(Self { waiting })
     }
 
-    /// Wait until the person has left the console: after the end of a run it shows the last picture.
+    /// Wait until the operator leaves the console, which shows the last picture after the end of a run.
     pub fn wait(self) {
         // The thread does not panic.
         let _ = self.waiting.join();

@@ -1,5 +1,4 @@
-//! What keeps a command from being carried out: usage, configuration and data errors, and an interruption before
-//! the first tick.
+//! Errors of the subcommands: usage, configuration and data errors, and an interruption before the first tick.
 
 use std::{io, path::PathBuf};
 
@@ -17,39 +16,39 @@ pub const UNUSABLE: u8 = 2;
 /// Exit status of a run that an emergency stop or a lost link ended.
 pub const STOPPED: u8 = 3;
 
-/// Why nothing was done.
+/// Errors of a subcommand.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A run cannot begin.
     #[error(transparent)]
     Start(#[from] StartError),
-    /// Shared memory cannot be looked at.
+    /// Shared memory cannot be inspected.
     #[error(transparent)]
     SharedMemory(#[from] SharedMemoryError),
     /// A command cannot be explained.
     #[error("nothing can be explained: {0}")]
     Explain(String),
-    /// It cannot be said what a robot reaches.
+    /// The reach of a robot cannot be computed.
     #[error("the reach of the robot cannot be checked: {0}")]
     Reach(String),
     /// A pose cannot be shown or written.
     #[error("no pose: {0}")]
     Pose(String),
-    /// Data for something new cannot be made.
+    /// `rcs-run new` cannot make the data.
     #[error("nothing is written: {0}")]
     New(String),
-    /// A file that was asked for cannot be written.
+    /// An output file cannot be written.
     #[error("{} cannot be written: {source}", path.display())]
     Write {
-        /// Which.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Error of the system.
         source: io::Error,
     },
     /// A run cannot be forked.
     #[error("the run cannot be forked: {0}")]
     Fork(String),
-    /// A campaign asks for what there is not.
+    /// Invalid argument of a campaign.
     #[error("{0}")]
     Campaign(String),
     /// The simulated robot has no port.
@@ -61,19 +60,19 @@ pub enum Error {
     /// The buffers of a run cannot be read.
     #[error("the run cannot be read: {0}")]
     Unreadable(#[from] ReadError),
-    /// There are several runs.
+    /// There are several runs, and none is named.
     #[error("there are several runs, name one: {}", .0.join(", "))]
     WhichRun(Vec<String>),
-    /// A run cannot be operated.
+    /// A run does not accept the operator.
     #[error(transparent)]
     Operator(#[from] operator::ClientError),
-    /// A run elsewhere cannot be reached, or does not admit the operator.
+    /// A remote run cannot be reached, or does not admit the operator.
     #[error(transparent)]
     Network(#[from] PeerError),
     /// Keys or certificates cannot be used.
     #[error(transparent)]
     Keys(#[from] KeysError),
-    /// Options of the network do not fit together.
+    /// Options of the network contradict each other.
     #[error(transparent)]
     Address(#[from] AddressError),
     /// A board cannot take part in a run.
@@ -91,7 +90,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// The exit status: an interruption counts as it does after the first tick.
+    /// The exit status. An interruption counts as it does after the first tick.
     #[must_use]
     pub const fn status(&self) -> u8 {
         match self {
@@ -100,7 +99,7 @@ impl Error {
         }
     }
 
-    /// What is to be said before the last line; empty, or lines that end.
+    /// Lines to print before the last line; empty or ending with a newline.
     #[must_use]
     pub fn details(&self) -> String {
         match self {

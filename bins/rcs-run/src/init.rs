@@ -1,4 +1,4 @@
-//! `rcs-run init`: an editable copy of the data that comes with the program.
+//! `rcs-run init`: writes an editable copy of the data that are built into the program.
 
 use std::process::ExitCode;
 
@@ -9,7 +9,7 @@ use crate::{cli::InitArguments, error::Error};
 /// Write the copy.
 ///
 /// # Errors
-/// [`Error::Write`] if a file is there already, or cannot be written.
+/// [`Error::Write`] if a file exists already, or cannot be written.
 pub fn init(arguments: &InitArguments) -> Result<ExitCode, Error> {
     let directory = &arguments.directory;
     let count =

@@ -1,4 +1,4 @@
-//! Signals that end a command in good order.
+//! Signals that end a command in an orderly way.
 
 use std::sync::{Arc, atomic::AtomicBool};
 
@@ -9,10 +9,10 @@ use signal_hook::{
 
 use crate::error::Error;
 
-/// A flag that an interrupt, a hang-up or a termination request sets; the second one ends the program at once.
+/// A flag that an interrupt, a hang-up or a termination request sets; the second signal ends the program at once.
 ///
 /// # Errors
-/// [`Error::Signals`] if the system does not take a handler.
+/// [`Error::Signals`] if the system refuses the handlers.
 pub fn interruption() -> Result<Arc<AtomicBool>, Error> {
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGHUP] {

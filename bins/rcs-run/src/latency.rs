@@ -1,8 +1,8 @@
-//! `rcs-run latency`: how late this machine wakes a thread that sleeps on the 40 ms grid.
+//! `rcs-run latency`: measures how late this machine wakes a thread that sleeps on the 40 ms grid.
 //!
-//! The thread asks for the same things as the ticks of a run (locked memory, SCHED_FIFO, one core) and then does
-//! nothing but sleep until each slot begins and look at the clock. What it measures is the system's part of a
-//! tick's jitter; run it while the machine does what it will do beside the robot.
+//! The thread has the same settings as the ticks of a run (locked memory, SCHED_FIFO, one core). It sleeps until each
+//! slot begins and reads the clock. The result is the operating system's part of a tick's jitter. Measure under the
+//! load that the machine will have when it controls the robot.
 
 use std::{
     fmt,
@@ -24,18 +24,18 @@ use crate::{answer, cli::LatencyArguments, error::Error, interrupt::interruption
 
 /// Length of a slot.
 const SLOT: Duration = Duration::from_millis(TICK_MS);
-/// Up to here, p99 of the wake-ups in microseconds, a machine is good: a hundredth of a frame's time on the line.
+/// Upper limit of the p99 wake-up latency for `good`, µs: a hundredth of a frame's time on the line.
 const GOOD_US: f64 = 200.0;
-/// Up to here it is usable: the frame of a tick is still on the line before half of the tick is over.
+/// Upper limit for `usable`, µs: the frame of a tick is on the line before half of the tick is over.
 const USABLE_US: f64 = 2_000.0;
 /// Edges of the printed histogram, microseconds.
 const EDGES: [u64; 10] = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 40_000];
 
-/// What a machine is good for.
+/// The verdict on a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Fitness {
-    /// Wake-ups are so punctual that nothing of them is seen on the line.
+    /// Wake-up latencies are so small that they have no effect on the line.
     Good,
     /// Frames are on the line within their tick.
     Usable,
@@ -68,7 +68,7 @@ impl Fitness {
     }
 }
 
-/// What was measured.
+/// The result of a measurement.
 #[derive(Debug, Serialize)]
 struct Measurement {
     seconds: f64,
@@ -76,12 +76,12 @@ struct Measurement {
     /// Slots in which the thread did not wake.
     skipped: u64,
     late_us: Late,
-    /// Wake-ups that were at most so late: microseconds and count.
+    /// Histogram: upper edge in microseconds, and number of wake-ups up to it.
     histogram: Vec<(u64, u64)>,
     machine: String,
     realtime: String,
     verdict: Fitness,
-    /// The verdict in words.
+    /// The verdict as a sentence.
     meaning: &'static str,
 }
 
@@ -96,7 +96,7 @@ struct Late {
 /// Measure and print.
 ///
 /// # Errors
-/// [`Error`] if signals cannot be caught, or nothing can be printed.
+/// [`Error`] if signals cannot be caught, or the result cannot be printed.
 pub fn latency(arguments: &LatencyArguments) -> Result<ExitCode, Error> {
     let interrupted = interruption()?;
     let machine = Machine::look();
@@ -109,7 +109,7 @@ pub fn latency(arguments: &LatencyArguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Sleeps on the grid and looks at the clock.
+/// Sleeps on the grid and reads the clock.
 struct Watch {
     late: Box<Histogram>,
     counts: [u64; EDGES.len()],
@@ -135,7 +135,7 @@ impl Watch {
             }
             let late = now - begins;
             self.note(late);
-            // Slots that were slept through are not waited for.
+            // Slots that were missed are skipped.
             let missed = u64::try_from(late.as_nanos() / SLOT.as_nanos()).unwrap_or(u64::MAX);
             self.skipped += missed;
             slot += missed;
@@ -193,7 +193,7 @@ impl fmt::Display for Measurement {
 mod tests {
     use super::*;
 
-    /// Time that passes only while asleep; each sleep ends late by the next entry.
+    /// A clock that advances only while asleep; each sleep ends late by the next entry.
     struct Made {
         now: Duration,
         late: Vec<Duration>,

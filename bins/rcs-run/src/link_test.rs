@@ -1,9 +1,8 @@
-//! `rcs-run link-test`: round trips on a DEPC link, with a verdict.
+//! `rcs-run link-test`: measures round trips on a DEPC link, and prints a verdict.
 //!
-//! The host of [`depc::host`] starts the link and then sends, every 40 ms, the position that the robot itself
-//! has reported: nothing moves. Each answer is timed to the moment at which its byte can be read, not to the
-//! next tick. A frame is in time if it is acknowledged within a tick, since then the next one can follow
-//! without a gap.
+//! The host of [`depc::host`] starts the link and then sends, every 40 ms, the position that the robot has reported, so
+//! that nothing moves. The latency of an answer ends when its byte can be read, not at the next tick. A frame is in
+//! time if its ACK comes within a tick, since then the next frame follows without a gap.
 
 mod dump;
 mod tally;
@@ -38,10 +37,10 @@ use crate::{
 /// Length of a tick.
 const PERIOD: Duration = Duration::from_millis(TICK_MS);
 
-/// Test the link and print the result. Exit status 0 if it can be used, 1 if not, 3 if there is none.
+/// Test the link and print the result. Exit status 0 if the link is usable, 1 if not, 3 if there is no link.
 ///
 /// # Errors
-/// [`Error`] if there is nothing to test.
+/// [`Error`] if the test cannot run.
 pub fn link_test(arguments: &LinkTestArguments) -> Result<ExitCode, Error> {
     let RobotKind::Serial(settings) = &arguments.robot.kind else { return Err(Error::NoLinkToTest) };
     let interrupted = interruption()?;
@@ -66,11 +65,11 @@ pub fn link_test(arguments: &LinkTestArguments) -> Result<ExitCode, Error> {
     })
 }
 
-/// A data command whose answer has not come.
+/// A data command without an answer yet.
 #[derive(Clone, Copy)]
 struct Outstanding {
     sent: Instant,
-    /// When a byte that may be its ACK could be read.
+    /// Time when a byte that can be its ACK was readable.
     answered: Option<Instant>,
 }
 
@@ -91,7 +90,7 @@ impl Test {
         Self { line, host, dump, outstanding: None, modem_lines, starts: 0, latencies: Vec::new() }
     }
 
-    /// Run so many ticks; in the last ones nothing new is sent, so that every frame has had its time.
+    /// Run a number of ticks. The last ones send nothing new, so that every frame has time for its answer.
     fn run(&mut self, ticks: u64, interrupted: impl Fn() -> bool) {
         let quiet = ticks.saturating_sub(u64::from(ANSWER_TICKS) + 1);
         let (mut rx, mut held) = (LinkBytes::default(), true);
@@ -100,7 +99,7 @@ impl Test {
             let ready = self.line.receive(&mut rx) && held;
             self.receive(&rx, ready);
             self.transmit(tick < quiet);
-            // Late ticks are not made up for: the robot would be asked for more than one command a tick.
+            // Late ticks are not made up for: the robot would get more than one command per tick.
             due = (due + PERIOD).max(Instant::now());
             (rx, held) = self.collect(due);
             if interrupted() {
@@ -109,7 +108,7 @@ impl Test {
         }
     }
 
-    /// Take in what arrives until `due`; false if the line was not ready all the time.
+    /// Read until `due`. The flag is false if the line was not ready all the time.
     fn collect(&mut self, due: Instant) -> (LinkBytes, bool) {
         let mut rx = LinkBytes::default();
         loop {
@@ -125,7 +124,7 @@ impl Test {
             self.line.wait(left);
             let before = rx.as_slice().len();
             if !self.line.receive(&mut rx) {
-                // The host learns of it at the end of the tick.
+                // The host sees the loss of the line at the end of the tick.
                 std::thread::sleep(due.saturating_duration_since(Instant::now()));
                 return (LinkBytes::default(), false);
             }

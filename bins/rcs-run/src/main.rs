@@ -1,9 +1,8 @@
 //! `rcs-run`: the RCS-II/T3 controller with its simulated cell.
 //!
 //! One thread runs the ticks: controller, log hand-off, cell, workstation controller, in this order ([`run`]). With
-//! `--boards split` the controller of a tick is spread over processes ([`board`]).
-//! [`link_test`] tries the line to a robot. The other subcommands look at task data and decision tables without
-//! running anything, or clean up after killed runs.
+//! `--boards split` several processes share the controller's work ([`board`]). [`link_test`] tests the line to a robot.
+//! The other subcommands check and print task data and decision tables, or clean up after killed runs.
 
 #![deny(unsafe_code)]
 
@@ -39,7 +38,7 @@ use crate::{
 };
 use os_io::stderr_line;
 
-// Counts what the controller allocates; the count is in the result of every run.
+// Counts the allocations of the controller; the result of every run contains the count.
 #[global_allocator]
 static ALLOCATOR: executive::alloc::Counting = executive::alloc::Counting;
 
@@ -51,7 +50,7 @@ fn main() -> ExitCode {
     match outcome {
         Ok(code) => code,
         Err(error) => {
-            // The reason is the last line on standard error, whatever stands before it.
+            // The reason is the last line on standard error, after any details.
             let details = error.details();
             if !details.is_empty() {
                 stderr_line!("{}", details.trim_end());
@@ -62,7 +61,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Print an answer: as one line of JSON, or as the lines that people read.
+/// Print an answer: as one line of JSON, or as text.
 fn answer<T: serde::Serialize + std::fmt::Display>(answer: &T, json: bool) -> Result<(), Error> {
     let text = if json {
         serde_json::to_string(answer).map_err(std::io::Error::from)? + "\n"
@@ -72,7 +71,7 @@ fn answer<T: serde::Serialize + std::fmt::Display>(answer: &T, json: bool) -> Re
     Ok(os_io::console::answer(&text)?)
 }
 
-/// A long answer as JSON on many lines.
+/// A long answer as JSON on several lines.
 fn long_json(answer: &impl serde::Serialize) -> Result<String, Error> {
     Ok(serde_json::to_string_pretty(answer).map_err(std::io::Error::from)? + "\n")
 }

@@ -1,11 +1,10 @@
-//! What this program says when the system or iceoryx2 fails it.
+//! Messages for failures of shared memory, in the operating system or in iceoryx2.
 //!
-//! Shared memory lies in files of a file system in memory. If that is full when a page is first touched, or
-//! if another process cuts such a file short, the system can only end the program, by the signal SIGBUS,
-//! without a reason. What can be asked beforehand is asked (`executive::memory::place`), but others can fill
-//! `/dev/shm` between the question and the touch.
+//! Shared memory consists of files in a memory file system. If it is full when a page is first written, or if another
+//! process truncates such a file, the system can only end the program with the signal SIGBUS, without a reason.
+//! `executive::memory::place` checks the free space before, but other programs can fill `/dev/shm` in between.
 //!
-//! If another process damages shared memory while it is set up, iceoryx2 can wait without end ([`stuck`]).
+//! If another process damages shared memory during its set-up, iceoryx2 can wait forever ([`stuck`]).
 
 use std::{sync::Arc, time::Duration};
 
@@ -23,33 +22,33 @@ const WORDS: &[u8] =
     b"\nrcs-run: shared memory went away under the program: /dev/shm is full, or another process cut an object short; \
       the robot gets no further point\n";
 
-/// A file that reaches the limit of `ulimit -f` ends with an error of the write, such as a full disk gives,
-/// and not the program.
+/// Turn the signal at the file size limit of `ulimit -f` into an error of the write, like that of a full disk, so that
+/// the program does not end.
 ///
 /// # Errors
-/// [`Error::Signals`] if the system does not take a handler.
+/// [`Error::Signals`] if the system refuses the handler.
 pub fn survive_file_limit() -> Result<(), Error> {
     flag::register(SIGXFSZ, Arc::default()).map(drop).map_err(Error::Signals)
 }
 
-/// Have this program say why when the system ends it for want of memory. The exit status is that of a robot
-/// that was stopped.
+/// Make this program print the reason when SIGBUS ends it for lack of memory. The exit status is that of a stopped
+/// robot.
 ///
 /// # Errors
-/// [`Error::Signals`] if the system does not take a handler.
+/// [`Error::Signals`] if the system refuses the handler.
 #[expect(unsafe_code, reason = "what a signal handler may do is for its author to see to")]
 pub fn explain() -> Result<(), Error> {
     let last_words = || {
-        // If this fails there is nothing left to do.
+        // If this write fails nothing else can be done.
         let _ = write(stderr(), WORDS);
         exit(i32::from(STOPPED));
     };
-    // SAFETY: `write` and `_exit`, which `exit` is, are among the calls that a handler may make; nothing is
-    // allocated or locked, and the handler does not return to what cannot go on.
+    // SAFETY: a handler may call `write` and `_exit`, which `exit` is. The handler does not allocate or lock, and does
+    // not return to the code that failed.
     unsafe { register(SIGBUS, last_words) }.map(drop).map_err(Error::Signals)
 }
 
-/// End this program: shared memory was not set up in time. Nothing has moved.
+/// End this program: the set-up of shared memory took too long. Nothing has moved.
 pub fn stuck(limit: Duration) {
     stderr_line!(
         "rcs-run: shared memory was not set up within {} s: another program has damaged it meanwhile; \

@@ -1,4 +1,4 @@
-//! The result of a run as a page of text.
+//! The result of a run as text.
 
 use std::fmt;
 
@@ -8,10 +8,10 @@ use runtime::{
     result::{EmergencyResult, TickTimes},
 };
 
-/// Events that are printed; the rest is in the log.
+/// Number of printed events; the log has the rest.
 const EVENTS_SHOWN: usize = 10;
 
-/// The page of text: the result, all steps of the job, and remarks that have no place in JSON.
+/// The text: the result, all steps of the job, and remarks that are not in the JSON object.
 pub struct Page<'a>(pub &'a RunOutcome);
 
 impl fmt::Display for Page<'_> {

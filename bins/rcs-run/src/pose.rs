@@ -1,4 +1,4 @@
-//! `rcs-run pose`: the nine numbers of a pose, whether the arm can take it, and the form with it in a file of task data.
+//! `rcs-run pose`: the nine numbers of a pose, whether the arm can reach it, and its form in a file of task data.
 
 mod form;
 
@@ -28,9 +28,9 @@ use crate::{
     status::only_run,
 };
 
-/// Greatest coordinate, inches, and greatest angle, degrees: far beyond every arm.
+/// Limit of coordinates in inches and of angles in degrees, far beyond every arm.
 const FARTHEST: f64 = 1000.0;
-/// Print a pose, and write its form if that was asked for. Exit status 2 if the robot cannot stand there; then nothing is
+/// Print a pose, and write its form on request. Exit status 2 if the robot cannot reach the pose; then nothing is
 /// written.
 ///
 /// # Errors
@@ -63,7 +63,7 @@ fn store(data: &Path) -> Result<Store, Error> {
     Ok(loaded?.0)
 }
 
-/// Print what the arm makes of a pose; whether the robot can stand there.
+/// Print the pose and the arm's joints in it. Returns true if the robot can reach it.
 fn show(pose: &Pose, store: &Store, data: &Path, json: bool) -> Result<bool, Error> {
     let path = data.join(CELL);
     let cell =
@@ -76,7 +76,7 @@ fn show(pose: &Pose, store: &Store, data: &Path, json: bool) -> Result<bool, Err
     Ok(answered.is_usable())
 }
 
-/// The pose that is asked about.
+/// The pose that the arguments select.
 fn asked(arguments: &PoseArguments, store: &Store) -> Result<Pose, Error> {
     if let [x, y, z] = *arguments.point {
         let frame = standing([x, y, z], arguments.azimuth, arguments.tilt, arguments.roll);
@@ -106,11 +106,10 @@ fn named<'a>(name: &str, store: &'a Store) -> Result<&'a PoseRecord, Error> {
     data.pose_named(&name).and_then(|id| data.pose(id)).ok_or_else(unknown)
 }
 
-/// The frame of a tool that stands at a point (in), leans from straight down by a tilt towards an azimuth, and is turned by a
-/// roll, degrees.
+/// The frame of a tool at a point (in), tilted from straight down towards an azimuth and turned by a roll, all degrees.
 ///
 /// # Errors
-/// Which number is no place for a robot.
+/// A message about the number that is out of range.
 pub fn standing([x, y, z]: [f64; 3], azimuth: f64, tilt: f64, roll: f64) -> Result<Frame, String> {
     let given = [x, y, z, azimuth, tilt, roll];
     if let Some(found) = given.iter().find(|number| !(-FARTHEST..=FARTHEST).contains(*number)) {
@@ -125,7 +124,7 @@ pub fn standing([x, y, z]: [f64; 3], azimuth: f64, tilt: f64, roll: f64) -> Resu
     Ok(Frame { position: Vector::new(x, y, z), rotation })
 }
 
-/// Put the form into the file, and say what has changed.
+/// Write the form into the file, and print the changed lines.
 fn write(
     arguments: &PoseArguments,
     file: &PathBuf,

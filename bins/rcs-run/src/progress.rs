@@ -1,4 +1,4 @@
-//! Progress on a terminal: the line of the job that is being executed, and what each level does.
+//! Progress on a terminal: the present line of the job, and the commands of the levels.
 
 use std::{
     io::{self, IsTerminal},
@@ -11,12 +11,12 @@ use interfaces::{CommonMemory, HwsCommand};
 use levels::ladder::ProcessId;
 use runtime::{Observer, TickReport};
 
-/// Time between two pictures.
+/// Time between two updates.
 const PERIOD: Duration = Duration::from_millis(100);
-/// Levels that are shown: Task, Subtask, E-move, Prim, in the order of common memory.
+/// Number of levels shown: Task, Subtask, E-move, Prim, in the order of common memory.
 const LEVELS: usize = 4;
 
-/// The progress line of a run; without a terminal on standard error only messages are shown.
+/// The progress line of a run. If standard error is not a terminal, only messages are printed.
 pub struct Progress {
     bar: Option<ProgressBar>,
     shown: Instant,
@@ -38,7 +38,7 @@ impl Default for Progress {
 }
 
 impl Observer for Progress {
-    /// A line that stays, above the progress line.
+    /// Print a permanent line above the progress line.
     fn message(&mut self, text: &str) {
         match &self.bar {
             Some(bar) => bar.println(format!("rcs-run: {text}")),
@@ -46,7 +46,7 @@ impl Observer for Progress {
         }
     }
 
-    /// Show where the run is, at most ten times a second.
+    /// Update the progress line, at most ten times a second.
     fn tick(&mut self, report: &TickReport<'_>) {
         let Some(bar) = &self.bar else { return };
         if self.shown.elapsed() < PERIOD {
@@ -68,10 +68,10 @@ impl Drop for Progress {
     }
 }
 
-/// What Task, Subtask, E-move and Prim do.
+/// The commands of Task, Subtask, E-move and Prim as text.
 fn levels(hws: &HwsCommand, memory: &CommonMemory) -> String {
     let doing = ProcessId::ALL.iter().take(LEVELS).filter_map(|process| {
-        // All of Task's command stands in the line of the job already.
+        // The line of the job already shows all of Task's command.
         let command = match process {
             ProcessId::Task => hws.command.to_string(),
             _ => failure::command(*process, hws, memory),

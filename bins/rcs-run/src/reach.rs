@@ -1,8 +1,8 @@
-//! `rcs-run check --robot NAME`: whether the arm of another robot follows the T3's tool through all jobs, and
+//! `rcs-run check --robot NAME`: checks whether the arm of another robot follows the T3's tool through all jobs, and
 //! reaches every taught pose.
 //!
-//! The ways are those of the walk of `check`, flown again point by point. Under EGM a robot keeps the
-//! configuration in which it began; so each configuration of the start is tried, and the best one is told.
+//! The motions are those of `check`, simulated again point by point. Under EGM a robot keeps the configuration in which
+//! it began, so the check tries each configuration of the start and reports the best one.
 
 use std::{fmt, panic::resume_unwind, path::Path, thread};
 
@@ -28,47 +28,47 @@ use taskdata::load::{Job, Store};
 
 use crate::error::Error;
 
-/// What the arm reaches.
+/// Reach of the arm.
 #[derive(Debug, Serialize)]
 pub struct Reach {
     robot: String,
     arm: String,
-    /// Where EGM is to begin: the angles of the axes at the start of the jobs, degrees.
+    /// Angles of the axes at the start of the jobs, where EGM must begin, degrees.
     start_deg: Option<Axes>,
-    /// Taught poses and location points that the T3 reaches.
+    /// Number of taught poses and location points that the T3 reaches.
     poses: usize,
-    /// Those of them that the arm does not reach.
+    /// Names of those that the arm does not reach.
     poses_out_of_reach: Vec<String>,
     jobs: Vec<JobReach>,
 }
 
-/// What the arm does in a job.
+/// Result of the arm in a job.
 #[derive(Clone, Debug, Serialize)]
 struct JobReach {
     job: String,
-    /// Ways from one point to the next that it follows.
+    /// Number of motions from point to point that the arm follows.
     ways: usize,
-    /// The axis, from 1, that comes nearest to a limit, and how near, degrees.
+    /// The axis, from 1, that comes nearest to a limit, and its distance from the limit, degrees.
     axis: usize,
     margin_deg: f64,
-    /// How far the wrist always is from straight, degrees.
+    /// Smallest angle of the wrist from the straight position, degrees.
     wrist_deg: f64,
     /// Greatest speed of each axis, degrees/s.
     speeds_deg_s: Axes,
     trouble: Option<Trouble>,
 }
 
-/// Where the arm cannot follow.
+/// Place where the arm cannot follow.
 #[derive(Clone, Debug, Serialize)]
 struct Trouble {
     line: u32,
     way: String,
-    /// The tool in the work object, mm.
+    /// Position of the tool in the work object, mm.
     at_mm: [f64; 3],
     why: String,
 }
 
-/// The robot, and the cell in which it is to stand.
+/// The robot and its cell.
 struct Bench<'a> {
     placement: Placement,
     arm: Arm,
@@ -76,10 +76,10 @@ struct Bench<'a> {
 }
 
 impl Reach {
-    /// Look at all jobs and poses of a data directory that are sound.
+    /// Check all jobs and poses of a data directory that have no errors.
     ///
     /// # Errors
-    /// A file of the robot, task data or a cell that cannot be used.
+    /// If the file of the robot, the task data or the cell cannot be used.
     pub fn of(data: &Path, robot: &str) -> Result<Self, Error> {
         let path = robot_path(robot, data);
         let RobotFile { placement, arm } = RobotFile::load(&path).map_err(StartError::from)?;
@@ -114,7 +114,7 @@ impl Reach {
         })
     }
 
-    /// Everything is within reach.
+    /// True if everything is within reach.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.start_deg.is_some()
@@ -123,7 +123,7 @@ impl Reach {
     }
 }
 
-/// How good a start is: jobs that are done first, then ways, then the margin.
+/// Rating of a start: finished jobs first, then motions, then the margin.
 fn score(all: &[Vec<JobReach>], start: usize) -> f64 {
     let jobs = || all.iter().filter_map(|of_starts| of_starts.get(start));
     let done = jobs().filter(|job| job.trouble.is_none()).count();
@@ -133,12 +133,12 @@ fn score(all: &[Vec<JobReach>], start: usize) -> f64 {
 }
 
 impl Bench<'_> {
-    /// The tool in the work object, for the T3's end plate.
+    /// Pose of the tool in the work object for a pose of the T3's end plate.
     fn pose(&self, plate: &Frame) -> egm::Pose {
         self.placement.pose(plate)
     }
 
-    /// How many taught poses the T3 reaches, and which of them the arm does not.
+    /// Number of taught poses that the T3 reaches, and the names of those that the arm does not reach.
     fn poses(&self, store: &Store) -> (usize, Vec<String>) {
         let data = store.view();
         let poses = data.poses.iter().map(|pose| (pose.name, pose.frame));
@@ -159,7 +159,7 @@ impl Bench<'_> {
         (count, out)
     }
 
-    /// For each job what comes of each start.
+    /// Results per job and start.
     fn jobs(&self, data: &Path, store: &Store, starts: &[Axes]) -> Vec<Vec<JobReach>> {
         let known = &Known::default();
         let jobs: Vec<_> = jobs(data).iter().filter_map(|path| Job::load(path, store).ok()).collect();
@@ -202,7 +202,7 @@ impl Bench<'_> {
     }
 }
 
-/// The arm on its way through a job.
+/// The arm in motion through a job.
 struct Follower {
     track: Track,
     ways: usize,
@@ -214,7 +214,7 @@ impl Follower {
         Self { track: Track::begin(arm, axes), ways: 0, trouble: None }
     }
 
-    /// A tick; `place` says in which line and on which way.
+    /// Advance by a tick; `place` gives the line of the job and the name of the motion, for messages.
     fn go(&mut self, arm: &Arm, tool: &egm::Pose, place: impl Fn() -> (u32, String)) {
         if self.trouble.is_some() {
             return;
@@ -272,7 +272,7 @@ impl fmt::Display for Reach {
             }?;
         }
         let speeds = self.jobs.iter().flat_map(|job| job.speeds_deg_s);
-        // Rounded, and without a minus before 0.
+        // Rounded, and without the sign of a negative zero.
         let start = start.map(|degrees| format!("{:.1}", (degrees * 10.0).round() / 10.0 + 0.0)).join(", ");
         writeln!(f, "  jStart for the RAPID program: [{start}]")?;
         writeln!(

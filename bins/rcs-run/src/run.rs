@@ -1,4 +1,4 @@
-//! `rcs-run run`: a job, from the first tick to the result.
+//! `rcs-run run`: runs a job, from the first tick to the result.
 
 use std::{env, io, process::ExitCode, sync::Arc};
 
@@ -16,13 +16,13 @@ use crate::{
     progress::Progress,
 };
 
-/// Name of a run that is shown on the console, before the number of the process.
+/// Name of a run with a console, followed by the number of the process.
 const CONSOLE: &str = "console";
 
 /// Run a job and print its result.
 ///
 /// # Errors
-/// [`Error`] if the run could not begin. A job that fails is no error here, but an exit status.
+/// [`Error`] if the run could not begin. A failed job is not an error but an exit status.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let stop = interruption()?;
     let on_stuck = Some(memory_fault::stuck as OnStuck);
@@ -31,7 +31,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let program = env::current_exe()?;
     let config =
         RunConfig { stop: Arc::clone(&stop), on_stuck, program, name: name.clone(), ..arguments.config() };
-    // The console has the terminal: what a run says while it goes on stands in its log, too.
+    // The console uses the terminal; the log of the run contains its messages, too.
     let observer: Box<dyn Observer> =
         if console.is_some() { Box::new(()) } else { Box::new(Progress::default()) };
     let run = Run::new(config, observer)?;

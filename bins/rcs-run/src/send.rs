@@ -1,4 +1,4 @@
-//! `rcs-run send`: asks something of a run that goes on, as an operator.
+//! `rcs-run send`: sends requests to a run in progress, as an operator.
 
 use std::{
     process::ExitCode,
@@ -17,10 +17,10 @@ use crate::{
     status::only_run,
 };
 
-/// Time between two signs of life: well within what a held stick needs.
+/// Time between two keep-alive messages, short enough for a deflected stick.
 const ALIVE: Duration = Duration::from_millis(100);
 
-/// Begin a session with a run of this user, or with one elsewhere.
+/// Open a session with a run of this user, or with a remote run.
 fn connect(arguments: &SendArguments) -> Result<Client, Error> {
     let Some(address) = &arguments.connect else {
         let run = arguments.run.clone().map_or_else(only_run, Ok)?;
@@ -32,11 +32,11 @@ fn connect(arguments: &SendArguments) -> Result<Client, Error> {
     Ok(Client::over(stream, carrier, &arguments.name)?)
 }
 
-/// Send one request after the other, and print the answers. A refused request ends this with exit status 1.
+/// Send the requests in order, and print the answers. A refused request ends the command with exit status 1.
 ///
 /// # Errors
-/// [`Error::Operator`] if the run takes no operator, [`Error::Network`] if it cannot be reached at its address,
-/// [`Error::SharedMemory`] and [`Error::WhichRun`] if it is not clear which run is meant.
+/// [`Error::Operator`] if the run accepts no operator, [`Error::Network`] if its address cannot be reached,
+/// [`Error::SharedMemory`] and [`Error::WhichRun`] if the run cannot be determined.
 pub fn send(arguments: &SendArguments) -> Result<ExitCode, Error> {
     let mut client = connect(arguments)?;
     for line in &arguments.lines {

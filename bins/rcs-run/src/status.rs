@@ -1,4 +1,4 @@
-//! `rcs-run status`: what a run that goes on is doing, read from its shared memory.
+//! `rcs-run status`: prints the state of a run in progress, read from its shared memory.
 
 use std::process::ExitCode;
 
@@ -11,11 +11,11 @@ use os_io::console;
 
 use crate::{answer, cli::StatusArguments, error::Error, memory_fault::stuck};
 
-/// Look at a run and print.
+/// Read the state of a run, and print it.
 ///
 /// # Errors
-/// [`Error::SharedMemory`] if there is no such run, or it cannot be read; [`Error::WhichRun`] if there are several
-/// and none was named.
+/// [`Error::SharedMemory`] if there is no such run or it cannot be read; [`Error::WhichRun`] if there are several and
+/// none is named.
 pub fn status(arguments: &StatusArguments) -> Result<ExitCode, Error> {
     let name = match &arguments.run {
         Some(name) => name.clone(),
@@ -31,7 +31,7 @@ pub fn status(arguments: &StatusArguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The run that goes on, if there is one only.
+/// The run in progress, if there is exactly one.
 ///
 /// # Errors
 /// [`Error::SharedMemory`], [`Error::WhichRun`].

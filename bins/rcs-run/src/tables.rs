@@ -1,8 +1,8 @@
-//! `rcs-run tables`: every decision table as Markdown, with the meaning of what stands in it.
+//! `rcs-run tables`: every decision table as Markdown, with explanations of its names.
 //!
-//! The steps of a table are explained below it, and so are state variables and actions that no other table of
-//! the process has. What several tables share is explained once, under *Values* at the end of the process. A
-//! table that an earlier process has too is not printed again.
+//! Each table is followed by its steps, and by the state variables and actions that no other table of the process has.
+//! What several tables share is explained once, under *Values* at the end of the process. A table that an earlier
+//! process already has is not printed again.
 
 #[cfg(test)]
 mod tests;
@@ -18,7 +18,7 @@ use rcs_core::{
 
 use crate::error::Error;
 
-/// What the reader has to know of the form.
+/// Explanation of the form of the tables.
 const HEAD: &str = "\
 # Decision tables
 
@@ -93,7 +93,7 @@ fn append_process(text: &mut String, process: &ProcessInfo, earlier: &[ProcessIn
     }
 }
 
-/// A table, and the meaning of what no other table has.
+/// Append a table, with the state variables and actions that only it has.
 fn append_table(text: &mut String, table: &'static Table, own: &[&'static Table]) {
     for line in table.doc {
         let _ = writeln!(text, "{}", prose(line));
@@ -101,7 +101,7 @@ fn append_table(text: &mut String, table: &'static Table, own: &[&'static Table]
     let _ = writeln!(text, "\nSource: `{}:{}`\n", table.file, table.line);
     let mut last: Option<&Row> = None;
     let rows = table.rows.iter().map(|row| {
-        // The step stands where it changes, as in the source.
+        // Print the step only where it changes, as in the source.
         let steps = match (last.replace(row), row.steps) {
             (Some(before), steps) if before.steps == steps => String::new(),
             (_, []) => "any".to_owned(),
@@ -132,21 +132,21 @@ fn append_table(text: &mut String, table: &'static Table, own: &[&'static Table]
     alone.only(table).append(text);
 }
 
-/// What a row asks of the variables: `held: Nothing or Other, vision: Needed`.
+/// Conditions of a row: `held: Nothing or Other, vision: Needed`.
 fn conditions(row: &Row) -> String {
     let asked = row.when.iter().map(|asked| format!("{}: {}", asked.variable, asked.values.join(" or ")));
     let asked: Vec<String> = asked.collect();
     if asked.is_empty() { "always".to_owned() } else { asked.join(", ") }
 }
 
-/// Tables that have the same state variables, and tables that have the same actions.
+/// Groups of tables with the same state variables, and of tables with the same actions.
 struct Groups {
     variables: Vec<Vec<&'static Table>>,
     actions: Vec<Vec<&'static Table>>,
 }
 
 impl Groups {
-    /// The groups of as many tables as are wanted.
+    /// The groups whose number of tables is `wanted`.
     fn of(tables: &[&'static Table], wanted: impl Fn(usize) -> bool) -> Self {
         let group = |same: fn(&Table, &Table) -> bool| {
             let mut groups: Vec<Vec<&'static Table>> = Vec::new();
@@ -165,7 +165,7 @@ impl Groups {
         }
     }
 
-    /// The groups in which a table is.
+    /// The groups that contain a table.
     fn only(mut self, table: &Table) -> Self {
         let holds = |group: &Vec<&'static Table>| group.iter().any(|other| std::ptr::eq(*other, table));
         self.variables.retain(holds);
@@ -173,14 +173,14 @@ impl Groups {
         self
     }
 
-    /// Nothing of these tables is explained.
+    /// True if these groups have nothing to explain.
     fn is_empty(&self) -> bool {
         let named =
             |group: &[&'static Table]| variables(group).next().is_some() || actions(group).next().is_some();
         !self.variables.iter().chain(&self.actions).any(|group| named(group))
     }
 
-    /// The meaning of variables, actions, and what actions carry.
+    /// Append the explanation of variables, actions, and the arguments of actions.
     fn append(&self, text: &mut String) {
         for group in &self.variables {
             append_variables(text, group);
@@ -195,7 +195,7 @@ fn rows(tables: &[&'static Table]) -> impl Iterator<Item = &'static Row> {
     tables.iter().flat_map(|table| table.rows)
 }
 
-/// The variables for which tables with the same variables ask.
+/// The variables that the conditions of a group of tables use.
 fn variables(tables: &[&'static Table]) -> impl Iterator<Item = &'static Variable> {
     let all = tables.first().map_or(&[][..], |table| table.variables);
     all.iter().filter(move |variable| {
@@ -203,7 +203,7 @@ fn variables(tables: &[&'static Table]) -> impl Iterator<Item = &'static Variabl
     })
 }
 
-/// The actions that tables with the same actions name.
+/// The actions that the rows of a group of tables use.
 fn actions(tables: &[&'static Table]) -> impl Iterator<Item = &'static ActionText> {
     let all = tables.first().map_or(&[][..], |table| table.actions);
     all.iter().filter(move |action| rows(tables).any(|row| row.action == action.name))
@@ -264,18 +264,17 @@ fn append_values(
     }
 }
 
-/// What a value means: its doc comment.
+/// The meaning of a value: its doc comment.
 fn meaning(value: &VariantSchema) -> String {
     prose(value.doc)
 }
 
-/// What an argument means: its text if that is a sentence, as people read it in the log; else its doc
-/// comment.
+/// The meaning of an argument: its printed text if that is a sentence, else its doc comment.
 fn sentence(value: &VariantSchema) -> String {
     if value.text.contains(' ') { value.text.to_owned() } else { meaning(value) }
 }
 
-/// A doc comment without its links, which lead into the sources: ``[`Pose`](crate::pose)`` is `Pose`.
+/// A doc comment without links into the sources: ``[`Pose`](crate::pose)`` becomes `Pose`.
 fn prose(doc: &str) -> String {
     let (mut text, mut rest) = (String::new(), doc.trim());
     while let Some((before, bracket)) = rest.split_once('[') {
@@ -299,9 +298,9 @@ fn prose(doc: &str) -> String {
     text + rest
 }
 
-/// A table whose columns stand under one another in the source too. The number of a row is on the right.
+/// A Markdown table with aligned columns in the source. The column of row numbers is aligned to the right.
 fn grid<const N: usize>(text: &mut String, head: [&str; N], rows: Vec<[String; N]>) {
-    // A bar would end the cell.
+    // A vertical bar would end the cell.
     let cells = |row: [String; N]| row.map(|cell| cell.replace('|', "\\|"));
     let rows: Vec<[String; N]> = rows.into_iter().map(cells).collect();
     let lengths = |column: usize| rows.iter().map(move |row| row[column].chars().count());

@@ -1,4 +1,4 @@
-//! The ways of jobs and stored routes in `rcs-run check`: walked before anything moves ([`paths`]), and
+//! The motions of jobs and stored routes in `rcs-run check`, walked through before anything moves ([`paths`]), and
 //! `check --explain-job`.
 
 use std::{panic::resume_unwind, path::Path, process::ExitCode, thread};
@@ -26,8 +26,8 @@ use crate::{
     long_json,
 };
 
-/// What is wrong with the ways of jobs, in their order, and with the stored routes. `known` has flights in the same
-/// cell.
+/// The findings in the motions of jobs, in their order, and in the stored routes. `known` contains motions that were
+/// already simulated in the same cell.
 pub fn of_all(
     jobs: &[Job],
     store: &Store,
@@ -81,7 +81,7 @@ fn line(source: &Source, number: u32) -> At {
     At { source: 0, start: short(start), length: short(length) }
 }
 
-/// A job, explained, for scripts.
+/// The motions of a job as JSON.
 #[derive(Serialize)]
 struct Explained<'a> {
     #[serde(flatten)]
@@ -89,10 +89,10 @@ struct Explained<'a> {
     never_checked: [&'static str; NOT_CHECKED.len()],
 }
 
-/// Print all lines of a job with their ways. Exit status 2 if a way is missing or cannot be flown.
+/// Print all lines of a job with their motions. Exit status 2 if a motion is missing or impossible.
 ///
 /// # Errors
-/// Task data, a cell or a job that cannot be read.
+/// If the task data, the cell or the job cannot be read.
 pub fn explain(arguments: &CheckArguments, name: &str) -> Result<ExitCode, Error> {
     let unusable = |what: String| move |report: Box<Diagnostics>| StartError::Data { what, report };
     let data = &arguments.data;

@@ -1,9 +1,8 @@
-//! The pieces of a log file, which may be damaged.
+//! Splits a log file, which may be damaged, into pieces.
 //!
-//! Every length in the file is checked against the size of the file before it is used. A piece that cannot be read ends
-//! at the next record that can: a chunk or an attachment with the right checksum, or metadata of this program. The
-//! total of decompressed bytes is bounded by the size of the file, so that reading takes memory and time in proportion
-//! to it.
+//! Every length in the file is checked against the size of the file before it is used. An unreadable piece ends at the
+//! next readable record: a chunk or an attachment with the right checksum, or metadata of this program. The total of
+//! decompressed bytes is limited in proportion to the size of the file, and with it memory and time of reading.
 
 use std::ops::Range;
 
@@ -15,35 +14,35 @@ use mcap::{
 
 use crate::writer::{END, RUN};
 
-/// Bytes of a record before its body: operation code and length.
+/// Size of a record's header, bytes: operation code and length.
 const HEAD: usize = 9;
-/// Largest chunk, decompressed, bytes: the recorder closes a chunk at a quarter of a megabyte.
+/// Largest decompressed size of a chunk, bytes: the recorder closes a chunk at a quarter of a megabyte.
 const CHUNK: u64 = 16 << 20;
-/// Largest ratio of decompressed bytes to bytes of the file: the recorder's chunks have six to ten.
+/// Largest ratio of decompressed bytes to bytes of the file: the recorder's chunks have a ratio of six to ten.
 const EXPANSION: u64 = 64;
-/// Decompressed bytes that are always allowed, also for a small file.
+/// Limit of decompressed bytes for small files.
 const LEAST: u64 = 64 << 20;
 
 /// A piece of the file.
 pub enum Piece<'a> {
     /// A record outside the chunks.
     Record(Record<'a>),
-    /// A chunk that can be read, with the head of its record.
+    /// A readable chunk, including its record header.
     Chunk(Range<usize>),
-    /// Bytes that cannot be read.
+    /// Unreadable bytes.
     Damaged(Range<usize>),
 }
 
-/// The pieces of a file, in their order.
+/// The pieces of a file, in order.
 pub struct Pieces<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Bytes that may still be decompressed or summed.
+    /// Number of bytes that may still be decompressed or checksummed.
     left: u64,
 }
 
 impl<'a> Pieces<'a> {
-    /// The pieces of a file that begins as an MCAP file does.
+    /// The pieces of a file that begins with the magic of MCAP.
     ///
     /// # Errors
     /// [`McapError::BadMagic`] if it does not.
@@ -55,7 +54,7 @@ impl<'a> Pieces<'a> {
         Ok(Self { bytes, at: MAGIC.len(), left: size.saturating_mul(EXPANSION).saturating_add(LEAST) })
     }
 
-    /// The record that begins at a place, and where it ends; `None` if it cannot be read.
+    /// The record that begins at a position, and its end; `None` if it is unreadable.
     fn piece(&mut self, at: usize) -> Option<(Piece<'a>, usize)> {
         let (opcode, end) = frame(self.bytes, at)?;
         let body = self.bytes.get(at.checked_add(HEAD)?..end)?;
@@ -70,7 +69,7 @@ impl<'a> Pieces<'a> {
                 self.spend(u64::try_from(body.len()).ok()?)?;
                 Piece::Record(parse(opcode, body)?)
             }
-            // The last record: behind it the file ends as it began.
+            // The last record: after it the file ends with the same magic as at its beginning.
             op::FOOTER if self.bytes.get(end..) != Some(MAGIC) => return None,
             op::HEADER..=op::DATA_END => Piece::Record(parse(opcode, body)?),
             _ => return None,
@@ -83,7 +82,7 @@ impl<'a> Pieces<'a> {
         Some(())
     }
 
-    /// The next position from `from` on at which a record certainly begins; the end of the file if there is none.
+    /// The next position from `from` at which a record certainly begins; the end of the file if there is none.
     fn next_good(&mut self, from: usize) -> usize {
         let surely = |piece: &Piece<'_>| match piece {
             Piece::Chunk(_) => true,
@@ -119,7 +118,7 @@ impl<'a> Iterator for Pieces<'a> {
     }
 }
 
-/// Operation code and end of the record that would begin at a place; `None` if it would be longer than the file.
+/// Operation code and end of a record that would begin at a position; `None` if it would be longer than the file.
 fn frame(bytes: &[u8], at: usize) -> Option<(u8, usize)> {
     let head = bytes.get(at..at.checked_add(HEAD)?)?;
     let (opcode, length) = head.split_first()?;
@@ -128,16 +127,16 @@ fn frame(bytes: &[u8], at: usize) -> Option<(u8, usize)> {
     (end <= bytes.len()).then_some((*opcode, end))
 }
 
-/// Parse a record of a kind that is used; of others only the bytes are kept. The library allocates memory for a text
-/// before it checks its length, so the lengths are checked here.
+/// Parse a record of a kind that is used; of others keep only the bytes. The library allocates memory for a text before
+/// it checks the length, so the lengths are checked here.
 fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     match opcode {
         op::METADATA => texts(body, text(body, 0)?)?,
-        // A number, name, encoding, the schema.
+        // Number, name, encoding, schema.
         op::SCHEMA => text(body, text(body, text(body, 2)?)?)?,
         // Two numbers, topic, encoding, metadata.
         op::CHANNEL => texts(body, text(body, text(body, 4)?)?)?,
-        // Two times, name, media type, length of the data; behind the data the checksum.
+        // Two times, name, media type, length of the data, data, checksum.
         op::ATTACHMENT => body.get(text(body, text(body, 16)?)?..)?.len().checked_sub(12)?,
         op::MESSAGE | op::FOOTER => 0,
         opcode => return Some(Record::Unknown { opcode, data: body.into() }),
@@ -145,7 +144,7 @@ fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     parse_record(opcode, body).ok()
 }
 
-/// Where a text ends that begins with its length.
+/// End of a text that begins with its length.
 fn text(body: &[u8], from: usize) -> Option<usize> {
     let begin = from.checked_add(4)?;
     let length = body.get(from..begin)?.try_into().map(u32::from_le_bytes).ok()?;
@@ -153,7 +152,7 @@ fn text(body: &[u8], from: usize) -> Option<usize> {
     (end <= body.len()).then_some(end)
 }
 
-/// Where pairs of texts end that begin with their length.
+/// End of a list of pairs of texts that begins with its length.
 fn texts(body: &[u8], from: usize) -> Option<usize> {
     let (mut at, end) = (from.checked_add(4)?, text(body, from)?);
     while at < end {
@@ -162,10 +161,10 @@ fn texts(body: &[u8], from: usize) -> Option<usize> {
     (at == end).then_some(end)
 }
 
-/// The channels and messages of a chunk, which is given with the head of its record.
+/// Pass each channel and message of a chunk, given with its record header, to `each`.
 ///
 /// # Errors
-/// [`McapError`] if the chunk is too large, has no checksum or the wrong one, or if a record in it cannot be read.
+/// [`McapError`] if the chunk is too large, has no checksum or a wrong one, or contains an unreadable record.
 pub fn decode<'a>(chunk: &'a [u8], mut each: impl FnMut(Record<'_>)) -> McapResult<()> {
     let number = |range: Range<usize>| chunk.get(range).map(<[u8]>::to_vec).unwrap_or_default();
     let size = number(HEAD + 16..HEAD + 24).try_into().map_or(u64::MAX, u64::from_le_bytes);

@@ -1,9 +1,9 @@
-//! Reads a log, also an incomplete or damaged one.
+//! Reads a log, which may be incomplete or damaged.
 //!
-//! A program that was killed leaves a file without an end, perhaps with half a record in it; a file can be damaged
-//! anywhere. Everything that can be read is read ([`crate::pieces`]). Images are differences, so after a damaged chunk
-//! the ticks continue with the next whole images, which the recorder writes once a second. Missing parts are reported,
-//! and are not an error.
+//! A killed program leaves a file without an end, possibly with an incomplete record; a file can be damaged anywhere.
+//! Everything that is readable is read ([`crate::pieces`]). Images are differences, so after a damaged chunk the ticks
+//! continue with the next whole images, which the recorder writes once a second. Missing parts are reported, and are
+//! not an error.
 
 use std::{
     collections::BTreeMap,
@@ -33,7 +33,7 @@ use crate::{
     writer::{Codecs, END, LAYOUT, LOG_TOPIC, REPLAY, RUN, Timing, replay_field},
 };
 
-/// Bytes of the mark of an MCAP file.
+/// Size of the magic of an MCAP file, bytes.
 const HEAD: u64 = 8;
 
 /// A log that was read.
@@ -41,42 +41,42 @@ pub struct Log {
     path: PathBuf,
     bytes: Vec<u8>,
     segments: Vec<Segment>,
-    /// Numbers of the channels by topic.
+    /// Channel numbers by topic.
     channels: BTreeMap<String, u16>,
     /// Channels and schemas of the file, by number.
     described: Described,
     /// Metadata of the start: facts of the run.
     pub run: BTreeMap<String, String>,
-    /// Metadata of the end: how the run ended; none if the program was killed.
+    /// Metadata of the end: how the run ended; `None` if the program was killed.
     pub end: Option<BTreeMap<String, String>>,
-    /// Files attached to the log, in their order.
+    /// Files attached to the log, in order.
     pub attachments: Vec<Attachment>,
-    /// The file has its end. If not, up to a second before the end of the run is missing.
+    /// True if the file has its end. If not, up to a second before the end of the run is missing.
     pub complete: bool,
 }
 
-/// A part of the file that has messages.
+/// A part of the file with messages.
 enum Segment {
     Chunk(Range<usize>),
     Damaged(Range<usize>),
 }
 
-/// A tick as it was recorded.
+/// A recorded tick.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoggedTick {
     /// The tick.
     pub tick: Tick,
-    /// Ticks that are missing before it.
+    /// Number of missing ticks before it.
     pub gap: u64,
     /// Byte image of [`interfaces::ExternalInputs`].
     pub external: Vec<u8>,
     /// Byte image of [`interfaces::CommonMemory`] after the tick.
     pub memory: Vec<u8>,
-    /// Byte image of [`levels::ladder::LadderState`] after the tick, where it was recorded.
+    /// Byte image of [`levels::ladder::LadderState`] after the tick, if recorded.
     pub state: Option<Vec<u8>>,
-    /// Fingerprint of the simulated cell before the tick, where it was recorded.
+    /// Digest of the simulated cell before the tick, if recorded.
     pub world: Option<u64>,
-    /// Times of the tick, where they were recorded.
+    /// Times of the tick, if recorded.
     pub timing: Option<Timing>,
 }
 
@@ -103,7 +103,7 @@ impl Log {
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let unreadable = |source| ReadError::Unreadable { path: path.to_owned(), source };
         let mut file = files::open(path).map_err(unreadable)?;
-        // The first bytes tell whether the rest, which may be long, is worth its memory.
+        // The magic is checked before the rest, which may be long, is read into memory.
         let mut bytes = Vec::new();
         file.by_ref().take(HEAD).read_to_end(&mut bytes).map_err(unreadable)?;
         if bytes == mcap::MAGIC {
@@ -133,7 +133,7 @@ impl Log {
         for piece in pieces {
             match piece {
                 Piece::Chunk(range) => {
-                    // It has been decoded once: there is no error any more.
+                    // It has been decoded once without an error.
                     let _ = decode(bytes.get(range.clone()).unwrap_or_default(), |record| log.note(&record));
                     log.segments.push(Segment::Chunk(range));
                 }
@@ -149,11 +149,11 @@ impl Log {
                     log.attachments.push(Attachment { name, media_type, data: data.into_owned() });
                 }
                 Piece::Record(Record::Footer(_)) => log.complete = true,
-                // Behind the data the channels stand once more.
+                // The channels are repeated after the data.
                 Piece::Record(record) => log.note(&record),
             }
         }
-        // What a program that was killed has half written is no damage.
+        // An incomplete record at the end, as a killed program leaves it, is not damage.
         let half =
             |segment: &mut Segment| matches!(segment, Segment::Damaged(range) if range.end == bytes.len());
         if !log.complete {
@@ -196,13 +196,13 @@ impl Log {
         })
     }
 
-    /// Bytes of the file.
+    /// Size of the file, bytes.
     #[must_use]
     pub fn size(&self) -> usize {
         self.bytes.len()
     }
 
-    /// Refuse a log whose byte images have another meaning in this program.
+    /// Check that the byte images have the layout of this program.
     ///
     /// # Errors
     /// [`ReadError::OtherLayout`].
@@ -216,7 +216,7 @@ impl Log {
         Err(ReadError::OtherLayout { expected, found, version })
     }
 
-    /// An attachment by its name.
+    /// The attachment with a name.
     #[must_use]
     pub fn attachment(&self, name: &str) -> Option<&Attachment> {
         self.attachments.iter().find(|attachment| attachment.name == name)
@@ -277,13 +277,13 @@ impl Log {
         self.messages(OPERATOR).map(|(tick, data)| OperatorLine::decode(tick, &data))
     }
 
-    /// The file that was read.
+    /// Path of the file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The digests of the simulated cell at the start of each tick; none of a real cell.
+    /// The digests of the simulated cell at the start of each tick; empty for a real cell.
     pub fn cell_digests(&self) -> impl Iterator<Item = (Tick, u64)> {
         self.ticks().map_while(Result::ok).filter_map(|logged| Some((logged.tick, logged.world?)))
     }
@@ -299,12 +299,12 @@ impl Log {
         self.described.tell(tap);
     }
 
-    /// Give all messages to a tap, in the order of the file. `before` gets the time of each message before it is given,
-    /// nanoseconds since 1970, and may wait. Only one chunk is decompressed at a time.
+    /// Pass all messages to a tap, in the order of the file. `before` gets the time of each message before it is
+    /// passed, nanoseconds since 1970, and may wait. Only one chunk is decompressed at a time.
     pub fn play(&self, tap: &mut dyn Tap, mut before: impl FnMut(u64)) {
         for segment in &self.segments {
             let Segment::Chunk(range) = segment else { continue };
-            // `from_bytes` has decoded it: there is no error.
+            // `from_bytes` has decoded it without an error.
             let _ = decode(self.bytes.get(range.clone()).unwrap_or_default(), |record| {
                 if let Record::Message { header, data } = record {
                     before(header.log_time);
@@ -325,7 +325,7 @@ impl Log {
         self.segments.iter().flat_map(move |segment| {
             let Segment::Chunk(range) = segment else { return vec![None] };
             let mut found = Vec::new();
-            // `from_bytes` has decoded it: there is no error.
+            // `from_bytes` has decoded it without an error.
             let _ = decode(self.bytes.get(range.clone()).unwrap_or_default(), |record| match record {
                 Record::Message { header, data } if Some(header.channel_id) == id => {
                     found.push(Some((Tick(u64::from(header.sequence)), data.into_owned())));
@@ -337,14 +337,14 @@ impl Log {
     }
 }
 
-/// A message on [`REPLAY`] has whole images.
+/// True if a message on [`REPLAY`] contains whole images.
 fn is_full(data: &[u8]) -> bool {
     Fields(data).any(|(field, value)| {
         matches!(value, Value::Number(full) if field == u64::from(replay_field::FULL) && full != 0)
     })
 }
 
-/// Step from one recorded tick to the next; false if the message does not fit.
+/// Apply the message of the next tick to the last tick; false if the message does not fit.
 fn advance(codecs: &Codecs, last: &mut LoggedTick, data: &[u8]) -> bool {
     let (mut full, mut sound) = (false, true);
     (last.state, last.world, last.timing) = (None, None, None);

@@ -1,13 +1,13 @@
-//! The run's side of the log: a bounded ring, from which a thread writes the file.
+//! The run's side of the log: a bounded ring buffer, and a thread that writes its entries into the file.
 //!
-//! In a tick the recorder copies three records into memory that was allocated before the first tick: it allocates
-//! nothing, and in a real-time run it never waits. If the ring is full, the tick is counted as lost, and the count is
-//! recorded with the next tick that has room. In a run in fast clock the recorder waits instead, and no tick is lost.
+//! In a tick the recorder copies three records into memory that was allocated before the first tick. It allocates
+//! nothing, and in a real-time run it never waits: if the ring is full, the tick is counted as lost, and the count is
+//! recorded with the next tick that has room. In a run in fast clock the recorder waits instead, and loses no tick.
 //!
-//! The writer thread ends at the first error. Then the ring has no reader, the recorder returns at once from
-//! every call, and the error is what [`Recorder::finish`] returns: a full disk ends the log, never the run.
+//! The writer thread ends at the first error. The ring then has no reader, and the recorder returns at once from every
+//! call. [`Recorder::finish`] returns the error: a full disk ends the log, never the run.
 //!
-//! Make a recorder before the thread of the ticks gets its real-time priority: the writer inherits the priority of the
+//! Start a recorder before the thread of the ticks gets its real-time priority: the writer inherits the priority of the
 //! calling thread.
 
 use std::{
@@ -34,23 +34,23 @@ use crate::{
     writer::{FULL_SET, LogWriter, TickRecord, Timing, Written},
 };
 
-/// Ticks that the ring holds: ten seconds of real time.
+/// Capacity of the ring, ticks: ten seconds of real time.
 const RING: usize = 256;
-/// States that the ring holds; one a second.
+/// Capacity of the ring of states, of which there is one per second.
 const STATE_RING: usize = 32;
-/// Notes that the ring holds.
+/// Capacity of the ring of notes.
 const NOTE_RING: usize = 1024;
-/// How long the writer sleeps when there is nothing to write: an eighth of a tick.
+/// Sleep of the writer when there is nothing to write: an eighth of a tick.
 const IDLE: Duration = Duration::from_millis(5);
-/// How long a run in fast clock sleeps when the ring is full.
+/// Sleep of a run in fast clock when the ring is full.
 const FULL: Duration = Duration::from_micros(100);
-/// Files that the ring holds.
+/// Capacity of the ring of files.
 const FILE_RING: usize = 64;
-/// Pictures of the camera and lists of contacts that the ring holds.
+/// Capacity of the ring of camera pictures and lists of contacts.
 const SHOWN_RING: usize = 256;
-/// Lines of operators that the ring holds.
+/// Capacity of the ring of operators' lines.
 const OPERATOR_RING: usize = 256;
-/// Most characters of a note; a longer one is cut.
+/// Longest text of a note, bytes; a longer one is cut.
 pub const NOTE: usize = 192;
 
 /// Behaviour when the ring is full.
@@ -58,7 +58,7 @@ pub const NOTE: usize = 192;
 pub enum Pace {
     /// The run waits: for runs in fast clock.
     Wait,
-    /// The tick is not recorded, and counted: for runs in real time.
+    /// The tick is not recorded, but counted: for runs in real time.
     Drop,
 }
 
@@ -72,7 +72,7 @@ struct Note {
     text: [u8; NOTE],
 }
 
-/// The beginning of a text that fits, in whole characters.
+/// The first part of a text that fits, in whole characters.
 fn clipped<const N: usize>(text: &str) -> [u8; N] {
     let mut end = text.len().min(N);
     while !text.is_char_boundary(end) {
@@ -87,7 +87,7 @@ fn text_of(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned()
 }
 
-/// The run's end of the ring.
+/// The run's end of the rings.
 pub struct Recorder {
     ticks: Producer<TickRecord>,
     states: Producer<(Tick, LadderState)>,
@@ -106,38 +106,38 @@ pub struct Recorder {
     thread: JoinHandle<Result<Written, RecordError>>,
 }
 
-/// Counts of entries that did not fit into the ring.
+/// Number of entries that did not fit into the rings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lost {
-    /// Ticks: the run cannot be replayed across them.
+    /// Ticks. The run cannot be replayed across them.
     pub ticks: u64,
     /// Frames of the cell.
     pub frames: u64,
     /// Lines for `/log`.
     pub notes: u64,
-    /// Files of the run, such as reloads: without them it cannot be replayed to the end.
+    /// Files of the run, such as reloads. Without them the run cannot be replayed to the end.
     pub files: u64,
     /// Pictures of the camera, and lists of contacts.
     pub shown: u64,
-    /// Requests of operators: without them the inputs cannot be replayed.
+    /// Requests of operators. Without them the inputs cannot be replayed.
     pub operators: u64,
 }
 
 /// Result of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Summary {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
-    /// Ticks in it.
+    /// Number of ticks in the file.
     pub ticks: u64,
     /// Lost entries.
     pub lost: Lost,
-    /// Bytes of the file.
+    /// Size of the file, bytes.
     pub bytes: u64,
 }
 
 impl Recorder {
-    /// Claim a file, with its directory if there is none, and start the writer.
+    /// Claim a file, creating its directory if necessary, and start the writer.
     ///
     /// # Errors
     /// As [`LogFile::claim`] and [`Recorder::start_in`].
@@ -148,7 +148,7 @@ impl Recorder {
     /// Empty the file and start the writer. A tap gets the same messages as the file.
     ///
     /// # Errors
-    /// [`RecordError`] if the file cannot be emptied, or its head cannot be written.
+    /// [`RecordError`] if the file cannot be emptied, or its header cannot be written.
     pub fn start_in(
         mut file: LogFile,
         pace: Pace,
@@ -216,7 +216,8 @@ impl Recorder {
 
     /// Record a line for `/log` about an event; call it before [`Recorder::tick`] of the same tick.
     ///
-    /// The writer takes notes when it reaches their tick, so this must not wait for room: it could wait for ever.
+    /// The writer takes a note only when it reaches the note's tick. So this call must not wait for room: it could wait
+    /// forever.
     pub fn note(&mut self, tick: Tick, level: Level, source: &str, code: &'static str, text: &str) {
         let note = Note { tick, level, source: clipped(source), code, text: clipped(text) };
         if !has_room(&self.notes, Pace::Drop) || self.notes.push(note).is_err() {
@@ -225,7 +226,7 @@ impl Recorder {
     }
 
     /// Record a file of the run, such as a reload of task data; call it before [`Recorder::tick`] of the tick from
-    /// which it is valid. The caller allocates the file outside of the tick.
+    /// which it is valid. The caller allocates the file outside the tick.
     pub fn attach(&mut self, tick: Tick, attachment: Attachment) {
         if !has_room(&self.files, self.pace) || self.files.push((tick, attachment)).is_err() {
             self.lost.files += 1;
@@ -239,8 +240,8 @@ impl Recorder {
         }
     }
 
-    /// Record a request of an operator; call it before [`Recorder::tick`] of the tick that sees it first. The caller
-    /// allocates the text outside of the tick.
+    /// Record a request of an operator; call it before [`Recorder::tick`] of the first tick that sees it. The caller
+    /// allocates the text outside the tick.
     pub fn operator(&mut self, line: OperatorLine) {
         if !has_room(&self.operators, Pace::Drop) || self.operators.push(line).is_err() {
             self.lost.operators += 1;
@@ -253,8 +254,8 @@ impl Recorder {
         self.timing = Some(timing);
     }
 
-    /// Record inputs and outputs of the processes in a tick. `state` is called for their states with the first tick,
-    /// once a second, and after a gap.
+    /// Record inputs and outputs of the processes in a tick. `state` is called for their states in the first tick, once
+    /// a second, and after a gap.
     pub fn tick(
         &mut self,
         tick: Tick,
@@ -268,7 +269,7 @@ impl Recorder {
             return;
         }
         let due = self.last_state.is_none_or(|last| tick.since(last) >= FULL_SET);
-        // The states go first: a tick in the ring means that its states are there.
+        // The states are pushed first: when a tick is in the ring, its states are, too.
         if (due || self.gap > 0)
             && has_room(&self.states, self.pace)
             && self.states.push((tick, state())).is_ok()
@@ -288,8 +289,8 @@ impl Recorder {
         self.lost
     }
 
-    /// Ticks that are handed over and that the writer has not yet taken: more than a few only if the machine
-    /// does not let it run.
+    /// Number of ticks in the ring that the writer has not taken yet: more than a few only if the system does not
+    /// schedule the writer.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.ticks.buffer().capacity() - self.ticks.slots()
@@ -298,13 +299,13 @@ impl Recorder {
     /// Wait until everything is written, and end the log.
     ///
     /// # Errors
-    /// The error that ended the log before the run.
+    /// The error that ended the log before the end of the run.
     pub fn finish(self, end: End) -> Result<Summary, RecordError> {
         let Self {
             ticks, states, cells, notes, files, operators, shown, lost, path, end: slot, thread, ..
         } = self;
         *slot.lock().unwrap_or_else(PoisonError::into_inner) = (end, lost);
-        // Without a producer the writer finishes; the ticks go last, since they are what it waits for.
+        // The writer finishes when the producers are gone; the ticks are dropped last, because it waits for them.
         drop((states, cells, notes, files, operators, shown));
         drop(ticks);
         let written = thread.join().map_err(|_| RecordError::Thread)??;
@@ -331,7 +332,7 @@ fn has_room<T>(ring: &Producer<T>, pace: Pace) -> bool {
     !ring.is_abandoned()
 }
 
-/// The writer's end of the ring.
+/// The writer's end of the rings.
 struct Drain {
     log: LogWriter<Sink>,
     file: LogFile,
@@ -348,8 +349,8 @@ struct Drain {
 impl Drain {
     fn run(mut self) -> Result<Written, RecordError> {
         loop {
-            // Asked before the ring is emptied: what was pushed before the run let go of the ring is then
-            // still found.
+            // Read before the ring is emptied, so that entries pushed before the run has dropped the producer are still
+            // found.
             let ended = self.ticks.is_abandoned();
             while let Ok(record) = self.ticks.pop() {
                 if record.tick.0.is_multiple_of(FULL_SET) {
@@ -410,7 +411,7 @@ impl Drain {
     }
 }
 
-/// The entry of a tick in a ring; earlier ones are discarded.
+/// The entry of a tick in a ring; earlier entries are discarded.
 fn latest<T>(ring: &mut Consumer<T>, tick: Tick, tick_of: impl Fn(&T) -> Tick) -> Option<T> {
     while ring.peek().is_ok_and(|entry| tick_of(entry) < tick) {
         let _ = ring.pop();

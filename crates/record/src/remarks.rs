@@ -1,6 +1,6 @@
-//! The lines on `/log` for people, made by comparing two ticks.
+//! The text lines on `/log`, derived from the differences between two ticks.
 //!
-//! They report commands down the ladder, the status of the job, sensor events of the robot (a condition of a guarded
+//! They report commands of the ladder, the status of the job, sensor events of the robot (a condition of a guarded
 //! move, a part, a gripper), faults of the link, and each failure as one sentence: process, reason, and row of the
 //! decision table.
 
@@ -31,7 +31,7 @@ pub struct Remark {
     pub text: String,
     /// Source file of the decision table, or the code of an event such as `cell.dropped`; empty for neither.
     pub file: &'static str,
-    /// Line of the decision table in it.
+    /// Line of the decision table in the source file; 0 for none.
     pub line: u32,
 }
 
@@ -106,7 +106,8 @@ fn encounters(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemo
     }
 }
 
-/// Prim has ordered T3I to begin the link anew, and T3I has not read it before: faults of the link are then expected.
+/// True if Prim has ordered T3I to start the link again, and T3I has not read the order yet: faults of the link are
+/// then expected.
 #[must_use]
 pub fn is_restart_ordered(before: &CommonMemory) -> bool {
     let command = &before.prim.t3i;
@@ -145,7 +146,7 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
             say(level, format!("{what}, {is} so far"));
         }
     }
-    // Only the first of a row of points: a fast move is limited in every tick.
+    // Only the first of a sequence of points: a fast move is limited in every tick.
     if is.counters.limited > was.counters.limited && before.t3i.header.decided != after.t3i.header.decided {
         say(Level::Info, "the velocity limits hold a point back".to_owned());
     }
@@ -154,8 +155,8 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
 /// The processes whose commands show the progress of the job; commands of the others are details.
 const FOLLOWED: [ProcessId; 3] = [ProcessId::Subtask, ProcessId::Emove, ProcessId::Pedestal];
 
-/// A command on its way down: `-> E-move: GRASP-OBJ LINKBAR1 at PFIXTURE`. The points to T3I are left out:
-/// there is one a tick.
+/// A command on its way down the ladder: `-> E-move: GRASP-OBJ LINKBAR1 at PFIXTURE`. Points to T3I are skipped: there
+/// is one per tick.
 fn down(before: &CommonMemory, after: &CommonMemory, mut say: impl FnMut(Level, &str, String)) {
     for process in ProcessId::ALL.iter().copied().filter(|process| *process != ProcessId::T3i) {
         let Some(commander) = process.commander() else { continue };
@@ -178,8 +179,8 @@ fn failures(
     for process in ProcessId::ALL.iter().copied() {
         let (was, is) = (before.said(process).fault, after.said(process).fault);
         if is != was && !is.is_none() {
-            // T3I mends many faults of the link itself; what it cannot mend Prim reports as an error. One that
-            // comes while PAUSE stands is reported beside `done`.
+            // T3I recovers from many faults of the link itself; Prim reports the others as errors. A fault during PAUSE
+            // is reported together with `done`.
             let failed = after.said(process).lower == Lower::Error && !matches!(is, Fault::Link(_));
             let level = if failed { Level::Error } else { Level::Warning };
             let reason = format!("{}{}", is.text(), Detail::of(process, is, hws, after));
@@ -203,7 +204,7 @@ fn failure(headers: &[HeaderPlace], field: &str, header: &Header, level: Level, 
     }
 }
 
-/// A change of what is held.
+/// A change of the held object, as text.
 fn holding(was: &Holding, is: &Holding) -> Option<String> {
     match (was, is) {
         _ if was == is => None,

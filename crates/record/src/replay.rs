@@ -1,12 +1,12 @@
-//! Replay: run the control processes again on the recorded inputs, and compare the outputs.
+//! Replay: executes the control processes again with the recorded inputs, and compares the outputs.
 //!
-//! The task data come from the log's attachments and the inputs from its ticks. Every output buffer of every tick is
-//! compared bit for bit, and the states of the processes where they were recorded. The first difference ends the
+//! The task data come from the log's attachments, the inputs from its ticks. Every output buffer of every tick is
+//! compared bit for bit, and so are the states of the processes where the log has them. The first difference ends the
 //! comparison, because later differences follow from it.
 //!
 //! Missing ticks cannot be computed; the replay continues with the states recorded with the first tick after the gap.
 //! In the same way a replay can begin in the middle: states are recorded once a second. A replay with other task data
-//! shows what they would have changed; then record numbers are not compared.
+//! shows what they would have changed; it does not compare record numbers.
 
 use std::{
     collections::BTreeMap,
@@ -40,7 +40,7 @@ pub struct Difference {
     pub tick: Tick,
     /// The process and the buffer: `prim.status`; `state.prim` for the state of a process.
     pub buffer: String,
-    /// The field in it.
+    /// The field of the buffer.
     pub field: String,
     /// The recorded value.
     pub was: String,
@@ -64,12 +64,12 @@ pub struct Options {
     pub data: Option<Store>,
     /// The replay begins at the last recorded states before this tick.
     pub from: Option<Tick>,
-    /// Last tick that is computed.
+    /// Last tick to compute.
     pub until: Option<Tick>,
 }
 
 impl Options {
-    /// The digest of the run can be compared only if the replay has all ticks and the same record numbers.
+    /// True if the digest of the run can be compared: the replay has all ticks and the same record numbers.
     const fn has_digest(&self) -> bool {
         self.from.is_none() && self.until.is_none() && self.data.is_none()
     }
@@ -80,7 +80,7 @@ impl Options {
 pub struct ReplayReport {
     /// Ticks that were computed again.
     pub ticks: u64,
-    /// Ticks that could not be computed: those of gaps, and those at which the replay started again.
+    /// Ticks that could not be computed: those in gaps, and those at which the replay started again.
     pub skipped: u64,
     /// The first difference; `None` if there is none.
     pub first_difference: Option<Difference>,
@@ -88,25 +88,25 @@ pub struct ReplayReport {
     pub digest: Digest,
     /// Digest at the end of the run; `None` if the log has no end.
     pub recorded_digest: Option<u64>,
-    /// The log has its end.
+    /// True if the log has its end.
     pub complete: bool,
     /// The damaged parts of the log, as text.
     pub damage: Option<String>,
-    /// Time that the processes took, without reading and comparing.
+    /// Time of the processes, without reading and comparing.
     pub computing: Duration,
     /// Time of the whole replay.
     pub elapsed: Duration,
 }
 
 impl ReplayReport {
-    /// True if every computed tick was the same, and the digest too where there are two to compare.
+    /// True if every computed tick was the same, and also the digest if the log has one and no tick was skipped.
     #[must_use]
     pub fn is_same(&self) -> bool {
         let digests = self.recorded_digest.is_none_or(|recorded| recorded == self.digest.value());
         self.first_difference.is_none() && (self.skipped > 0 || digests)
     }
 
-    /// How many times faster than the run in real time.
+    /// Ratio of the recorded time to the elapsed time of the replay.
     #[must_use]
     pub fn speed(&self) -> f64 {
         let simulated = Duration::from_millis(self.ticks.saturating_mul(TICK_MS));
@@ -126,7 +126,7 @@ pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
 /// Replay a log, or a part of it.
 ///
 /// # Errors
-/// As [`replay`]; [`ReplayError::Empty`] if the part holds no tick.
+/// As [`replay`]; [`ReplayError::Empty`] if the part contains no tick.
 pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, ReplayError> {
     let started = Instant::now();
     let log = Log::open(path)?;
@@ -172,7 +172,7 @@ pub(crate) fn log_sources(attachments: &[Attachment]) -> Vec<Source> {
     attachments.iter().filter_map(source).collect()
 }
 
-/// The task data of a log in all their generations: as loaded, and after each reload.
+/// The generations of a log's task data: as loaded, and after each reload.
 ///
 /// # Errors
 /// [`ReplayError::TaskData`] with the report of the loader.
@@ -208,7 +208,7 @@ pub(crate) fn grown(first: Store, attachments: &[Attachment]) -> Result<Vec<Stor
 
 struct Replayer {
     ladder: Ladder,
-    /// Common memory after the tick before; none where a replay cannot go on without recorded states.
+    /// Common memory after the tick before; `None` if the replay needs recorded states to continue.
     before: Option<CommonMemory>,
     last: Tick,
     image: Vec<u8>,
@@ -223,7 +223,7 @@ struct Replayer {
 }
 
 impl Replayer {
-    /// With other task data than those of the log, records are compared by names and not by numbers.
+    /// `by_name`: compare records by name instead of number, for other task data than those of the log.
     fn new(by_name: bool) -> Self {
         let leaves = |record| {
             let mut leaves = layout::leaves(record);
@@ -253,7 +253,7 @@ impl Replayer {
         options: &Options,
         generations: &[Store],
     ) -> Result<Option<Difference>, ReplayError> {
-        // Ticks from the last recorded states to where the replay is to begin.
+        // Ticks from the last recorded states to the beginning of the replay.
         let mut run_up: Vec<LoggedTick> = Vec::new();
         for logged in log.ticks() {
             let logged = logged?;
@@ -282,7 +282,7 @@ impl Replayer {
         Ok(None)
     }
 
-    /// Compute a tick again, or take the recorded values if there is a gap before it.
+    /// Compute a tick again, or take the recorded values after a gap.
     fn tick(
         &mut self,
         logged: &LoggedTick,

@@ -1,11 +1,11 @@
-//! The linkbar job inside a program of one's own: `cargo run --release -p runtime --example embed`.
+//! The linkbar job inside another program: `cargo run --release -p runtime --example embed`.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "an example prints what it does")]
 
 use rcs_core::tick::TICK_S;
 use runtime::{Ending, LogTarget, Observer, Run, RunConfig, StartError, TickReport};
 
-/// Prints each line of the job when it begins.
+/// Prints each line of the job when the line begins.
 #[derive(Default)]
 struct Lines(usize);
 

@@ -1,7 +1,7 @@
-//! A robot of one's own does the linkbar job: `cargo run --release -p runtime --example own_robot`.
+//! A robot of the caller for the linkbar job: `cargo run --release -p runtime --example own_robot`.
 //!
-//! It stands at each point at once, and measures its path. A real one would send the points on, and tell where
-//! it is. The rest of the cell is simulated: the simulated arm follows the robot.
+//! The robot reaches each point at once, and measures its path. A real one would forward the points, and report its
+//! position. The rest of the cell is simulated: the simulated arm follows the robot.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 
@@ -17,7 +17,7 @@ use runtime::{Ending, LogTarget, OwnRobot, Run, RunConfig};
 struct Ideal {
     joints: Joints,
     at: Plate,
-    /// Inches.
+    /// Length of the path so far, in.
     path: Arc<Mutex<f64>>,
 }
 

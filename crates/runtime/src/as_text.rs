@@ -1,26 +1,26 @@
-//! Values of a configuration as a person types them: for serde, by `Display` and `FromStr`.
+//! Values of a configuration as strings, for serde, by `Display` and `FromStr`.
 
 use std::{fmt::Display, str::FromStr};
 
 use serde::{Deserialize as _, Deserializer, Serializer, de::Error as _};
 
-/// As a string.
+/// Write a value as a string.
 pub fn serialize<T: Display, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(value)
 }
 
-/// From a string.
+/// Read a value from a string.
 pub fn deserialize<'de, T: FromStr<Err: Display>, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<T, D::Error> {
     String::deserialize(deserializer)?.parse().map_err(D::Error::custom)
 }
 
-/// A string, or nothing.
+/// An optional string.
 pub mod option {
     use super::*;
 
-    /// As a string, if there is a value.
+    /// Write a string, if there is a value.
     pub fn serialize<T: Display, S: Serializer>(value: &Option<T>, serializer: S) -> Result<S::Ok, S::Error> {
         match value {
             Some(value) => serializer.collect_str(value),
@@ -28,7 +28,7 @@ pub mod option {
         }
     }
 
-    /// From a string, if there is one.
+    /// Read a value, if there is a string.
     pub fn deserialize<'de, T: FromStr<Err: Display>, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Option<T>, D::Error> {
@@ -41,12 +41,12 @@ pub mod option {
 pub mod list {
     use super::*;
 
-    /// Each as a string.
+    /// Write each value as a string.
     pub fn serialize<T: Display, S: Serializer>(values: &[T], serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(values.iter().map(ToString::to_string))
     }
 
-    /// Each from a string.
+    /// Read each value from a string.
     pub fn deserialize<'de, T: FromStr<Err: Display>, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Vec<T>, D::Error> {

@@ -26,14 +26,14 @@ use crate::{
     observer::Observer,
 };
 
-/// How long boards that this process starts may take until they are ready: they load the task data first.
+/// Time limit until the boards that this process starts are ready: they load the task data first.
 const STARTING: Duration = Duration::from_secs(60);
 
-/// Who steps the control processes.
+/// Executes the control processes.
 pub enum Controller {
-    /// This process, all of them.
+    /// All of them in this process.
     One(Box<Ladder>),
-    /// Boards.
+    /// Boards in processes of their own.
     Split(Box<Coordinator>),
 }
 
@@ -81,7 +81,7 @@ impl Levels<TaskData<'_>> for Controller {
 }
 
 impl Controller {
-    /// Start what the configuration asks for; all boards are ready when this returns.
+    /// Start the boards of the configuration; all boards are ready when this returns.
     ///
     /// # Errors
     /// [`StartError::Interrupted`] if the run is interrupted before the boards are there, [`StartError::Boards`] if a
@@ -126,8 +126,8 @@ impl Controller {
         Ok(Self::Split(Box::new(coordinator)))
     }
 
-    /// Boards that are started by hand can be replaced by hand: wait for one that takes the place of a lost
-    /// one. False if the run has to end.
+    /// Wait for a board that takes the place of a lost one: a board that was started by hand can be replaced by hand.
+    /// Returns false if the run must end.
     pub fn replace(&mut self, lost: &Lost, config: &RunConfig, observer: &mut dyn Observer) -> bool {
         let Self::Split(coordinator) = self else { return false };
         if config.boards != Boards::Manual {
@@ -162,7 +162,7 @@ impl Controller {
         }
     }
 
-    /// Boards that did not get everything that real time needs.
+    /// Boards without all real-time settings.
     #[must_use]
     pub fn unpunctual(&self) -> Vec<Board> {
         match self {
@@ -176,13 +176,13 @@ impl Controller {
     }
 }
 
-/// Why the run does not begin.
+/// The error of the start.
 fn refused(error: SplitError, config: &RunConfig, job: &Job) -> StartError {
     let interrupted = config.stop.load(Ordering::Relaxed);
     if interrupted { StartError::Interrupted(job.name.clone()) } else { error.into() }
 }
 
-/// How long to wait for boards that are started by hand.
+/// Time limit for boards that are started by hand.
 fn patience(config: &RunConfig) -> Duration {
     Duration::from_secs(config.wait.into())
 }
@@ -204,7 +204,7 @@ fn announce(event: BoardEvent, missing: &[Board], observer: &mut dyn Observer) {
     }
 }
 
-/// What a board must have in common with the run.
+/// Data that a board must have in common with the run.
 #[must_use]
 pub fn fingerprint(store: &Store, job: &Job) -> Fingerprint {
     let reloads = job.reloads.iter().map(|reload| &reload.source);
@@ -229,7 +229,7 @@ fn spawn(config: &RunConfig, name: &RunName, board: Board) -> std::io::Result<Ch
         .spawn()
 }
 
-/// The same as a command line for a person to type.
+/// The same as a command line for a terminal.
 fn command_line(config: &RunConfig, name: &RunName, board: Board) -> String {
     let data = config.data.display();
     format!(

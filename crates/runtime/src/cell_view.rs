@@ -1,4 +1,4 @@
-//! What the simulated cell shows to programs outside: [`CellView`], filled after each tick.
+//! Publishes the state of the simulated cell to other programs: [`CellView`], filled after each tick.
 
 use ::neighbours::workstation::player::BegunStep;
 use executive::memory::{
@@ -13,10 +13,10 @@ use rcs_core::{name::Name16, tick::Tick};
 
 use crate::pace::Pace;
 
-/// Ticks between two updates of the figures of all ticks so far: a second.
+/// Ticks between two updates of the statistics over all ticks: 1 s.
 const SECOND: u64 = 25;
 
-/// The last picture of the cell.
+/// The last published state of the cell.
 #[derive(Debug, Default)]
 pub struct View {
     shown: CellView,
@@ -63,7 +63,7 @@ fn controller(
     before: &ControllerView,
 ) -> ControllerView {
     let stage = t3.stage();
-    // While FAULT RESET is lit its error stands on the screen, whatever stood there before.
+    // While FAULT RESET is lit, the screen shows its error instead of anything before.
     let shown = match t3.error() {
         Some(error) if before.screen.as_str() == error => (before.screen_tick, before.screen),
         Some(error) => (tick, Text::clipped(error)),
@@ -100,7 +100,7 @@ fn count(number: usize) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }
 
-/// The first parts of the cell.
+/// The first [`PARTS`] parts of the cell.
 fn shown(parts: &[PartState]) -> [PartView; PARTS] {
     let mut views = [PartView::default(); PARTS];
     for (view, part) in views.iter_mut().zip(parts) {
@@ -127,7 +127,7 @@ fn job(lines: usize, steps: &[BegunStep]) -> JobView {
     }
 }
 
-/// To compute the figures of all ticks would delay a tick too much: they are updated once a second.
+/// Lateness of the ticks. The statistics over all ticks take too long for every tick: they are updated once a second.
 fn lateness(before: LatenessView, tick: Tick, pace: &Pace) -> LatenessView {
     let last = pace.last_late().as_secs_f64() * 1e6;
     match pace.late() {

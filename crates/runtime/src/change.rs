@@ -11,14 +11,14 @@ use taskdata::load::{
 
 use crate::{Run, event::Event, loads::insert};
 
-/// Why a run cannot be changed.
+/// Errors of a change.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChangeError {
     /// The blocks have errors.
     #[error("with this change the task data have errors:\n{0}")]
     Data(String),
-    /// A line `** load` waits for the end of a command.
+    /// A line `** load` is waiting for the end of a command.
     #[error("a reload of the job waits for the end of a command: change the task data in another tick")]
     Reload,
     /// Another process commands.
@@ -27,10 +27,10 @@ pub enum ChangeError {
     /// The job is at its last line.
     #[error("the job sends no command after tick {0}: name an earlier tick")]
     NoCommand(u64),
-    /// The line to the robot has faults.
+    /// The line to the robot has faults already.
     #[error("the line to the robot has faults already: leave those of the line out of the file")]
     Line,
-    /// A fault that displaces something.
+    /// The fault would displace something.
     #[error(
         "fault {0} displaces the pedestal, which is possible before the first tick only: run the job with this file instead"
     )]
@@ -44,7 +44,7 @@ impl From<Box<Diagnostics>> for ChangeError {
 }
 
 impl Run {
-    /// From the next tick on the task data have these blocks too. An entry replaces an existing one of the same name,
+    /// Add these blocks to the task data from the next tick on. An entry replaces an existing one of the same name,
     /// also in the middle of a command.
     ///
     /// # Errors
@@ -60,8 +60,8 @@ impl Run {
         usize::try_from(self.generations.number()).unwrap_or(usize::MAX)
     }
 
-    /// From the next tick on one more of these reloads is in effect. False, and nothing has changed, if a reload of the
-    /// job waits for the end of a command.
+    /// Add reloads from the next tick on. Returns false, and changes nothing, if a reload of the job waits for the end
+    /// of a command.
     pub(crate) fn use_reloads(&mut self, reloads: Vec<Reload>) -> bool {
         let Some(next) = reloads.get(self.generations_done()) else { return false };
         if !self.generations.supersede(next.store.clone()) {
@@ -76,7 +76,7 @@ impl Run {
         true
     }
 
-    /// From the next tick on the faults of a file can begin, those of the cell and those of the line.
+    /// Enable the faults of a file from the next tick on, those of the cell and those of the line.
     ///
     /// # Errors
     /// [`ChangeError::Displaced`], [`ChangeError::Line`]; then nothing has changed.
@@ -95,13 +95,13 @@ impl Run {
         Ok(())
     }
 
-    /// From the next tick on sensor noise and positions of delivered parts come from another seed.
+    /// Use another seed for sensor noise and for the positions of delivered parts from the next tick on.
     pub fn change_seed(&mut self, seed: u64) {
         self.workstation.cell.reseed(seed);
         self.note_change(&format!("the seed is {seed}"));
     }
 
-    /// Put a line before the next one of the job.
+    /// Insert a line before the next one of the job.
     ///
     /// # Errors
     /// [`ChangeError::NoJob`].

@@ -1,5 +1,5 @@
-//! A run that a workstation controller in another process commands from the start, and that an operator can take over and
-//! give back (IV.4.1).
+//! A run in which a workstation controller in another process commands from the start, and an operator can take the
+//! command and give it back (IV.4.1).
 //!
 //! ```text
 //!                        `stand-alone`: no command is executed; `now`: PAUSE takes its place
@@ -8,8 +8,8 @@
 //!            └──── `workstation`: robot at HOME, PAUSE last, Data System connected ◄──────────┘
 //! ```
 //!
-//! The numbers of the commands are one sequence. While an operator commands, the workstation controller reads an
-//! initialized status mailbox, as one that has connected too early does, and what it sends is never executed.
+//! The numbers of the commands form one sequence. While an operator commands, the workstation controller reads an
+//! initialized status mailbox, like one that has connected too early, and its commands are not executed.
 
 use interfaces::{CommonMemory, TaskOutputs, hws::HwsReport};
 use neighbours::{
@@ -30,23 +30,23 @@ use crate::{
     workstation::SimulatedWorkstation,
 };
 
-/// A workstation controller in another process, which an operator can replace for a time.
+/// A workstation controller in another process, which an operator can replace temporarily.
 pub struct Commanded {
     outside: OutsideWorkstation,
-    /// Sends what the operator commands; none while the workstation controller commands.
+    /// Sends the commands of the operator; `None` while the workstation controller commands.
     alone: Option<Emulator>,
-    /// Commands of earlier commanders.
+    /// Commands of the earlier sources.
     before: Vec<BegunStep>,
 }
 
 impl Commanded {
-    /// The workstation controller commands.
+    /// Start with the workstation controller in command.
     #[must_use]
     pub const fn new(endpoint: Endpoint) -> Self {
         Self { outside: OutsideWorkstation::new(endpoint), alone: None, before: Vec::new() }
     }
 
-    /// An operator commands.
+    /// True if an operator commands.
     #[must_use]
     pub const fn is_stand_alone(&self) -> bool {
         self.alone.is_some()
@@ -57,7 +57,7 @@ impl Commanded {
         self.alone.as_mut().map(|emulator| &mut emulator.hwsc)
     }
 
-    /// Commands of the present commander.
+    /// Commands of the present source.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {
         match &self.alone {
@@ -66,13 +66,13 @@ impl Commanded {
         }
     }
 
-    /// Commands of all, in their order.
+    /// Commands of all sources, in order.
     #[must_use]
     pub fn all_steps(&self) -> Vec<BegunStep> {
         [&self.before, self.begun_steps()].concat()
     }
 
-    /// Once a tick, after controller and cell.
+    /// Called once per tick, after controller and cell.
     pub fn step(
         &mut self,
         tick: Tick,
@@ -97,10 +97,10 @@ impl Commanded {
         Progress::Running
     }
 
-    /// The operator commands from now on.
+    /// Give the command to an operator.
     ///
     /// # Errors
-    /// Why not, in a sentence.
+    /// A sentence with the reason if that is not possible.
     pub fn take_command(
         &mut self,
         tick: Tick,
@@ -132,10 +132,10 @@ impl Commanded {
         Ok("the workstation controller commands no more; `workstation` gives the command back".to_owned())
     }
 
-    /// The workstation controller commands from now on.
+    /// Give the command to the workstation controller.
     ///
     /// # Errors
-    /// Why not, in a sentence.
+    /// A sentence with the reason if that is not possible.
     pub fn give_command(
         &mut self,
         tick: Tick,
@@ -162,7 +162,7 @@ impl Commanded {
 }
 
 impl Neighbours {
-    /// An operator commands in the place of the workstation controller.
+    /// True if an operator commands instead of the workstation controller.
     #[must_use]
     pub fn is_stand_alone(&self) -> bool {
         matches!(&self.workstation, WorkstationSource::Outside(commanded) if commanded.is_stand_alone())
@@ -177,12 +177,12 @@ impl Neighbours {
         }
     }
 
-    /// The block that the workstation controller has asked for in this tick, and its line.
+    /// The block that the workstation controller has requested in this tick, and the line of the request.
     pub fn load_asked(&mut self) -> Option<(BlockNumber, String)> {
         self.outside()?.load_asked()
     }
 
-    /// Its load is over; why it was refused.
+    /// Answer the load with the reason of a refusal, or `None`.
     pub fn load_answered(&mut self, refused: Option<String>) {
         if let Some(why) = &refused {
             self.events.push(Event::CellLineRefused(why.clone()));
@@ -192,10 +192,10 @@ impl Neighbours {
         }
     }
 
-    /// Take over from the workstation controller; `now`: also in the middle of a command.
+    /// Take over from the workstation controller; with `now` also in the middle of a command.
     ///
     /// # Errors
-    /// Why not, in a sentence.
+    /// A sentence with the reason if that is not possible.
     pub fn take_command(&mut self, tick: Tick, memory: &CommonMemory, now: bool) -> Result<String, String> {
         match &mut self.workstation {
             WorkstationSource::Outside(commanded) => {
@@ -208,10 +208,10 @@ impl Neighbours {
         }
     }
 
-    /// Give the command back to it (IV.4.1).
+    /// Give the command back to the workstation controller (IV.4.1).
     ///
     /// # Errors
-    /// Why not, in a sentence.
+    /// A sentence with the reason if that is not possible.
     pub fn give_command(&mut self, tick: Tick, memory: &CommonMemory) -> Result<String, String> {
         let mut data_system = self.network.iter().flat_map(|network| &network.handles);
         let has_data_system = data_system

@@ -1,4 +1,4 @@
-//! What to run.
+//! The configuration of a run.
 
 use std::{collections::BTreeMap, fmt, path::PathBuf, str::FromStr, sync::Arc, sync::atomic::AtomicBool};
 
@@ -15,94 +15,93 @@ use serde::{Deserialize, Serialize};
 
 use crate::as_text;
 
-/// What to run. [`RunConfig::default`] is what `rcs-run` takes without options; every field may be changed.
+/// The configuration of a run. [`RunConfig::default`] is the configuration of `rcs-run` without options.
 ///
-/// By serde it is written and read with the words of the command line, such as `robot = "egm:6510,slack=15"` in
-/// TOML. What is left out is as in the default; an unknown field is an error.
+/// Serde reads and writes it with the words of the command line, such as `robot = "egm:6510,slack=15"` in TOML. Omitted
+/// fields have the default value; an unknown field is an error.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct RunConfig {
     /// Directory of task data, jobs and cell description.
     pub data: PathBuf,
-    /// Name of a job in the data directory, or a path. Not played if another process commands.
+    /// Name of a job in the data directory, or a path. Not used if another process commands.
     pub job: String,
-    /// Ticks at once, or one every 40 ms.
+    /// Ticks as fast as possible, or one every 40 ms.
     pub clock: ClockKind,
-    /// Ticks in 40 ms with the real clock; more than 1 needs the simulated robot.
+    /// Number of ticks in 40 ms with the real clock; more than 1 needs the simulated robot.
     pub speed: u8,
-    /// What to do about slots of the 40 ms grid that are skipped.
+    /// Reaction to skipped slots of the 40 ms grid.
     #[serde(with = "as_text")]
     pub overrun: Policy,
-    /// CPU core to run on with the real clock; without it the highest number that the process may use.
+    /// CPU core for the real clock; `None` for the highest number that the process may use.
     pub cpu: Option<usize>,
-    /// The robot to command.
+    /// The robot.
     #[serde(with = "as_text")]
     pub robot: RobotConfig,
-    /// File of faults of the cell and of the line to the simulated robot.
+    /// File with faults of the cell and of the line to the simulated robot.
     pub faults: Option<PathBuf>,
-    /// How the control processes are distributed over boards.
+    /// Distribution of the control processes over boards.
     pub boards: Boards,
-    /// The program that runs a board: it takes the arguments of `rcs-run board`.
+    /// The program that runs a board, with the arguments of `rcs-run board`.
     pub program: PathBuf,
-    /// Name of the run in shared memory; job and process number without it.
+    /// Name of the run in shared memory; `None` for job name and process number.
     #[serde(with = "as_text::option")]
     pub name: Option<RunName>,
-    /// How many seconds to wait for boards that are started by hand, for neighbours in other processes, and for
-    /// a robot controller at a port.
+    /// Time limit, s, for boards that are started by hand, for neighbours in other processes, and for a robot
+    /// controller at a port.
     pub wait: u32,
     /// Seed of the cell's sensor noise and of the positions of delivered parts.
     pub seed: u64,
-    /// Where to write the log.
+    /// Destination of the log.
     #[serde(with = "as_text")]
     pub log: LogTarget,
-    /// SQLite file of the Data System's items; without it they are kept in memory and lost at the end.
+    /// SQLite file of the Data System's items; without it they are in memory and lost at the end.
     pub data_base: Option<PathBuf>,
-    /// Where neighbours in other processes connect.
+    /// Address at which neighbours in other processes connect.
     #[serde(with = "as_text::option")]
     pub network: Option<Address>,
     /// Neighbours that are other processes.
     #[serde(with = "as_text::list")]
     pub outside: Vec<Role>,
-    /// Begin under stand-alone command, with the job, although the workstation controller is another process
-    /// (IV.4.1).
+    /// Begin under stand-alone command, with the job, although the workstation controller is another process (IV.4.1).
     pub stand_alone: bool,
-    /// File in which updates wait for a Data System in another process.
+    /// File that keeps updates until a Data System in another process receives them.
     pub outbox: PathBuf,
     /// Directory with keys and certificates for neighbours on other machines.
     pub keys: Option<PathBuf>,
-    /// File with Zenoh's own configuration.
+    /// Configuration file of Zenoh.
     pub zenoh_config: Option<PathBuf>,
-    /// Stop after so many ticks, unless the job ends before.
+    /// Stop after this number of ticks, unless the job ends before.
     pub ticks: Option<u64>,
-    /// After a command that ends with an error, send PAUSE and the same command again, at most so many times for a line
-    /// of the job.
+    /// After a command that ends with an error, send PAUSE and the same command again, at most this number of times per
+    /// line of the job.
     pub retry: u32,
-    /// Who may operate the run while it goes on.
+    /// Access of operators to the run.
     pub operator: OperatorAccess,
-    /// A log whose operator's inputs are replayed, each in its tick; then no operator can connect.
+    /// A log whose operator's inputs are replayed, each in its tick; no operator can connect then.
     pub inputs: Option<PathBuf>,
-    /// The job waits for an operator before its first line.
+    /// Make the job wait for an operator before its first line.
     pub stand_by: bool,
-    /// Show the run to viewers that connect to this port of 127.0.0.1, 0 for any that is free; it needs a log.
+    /// Port of 127.0.0.1 for viewers of the run, 0 for any free port; needs a log.
     pub live: Option<u16>,
     /// Origins of web pages that may connect as viewers, besides Foxglove's.
     #[serde(with = "as_text::list")]
     pub live_origins: Vec<Origin>,
-    /// Further metadata of the run for the log.
+    /// Additional metadata for the log.
     pub remarks: BTreeMap<String, String>,
-    /// Show the buffers to other programs.
+    /// Share the buffers with other programs.
     pub shared_memory: bool,
-    /// Ends the process if shared memory cannot be set up in time (`executive::memory::limit`), before anything
-    /// moves; without it there is no limit.
+    /// Called to end the process if the set-up of shared memory takes too long (`executive::memory::limit`), before
+    /// anything moves; `None` for no limit.
     #[serde(skip)]
     pub on_stuck: Option<OnStuck>,
-    /// Ends the run as soon as it is set; the robot is brought to rest first.
+    /// Ends the run when it is set; the robot is brought to rest first.
     #[serde(skip)]
     pub stop: Arc<AtomicBool>,
 }
 
 impl RunConfig {
-    /// A job of a data directory in the simulated cell, as fast as that can be simulated.
+    /// The configuration for a job of a data directory in the simulated cell, as fast as possible.
     #[must_use]
     pub fn new(data: impl Into<PathBuf>, job: impl Into<String>) -> Self {
         Self {
@@ -141,7 +140,7 @@ impl RunConfig {
         }
     }
 
-    /// The job that is played; `None` if another process commands.
+    /// The job; `None` if another process commands.
     #[must_use]
     pub fn played(&self) -> Option<&str> {
         (self.stand_alone || !self.outside.contains(&Role::Workstation)).then_some(self.job.as_str())
@@ -154,7 +153,7 @@ impl Default for RunConfig {
     }
 }
 
-/// Who may operate a run (`docs/operator.md`).
+/// Access of operators to a run (`docs/operator.md`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
@@ -179,7 +178,7 @@ pub enum ClockKind {
 }
 
 impl ClockKind {
-    /// The word on the command line.
+    /// The word of the command line.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -189,21 +188,21 @@ impl ClockKind {
     }
 }
 
-/// Which robot is commanded.
+/// The robot of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RobotKind {
-    /// The one of the simulated cell.
+    /// The simulated T3.
     Sim,
-    /// One at a serial port.
+    /// A robot controller at a serial port.
     Serial(SerialSettings),
-    /// One with EGM.
+    /// A robot with EGM.
     Egm(Box<EgmOptions>),
-    /// One that the caller of the library provides ([`Run::with_robot`](crate::Run::with_robot)).
+    /// A robot of the caller of the library ([`Run::with_robot`](crate::Run::with_robot)).
     Own,
 }
 
 impl RobotKind {
-    /// The robot needs real time: it does not wait for simulated time.
+    /// True if the robot needs real time: it cannot follow simulated time.
     #[must_use]
     pub fn lives_in_real_time(&self) -> bool {
         match self {
@@ -214,20 +213,20 @@ impl RobotKind {
     }
 }
 
-/// The robot, and how long to wait for its answer.
+/// The robot, and the time limit for its answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotConfig {
-    /// Which.
+    /// Kind of robot.
     pub kind: RobotKind,
-    /// Seconds that a controller may be silent while its DTR is on, if they were named.
+    /// Seconds for which a controller may be silent while its DTR is on; `None` for the default.
     pub silence: Option<u16>,
 }
 
-/// The longest silence that can be waited for, seconds.
+/// Upper limit of the silence, s.
 const LONGEST_SILENCE: u16 = 2600;
 
 impl RobotConfig {
-    /// Ticks that a controller may be silent, if they were named.
+    /// Ticks for which a controller may be silent, if configured.
     #[must_use]
     pub fn patience(&self) -> Option<u16> {
         self.silence.map(|seconds| seconds * RESTART_TICKS)
@@ -268,7 +267,7 @@ impl FromStr for RobotConfig {
     }
 }
 
-/// `silence=SECONDS`.
+/// Read `silence=SECONDS`.
 fn silence(part: &str) -> Result<u16, String> {
     let seconds = part.trim_start_matches("silence=");
     seconds.parse().ok().filter(|seconds| (1..=LONGEST_SILENCE).contains(seconds)).ok_or_else(|| {
@@ -276,7 +275,7 @@ fn silence(part: &str) -> Result<u16, String> {
     })
 }
 
-/// How processes are distributed.
+/// Distribution of the control processes over boards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
@@ -290,7 +289,7 @@ pub enum Boards {
 }
 
 impl Boards {
-    /// The word on the command line.
+    /// The word of the command line.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -301,14 +300,14 @@ impl Boards {
     }
 }
 
-/// Where the log goes.
+/// Destination of the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LogTarget {
-    /// Into `runs/JOB.mcap`, or the next name that is free.
+    /// `runs/JOB.mcap`, or the next free name.
     Default,
-    /// Nowhere.
+    /// No log.
     None,
-    /// Into a file.
+    /// A file.
     File(PathBuf),
 }
 

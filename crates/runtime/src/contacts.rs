@@ -1,9 +1,9 @@
-//! Checks the contacts of the robot. The cell reports contacts, common memory the command that is executed, and a list
-//! in the cell description says which contacts are permitted during which command.
+//! Checks the contacts of the robot. The cell reports contacts, common memory the command in progress, and a list in
+//! the cell description the contacts that are permitted during each command.
 //!
 //! A contact that is not permitted does not end the run at once: no sensor of the cell detects it, and the log must
-//! show what the controller does next. But the job has then failed. The run ends only when the arm is deeper than
-//! [`DEEPEST`] in something: a real arm would have stalled before, so the simulation has no meaning from there on.
+//! show what the controller does next. But the job has failed. The run ends only when the arm is deeper than
+//! [`DEEPEST`] in an obstacle: a real arm would have stalled before, so the simulation has no meaning from there on.
 //!
 //! A permitted contact stays permitted as long as it gets no deeper: the next command begins where the last one has
 //! ended, and moves away from there.
@@ -30,9 +30,9 @@ const DEEPER: f64 = 0.001;
 /// The commands that E-move and Subtask execute.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Commands {
-    /// Of E-move; empty for none.
+    /// E-move's command; empty for none.
     pub emove: &'static str,
-    /// Of Subtask; empty for none.
+    /// Subtask's command; empty for none.
     pub subtask: &'static str,
 }
 
@@ -46,7 +46,7 @@ impl From<&CommonMemory> for Commands {
 
 impl Commands {
     /// The commands after another tick. A command that E-move has not accepted yet, or that has failed, moves nothing:
-    /// the one before counts.
+    /// the command before it counts.
     fn after(self, memory: &CommonMemory) -> Self {
         let (told, status) = (&memory.subtask.emove, &memory.emove.status);
         let taken = status.echo == told.number && status.report != StatusReport::Error;
@@ -67,28 +67,28 @@ impl fmt::Display for Commands {
 /// A contact that was not permitted. The names of the fields are those of the JSON object.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Collision {
-    /// Link of the robot, or the part that it carried.
+    /// Link of the robot, or the carried part.
     pub mover: String,
-    /// What it ran into.
+    /// The obstacle.
     pub obstacle: String,
-    /// How deep at the most, inches.
+    /// Greatest depth, in.
     pub depth_in: f64,
-    /// Where it was deepest, world, inches.
+    /// Position of the greatest depth, world coordinates, in.
     pub position_in: [f64; 3],
-    /// The tick in which it began.
+    /// First tick of the contact.
     pub tick: u64,
-    /// How many ticks it went on.
+    /// Number of ticks of the contact.
     pub ticks: u64,
-    /// What was executed when it began.
+    /// Commands in progress when the contact began.
     #[serde(rename = "command")]
     pub commands: Commands,
-    /// The robot itself is in contact, not a part that it carries.
+    /// True if the robot itself is in contact, false for a carried part.
     #[serde(skip)]
     is_robot: bool,
 }
 
 impl Collision {
-    /// The robot itself has collided, not a part that it carries.
+    /// True if the robot itself has collided, false for a carried part.
     #[must_use]
     pub const fn is_of_robot(&self) -> bool {
         self.is_robot
@@ -105,20 +105,20 @@ impl fmt::Display for Collision {
     }
 }
 
-/// The least distance to something that must not be touched.
+/// The least distance to an object that must not be touched.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NearMiss {
-    /// Link of the robot, or the part that it carried.
+    /// Link of the robot, or the carried part.
     pub mover: String,
-    /// What it came near to.
+    /// The object.
     pub obstacle: String,
-    /// How near, inches.
+    /// Distance, in.
     pub distance_in: f64,
-    /// Where, world, inches.
+    /// Position, world coordinates, in.
     pub position_in: [f64; 3],
-    /// The tick.
+    /// Tick of the least distance.
     pub tick: u64,
-    /// What was executed.
+    /// Commands in progress in that tick.
     #[serde(rename = "command")]
     pub commands: Commands,
 }
@@ -130,30 +130,30 @@ impl fmt::Display for NearMiss {
     }
 }
 
-/// State of a permitted contact of two things.
+/// State of a permitted contact of two objects.
 #[derive(Clone, Copy, Debug)]
 struct Allowance {
-    /// How deep they have been while it was permitted, in.
+    /// Greatest depth while the contact was permitted, in.
     depth: f64,
-    /// They have come free since.
+    /// True if the objects have separated since.
     free: bool,
 }
 
-/// Watches a run.
+/// Checks the contacts of a run.
 #[derive(Clone, Debug)]
 pub struct ContactCheck {
     permits: Permits,
     allowed: BTreeMap<(String, String), Allowance>,
-    /// Collisions that go on: index in `collisions`.
+    /// Collisions that have not ended: index in `collisions`.
     open: BTreeMap<(String, String), usize>,
     collisions: Vec<Collision>,
     nearest: Option<NearMiss>,
-    /// What moves the robot, or has moved it last.
+    /// The commands that move the robot, or have moved it last.
     commands: Commands,
 }
 
 impl ContactCheck {
-    /// A check against this list.
+    /// A check with a list of permitted contacts.
     #[must_use]
     pub fn new(permits: Permits) -> Self {
         Self {
@@ -166,25 +166,25 @@ impl ContactCheck {
         }
     }
 
-    /// The commands that count for a tick, by common memory after it.
+    /// The commands to which a tick's contacts are attributed, from common memory after the tick.
     pub fn commands(&mut self, memory: &CommonMemory) -> Commands {
         self.commands = self.commands.after(memory);
         self.commands
     }
 
-    /// Distance within which pairs are looked for, in: that of the nearest miss so far, and enough to see that a
-    /// contact has ended.
+    /// Distance within which the cell must report pairs, in: that of the nearest miss so far, and enough to detect the
+    /// end of a contact.
     #[must_use]
     pub fn margin(&self) -> f64 {
         self.least().max(FREE)
     }
 
-    /// What is nearer than this is the nearest miss, in.
+    /// A distance below this is the new nearest miss, in.
     fn least(&self) -> f64 {
         self.nearest.as_ref().map_or(MARGIN, |nearest| nearest.distance_in)
     }
 
-    /// Look at what touches or is near after a tick. Returns the collisions that have begun or ended.
+    /// Check the contacts and distances after a tick. Returns the collisions that have begun or ended.
     pub fn look(&mut self, tick: Tick, contacts: &[Contact], commands: Commands) -> Vec<Event> {
         let mut events = Vec::new();
         for contact in contacts {
@@ -209,13 +209,13 @@ impl ContactCheck {
         events
     }
 
-    /// The two are in a collision that goes on.
+    /// True if the two objects are in a collision that has not ended.
     #[must_use]
     pub fn is_collision(&self, contact: &Contact) -> bool {
         self.open.contains_key(&contact.pair())
     }
 
-    /// Everything that was run into.
+    /// All collisions.
     #[must_use]
     pub fn collisions(&self) -> &[Collision] {
         &self.collisions
@@ -227,7 +227,7 @@ impl ContactCheck {
         self.nearest.as_ref()
     }
 
-    /// A collision is so deep that the simulation has no meaning any more.
+    /// True if a collision is so deep that the simulation has no meaning any more.
     #[must_use]
     pub fn is_stuck(&self) -> bool {
         self.open
@@ -235,8 +235,8 @@ impl ContactCheck {
             .any(|at| self.collisions.get(*at).is_some_and(|one| one.is_robot && one.depth_in > DEEPEST))
     }
 
-    /// Why a job at its end counts as failed: the first collision, since later ones may follow from it; `None` without
-    /// a collision.
+    /// The reason why a finished job counts as failed: the first collision, since later ones may follow from it; `None`
+    /// without a collision.
     #[must_use]
     pub fn verdict(&self) -> Option<Failure> {
         let (first, rest) = self.collisions.split_first()?;
@@ -255,7 +255,7 @@ impl ContactCheck {
         Some(Failure { tick: Tick(*tick), process, table: None, row: None, text, stopped: false })
     }
 
-    /// Two things touch. Returns the collision if one begins.
+    /// Process the contact of two objects. Returns the collision if one begins.
     fn touch(&mut self, tick: Tick, contact: &Contact, commands: Commands) -> Option<Collision> {
         let pair = contact.pair();
         let limit =
@@ -294,7 +294,7 @@ impl ContactCheck {
         Some(collision)
     }
 
-    /// Two things are near each other.
+    /// Process the distance of two objects.
     fn near(&mut self, tick: Tick, contact: &Contact, commands: Commands) {
         let distance = (-contact.depth).max(0.0);
         if let Some(known) = self.allowed.get_mut(&contact.pair()) {
@@ -323,7 +323,7 @@ mod tests {
     const MOVE: Commands = Commands { emove: "MOV-TO-LOC", subtask: "GOTO-DEST" };
     const GRASP: Commands = Commands { emove: "GRASP-OBJ", subtask: "GET-OBJECT" };
 
-    /// Fingers may touch parts, 0.1 in deep, while they grasp.
+    /// A check that permits fingers to touch parts, 0.1 in deep, while they grasp.
     fn new_check() -> ContactCheck {
         let pattern = |text: &str| vec![Pattern(text.into())];
         ContactCheck::new(Permits(vec![Permit {
@@ -351,7 +351,7 @@ mod tests {
         [contact("left_finger", Kind::Finger, depth)]
     }
 
-    /// Show the check a finger at these depths, tick by tick; gives the lines of the log.
+    /// Run the check with a finger at these depths, tick by tick. Returns the lines of the log.
     fn play(check: &mut ContactCheck, ticks: &[(f64, Commands)]) -> Vec<String> {
         let ticks = (1..).zip(ticks);
         ticks

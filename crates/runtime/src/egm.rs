@@ -1,4 +1,4 @@
-//! A robot with EGM in a run: the line to it, the DEPC function in front of it, and measurements.
+//! A robot with EGM in a run: the line to it, its DEPC function, and measurements.
 
 use std::{
     sync::atomic::Ordering,
@@ -22,34 +22,34 @@ use crate::{
     observer::Observer,
 };
 
-/// Names of the frames in the log: where the robot is, and where it was last sent.
+/// Names of the frames in the log: the position of the robot, and its last target.
 pub const FRAMES: [&str; 2] = ["egm_feedback", "egm_target"];
 
-/// The robot.
+/// A robot with EGM.
 pub struct EgmPort {
     options: EgmOptions,
     line: Line,
     bridge: Bridge,
     outputs: BridgeOutputs,
     resolvers: Resolvers,
-    /// Joints of a T3 at the robot's place, for the turn of base and roll of the next.
+    /// Joints of a T3 at the robot's last position, which determine the turns of base and roll at the next.
     joints: [f64; 6],
     figures: Box<Figures>,
 }
 
-/// What is measured.
+/// Measurements.
 #[derive(Default)]
 struct Figures {
     cycles: Histogram,
     answers: Histogram,
-    /// Sum of the squares, mm², greatest, mm, and count of the distances from feedback to target.
+    /// Distances from feedback to target: sum of the squares, mm²; greatest, mm; count.
     squares: f64,
     greatest: f64,
     count: u64,
 }
 
 impl EgmPort {
-    /// Open the line. A simulated robot begins at once.
+    /// Open the line. A simulated robot starts at once.
     ///
     /// # Errors
     /// [`StartError`] if the robot's frames or the port cannot be used.
@@ -65,7 +65,7 @@ impl EgmPort {
                 let real = config.clock == ClockKind::Real;
                 let prepare = move || {
                     if real {
-                        // The run says for its own thread what was not granted; this one gets no more.
+                        // The run reports missing settings for its own thread; this thread gets the same ones at most.
                         let _ = realtime::raise_priority();
                     }
                 };
@@ -91,8 +91,8 @@ impl EgmPort {
         })
     }
 
-    /// Wait until the robot follows, at most so many seconds, or until an interruption. If it does not follow, the run
-    /// begins and fails with a reason that names it.
+    /// Wait until the robot follows, until the time limit or an interruption. If it does not follow, the run begins,
+    /// and fails with a reason that names it.
     pub fn gather(&mut self, config: &RunConfig, observer: &mut dyn Observer) {
         let started = Instant::now();
         let limit = Duration::from_secs(config.wait.into());
@@ -117,7 +117,7 @@ impl EgmPort {
         }
     }
 
-    /// Before the controller's tick: the answers of the DEPC function, and the position of the robot.
+    /// Before the controller's tick: read the answers of the DEPC function, and the position of the robot.
     pub fn receive(&mut self, inputs: &mut DeviceInputs) {
         self.read();
         inputs.link_rx = self.outputs.tx;
@@ -130,8 +130,8 @@ impl EgmPort {
         inputs.resolvers = self.resolvers;
     }
 
-    /// After the controller's tick: the function takes the host's bytes. `exact`: what Prim has commanded, as
-    /// T3I gets it, and as Prim means it.
+    /// After the controller's tick: pass the host's bytes to the DEPC function. `exact` is the tool frame that Prim has
+    /// commanded, as T3I gets it and exactly.
     pub fn send(&mut self, tx: &LinkBytes, exact: Option<(WireFrame, Frame)>) {
         if let Some((wire, exact)) = exact {
             self.bridge.offer(&wire, &exact);
@@ -140,31 +140,31 @@ impl EgmPort {
         self.outputs = self.bridge.step(&mut self.line, tx, true);
     }
 
-    /// Simulated time passes.
+    /// Advance simulated time.
     pub fn advance(&mut self, by: Duration) {
         self.line.advance(u64::try_from(by.as_nanos()).unwrap_or(u64::MAX));
     }
 
-    /// Position of the robot in DEPC words; `None` outside of the range of the words.
+    /// Position of the robot in DEPC words; `None` outside the range of the words.
     #[must_use]
     pub fn feedback(&self) -> Option<Plate> {
         self.bridge.feedback()
     }
 
-    /// What keeps the robot from following, as text.
+    /// The trouble that prevents the robot from following, as text.
     #[must_use]
     pub fn trouble(&self) -> Option<&'static str> {
         self.bridge.trouble()
     }
 
-    /// Where robot and target are, as the T3's end plate in its world: [`FRAMES`].
+    /// Poses of robot and target, as the T3's end plate in its world: [`FRAMES`].
     #[must_use]
     pub fn frames(&self) -> [Pose; 2] {
         let sample = self.line.sample();
         [sample.feedback, sample.target].map(|pose| self.bridge.placement().plate_pose(&pose))
     }
 
-    /// What was counted.
+    /// Counters of the line.
     #[must_use]
     pub fn counters(&self) -> Counters {
         self.line.sample().counters
@@ -206,7 +206,7 @@ impl EgmPort {
         });
     }
 
-    /// What the resolvers of a T3 would read at the robot's position; not valid where a T3 has no joint angles for it.
+    /// Resolver readings of a T3 at the robot's position; invalid where a T3 cannot reach the position.
     fn resolvers_at(&mut self, sample: &Sample) -> Resolvers {
         let tool = self.bridge.placement().tool_frame(&sample.feedback);
         let Ok(joints) = T3.inverse(&tool, &self.joints) else {
@@ -216,7 +216,7 @@ impl EgmPort {
         let steps = f64::from(RESOLVER_COUNTS);
         let count = |joint: f64| {
             let turn = (joint / std::f64::consts::TAU * steps).round().rem_euclid(steps);
-            // Below 2^17, and not negative.
+            // The value is below 2^17 and not negative.
             turn as u32 % RESOLVER_COUNTS
         };
         Resolvers { counts: joints.map(count), valid: true }

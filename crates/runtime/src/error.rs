@@ -1,4 +1,4 @@
-//! What keeps a run from beginning.
+//! Errors of the start of a run.
 
 use std::{io, path::PathBuf};
 
@@ -11,50 +11,50 @@ use plant::CellError;
 use record::RecordError;
 use taskdata::load::{Diagnostics, amount};
 
-/// Why a run cannot begin.
+/// Errors of the start of a run.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StartError {
-    /// The data directory is not there.
+    /// The data directory does not exist.
     #[error("there is no task data directory {}; name one with --data", .0.display())]
     NoData(PathBuf),
     /// Task data or the job has errors.
     #[error("{what} cannot be used: {}", amount(.report.errors().count(), "error"))]
     Data {
-        /// Which.
+        /// Name of the data.
         what: String,
-        /// All that was found.
+        /// All findings.
         report: Box<Diagnostics>,
     },
-    /// There is no such job.
+    /// The job does not exist.
     #[error("there is no job {job}: {}", known_jobs(.known))]
     NoJob {
-        /// As asked for.
+        /// The requested name.
         job: String,
         /// Jobs of the data directory.
         known: Vec<String>,
     },
-    /// A file that is needed cannot be read.
+    /// A file cannot be read.
     #[error("{} cannot be read: {source}", path.display())]
     Read {
-        /// Which.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Error of the system.
         source: io::Error,
     },
     /// The cell cannot be built.
     #[error("the cell cannot be built: {0}")]
     Cell(#[from] CellError),
-    /// A robot at a port with a clock that does not wait for it.
+    /// A robot at a port needs a clock in real time.
     #[error("a robot at a port needs real time: add --clock real")]
     NotInRealTime,
-    /// A clock that cannot be kept.
+    /// An invalid clock speed.
     #[error("a speed from 1 to {most} times real time was expected, found {0}", most = crate::setup::MOST_SPEED)]
     Speed(u8),
-    /// A robot of the caller that the caller did not provide.
+    /// The configuration names a robot of the caller, and the caller has provided none.
     #[error("the configuration names a robot of the caller's own: start the run by Run::with_robot")]
     NoOwnRobot,
-    /// Faults of the line for a robot that is not the simulated one.
+    /// Faults of the line need the simulated robot.
     #[error("the file has faults of the line to the simulated robot; leave them out for any other robot")]
     FaultsAtPort,
     /// The port cannot be opened.
@@ -72,21 +72,21 @@ pub enum StartError {
     /// The data base of the Data System cannot be opened.
     #[error("the Data System cannot keep its items: {0}")]
     DataBase(#[from] StoreError),
-    /// Another process keeps the items.
+    /// Another process keeps the items of the Data System.
     #[error("the Data System is another process: name the data base there, not here")]
     DataBaseElsewhere,
-    /// Updates for the Data System cannot be kept.
+    /// The file for pending updates of the Data System cannot be used.
     #[error("{0}; --outbox names another file")]
     Outbox(#[from] OutboxError),
-    /// An operator is no neighbour.
+    /// An operator cannot be configured as a neighbour.
     #[error("an operator is no neighbour: --operator network lets operators connect, not --outside operator")]
     OperatorOutside,
-    /// An address without anybody who may connect there.
+    /// An address needs a neighbour or an operator that may connect there.
     #[error(
         "nobody may connect at the address of --network: add --outside for neighbours, or --operator network"
     )]
     NobodyConnects,
-    /// Operators of a network need a run that they can operate, and a way to it.
+    /// Operators of a network need a run that accepts them, and an address.
     #[error(
         "--operator network needs --clock real or a speed such as 5x, --shared-memory on, and --network or --live"
     )]
@@ -94,7 +94,7 @@ pub enum StartError {
     /// Neighbours cannot connect.
     #[error("neighbours cannot connect: {0}")]
     Network(#[from] ListenError),
-    /// Options of the network do not fit together.
+    /// Options of the network contradict each other.
     #[error("neighbours cannot connect: {0}")]
     Address(#[from] AddressError),
     /// The mailboxes of a neighbour cannot be made.
@@ -109,7 +109,7 @@ pub enum StartError {
     /// The log cannot be written.
     #[error("the log cannot be written: {0}; --log names another file, --log none runs without")]
     Log(#[from] RecordError),
-    /// The live view shows what a log gets.
+    /// The live view needs a log.
     #[error("the live view shows what is written to the log: leave --log none out, or name a log file")]
     LiveWithoutLog,
     /// Viewers cannot connect.
@@ -117,16 +117,16 @@ pub enum StartError {
     Live {
         /// The port.
         port: u16,
-        /// Why.
+        /// Error of the system.
         source: io::Error,
     },
     /// A thread of the run cannot be started.
     #[error("a thread of the run cannot be started: {0}")]
     Thread(#[source] io::Error),
-    /// The system has no random numbers.
+    /// The system provides no random numbers.
     #[error(transparent)]
     NoRandom(#[from] ::live::NoRandom),
-    /// A signal, before the first tick.
+    /// A signal came before the first tick.
     #[error("{0} failed at tick 0: interrupted")]
     Interrupted(String),
     /// Not all boards of a run have started.
@@ -135,7 +135,7 @@ pub enum StartError {
 }
 
 impl StartError {
-    /// All findings in the data, to print before the error; empty, or whole lines.
+    /// All findings in the data, to print before the error; empty or whole lines.
     #[must_use]
     pub fn details(&self) -> String {
         match self {

@@ -1,4 +1,4 @@
-//! Events of a run, as values with a code. Only log, result and programs turn them into sentences.
+//! Events of a run, as values with a code. Log, result and programs convert them to sentences.
 
 use std::fmt;
 
@@ -21,76 +21,76 @@ use record::Level;
 
 use crate::contacts::Collision;
 
-/// Something that has happened.
+/// An event of a run.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Event {
-    /// In the cell. Of contacts only those that are not permitted are events: [`Event::Collides`].
+    /// In the cell. Only contacts that are not permitted are events: [`Event::Collides`].
     Cell(CellEvent),
-    /// Two things touch that may not.
+    /// Two objects touch that must not.
     Collides(Collision),
-    /// They have come apart.
+    /// The objects have separated.
     CameFree(Collision),
-    /// Faults of these kinds have come up on the line to the robot.
+    /// Faults of these kinds have occurred on the line to the robot.
     LineFaults(Vec<&'static str>),
-    /// State of the line to the robot.
+    /// The state of the line to the robot has changed.
     Link(&'static str),
     /// A neighbour has connected, disconnected or was refused.
     Network(NetEvent),
-    /// The Data System refuses a command, with the reason that it gives.
+    /// The Data System refuses a command, for this reason.
     DataBaseRefuses(String),
-    /// From the connection to a Data System in another process.
+    /// Remark from the connection to a Data System in another process.
     DataSystem(data_system::Remark),
-    /// From the connection to a pedestal in another process.
+    /// Remark from the connection to a pedestal in another process.
     Pedestal(pedestal::Remark),
-    /// From the connection to a vision system in another process.
+    /// Remark from the connection to a vision system in another process.
     Vision(vision::Remark),
-    /// A command that has failed is sent again.
+    /// A failed command is sent again.
     Retries(Retry),
-    /// The job that an operator plays has failed; the run goes on.
+    /// The job of an operator has failed; the run continues.
     OperatorJobFailed(JobFailure),
     /// A command of the workstation controller is refused.
     CommandRefused(workstation::Refusal),
-    /// A line of the workstation controller for the cell is refused, and why.
+    /// A line of the workstation controller for the cell is refused, for this reason.
     CellLineRefused(String),
     /// The status of the cell cannot be written for the workstation controller.
     CellStatusUnsent(MailboxError),
     /// The job has handed over to the workstation controller.
     HandedOver,
-    /// The workstation controller has disconnected, and the job goes on.
+    /// The workstation controller has disconnected, and the job continues.
     TakenBack,
     /// The job has begun to wait for an operator.
     Waits(WaitReason),
-    /// Task data have been loaded while the run went on.
+    /// Task data have been loaded during the run.
     Loaded {
         /// Number of the generation.
         generation: u32,
-        /// The blocks.
+        /// Name of the blocks.
         name: String,
     },
-    /// Something of the run was changed from outside.
+    /// The run was changed from outside.
     Changed(String),
-    /// Real time was asked for.
+    /// Real-time settings were requested.
     RealTime {
-        /// What the system granted, and what it is.
+        /// The settings that the system granted, and the system.
         verdict: String,
-        /// Everything was granted.
+        /// True if all were granted.
         complete: bool,
     },
-    /// A board was not granted what real time needs.
+    /// A board was not granted all real-time settings.
     BoardNotPunctual(Board),
     /// Slots of the 40 ms grid were skipped.
     Overrun(Overrun),
-    /// For it, the robot is brought to rest, and the run ends.
+    /// After skipped slots the robot is brought to rest, and the run ends.
     Stops,
-    /// For it, the robot holds.
+    /// After skipped slots the robot holds.
     Holds,
-    /// The robot goes on.
+    /// The ticks are on time again, and the robot continues.
     Punctual,
 }
 
 impl Event {
-    /// Stable short name of its kind, such as `cell.dropped`.
+    /// Stable short name of the kind, such as `cell.dropped`.
     #[must_use]
     pub const fn code(&self) -> &'static str {
         match self {
@@ -123,7 +123,7 @@ impl Event {
         }
     }
 
-    /// How much it matters: what went wrong in the world is an error.
+    /// Severity: damage in the cell is an error.
     #[must_use]
     pub fn level(&self) -> Level {
         match self {
@@ -131,7 +131,7 @@ impl Event {
             Self::Cell(event) if event.is_harm() => Level::Error,
             Self::Collides(_) | Self::CameFree(_) | Self::CellStatusUnsent(_) | Self::Stops => Level::Error,
             Self::RealTime { complete: true, .. } => Level::Info,
-            // That a neighbour connects is no warning, nor that an operator leaves.
+            // The connection of a neighbour and the departure of an operator are no warnings.
             Self::Network(
                 NetEvent::Connected(_) | NetEvent::Disconnected(Role::Operator, Disconnect::Closed),
             ) => Level::Info,

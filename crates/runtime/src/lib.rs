@@ -1,8 +1,8 @@
 //! A run of the controller as a library.
 //!
-//! A [`RunConfig`] says what to run: task data, job, clock, robot, faults, boards, neighbours, log. [`Run::new`] reads
+//! A [`RunConfig`] describes the run: task data, job, clock, robot, faults, boards, neighbours, log. [`Run::new`] reads
 //! and checks all of it and starts what the run needs; [`Run::step`] runs one tick; [`Run::finish`] ends the log and
-//! gives the [`RunOutcome`]. An [`Observer`] gets messages, each [`Event`] and each tick.
+//! returns the [`RunOutcome`]. An [`Observer`] receives messages, each [`Event`] and each tick.
 //!
 //! ```no_run
 //! use runtime::{LogTarget, Run, RunConfig};
@@ -13,9 +13,9 @@
 //! # Ok::<(), runtime::StartError>(())
 //! ```
 //!
-//! One tick is, in this order: the bytes received over a serial line, the controller (timed, and its allocations
-//! counted), the bytes to send over the line, the hand-off to the log, the cell, the workstation controller. The
-//! physics of the cell allocates and takes most of the time; it does not count as the controller's.
+//! The order in a tick: receive bytes from a serial line, run the controller (with its time and allocations measured),
+//! send bytes over the line, hand the tick to the log, advance the cell, run the workstation controller. The physics of
+//! the cell allocates and takes most of the time; neither counts as the controller's.
 
 pub mod agreement;
 mod as_text;
@@ -61,5 +61,5 @@ pub use self::{
     verdict::Ending,
 };
 
-/// Commit of the sources that this was built from.
+/// Commit of the sources from which this was built.
 pub const COMMIT: &str = env!("RCS_COMMIT");

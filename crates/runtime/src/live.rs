@@ -15,20 +15,20 @@ use crate::{
     observer::Observer,
 };
 
-/// A live view; dropping it ends it.
+/// A live view, which ends when it is dropped.
 pub struct Live {
     feed: Feed,
     knob: Knob,
-    /// Where viewers wait until they are served.
+    /// The port at which viewers wait until they are served.
     port: Option<Port>,
     server: Option<Server>,
 }
 
 impl Live {
-    /// Take the port, if a configuration asks for a live view.
+    /// Open the port, if the configuration has a live view.
     ///
     /// # Errors
-    /// [`StartError`] if there is no log to show, or the port is not available.
+    /// [`StartError`] if there is no log, or the port is not available.
     pub fn prepare(config: &RunConfig) -> Result<Option<Self>, StartError> {
         let Some(port) = config.live else { return Ok(None) };
         if config.log == LogTarget::None {
@@ -44,10 +44,10 @@ impl Live {
         self.feed.tap()
     }
 
-    /// Serve viewers. They can send requests if the run has a socket for operators.
+    /// Serve viewers. They can send requests if operators can connect to the run.
     ///
     /// # Errors
-    /// [`StartError`] if the system has no random numbers, or no thread.
+    /// [`StartError`] if the system provides no random numbers, or no thread.
     pub fn start(
         &mut self,
         config: &RunConfig,
@@ -77,7 +77,7 @@ impl Live {
         Ok(())
     }
 
-    /// Show the position of the velocity knob, per thousand. This does not wait.
+    /// Show the position of the velocity knob, per thousand, without blocking.
     pub fn knob(&self, velocity: u16) {
         self.knob.set(velocity);
     }

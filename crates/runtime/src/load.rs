@@ -1,11 +1,11 @@
-//! LOAD during a run (IV.2.4): a block of the run's data directory, as the file is now, becomes part of the task data
-//! before the next command. First all boards check the whole data with the block. An operator asks for it, or the
-//! workstation controller with a line for the cell.
+//! LOAD during a run (IV.2.4): a block of the run's data directory, in the present version of its file, becomes part of
+//! the task data before the next command. First all boards check the whole data with the block. An operator requests
+//! it, or the workstation controller with a line for the cell.
 //!
-//! On the 40 ms grid the data are checked beside the ticks. In fast clock the next tick waits for the check, so that a
-//! run does not depend on how fast the machine is.
+//! On the 40 ms grid the check runs in parallel to the ticks. In fast clock the next tick waits for the check, so that
+//! a run does not depend on the speed of the machine.
 //!
-//! The log keeps the text, so that a replay, and a repetition with the same inputs, load the same block.
+//! The log contains the text, so that a replay, and a repetition with the same inputs, load the same block.
 
 use std::{
     fmt, fs, io, thread,
@@ -27,17 +27,17 @@ use crate::{
     operator::Input,
 };
 
-/// Time limit for boards to check a load.
+/// Time limit for the boards' check of a load.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// The same in ticks.
+/// The same time limit in ticks.
 const BOARDS_LIMIT: u64 = PATIENCE.as_secs() * 1000 / TICK_MS;
-/// Time between two checks of the boards, when the run waits for them.
+/// Time between two looks at the boards, when the run waits for them.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// Why a block is not loaded.
+/// Errors of a load.
 #[derive(Debug)]
 pub enum LoadError {
-    /// A command is executed.
+    /// A command is in progress.
     Busy,
     /// Another block is being loaded.
     Loading,
@@ -45,17 +45,17 @@ pub enum LoadError {
     NoBlock(BlockNumber),
     /// A symbolic link leads from this file out of the data directory.
     Outside(String),
-    /// The log whose inputs are replayed does not have the text.
+    /// The log whose inputs are replayed does not contain the text.
     NotRecorded,
-    /// The log says that it was refused.
+    /// The load was refused in the log.
     Recorded(String),
-    /// With the block the data have errors.
+    /// The data with the block have errors.
     Data(Box<Diagnostics>),
-    /// The job has loaded blocks meanwhile, or waits for the end of a command with some.
+    /// The job has loaded blocks meanwhile, or waits for the end of a command to load some.
     Reload,
     /// The file for the boards cannot be written.
     Write(io::Error),
-    /// A board has not checked it in time.
+    /// A board has not finished its check in time.
     Late,
     /// A board has other data after the load.
     Differs(Board),
@@ -97,7 +97,7 @@ impl fmt::Display for LoadError {
 }
 
 impl LoadError {
-    /// The same in one line.
+    /// The error in one line.
     #[must_use]
     pub fn in_line(&self) -> String {
         match self {
@@ -107,7 +107,7 @@ impl LoadError {
     }
 }
 
-/// Who has asked for a load, and gets the answer.
+/// Source of a load, which gets the answer.
 pub enum Asker {
     /// An operator.
     Operator(Input),
@@ -118,8 +118,8 @@ pub enum Asker {
 /// An answered load.
 pub type Answer = (Asker, Result<String, LoadError>);
 
-/// `load OFFSET BLOCK` (IV.2.4); none if the words begin something else. With another word behind it, it is a line of a
-/// job, which says what is wrong.
+/// Read `load OFFSET BLOCK` (IV.2.4); `None` if the words begin something else. With another word after it, the text is
+/// a line of a job, whose reader gives the error.
 #[must_use]
 pub fn asked(words: &[&str]) -> Option<Result<BlockNumber, String>> {
     let ["load", offset, block] = words else { return None };
@@ -128,10 +128,10 @@ pub fn asked(words: &[&str]) -> Option<Result<BlockNumber, String>> {
     Some(numbers.map(|(offset, number)| BlockNumber { offset, number }).ok_or_else(expected))
 }
 
-/// Loads and jobs that were asked for during a run.
+/// Loads and jobs requested during a run.
 #[derive(Default)]
 pub struct Loads {
-    /// Thread that reads and checks beside the ticks; none in fast clock.
+    /// Thread that reads and checks in parallel to the ticks; `None` in fast clock.
     loader: Option<Loader>,
     loading: Option<Loading>,
     /// Number of the last load that was announced to boards in other processes.
@@ -141,20 +141,20 @@ pub struct Loads {
 }
 
 impl Loads {
-    /// Nothing was read yet.
+    /// No load yet.
     #[must_use]
     pub fn with(loader: Option<Loader>) -> Self {
         Self { loader, ..Self::default() }
     }
 
-    /// A block is being checked.
+    /// True while a block is being checked.
     #[must_use]
     pub const fn is_loading(&self) -> bool {
         self.loading.is_some()
     }
 }
 
-/// A load that was asked for and is not answered yet.
+/// A load without an answer yet.
 struct Loading {
     asker: Asker,
     number: BlockNumber,
@@ -169,7 +169,7 @@ enum Stage {
 }
 
 impl Run {
-    /// Whether a block can be loaded now.
+    /// Check that a block can be loaded now.
     fn can_load(&self) -> Result<(), LoadError> {
         if self.loads.loading.is_some() {
             return Err(LoadError::Loading);
@@ -177,7 +177,7 @@ impl Run {
         if generations::is_busy(self.runner.memory()) { Err(LoadError::Busy) } else { Ok(()) }
     }
 
-    /// Load a block. Beside the ticks it only begins, and is answered later by [`Run::follow_load`].
+    /// Load a block. In parallel to the ticks it only begins, and [`Run::follow_load`] returns the answer later.
     pub(crate) fn load(&mut self, number: BlockNumber, asker: Asker) -> Option<Answer> {
         if let Err(why) = self.can_load() {
             return Some((asker, Err(why)));
@@ -194,7 +194,7 @@ impl Run {
         None
     }
 
-    /// Once between two ticks: the result of the load in progress, with who asked for it.
+    /// Called once between two ticks: the result of the load in progress, with its source.
     pub(crate) fn follow_load(&mut self, tick: Tick) -> Option<Answer> {
         let Loading { asker, number, stage } = self.loads.loading.take()?;
         let stage = match stage {
@@ -220,7 +220,7 @@ impl Run {
         None
     }
 
-    /// Load a block before the next tick; in a repetition as the log has it.
+    /// Load a block before the next tick; in a repetition from the log.
     fn load_at_once(&mut self, number: BlockNumber, inside: bool) -> Result<String, LoadError> {
         let recorded = self.asked.recorded_block(self.generations.number().saturating_add(1));
         let source = recorded.map(|block| block.ok_or(LoadError::NotRecorded)).transpose()?;
@@ -261,7 +261,7 @@ impl Run {
         }
     }
 
-    /// Announce the file to the boards in other processes, which check it; returns the number of the load, `None` on
+    /// Announce the file to the boards in other processes, which check it. Returns the number of the load; `None` on
     /// one board.
     fn announce(&mut self) -> Option<u32> {
         let load = self.loads.last.saturating_add(1);
@@ -274,14 +274,14 @@ impl Run {
         self.coordinator().map_or(Ok(true), |coordinator| coordinator.have_checked(load, loaded.data))
     }
 
-    /// Withdraw a load that was announced: a board that joins later must not read it.
+    /// Withdraw an announced load: a board that joins later must not read it.
     fn take_back(&self, why: LoadError) -> LoadError {
-        // It goes with the run otherwise.
+        // Otherwise the file is removed with the run.
         let _ = fs::remove_file(load_file(&self.name, self.loads.last));
         why
     }
 
-    /// The task data have the block from the next tick on.
+    /// Add the block to the task data from the next tick on.
     fn take_up(&mut self, number: BlockNumber, loaded: Loaded) -> Result<String, LoadError> {
         let Loaded { reloads, done, .. } = loaded;
         let refused = if generations::is_busy(self.runner.memory()) {

@@ -1,4 +1,4 @@
-//! Loads during a run: read, checked and announced to the boards beside the ticks.
+//! Loads during a run, which are read, checked and announced to the boards in parallel to the ticks.
 //!
 //! ```text
 //!   operator: load ──► thread of the run: reads the block, checks all data with it, writes the file
@@ -10,7 +10,7 @@
 //!                      all boards have the same: the generation counts from the next tick on
 //! ```
 //!
-//! On one board the middle is left out. The threads start before the process asks for real-time priority, and keep
+//! On one board the middle step is omitted. The threads start before the process requests real-time priority, and keep
 //! their ordinary priority.
 
 use std::{
@@ -40,11 +40,11 @@ use taskdata::{
 
 use crate::load::LoadError;
 
-/// The reloads of a run with one more inserted after the first `done`, which have led to `base`. The later ones are
+/// Insert a reload into the reloads of a run, after the first `done` ones, which have led to `base`. The later ones are
 /// loaded on top of it.
 ///
 /// # Errors
-/// The report of the first that has errors now.
+/// The report of the first reload that has errors now.
 pub fn insert(
     base: &Store,
     reloads: &[Reload],
@@ -61,21 +61,21 @@ pub fn insert(
     Ok(all)
 }
 
-/// A load that has been checked.
+/// A block that has been checked.
 pub struct Loaded {
-    /// The reloads of the run with it.
+    /// All reloads of the run, with this one.
     pub reloads: Vec<Reload>,
-    /// How many come before it.
+    /// Number of reloads before it.
     pub done: usize,
-    /// [`Fingerprint::data`] with it.
+    /// [`Fingerprint::data`] of the task data with it.
     pub data: u64,
 }
 
-/// What is to be loaded.
+/// Request to load a block.
 pub struct Order {
-    /// The block.
+    /// Number of the block.
     pub number: BlockNumber,
-    /// Its text, if it does not come from the directory.
+    /// Text of the block, if it does not come from the directory.
     pub source: Option<Source>,
     /// The directory of the run's task data.
     pub directory: PathBuf,
@@ -83,11 +83,11 @@ pub struct Order {
     pub base: Store,
     /// The reloads of the run.
     pub reloads: Vec<Reload>,
-    /// How many of them count.
+    /// Number of reloads in effect.
     pub done: usize,
-    /// Where the boards of other processes read it.
+    /// File from which the boards of other processes read it.
     pub file: Option<PathBuf>,
-    /// A symbolic link may not lead out of the directory.
+    /// True if a symbolic link must not lead out of the directory.
     pub inside: bool,
 }
 
@@ -127,14 +127,14 @@ fn fingerprint(store: &Store) -> u64 {
     Fingerprint::of("", store.sources(), []).data
 }
 
-/// Write what boards are to load. No board sees half of it.
+/// Write the file for the boards, atomically.
 fn write(path: &Path, done: usize, source: &Source) -> io::Result<()> {
     let new = path.with_added_extension("new");
     fs::write(&new, format!("{done} {}\n{}", source.name, source.text))?;
     fs::rename(new, path)
 }
 
-/// Read the block for the boards, and how many reloads come before it.
+/// Read the file for the boards: number of reloads before the block, and the block.
 fn read(path: &Path) -> Option<(usize, Source)> {
     let text = fs::read_to_string(path).ok()?;
     let (head, text) = text.split_once('\n')?;
@@ -142,7 +142,7 @@ fn read(path: &Path) -> Option<(usize, Source)> {
     Some((done.parse().ok()?, Source { name: name.to_owned(), text: text.into() }))
 }
 
-/// The thread in which a run reads and checks.
+/// The thread that reads and checks for a run.
 pub struct Loader {
     orders: Sender<Order>,
     done: Receiver<Result<Loaded, LoadError>>,
@@ -152,7 +152,7 @@ impl Loader {
     /// Start the thread; it ends with the run.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the system.
     pub fn start() -> io::Result<Self> {
         let (orders, received) = channel::<Order>();
         let (sender, done) = channel();
@@ -167,9 +167,9 @@ impl Loader {
         Ok(Self { orders, done })
     }
 
-    /// Begin to read and check.
+    /// Start to read and check.
     pub fn begin(&self, order: Order) {
-        // Without the thread the next look says so.
+        // If the thread has ended, the next `look` returns an error.
         let _ = self.orders.send(order);
     }
 
@@ -185,10 +185,10 @@ impl Loader {
 
 /// All reloads of a board.
 type Reloads = Arc<Vec<Reload>>;
-/// A load as a board has checked it: its number, and the reloads with it unless there are errors.
+/// A load that a board has checked: its number, and the reloads with it, or `None` if there are errors.
 type Candidate = (u32, Option<(Reloads, u64)>);
 
-/// The task data of a board in a process of its own.
+/// The task data of a board in a separate process.
 pub struct BoardFiles {
     run: RunName,
     store: Store,
@@ -202,10 +202,10 @@ pub struct BoardFiles {
 }
 
 impl BoardFiles {
-    /// With the reloads of the job. Starts the thread that checks.
+    /// Start with the reloads of the job. Starts the thread that checks.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the system.
     pub fn new(run: &RunName, store: Store, reloads: Vec<Reload>) -> io::Result<Self> {
         let (orders, received) = channel::<(u32, Reloads)>();
         let (sender, done) = channel();
@@ -231,7 +231,7 @@ impl BoardFiles {
         })
     }
 
-    /// Load what was loaded before this board joined. The file of a refused load has been removed.
+    /// Load the blocks that were loaded before this board joined. The files of refused loads have been removed.
     pub fn catch_up(&mut self, loaded: u32) {
         for load in self.loaded.saturating_add(1)..=loaded {
             if let Some((reloads, _)) = with_load(&self.run, &self.store, &self.reloads, load) {
@@ -242,7 +242,7 @@ impl BoardFiles {
     }
 }
 
-/// The reloads with the one of a file; `None` if it is not there, or if there are errors.
+/// The reloads with the one of a file; `None` if the file does not exist or has errors.
 fn with_load(run: &RunName, first: &Store, reloads: &[Reload], load: u32) -> Option<(Reloads, u64)> {
     let (done, source) = read(&load_file(run, load))?;
     let base = match done.checked_sub(1) {
@@ -269,7 +269,7 @@ impl BoardData for BoardFiles {
     fn check(&mut self, load: u32) -> Checked {
         if load != self.asked {
             self.asked = load;
-            // Without the thread nothing is ever checked, and the run says so.
+            // If the thread has ended, no load is ever checked, and the run reports it.
             let _ = self.orders.send((load, Arc::clone(&self.reloads)));
         }
         while let Ok((load, made)) = self.done.try_recv() {

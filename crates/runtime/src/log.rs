@@ -1,4 +1,4 @@
-//! What the run writes to its log: set-up, one frame of the cell a tick, events, and the tick itself.
+//! Writes the log of a run: set-up, one frame of the cell per tick, events, and the tick itself.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -31,41 +31,41 @@ use crate::{
 
 /// Name of the fault plan among the attachments.
 pub const FAULTS: &str = "faults.toml";
-/// Directory among the attachments of what the job can load while the robot runs.
+/// Directory, among the attachments, of the files that the job can load during the run.
 pub const LOADS: &str = "loads/";
 
-/// Key of the metadata: how often a command is sent again after an error.
+/// Key of the metadata: number of times that a command is sent again after an error.
 pub const RETRY: &str = "retry";
 /// Key: neighbours in other processes.
 pub const OUTSIDE: &str = "outside";
-/// Key: where the Data System keeps its items.
+/// Key: file of the Data System's items.
 pub const DATA_BASE: &str = "data_base_in";
 /// Its value if the items are kept in memory only.
 pub const IN_MEMORY: &str = "memory";
 /// Key: the job waited for an operator before its first line.
 pub const STAND_BY: &str = "stand_by";
-/// Key: after how many ticks the run was to stop.
+/// Key: number of ticks after which the run was to stop.
 pub const TICKS: &str = "ticks";
 
-/// A log that is being written, with what is needed to draw the cell.
+/// A log that is being written, and the data for drawing the cell.
 pub struct Log {
     recorder: Recorder,
-    /// Names of the links that move, in the order of the log.
+    /// Names of the moving links, in the order of the log.
     links: Vec<String>,
-    /// Faults on the line so far, and their kinds in the last tick.
+    /// Number of faults on the line so far, and their kinds in the last tick.
     faults: Counts,
     kinds: Vec<&'static str>,
     vision: Vision,
-    /// What touched something in the last tick.
+    /// The contacts of the last tick.
     touches: Vec<Touch>,
 }
 
-/// The last request to vision, its answer, and the picture of the camera.
+/// The last request to vision, its answer, and the camera picture.
 struct Vision {
     camera: Camera,
     request: VisionRequest,
     answer: VisionResponse,
-    /// Number of the request whose picture is taken.
+    /// Number of the request for which a picture was taken.
     taken: u32,
     seen: Option<Vec<Subject>>,
 }
@@ -76,7 +76,7 @@ impl Vision {
         Self { camera: camera.clone(), request, answer, taken: 0, seen: None }
     }
 
-    /// Take the picture of a new request; the drawing of one that is answered.
+    /// Take a picture for a new request; returns the drawing of an answered one.
     fn look(&mut self, cell: &Cell) -> Option<Vec<u8>> {
         let VisionRequest { number, picture, .. } = self.request;
         if number != self.taken && picture != Picture::None {
@@ -135,7 +135,7 @@ impl Log {
         })
     }
 
-    /// The cell as the controller will see it in `tick`, with the [`FRAMES`] of a robot with EGM; before
+    /// Log the cell that the controller sees in `tick`, with the [`FRAMES`] of a robot with EGM; call it before
     /// [`Log::tick`].
     pub fn cell(&mut self, tick: Tick, cell: &Cell, frames: Option<[Pose; 2]>) {
         let mut places = vec![Transform::IDENTITY; self.links.len()];
@@ -157,7 +157,7 @@ impl Log {
         }
     }
 
-    /// What touches what, as the cell is in `tick`, and which of it may not; before [`Log::tick`].
+    /// Log the contacts in `tick`, and which of them are not permitted; call it before [`Log::tick`].
     pub fn contacts(&mut self, tick: Tick, contacts: &[Contact], collides: impl Fn(&Contact) -> bool) {
         let touching = contacts.iter().filter(|contact| contact.touches());
         let touches: Vec<_> = touching.map(|contact| touch(contact, collides(contact))).collect();
@@ -167,18 +167,18 @@ impl Log {
         }
     }
 
-    /// Something has happened; before [`Log::tick`] of the same tick.
+    /// Log an event; call it before [`Log::tick`] of the same tick.
     pub fn event(&mut self, tick: Tick, event: &Event) {
         self.recorder.note(tick, event.level(), event.source(), event.code(), &event.to_string());
     }
 
-    /// What an operator has asked for; before [`Log::tick`] of the tick that sees it first.
+    /// Log a request of an operator; call it before [`Log::tick`] of the first tick that sees it.
     pub fn operator(&mut self, line: OperatorLine) {
         self.recorder.operator(line);
     }
 
-    /// Faults of the plan on the line so far: logged when their kinds differ from those of the tick before; before
-    /// [`Log::tick`] of the same tick.
+    /// Log the faults of the line when their kinds differ from those of the tick before; call it before [`Log::tick`]
+    /// of the same tick.
     pub fn faults(&mut self, tick: Tick, counts: Counts) {
         let fresh = FaultKind::ALL.iter().filter(|kind| counts.of(**kind) > self.faults.of(**kind));
         let kinds: Vec<&'static str> = fresh.map(|kind| kind.text()).collect();
@@ -188,7 +188,7 @@ impl Log {
         (self.faults, self.kinds) = (counts, kinds);
     }
 
-    /// From `tick` on the task data are of another generation, with the blocks of `source`; before
+    /// Log that from `tick` on the task data are of another generation, with the blocks of `source`; call it before
     /// [`Log::tick`] of that tick.
     pub fn reload(&mut self, tick: Tick, generation: u32, source: &Source) {
         for file in Attachment::reload(generation, std::slice::from_ref(source)) {
@@ -197,19 +197,19 @@ impl Log {
         self.event(tick, &Event::Loaded { generation, name: source.name.clone() });
     }
 
-    /// From `tick` on this job is played in the place of the rest of the one before; before [`Log::tick`] of that tick.
+    /// Log that from `tick` on this job replaces the rest of the one before; call it before [`Log::tick`] of that tick.
     pub fn played(&mut self, tick: Tick, number: u32, job: &Job) {
         let source = Source { name: format!("{}.{EXTENSION}", job.name), text: job.source().text.clone() };
         self.recorder.attach(tick, Attachment::played(number, &source));
     }
 
-    /// Times of the tick; before [`Log::tick`] of the same tick. Not for runs in fast clock: their logs are the same
-    /// bytes whenever they are written.
+    /// Set the times of the tick; call it before [`Log::tick`] of the same tick. Not for runs in fast clock: equal runs
+    /// must have equal logs.
     pub const fn timing(&mut self, controller_ns: u64, skipped: u64) {
         self.recorder.timing(Timing { controller_ns, skipped });
     }
 
-    /// Hand over a tick. This belongs to the tick itself: what it allocates is counted.
+    /// Hand over a tick. This is part of the tick itself: its allocations are counted.
     pub fn tick(
         &mut self,
         tick: Tick,
@@ -225,7 +225,7 @@ impl Log {
     /// End the log.
     ///
     /// # Errors
-    /// [`RecordError`] that ended the log before the run did.
+    /// The [`RecordError`] that ended the log before the end of the run.
     pub fn finish(
         self,
         digest: Digest,
@@ -254,7 +254,7 @@ fn touch(contact: &Contact, collides: bool) -> Touch {
     }
 }
 
-/// The shapes of all bodies, with the parts that will be delivered.
+/// The shapes of all bodies, including the parts that will be delivered.
 fn models(setup: &Setup, coming: &[&str]) -> Vec<Model> {
     let models = look::models(&setup.description, &setup.cell.part_kinds(coming));
     let file = |model: look::Model| Model { glb: model.glb(), name: model.name, frame: model.frame };
@@ -275,7 +275,7 @@ fn delivered(step: &Step) -> Option<&str> {
     }
 }
 
-/// All files that a replay and a repetition of the run need: task data, job, cell description, fault plan.
+/// All files that a replay or a repetition of the run needs: task data, job, cell description, fault plan.
 fn attachments(setup: &Setup) -> Vec<Attachment> {
     let sources = setup.store.sources().iter();
     let data = sources
@@ -291,7 +291,7 @@ fn attachments(setup: &Setup) -> Vec<Attachment> {
     all
 }
 
-/// Metadata of the run. They are the same for two equal runs.
+/// Metadata of the run. Two equal runs have equal metadata.
 fn metadata(config: &RunConfig, job: &Job, attachments: &[Attachment]) -> BTreeMap<String, String> {
     let mut configuration = Digest::new();
     for attachment in attachments {

@@ -1,8 +1,8 @@
 //! The neighbours of a run: the source of Task's commands, the Data System, and, if they are other processes, Active
 //! Pedestal and vision.
 //!
-//! A neighbour is in this process, or in another one behind the network. Both are reached through mailboxes. In fast
-//! clock, which steps both in lock step, a run gives the same bits with either.
+//! A neighbour runs in this process, or in another one behind the network. The run reaches both through mailboxes. In
+//! fast clock, which runs both in lock step, the results are the same bits.
 
 use std::{
     sync::atomic::Ordering,
@@ -40,17 +40,17 @@ use crate::{
     observer::Observer,
 };
 
-/// The workstation controller of a run: what commands Task.
+/// The source of Task's commands.
 pub enum WorkstationSource {
-    /// The emulator, with a job.
+    /// The emulator of the workstation controller, with a job.
     Emulator(Box<Emulator>),
-    /// Another process.
+    /// A workstation controller in another process.
     Outside(Box<Commanded>),
-    /// The emulator, whose job hands over to another process.
+    /// The emulator, whose job hands over to a workstation controller in another process.
     Switched(Box<Switched>),
 }
 
-/// The emulator of the workstation controller, with the mailbox that it writes.
+/// The emulator of the workstation controller, with its command mailbox.
 pub struct Emulator {
     /// The emulator.
     pub hwsc: Hwsc,
@@ -58,7 +58,7 @@ pub struct Emulator {
 }
 
 impl WorkstationSource {
-    /// Another process commands.
+    /// True if another process commands.
     #[must_use]
     pub fn outside(endpoint: Endpoint) -> Self {
         Self::Outside(Box::new(Commanded::new(endpoint)))
@@ -70,19 +70,19 @@ pub struct Neighbours {
     pub(crate) gate: Gate,
     pub(crate) workstation: WorkstationSource,
     data_system: DataSystem,
-    /// None: the pedestal's processes are among the controller's.
+    /// `None` if the controller contains the processes of the pedestal.
     pedestal: Option<Box<pedestal::Agent>>,
-    /// Vision; without it the cell analyses its pictures itself.
+    /// The port of vision; without it the cell analyses its pictures itself.
     vision: Option<vision::Port>,
     /// Accepts neighbours during the run; `None` if no neighbour is another process.
     pub(crate) network: Option<Network>,
     pub(crate) events: Vec<Event>,
-    /// No more commands are given.
+    /// True if no more commands are accepted.
     is_ending: bool,
 }
 
 impl Neighbours {
-    /// The source of commands, the Data System, and pedestal and vision if they are other processes.
+    /// Make the source of commands, the Data System, and pedestal and vision if they are other processes.
     #[must_use]
     pub fn new(
         workstation: WorkstationSource,
@@ -103,9 +103,9 @@ impl Neighbours {
         }
     }
 
-    /// Wait for neighbours in other processes, at most so many seconds, or until an interruption, which the run then
-    /// handles. On the 40 ms grid only the workstation controller is waited for: the others may connect later. In fast
-    /// clock a run ends when it disconnects, also before the first tick.
+    /// Wait for neighbours in other processes, until the time limit or an interruption, which the run handles. On the
+    /// 40 ms grid the run waits only for the workstation controller: the others may connect later. In fast clock a run
+    /// ends when one disconnects, also before the first tick.
     ///
     /// # Errors
     /// [`StartError::NoWorkstation`].
@@ -139,12 +139,12 @@ impl Neighbours {
         }
     }
 
-    /// The run is about to end: commands of job and workstation controller are no longer read.
+    /// Stop reading commands of job and workstation controller: the run is about to end.
     pub const fn stop_commanding(&mut self) {
         self.is_ending = true;
     }
 
-    /// Another process commands.
+    /// True if another process commands.
     #[must_use]
     pub fn are_commanding(&self) -> bool {
         match &self.workstation {
@@ -162,10 +162,10 @@ impl Neighbours {
         }
     }
 
-    /// The job, if it commands at present.
+    /// The job, if it is the present source of commands.
     ///
     /// # Errors
-    /// Which source commands instead, as a sentence.
+    /// A sentence that names the present source.
     pub fn job_under_way(&mut self) -> Result<&mut Hwsc, String> {
         if self.is_ending {
             return Err("the run is about to end".to_owned());
@@ -181,7 +181,7 @@ impl Neighbours {
         }
     }
 
-    /// Why the job has begun to wait for an operator; each reason is given once.
+    /// The reason why the job has begun to wait for an operator; each reason is returned once.
     pub fn operator_news(&mut self) -> Option<WaitReason> {
         match &mut self.workstation {
             WorkstationSource::Emulator(emulator) => emulator.hwsc.operator_news(),
@@ -190,7 +190,7 @@ impl Neighbours {
         }
     }
 
-    /// Another process may command for a time.
+    /// True if another process may command for a time.
     #[must_use]
     pub const fn can_switch(&self) -> bool {
         matches!(self.workstation, WorkstationSource::Switched(_))
@@ -202,24 +202,25 @@ impl Neighbours {
         self.gate.command()
     }
 
-    /// What Task reads of the Data System.
+    /// The Data System's input to Task.
     #[must_use]
     pub const fn data_base(&self) -> DataBaseStatus {
         self.data_system.status()
     }
 
-    /// What a pedestal in another process has sent.
+    /// The last statuses of a pedestal in another process.
     #[must_use]
     pub fn pedestal(&self) -> &OutsidePedestal {
         self.pedestal.as_deref().map_or(&OutsidePedestal::ZERO, pedestal::Agent::sent)
     }
 
-    /// Before the first tick: the pedestal is stepped from the controller's first tick on.
+    /// Before the first tick: the pedestal reads the initial buffers, so that it runs from the controller's first tick
+    /// on.
     pub fn begin(&mut self, memory: &CommonMemory, inputs: &DeviceInputs) {
         self.step_pedestal(Tick::BEFORE_START, memory, inputs);
     }
 
-    /// The pedestal reads what a tick has written, and the device words of the next tick.
+    /// The pedestal reads the outputs of a tick, and the device words of the next tick.
     fn step_pedestal(&mut self, tick: Tick, memory: &CommonMemory, inputs: &DeviceInputs) {
         let Some(agent) = &mut self.pedestal else { return };
         agent.exchange(tick.next(), &memory.subtask.pedestal, &inputs.pedestal);
@@ -245,7 +246,7 @@ impl Neighbours {
         }
     }
 
-    /// The same, and those of a workstation controller that the job has handed over to.
+    /// The same, with the commands of a workstation controller to which the job has handed over.
     #[must_use]
     pub fn all_steps(&self) -> Vec<BegunStep> {
         match &self.workstation {
@@ -255,7 +256,7 @@ impl Neighbours {
         }
     }
 
-    /// The commands of the job that were sent again after they had failed.
+    /// The commands of the job that failed and were sent again.
     #[must_use]
     pub fn retried(&self) -> &[Retry] {
         match &self.workstation {
@@ -277,8 +278,8 @@ impl Neighbours {
         self.begun_steps().iter().rev().find(is_meant).map(|step| step.text.as_str())
     }
 
-    /// Once a tick, after controller and cell: all read what the tick has written. `inputs` are the device
-    /// words of the next tick.
+    /// Called once per tick, after controller and cell: all neighbours read the outputs of the tick. `inputs` are the
+    /// device words of the next tick.
     pub fn step(
         &mut self,
         tick: Tick,
@@ -318,15 +319,15 @@ impl Neighbours {
         progress
     }
 
-    /// What has happened since the last call.
+    /// The events since the last call.
     pub fn events(&mut self) -> Vec<Event> {
         std::mem::take(&mut self.events)
     }
 
-    /// The items that the Data System keeps.
+    /// The items in the Data System.
     ///
     /// # Errors
-    /// Why it cannot list them.
+    /// The reason why the list is not available.
     pub fn items(&mut self) -> Result<Vec<Item>, String> {
         self.data_system.items()
     }
@@ -339,7 +340,7 @@ impl Emulator {
         Self { hwsc, command_box: Mailbox::initialized(HWSC_COMMAND) }
     }
 
-    /// Once a tick: the emulator reads its status mailbox and writes its command mailbox.
+    /// Called once per tick: the emulator reads its status mailbox and writes its command mailbox.
     pub fn step(
         &mut self,
         tick: Tick,
@@ -366,12 +367,12 @@ impl Emulator {
                 .and_then(|bytes| self.command_box.write(&bytes).map_err(|error| error.to_string()));
             failure = written.err().map(|why| Progress::Failed(JobFailure::Refused(why)));
         }
-        // What the gate refuses comes back to the emulator by its status.
+        // The emulator learns from its status which commands the gate refuses.
         gate.read(&self.command_box);
         failure
     }
 
-    /// The job commands again: its mailbox is initialized as all mailboxes are when one connects (IX.1).
+    /// Return the command to the job: its mailbox is initialized, as every mailbox is when a neighbour connects (IX.1).
     pub fn take_back(&mut self, tick: Tick, gate: &mut Gate, commands: Vec<BegunStep>) -> Progress {
         self.command_box.initialize();
         gate.initialize();
@@ -380,7 +381,7 @@ impl Emulator {
     }
 }
 
-/// What the camera sees of a part, as its mailbox has it.
+/// Properties of a part in the camera picture, in the form of the mailbox.
 fn pictured(subject: &Subject) -> Part {
     let face = subject.face();
     Part {
@@ -391,7 +392,7 @@ fn pictured(subject: &Subject) -> Part {
     }
 }
 
-/// Whether Task has run in a tick.
+/// True if Task has run in a tick.
 #[must_use]
 pub fn task_state(header: &Header, tick: Tick) -> TaskState {
     if header.stamp != tick {

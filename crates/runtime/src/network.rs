@@ -1,4 +1,4 @@
-//! Where neighbours and operators of other processes, or on other machines, connect.
+//! The listeners for neighbours and operators in other processes or on other machines.
 
 use std::{
     io,
@@ -14,7 +14,7 @@ use crate::{
     observer::Observer,
 };
 
-/// The network of a run, as long as it lasts.
+/// The network of a run; it ends when this is dropped.
 pub struct Network {
     /// Endpoints of the neighbours that may connect.
     pub handles: Vec<EndpointHandle>,
@@ -25,10 +25,10 @@ pub struct Network {
 }
 
 impl Network {
-    /// Listen where a configuration says, if it names an address.
+    /// Listen at the address of a configuration, if it names one.
     ///
     /// # Errors
-    /// [`StartError`] if its options do not fit together, or the address cannot be used.
+    /// [`StartError`] if the options contradict each other, or the address cannot be used.
     pub fn start(
         config: &RunConfig,
         endpoints: &[&Endpoint],
@@ -54,7 +54,7 @@ impl Network {
         Ok(Some(Self { handles, operators, _listener: listener }))
     }
 
-    /// The run has begun: from now on operators are admitted.
+    /// Admit operators: the run has begun.
     pub fn let_operators_in(&self, enter: impl Fn() -> io::Result<UnixStream> + Send + Sync + 'static) {
         if let Some((operators, _)) = &self.operators {
             operators.open(enter);
@@ -67,7 +67,7 @@ impl Network {
     }
 }
 
-/// Whether the options of the network fit together.
+/// Check that the options of the network are consistent.
 fn check(config: &RunConfig) -> Result<(), StartError> {
     let for_operators = config.operator == OperatorAccess::Network;
     if config.outside.contains(&Role::Operator) {

@@ -11,30 +11,29 @@ use crate::event::Event;
 pub struct TickReport<'a> {
     /// The tick.
     pub tick: Tick,
-    /// Number of lines of the job; the PAUSE with which the player begins is a step more.
+    /// Number of lines of the job; the first PAUSE is an additional step.
     pub lines: usize,
-    /// Steps of the job that have begun, in their order.
+    /// Steps of the job that have begun, in order.
     pub steps: &'a [BegunStep],
     /// The command to Task.
     pub hws: &'a HwsCommand,
-    /// All buffers.
+    /// Common memory after the tick.
     pub memory: &'a CommonMemory,
 }
 
-/// Receives messages, events and each tick. Calls are made between ticks and delay the next one. `()` ignores
-/// everything.
+/// Receives messages, events and each tick. Calls come between ticks and delay the next one. `()` ignores everything.
 pub trait Observer {
-    /// A message for the person at the run: one line, without its end.
+    /// A message for the operator: one line, without newline.
     fn message(&mut self, text: &str) {
         let _ = text;
     }
 
-    /// An event of a tick; if a person at the run should read it, it also comes as a message.
+    /// An event of a tick; if an operator should read it, it also comes as a message.
     fn event(&mut self, tick: Tick, event: &Event) {
         let _ = (tick, event);
     }
 
-    /// A tick is over.
+    /// Called after each tick.
     fn tick(&mut self, report: &TickReport<'_>) {
         let _ = report;
     }

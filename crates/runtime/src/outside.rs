@@ -1,8 +1,8 @@
 //! A workstation controller in another process: its mailboxes, and the commands that a run remembers.
 //!
-//! Besides Task it commands the simulated cell: actions of the workstation are lines of a job, in a separate mailbox. A
-//! run in fast clock ends when its workstation controller disconnects, and has failed if that was in the middle of a
-//! command; on the 40 ms grid the robot waits until it connects again.
+//! It also commands the simulated cell: actions of the workstation are lines of a job, in a separate mailbox. A run in
+//! fast clock ends when its workstation controller disconnects, and has failed if that was in the middle of a command;
+//! on the 40 ms grid the robot waits until it connects again.
 
 use interfaces::{HwsCommand, TaskOutputs, hws::HwsReport};
 use neighbours::{
@@ -19,7 +19,7 @@ use taskdata::load::{BlockNumber, Store, job};
 
 use crate::{event::Event, load, workstation::SimulatedWorkstation};
 
-/// Commands that a run remembers; a run of a year must not fill the memory.
+/// Number of commands that a run remembers, so that a run of a year does not fill the memory.
 const REMEMBERED: usize = 10_000;
 
 /// A workstation controller in another process.
@@ -29,19 +29,19 @@ pub struct OutsideWorkstation {
     line_read: u16,
     /// Number of that line.
     line: u16,
-    /// Why it was refused.
+    /// The reason why that line was refused.
     refused: Option<String>,
-    /// The block that it asks for, until the run begins to load it.
+    /// The block that it requests, until the run begins to load it.
     load: Option<(BlockNumber, String)>,
-    /// Number of the line whose load is not answered yet.
+    /// Number of the line whose load has no answer yet.
     loading: Option<u16>,
     begun_steps: Vec<BegunStep>,
     began: Tick,
-    /// It has been connected in a tick.
+    /// True if it has been connected in a tick.
     came: bool,
-    /// It is connected.
+    /// True while it is connected.
     here: bool,
-    /// Why the last connection ended.
+    /// The reason why the last connection ended.
     disconnect: Option<Disconnect>,
 }
 
@@ -64,57 +64,58 @@ impl OutsideWorkstation {
         }
     }
 
-    /// The commands that were taken, as far as they are remembered.
+    /// The accepted commands, as far as they are remembered.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {
         &self.begun_steps
     }
 
-    /// It is connected.
+    /// True while it is connected.
     #[must_use]
     pub const fn is_here(&self) -> bool {
         self.here
     }
 
-    /// It can connect.
+    /// True if it can connect.
     #[must_use]
     pub const fn endpoint(&self) -> &Endpoint {
         &self.endpoint
     }
 
-    /// An operator has taken the command: what is executed is replaced.
+    /// Replace the command in progress: an operator has taken the command.
     pub fn interrupt(&mut self, tick: Tick) {
         if let Some(step) = self.begun_steps.last_mut().filter(|step| step.outcome == Outcome::Executing) {
             (step.outcome, step.ticks) = (Outcome::Interrupted, tick.since(step.began));
         }
     }
 
-    /// It commands again: commands that came meanwhile are not read.
+    /// Skip the commands that came while another source commanded: it commands again.
     pub fn pass_over(&mut self, gate: &mut Gate) {
         gate.pass_over(self.endpoint.incoming(HWSC_COMMAND));
         self.line_read = self.endpoint.incoming(CELL_COMMAND).mailgram();
         self.refused = None;
     }
 
-    /// The commands that were taken since the last call.
+    /// The commands accepted since the last call.
     pub fn take_steps(&mut self) -> Vec<BegunStep> {
         std::mem::take(&mut self.begun_steps)
     }
 
-    /// The block that a line of this tick asks for, and the line.
+    /// The block that a line of this tick requests, and the line.
     pub const fn load_asked(&mut self) -> Option<(BlockNumber, String)> {
         self.load.take()
     }
 
-    /// The load is over; why it was refused. A newer line, or another workstation controller, does not get the answer.
+    /// Answer a load with the reason of a refusal, or `None`. A newer line, or another workstation controller, does not
+    /// get the answer.
     pub fn load_answered(&mut self, refused: Option<String>) {
         if self.loading.take() == Some(self.line) {
             self.refused = refused;
         }
     }
 
-    /// Once a tick while an operator or the job commands: it may connect and disconnect, reads no status, and its
-    /// commands are not read.
+    /// Called once per tick while an operator or the job commands: it may connect and disconnect, but reads no status,
+    /// and its commands are not read.
     pub fn attend(&mut self, tick: Tick, events: &mut Vec<Event>) {
         for place in [HWSC_STATUS, CELL_STATUS] {
             self.endpoint.outgoing(place).initialize();
@@ -122,7 +123,7 @@ impl OutsideWorkstation {
         self.exchange(tick, events);
     }
 
-    /// The mailboxes of a tick go out and come in.
+    /// Send and receive the mailboxes of a tick.
     fn exchange(&mut self, tick: Tick, events: &mut Vec<Event>) -> Presence {
         let presence = self.endpoint.exchange(tick.0);
         while let Some(event) = self.endpoint.event() {
@@ -138,7 +139,7 @@ impl OutsideWorkstation {
         presence
     }
 
-    /// Once a tick, after controller and cell.
+    /// Called once per tick, after controller and cell.
     pub fn step(
         &mut self,
         tick: Tick,
@@ -167,7 +168,7 @@ impl OutsideWorkstation {
         if gone { self.end(gate.command(), task, workstation) } else { Progress::Running }
     }
 
-    /// The workstation controller has disconnected, and the run ends. A new connection is too late.
+    /// True if the workstation controller has disconnected, which ends the run. A new connection is too late.
     fn has_gone(&mut self, presence: Presence) -> bool {
         let gone = presence.was_connected && (!presence.connected || presence.new && self.came);
         self.came |= presence.connected;
@@ -264,7 +265,7 @@ impl OutsideWorkstation {
         }
     }
 
-    /// A line for the cell, or a load, which the run begins after this tick.
+    /// Begin a line for the cell, or note a load, which the run begins after this tick.
     fn begin_line(
         &mut self,
         line: &str,
@@ -282,7 +283,7 @@ impl OutsideWorkstation {
     }
 }
 
-/// A command as a job has it.
+/// A command in the form of a job.
 fn spelled(command: &HwsCommand) -> String {
     let name = |name: Option<Name16>| name.map_or("--".to_owned(), |name| name.to_string());
     let mut text = format!(

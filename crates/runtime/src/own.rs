@@ -9,20 +9,20 @@ use depc::{
 use interfaces::device::DeviceInputs;
 use plant::t3::explained;
 
-/// A robot in the place of the T3, for [`Run::with_robot`](crate::Run::with_robot).
+/// A robot instead of the T3, for [`Run::with_robot`](crate::Run::with_robot).
 ///
 /// The calls of a tick are first [`advance`](Self::advance), then at most one point ([`Robot::accept`]) or request for
 /// the present position ([`Robot::present`]), then [`position`](Self::position).
 pub trait OwnRobot: Robot {
-    /// A tick of 40 ms begins: go towards the last point that was accepted.
+    /// A tick of 40 ms begins: move towards the last accepted point.
     fn advance(&mut self);
 
-    /// Where the end plate is: the arm of the simulated cell, and with it all else there, follows it. `None`
-    /// while that is not known.
+    /// Position of the end plate, `None` while unknown. The arm of the simulated cell, and everything that it carries,
+    /// follows it.
     fn position(&self) -> Option<Plate>;
 }
 
-/// The robot, and the DEPC function in front of it.
+/// The robot, and its DEPC function.
 pub struct OwnPort {
     robot: Box<dyn OwnRobot>,
     function: Controller,
@@ -30,20 +30,20 @@ pub struct OwnPort {
 }
 
 impl OwnPort {
-    /// The function has not begun.
+    /// The function has not started.
     pub fn new(robot: Box<dyn OwnRobot>) -> Self {
         Self { robot, function: Controller::new(Limits::NBS), outputs: ControllerOutputs::default() }
     }
 
-    /// Before the controller's tick: the answers of the function.
+    /// Before the controller's tick: pass on the answers of the function.
     pub const fn receive(&self, inputs: &mut DeviceInputs) {
         inputs.link_rx = self.outputs.tx;
         inputs.link_ready = self.outputs.dtr;
         inputs.link_unsent = false;
     }
 
-    /// After the controller's tick: the function takes the host's bytes. It starts again whenever the robot reports no
-    /// trouble.
+    /// After the controller's tick: pass the host's bytes to the function. It starts again whenever the robot reports
+    /// no trouble.
     pub fn send(&mut self, tx: &LinkBytes) {
         self.robot.advance();
         let running = matches!(self.function.state(), ControllerState::Running | ControllerState::Warning);
@@ -53,7 +53,7 @@ impl OwnPort {
         self.outputs = self.function.step(&inputs, &mut *self.robot);
     }
 
-    /// Where the robot is.
+    /// Position of the robot.
     pub fn position(&self) -> Option<Plate> {
         self.robot.position()
     }

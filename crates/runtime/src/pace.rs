@@ -1,4 +1,4 @@
-//! Keeps the ticks of a run on their grid, and measures how late they are.
+//! Keeps the ticks of a run on their grid, and measures their lateness.
 
 use std::{collections::BTreeMap, fmt::Write as _, time::Duration};
 
@@ -14,10 +14,10 @@ use interfaces::{CommonMemory, DeviceInputs};
 
 use crate::{event::Event, result::TickTimes};
 
-/// Processes listed in the result: those with the longest times.
+/// Number of processes in the result: those with the longest times.
 const PROCESSES_SHOWN: usize = 3;
 
-/// The clock of a run, with what it measured.
+/// The clock of a run, and its measurements.
 pub struct Pace {
     clock: Clock,
     policy: Policy,
@@ -29,7 +29,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// One tick after the other.
+    /// A clock in which one tick follows another at once.
     #[must_use]
     pub fn fast(policy: Policy) -> Self {
         Self {
@@ -43,8 +43,8 @@ impl Pace {
         }
     }
 
-    /// From now on a tick every 40 ms, or `speed` ticks in that time. The threads of log and progress must run already: they keep their
-    /// ordinary priority.
+    /// Run a tick every 40 ms, or `speed` ticks in that time, from now on. The threads of log and progress must run
+    /// already: they keep their ordinary priority.
     pub fn ask_for_real_time(&mut self, core: Option<usize>, speed: u8) -> Event {
         let granted = realtime::acquire(core);
         let verdict = format!("{}; {}", granted.verdict, Machine::look());
@@ -55,12 +55,12 @@ impl Pace {
         event
     }
 
-    /// Sleep until shortly before the next tick; true if there is time for a warm-up.
+    /// Sleep until shortly before the next tick. Returns true if there is time for a warm-up.
     pub fn wake_early(&mut self) -> bool {
         self.clock.wake_early()
     }
 
-    /// Wait until the tick is due. Returns the skipped slots, and the reaction to them.
+    /// Wait until the tick is due. Returns events for skipped slots and for the reaction to them.
     pub fn wait(&mut self, stage_times: &StageTimes) -> Vec<Event> {
         let slots = self.clock.wait();
         let late = self.clock.late();
@@ -79,55 +79,55 @@ impl Pace {
         events
     }
 
-    /// The inputs for the controller: while the robot holds, its velocity knob is at zero.
+    /// The controller's inputs: while the robot holds, its velocity knob is at zero.
     #[must_use]
     pub const fn inputs(&self, mut inputs: DeviceInputs) -> DeviceInputs {
         inputs.joystick.velocity = self.overruns.knob(inputs.joystick.velocity);
         inputs
     }
 
-    /// After a tick: the overrun for which the run ends now.
+    /// After a tick: the overrun that ends the run now, if any.
     pub fn ends(&mut self, memory: &CommonMemory) -> Option<Overrun> {
         self.overruns.ends(memory)
     }
 
-    /// The policy for skipped slots.
+    /// The reaction to skipped slots.
     #[must_use]
     pub const fn policy(&self) -> Policy {
         self.policy
     }
 
-    /// A tick every 40 ms, not one after the other.
+    /// True if ticks are on the 40 ms grid, false if they follow each other at once.
     #[must_use]
     pub const fn is_real(&self) -> bool {
         matches!(self.clock, Clock::Real(_))
     }
 
-    /// Slots skipped so far.
+    /// Number of skipped slots.
     #[must_use]
     pub const fn skipped(&self) -> u64 {
         self.clock.skipped()
     }
 
-    /// What the system granted; `None` if ticks follow each other at once.
+    /// The real-time settings that the system has granted; `None` if ticks follow each other at once.
     #[must_use]
     pub fn verdict(&self) -> Option<String> {
         self.verdict.clone()
     }
 
-    /// How late the last tick began.
+    /// Lateness of the last tick.
     #[must_use]
     pub const fn last_late(&self) -> Duration {
         self.clock.late()
     }
 
-    /// How late ticks began; `None` if they follow each other at once.
+    /// Lateness of all ticks; `None` if they follow each other at once.
     #[must_use]
     pub fn late(&self) -> Option<TickTimes> {
         self.verdict.is_some().then(|| self.late.summary().into())
     }
 
-    /// Skipped slots by cause: a part of a tick, or `waking`.
+    /// Number of skipped slots by cause: a part of a tick, or `waking`.
     #[must_use]
     pub fn overruns(&self) -> BTreeMap<String, u64> {
         let name = |part: Option<Stage>| part.map_or_else(|| "waking".to_owned(), |part| part.to_string());
@@ -141,7 +141,7 @@ pub fn times(stage_times: &StageTimes) -> BTreeMap<String, TickTimes> {
     Stage::all().map(|part| (part.to_string(), stage_times.summary(part).into())).collect()
 }
 
-/// The processes that take longest, in a line.
+/// The processes with the longest times, as one line.
 #[must_use]
 pub fn slowest(stage_times: &StageTimes) -> String {
     let mut processes: Vec<_> = Stage::all()

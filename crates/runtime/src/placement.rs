@@ -1,13 +1,13 @@
-//! Checks where the parts are: each must be where the last command that moved it had to leave it.
+//! Checks the positions of the parts: each must be where the last command that moved it should have left it.
 //!
-//! A part is moved by a command if the gripper has had it while the command was executed. When the command
-//! finishes, its verb says where the part has to be (V.4.1): TRANSFER puts it down at the destination,
-//! RELEASE-TOOL leaves it in the drum, POSITION lets it go where the robot stands or keeps it, all others
-//! keep it. A command that fails says nothing; sent again, it goes on.
+//! A command moves a part if the gripper holds the part while the command is executed. When the command finishes, its
+//! verb determines where the part must be (V.4.1): TRANSFER puts it down at the destination, RELEASE-TOOL leaves it in
+//! the drum, POSITION releases it where the robot stands or keeps it, all others keep it. A failed command determines
+//! nothing; if it is sent again, it continues.
 //!
 //! From then on the part is checked in each tick until another command moves it. So the tick of an error is known: the
 //! one in which the hand released the part, or the one in which the part left its place. The position at the end of the
-//! run decides, because a part that lies askew for a while may be pushed to its place.
+//! run decides, because a tilted part may be pushed to its place later.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,12 +25,12 @@ use crate::result::PartResult;
 /// A location and its sector, 0 for none.
 type Place = (String, u16);
 
-/// Where a command has to leave a part.
+/// The place where a command must leave a part.
 #[derive(Clone, Debug, PartialEq)]
 enum Goal {
     /// In the robot's gripper.
     Gripper,
-    /// At a place; `None` if the place of the robot at the release is not known.
+    /// At a place; `None` if the robot's place at the release is not known.
     At(Option<Place>),
 }
 
@@ -38,49 +38,49 @@ enum Goal {
 #[derive(Clone, Debug)]
 struct Moved {
     goal: Goal,
-    /// The command, in words.
+    /// The command as text.
     command: String,
-    /// Last position in the hand, world, in.
+    /// Last position in the hand, world coordinates, in.
     let_go: [f64; 3],
-    /// The tick since which it is not at its place; `None` if it is there.
+    /// Tick since which the part is not at its place; `None` if it is there.
     astray: Option<Tick>,
 }
 
-/// The hand has a part, or has had it.
+/// A part that the hand holds or has held.
 #[derive(Clone, Copy, Debug)]
 struct InHand {
-    /// Where, world, in.
+    /// Its position, world coordinates, in.
     at: [f64; 3],
-    /// The tick in which it was seen there last.
+    /// Last tick in which the hand held it.
     last: Tick,
 }
 
-/// A command that moves parts, with the attempts at it that failed.
+/// A command that moves parts, and its failed attempts.
 #[derive(Clone, Debug, Default)]
 struct Attempt {
     command: HwsCommand,
-    /// Numbers of the parts that the gripper has had since it was sent.
+    /// Numbers of the parts that the gripper has held since the command was sent first.
     moved: BTreeSet<u32>,
     is_over: bool,
 }
 
-/// The check of a run.
+/// The check of the parts' positions in a run.
 #[derive(Clone, Debug)]
 pub struct PlacementCheck {
     /// Greatest distance of a part that counts as at its place, in.
     tolerance: f64,
     number: u32,
     attempt: Attempt,
-    /// Where the robot was sent last.
+    /// The last goal of the robot.
     stands_at: Option<Place>,
     moved: BTreeMap<u32, Moved>,
     in_hand: BTreeMap<u32, InHand>,
-    /// The first command that has finished without the part that it is about.
+    /// The first command that has finished without its object.
     empty: Option<(Tick, String)>,
 }
 
 impl PlacementCheck {
-    /// A check of what happens in a cell.
+    /// A check for a cell.
     #[must_use]
     pub fn new(cell: &CellDescription) -> Self {
         Self {
@@ -94,7 +94,7 @@ impl PlacementCheck {
         }
     }
 
-    /// Check a finished tick: the command that Task had, its status, and the positions of the parts.
+    /// Check a finished tick: Task's command, its status, and the positions of the parts.
     pub fn look(
         &mut self,
         tick: Tick,
@@ -129,7 +129,7 @@ impl PlacementCheck {
         }
     }
 
-    /// A command comes. PAUSE and its like move nothing, and a command that is sent again goes on.
+    /// Begin a command. PAUSE and the like move nothing, and a command that is sent again continues.
     fn begin(&mut self, hws: &HwsCommand) {
         if matches!(hws.command.as_str(), "PAUSE" | "STARTUP" | "SHUTDOWN") {
             return;
@@ -140,13 +140,13 @@ impl PlacementCheck {
             return;
         }
         if !self.attempt.is_over {
-            // Nothing is known of what it moved.
+            // The effect of the last command on its parts is unknown.
             self.moved.retain(|id, _| !self.attempt.moved.contains(id));
         }
         self.attempt = Attempt { command: *hws, ..Attempt::default() };
     }
 
-    /// The command has finished: what it has moved has to be where it leaves it.
+    /// The command has finished: set the required places of the parts that it has moved.
     fn conclude(&mut self, tick: Tick, cell: &CellDescription, parts: &[PartState]) {
         let attempt = std::mem::take(&mut self.attempt);
         let command = hws_text(&attempt.command);
@@ -174,7 +174,7 @@ impl PlacementCheck {
         }
         let source = place(attempt.command.source, attempt.command.source_sector);
         if attempt.command.command.as_str() == "POSITION" {
-            // What lies there may be pushed, on purpose.
+            // A command may push the parts that lie there, on purpose.
             for (id, moved) in
                 self.moved.iter_mut().filter(|(_, moved)| moved.goal == Goal::At(source.clone()))
             {
@@ -186,7 +186,7 @@ impl PlacementCheck {
         self.attempt.is_over = true;
     }
 
-    /// Why a job at its end counts as failed: the first part that is not at its place; `None` if all are.
+    /// The reason why a finished job counts as failed: the first part that is not at its place; `None` if all are.
     #[must_use]
     pub fn verdict(&self, parts: &[PartState]) -> Option<Failure> {
         let astray = parts.iter().filter_map(|part| {
@@ -213,13 +213,13 @@ impl PlacementCheck {
     }
 }
 
-/// The command is about an object that the gripper has to have.
+/// True if the gripper must hold the command's object.
 fn takes_object(command: &HwsCommand) -> bool {
     command.object.is_some() && !matches!(command.command.as_str(), "POSITION" | "RELEASE-TOOL")
 }
 
-/// A TRANSFER that was interrupted after it had put its object down, and is sent again, has nothing to move: the
-/// object is at the destination, and none is at the source.
+/// True for a TRANSFER that was interrupted after it had put its object down and is sent again: the object is at the
+/// destination, none is at the source, and nothing has to be moved.
 fn was_done_before(command: &HwsCommand, destination: Option<&Place>, parts: &[PartState]) -> bool {
     let source = place(command.source, command.source_sector);
     let lies_at = |place: Option<&Place>| {
@@ -239,9 +239,9 @@ fn place(location: Option<Name16>, sector: Option<i32>) -> Option<Place> {
     Some((location?.to_string(), sector))
 }
 
-/// Whether a part is where it has to be. At a place of the cell description it must be near the middle of the place;
-/// elsewhere, and in trays, it must not have moved since the hand released it. How it sits in the vise is checked by
-/// vise and machining.
+/// True if a part is where it must be. At a place of the cell description it must be near the middle of the place;
+/// elsewhere, and in trays, it must not have moved since the hand released it. Vise and machining check how it sits in
+/// the vise.
 fn is_there(goal: &Goal, let_go: [f64; 3], tolerance: f64, cell: &CellDescription, part: &PartState) -> bool {
     let place = match goal {
         Goal::Gripper => return part.held,
@@ -260,7 +260,7 @@ fn is_there(goal: &Goal, let_go: [f64; 3], tolerance: f64, cell: &CellDescriptio
     }
 }
 
-/// The cell has a place for a part there.
+/// True if the cell has a place for the part there.
 fn has_place(cell: &CellDescription, (location, sector): &Place, part: &str) -> bool {
     let in_tray =
         |unit: &str, sectors: usize| unit == location && (1..=sectors).contains(&usize::from(*sector));

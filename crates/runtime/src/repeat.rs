@@ -1,9 +1,9 @@
-//! Repeats a recorded run: reads from its log how to run it.
+//! Repeats a recorded run, with the configuration from its log.
 //!
-//! A log has all that a run with the simulated robot depends on: task data, job and what the job loads, cell
-//! description, faults, and in its metadata seed, retries and limits. [`unpack`] writes the files into a directory and
-//! gives the configuration. The clock is always the fast one: if the run missed no slots, the repetition gives the same
-//! bits.
+//! A log contains everything on which a run with the simulated robot depends: task data, job and the blocks that it
+//! loads, cell description, faults, and in its metadata seed, retries and limits. [`unpack`] writes the files into a
+//! directory and returns the configuration. The clock is always the fast one: if the run missed no slots, the
+//! repetition has the same bits.
 
 use std::{
     collections::BTreeMap,
@@ -19,21 +19,21 @@ use crate::{
     setup::{CELL, EXTENSION},
 };
 
-/// Key of the metadata: the tick up to which a fork is the same as its log.
+/// Key of the metadata: the last tick in which a fork is equal to its log.
 pub const FORKED_AFTER: &str = "forked_after";
-/// Key: what was changed in a fork.
+/// Key: the changes of a fork.
 pub const CHANGES: &str = "changes";
 
-/// Why a recorded run cannot be run again.
+/// Errors of repeating a recorded run.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RepeatError {
-    /// The log does not have something that a run needs.
+    /// The log lacks something that a run needs.
     #[error(
         "the log has no {0}, which a run needs: rcs-run of this version writes it; run the job again to get such a log"
     )]
     Missing(&'static str),
-    /// Something took part in the run that is not in the log.
+    /// The run had a participant that is not in the log.
     #[error(
         "{0} took part in the run, and its actions are not in the log: a run with the simulated robot and without other processes can be repeated"
     )]
@@ -43,12 +43,12 @@ pub enum RepeatError {
         "the log is that of a fork, after tick {tick} with {changes}: fork the log that it came from, with all changes"
     )]
     Fork {
-        /// The tick.
+        /// The last tick in which the fork is equal to its log.
         tick: String,
-        /// What was changed.
+        /// The changes of the fork.
         changes: String,
     },
-    /// A file name of the log that leads out of the directory.
+    /// A file name of the log leads out of the directory.
     #[error(
         "the log holds a file named {0}, which leads out of its directory: a name without .. and / was expected"
     )]
@@ -56,18 +56,18 @@ pub enum RepeatError {
     /// A file of the log cannot be written.
     #[error("{} cannot be written: {source}", path.display())]
     Write {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Error of the system.
         source: io::Error,
     },
 }
 
-/// Write the files of a log into an empty directory, and say how to run them: without a log of its own, and not shown to
-/// other programs.
+/// Write the files of a log into an empty directory, and return the configuration to run them: without a log and
+/// without shared memory.
 ///
 /// # Errors
-/// [`RepeatError`] if the log does not hold the whole run.
+/// [`RepeatError`] if the log does not contain the whole run.
 pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
     let said = |key: &str| log.run.get(key).map(String::as_str);
     if let Some(tick) = said(FORKED_AFTER) {
@@ -116,14 +116,14 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
     })
 }
 
-/// Metadata of the log of a fork.
+/// Metadata for the log of a fork.
 #[must_use]
 pub fn fork_remarks(tick: u64, changes: &[String]) -> BTreeMap<String, String> {
     let entries = [(FORKED_AFTER, tick.to_string()), (CHANGES, changes.join("; "))];
     entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }
 
-/// Write a file of a log under a directory. Its name must not lead out of the directory: a log is not trusted.
+/// Write a file of a log under a directory. Logs are untrusted: the name must not lead out of the directory.
 fn write(under: &Path, name: &str, file: &Attachment) -> Result<PathBuf, RepeatError> {
     let inside = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
     if !inside || name.is_empty() {

@@ -1,4 +1,4 @@
-//! The result of a run: the JSON object for scripts, from which the text for people is made.
+//! The result of a run: the JSON object, from which the text is made.
 
 mod cell;
 mod robot;
@@ -27,20 +27,20 @@ pub struct CommandResult {
     pub text: String,
     /// `finished`, `error` or `executing`.
     pub status: &'static str,
-    /// From the tick that sent it to the tick that saw its end.
+    /// Ticks from the one that sent it to the one that saw its end.
     pub ticks: u64,
 }
 
-/// A command that had failed and was sent again.
+/// A failed command that was sent again.
 #[derive(Clone, Debug, Serialize)]
 pub struct RetryResult {
-    /// The tick in which its failure was seen.
+    /// Tick in which the failure was seen.
     pub tick: u64,
     /// As written in the job.
     pub text: String,
-    /// Why it had failed.
+    /// Reason of the failure.
     pub reason: &'static str,
-    /// Which retry of the line this was, from 1.
+    /// Number of the retry for this line, from 1.
     pub number: u32,
 }
 
@@ -50,33 +50,33 @@ impl From<&Retry> for RetryResult {
     }
 }
 
-/// A line without the sign of a command.
+/// A line without the sign that marks a command.
 pub fn bare(line: &str) -> String {
     line.trim_start_matches("==").trim_start().to_owned()
 }
 
-/// Why a run failed.
+/// Failure of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct FailureResult {
-    /// Tick in which it began.
+    /// Tick in which the failure began.
     pub tick: u64,
-    /// The line of the job, or the command, in progress then.
+    /// The line of the job, or the command, in progress at that time.
     pub line: Option<String>,
     /// The process that reports the reason.
     pub process: String,
-    /// Its decision table, if one was used.
+    /// Its decision table, if the reason comes from one.
     pub table: Option<String>,
     /// The row that fired.
     pub row: Option<u8>,
     /// The failure in one sentence.
     pub text: String,
-    /// What a person has to do before the job can go on; none if PAUSE and the same command may be enough.
+    /// What a person must do before the job can continue; `None` if PAUSE and the same command may be enough.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remedy: Option<&'static str>,
 }
 
 impl FailureResult {
-    /// A failure in a line, and what a person has to do.
+    /// A failure in a line, and what a person must do.
     #[must_use]
     pub fn new(failure: &Failure, line: Option<&str>, remedy: Option<&'static str>) -> Self {
         Self {
@@ -103,22 +103,22 @@ pub struct RunResult {
     pub job: String,
     /// Commands that were sent to Task.
     pub commands: Vec<CommandResult>,
-    /// Commands that had failed and were sent again, after a PAUSE (`--retry`).
+    /// Commands that failed and were sent again, after a PAUSE (`--retry`).
     pub retries: Vec<RetryResult>,
-    /// What operators have asked for; none if nobody has.
+    /// Requests of operators; `None` if there were none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub operator: Option<Requests>,
-    /// Ticks that were run, without those in which the robot was brought to rest.
+    /// Number of ticks, without those in which the robot was brought to rest.
     pub ticks: u64,
-    /// Ticks in which the robot was brought to rest at the end.
+    /// Number of ticks in which the robot was brought to rest at the end.
     pub ramp_ticks: u32,
     /// Simulated time, s.
     pub simulated_s: f64,
     /// Wall-clock time, s.
     pub wall_s: f64,
-    /// Ratio of the two.
+    /// Ratio of simulated time to wall-clock time.
     pub realtime_factor: f64,
-    /// Slots of the 40 ms grid that were skipped.
+    /// Number of skipped slots of the 40 ms grid.
     pub overruns: u64,
     /// The same by cause: a part of the tick before, or `waking` if the system woke the thread late.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
@@ -127,61 +127,61 @@ pub struct RunResult {
     pub allocations_after_start: Option<u64>,
     /// Times of the controller.
     pub tick_us: TickTimes,
-    /// Times of all parts of a tick: control processes by their names, and what the executive does.
+    /// Times of all parts of a tick: control processes by name, and the parts of the executive.
     pub part_us: BTreeMap<String, TickTimes>,
-    /// How late ticks began.
+    /// Lateness of the ticks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub late_us: Option<TickTimes>,
-    /// What the system granted for real time, and which system it is.
+    /// The real-time settings that the system granted, and the system.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub realtime: Option<String>,
     /// The boards, if there is more than one; `tick_us` is then the time from the pulse to the last stamp.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boards: Option<Vec<BoardResult>>,
-    /// The link.
+    /// Counts of the link.
     pub link: LinkResult,
-    /// Faults of the line of `--faults`.
+    /// Injected faults of the line from `--faults`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub faults: Option<FaultsResult>,
-    /// Faults of the cell that happened, in the order of the file; none without `--faults`.
+    /// Faults of the cell that occurred, in the order of the file; empty without `--faults`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cell_faults: Vec<CellFaultResult>,
-    /// The serial port.
+    /// Counts of the serial port.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub port: Option<PortResult>,
-    /// The line to a robot with EGM.
+    /// Counts and times of the line to a robot with EGM.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub egm: Option<EgmResult>,
-    /// The last emergency, if there was one, also if the robot was started again after it.
+    /// The last emergency, if any, also if the robot was restarted after it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub emergency_stop: Option<EmergencyResult>,
     /// Fingerprint of all output buffers of all ticks.
     pub digest: String,
-    /// The same without the ticks in which the robot was brought to rest: the clock does not change it.
+    /// The same without the ticks in which the robot was brought to rest; it does not depend on the clock.
     pub digest_before_ramp: String,
-    /// Which of the statements are about the simulated cell, if the robot is not.
+    /// Note about the statements that refer to the simulated cell, if the robot is not simulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulated: Option<&'static str>,
-    /// Where the parts are.
+    /// Positions of the parts.
     pub parts: Vec<PartResult>,
     /// Items of the MBD in the Data System.
     pub data_base: Vec<ItemResult>,
     /// Contacts that are not permitted.
     pub contacts: Vec<Collision>,
-    /// The nearest miss, if something was passed nearer than 2 in.
+    /// The nearest miss, if a distance was less than 2 in.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clearance: Option<NearMiss>,
     /// Other events.
     pub events: Events,
-    /// The log that was written.
+    /// Path of the log.
     pub log: Option<PathBuf>,
-    /// Why it failed, if it did.
+    /// The failure, if the run failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<FailureResult>,
 }
 
 impl RunResult {
-    /// Metadata of the end of the run. They are the same for two equal runs in fast clock.
+    /// Metadata of the end of the run. Two equal runs in fast clock have equal metadata.
     #[must_use]
     pub fn facts(&self) -> BTreeMap<String, String> {
         let list = |items: Vec<String>| items.join("; ");

@@ -1,10 +1,10 @@
 //! The other end of the DEPC line: the T3 controller of the simulated cell, a robot at a serial port, or a robot with
 //! EGM or one of the caller, behind a DEPC function in this process.
 //!
-//! With the simulated one the bytes of a tick go through the fault injector, if there is a fault plan, and
-//! then through the cell. With a serial port they go to the port; the rest of the cell (gripper, camera,
-//! tray, vise, resolvers) is simulated all the same, and follows the position that the robot has
-//! acknowledged. A robot with EGM says where it is: that is what the cell follows, and what the resolvers read.
+//! With the simulated controller, the bytes of a tick go through the fault injector, if there is a fault plan, and then
+//! through the cell. With a serial port they go to the port; the rest of the cell (gripper, camera, tray, vise,
+//! resolvers) is still simulated, and follows the position that the robot has acknowledged. A robot with EGM reports
+//! its position, which the cell follows and the resolvers read.
 
 use std::{
     sync::atomic::Ordering,
@@ -47,9 +47,9 @@ pub enum Robot {
 /// A serial line, with its measurements.
 pub struct Port {
     line: SerialLine,
-    /// When the last data command was handed to the port.
+    /// Time when the last data command was handed to the port.
     sent: Option<Instant>,
-    /// By how much the time between two data commands differs from a tick, ns.
+    /// Deviation of the time between two data commands from a tick, ns.
     deviations: Box<Histogram>,
 }
 
@@ -62,7 +62,7 @@ impl Port {
 
     fn send(&mut self, tx: &LinkBytes) {
         let now = Instant::now();
-        // What the port does not take is counted by the line, makes it rest for a tick, and is told to T3I.
+        // The line counts the bytes that the port refuses, sends nothing for a tick, and informs T3I.
         self.line.send(tx);
         if tx.as_slice().len() != FRAME_BYTES {
             return;
@@ -73,7 +73,7 @@ impl Port {
         }
     }
 
-    /// What is wrong with the port, as text; `None` while it is usable.
+    /// The trouble of the port as text; `None` while it is usable.
     #[must_use]
     pub fn trouble(&self) -> Option<String> {
         (!self.line.is_there()).then(|| format!("the port {} has disappeared", self.line.path().display()))
@@ -85,7 +85,7 @@ impl Port {
         self.line.counts()
     }
 
-    /// By how much the time between two data commands differed from a tick.
+    /// Deviation of the time between two data commands from a tick.
     #[must_use]
     pub fn deviations(&self) -> Summary {
         self.deviations.summary()
@@ -93,8 +93,8 @@ impl Port {
 }
 
 impl Robot {
-    /// Wait until the robot controller at a port has switched DTR on, at most so many seconds, or until an
-    /// interruption. Without DTR the run begins and fails with a reason that names it.
+    /// Wait until the robot controller at a port has switched DTR on, until the time limit or an interruption. Without
+    /// DTR the run begins, and fails with a reason that names DTR.
     pub fn gather(&mut self, config: &RunConfig, observer: &mut dyn Observer) {
         let port = match self {
             Self::Simulated(_) | Self::Own(_) => return,
@@ -137,8 +137,8 @@ impl Robot {
         }
     }
 
-    /// After the controller's tick: send over the line. `exact` gives the tool frame that Prim has commanded, and that
-    /// T3I got; it is called for a robot with EGM only. Its time counts as part of the tick.
+    /// After the controller's tick: send over the line. `exact` gives the tool frame that Prim has commanded, as T3I
+    /// gets it and exactly; it is called for a robot with EGM only. Its time counts as part of the tick.
     pub fn send(&mut self, outputs: &DeviceOutputs, exact: impl FnOnce() -> Option<(WireFrame, Frame)>) {
         let _section = Section::enter();
         match self {
@@ -149,8 +149,8 @@ impl Robot {
         }
     }
 
-    /// The rest of the tick: the cell moves. `acknowledged` gives the position that the robot has last acknowledged or
-    /// reported, if any is known; it is called for a robot at a port only.
+    /// The rest of the tick: advance the cell. `acknowledged` gives the position that the robot has last acknowledged
+    /// or reported, if known; it is called for a robot at a port only.
     pub fn advance(
         &mut self,
         tick: Tick,
@@ -170,7 +170,7 @@ impl Robot {
         }
     }
 
-    /// Faults that were injected, both directions together.
+    /// Number of injected faults, both directions together.
     #[must_use]
     pub fn faults(&self) -> Option<Counts> {
         match self {
@@ -179,13 +179,13 @@ impl Robot {
         }
     }
 
-    /// The robot is not that of the simulated cell.
+    /// True if the robot is not the simulated one.
     #[must_use]
     pub const fn is_elsewhere(&self) -> bool {
         !matches!(self, Self::Simulated(_))
     }
 
-    /// What is wrong with the connection to a robot outside of the cell, as text; `None` if nothing is.
+    /// The trouble of the connection to a robot outside the cell, as text; `None` if there is none.
     #[must_use]
     pub fn trouble(&self) -> Option<String> {
         match self {
@@ -196,8 +196,8 @@ impl Robot {
         }
     }
 
-    /// From now on the line to the simulated robot has the faults of a plan. False, and nothing has changed, if it has
-    /// a plan already, or the robot is not the simulated one.
+    /// Give the line to the simulated robot the faults of a plan from now on. Returns false, and changes nothing, if it
+    /// has a plan already, or the robot is not the simulated one.
     pub fn suffer(&mut self, plan: &Plan) -> bool {
         let Self::Simulated(injector @ None) = self else { return false };
         *injector = Some(Box::new(Injector::new(plan)));
@@ -210,7 +210,7 @@ impl Robot {
         if let Self::Serial(port) = self { Some(port) } else { None }
     }
 
-    /// The robot with EGM, if it is one.
+    /// The robot with EGM, if there is one.
     #[must_use]
     pub const fn egm(&self) -> Option<&EgmPort> {
         if let Self::Egm(egm) = self { Some(egm) } else { None }

@@ -1,6 +1,6 @@
 //! A run, from the first tick to the result.
 //!
-//! The log gets the cell of the next tick, and the tick is warmed up, before that tick begins.
+//! Between two ticks the run logs the cell of the next tick and warms up the caches for it.
 
 mod operate;
 mod outcome;
@@ -48,7 +48,7 @@ use crate::{
 };
 
 /// Ticks for which the cell is simulated after the controller has stopped: two seconds, in which the arm comes to rest
-/// and badly held parts fall.
+/// and loosely held parts fall.
 const SETTLING: usize = 50;
 
 /// A run that has been set up.
@@ -56,13 +56,13 @@ pub struct Run {
     pub(crate) config: RunConfig,
     observer: Box<dyn Observer>,
     pub(crate) job: Job,
-    /// Task data, with what the job loads on the way.
+    /// Task data, with the blocks that are loaded during the run.
     pub(crate) generations: Generations,
-    /// Generations that came by a change, not by a line of the job.
+    /// Number of generations made by a change instead of a line of the job.
     pub(crate) changed: u32,
-    /// What came from outside for the last tick.
+    /// External inputs of the last tick.
     external: ExternalInputs,
-    /// Mirrors the status; it ends before the publisher of `runner` does.
+    /// Mirrors the status; it must be dropped before the publisher of `runner`.
     mirror: Option<Mirror>,
     pub(crate) runner: Runner<Controller>,
     pub(crate) neighbours: Neighbours,
@@ -70,7 +70,7 @@ pub struct Run {
     /// Source of operators' requests.
     pub(crate) asked: Inputs,
     operator: Operator,
-    /// Loads that operators have asked for.
+    /// Loads that operators have requested.
     pub(crate) loads: Loads,
     /// Name of the run.
     pub(crate) name: RunName,
@@ -81,52 +81,52 @@ pub struct Run {
     /// The live view.
     live: Option<Live>,
     pace: Pace,
-    /// When the first tick was due.
+    /// Time when the first tick was due.
     started: Option<Instant>,
-    /// How the run has ended.
+    /// Ending of the run.
     ending: Option<Ending>,
     /// Check of the robot's contacts.
     pub(crate) check: ContactCheck,
     /// Check of the parts' places.
     pub(crate) placement: PlacementCheck,
-    /// The warning that the T3 controller showed last, and when.
+    /// The last warning on the screen of the T3 controller, and its tick.
     pub(crate) warning: Option<(Tick, String)>,
-    /// The cell for other programs.
+    /// The state of the cell for other programs.
     view: Box<View>,
     /// Events of the cell since the last tick, for the log of the next one.
     fresh: Vec<Event>,
     /// All events, for the result.
     events: Events,
-    /// Detects that the robot rests.
+    /// Detects when the robot is at rest.
     rest: RestWatch,
-    /// The end of the run, for which the robot is brought to rest.
+    /// The end of the run while the robot is brought to rest for it.
     ramp: Option<Ramp>,
-    /// Ticks for which the host waits for an answer; at a port the first answer may take as long as `--wait`.
+    /// Ticks for which the host waits for an answer; at a port it waits for the first answer as long as `--wait`.
     patience: Option<u16>,
     first_patience: Option<u16>,
-    /// The state of the line that was reported last.
+    /// The last reported state of the line.
     trouble: Option<&'static str>,
-    /// What a person has to do before the job that has failed can go on.
+    /// What a person must do before the failed job can continue.
     remedy: Option<&'static str>,
 }
 
-/// The robot comes to rest: the velocity knob is at zero, and no command is given any more.
+/// The robot is brought to rest: the velocity knob is at zero, and no more commands are sent.
 struct Ramp {
     ending: Ending,
     ticks: u32,
-    /// Fingerprint of the ticks before.
+    /// Digest of the ticks before.
     before: Digest,
 }
 
 impl Run {
-    /// Run to the end.
+    /// Run to the end, and return the outcome.
     #[must_use]
     pub fn complete(mut self) -> RunOutcome {
         while self.step() {}
         self.finish()
     }
 
-    /// Run one tick. False if the run is over: then nothing more is done.
+    /// Run one tick. Returns false if the run has ended; further calls do nothing.
     pub fn step(&mut self) -> bool {
         if self.ending.is_none() {
             if self.started.is_none() {
@@ -137,31 +137,31 @@ impl Run {
         self.ending.is_none()
     }
 
-    /// The tick that was run last.
+    /// The last tick.
     #[must_use]
     pub const fn last_tick(&self) -> Tick {
         self.runner.tick()
     }
 
-    /// All buffers after that tick.
+    /// All buffers after the last tick.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
         self.runner.memory()
     }
 
-    /// The external inputs of that tick.
+    /// The external inputs of the last tick.
     #[must_use]
     pub const fn external_inputs(&self) -> &ExternalInputs {
         &self.external
     }
 
-    /// Fingerprint of the simulated cell now; the log has it for every tick.
+    /// Digest of the present state of the simulated cell; the log has it for every tick.
     #[must_use]
     pub fn cell_digest(&self) -> u64 {
         self.workstation.cell.digest()
     }
 
-    /// Before the first tick. The 40 ms grid begins with the clock: time spent before the first tick counts.
+    /// Start the clock and prepare the first tick. The 40 ms grid begins with the clock, so the preparation counts.
     fn begin(&mut self) {
         self.started = Some(Instant::now());
         if self.config.clock == ClockKind::Real {
@@ -172,7 +172,7 @@ impl Run {
         self.note_neighbours(self.runner.tick().next());
     }
 
-    /// The log's thread runs already, so it keeps its ordinary priority.
+    /// Request real-time settings. The thread of the log runs already, so it keeps its ordinary priority.
     fn ask_for_real_time(&mut self, core: Option<usize>) {
         let granted = self.pace.ask_for_real_time(core, self.config.speed);
         self.observer.message(&granted.to_string());
@@ -182,7 +182,7 @@ impl Run {
         }
     }
 
-    /// Wait until the next tick is due, having warmed it up if there is time.
+    /// Warm up the next tick, if there is time, and wait until it is due.
     fn wait(&mut self) {
         if self.pace.wake_early() {
             let external = self.external();
@@ -214,7 +214,7 @@ impl Run {
         }
     }
 
-    /// One tick; how the run ends, if it ends with it.
+    /// Run one tick. Returns the ending if the run ends with it.
     fn tick(&mut self) -> Option<Ending> {
         self.wait();
         self.robot.receive(&mut self.inputs);
@@ -228,7 +228,7 @@ impl Run {
         let memory = loop {
             match self.runner.step(&external, &data, self.pace.skipped()).copied() {
                 Ok(memory) => break memory,
-                // With a successor the boards run the same tick again.
+                // If a board replaces the lost one, the boards run the same tick again.
                 Err(lost) if self.runner.levels_mut().replace(&lost, &self.config, &mut *self.observer) => {}
                 Err(lost) => return Some(Ending::Failed(self.lost(&lost, &external))),
             }
@@ -266,11 +266,11 @@ impl Run {
         self.tell_operators(tick);
         self.note_neighbours(tick);
         self.publish_cell(tick);
-        // Vision in another process has answered the tick that is over.
+        // Vision in another process has answered the last tick.
         self.inputs.vision = self.workstation.cell.inputs().vision;
         match progress {
             player::Progress::Over => return Some(self.left(Ending::Finished)),
-            // Whatever the arm runs into belongs to the run.
+            // Contacts of the sinking arm belong to the run.
             player::Progress::Failed(_) if self.workstation.is_settling(tick) => {}
             player::Progress::Failed(failure) => {
                 self.remedy = self.remedy.or(failure.remedy());
@@ -279,7 +279,7 @@ impl Run {
             }
             player::Progress::Running => {}
         }
-        // An arm that sinks without pressure is stopped by what it meets, and the emergency is the verdict.
+        // An obstacle stops an arm that sinks without pressure; the verdict is the emergency.
         let stuck = self.check.is_stuck() && !self.workstation.is_settling(tick);
         if let Some(failure) = self.check.verdict().filter(|_| stuck) {
             return Some(Ending::Failed(failure));
@@ -290,7 +290,7 @@ impl Run {
         }
         self.runner.stage_times_mut().mark(Stage::Workstation);
         if self.config.stop.load(Ordering::Relaxed) {
-            // Where another process commands there is no job that ends by itself.
+            // If another process commands, there is no job that ends by itself.
             let failed = || Ending::Failed(outside(tick, "rcs-run", "interrupted".to_owned()));
             let ending = if self.neighbours.are_commanding() { Ending::Stopped } else { failed() };
             self.end_at_rest(ending);
@@ -313,7 +313,7 @@ impl Run {
         None
     }
 
-    /// End the run as soon as the robot rests. The first ending given is kept.
+    /// End the run as soon as the robot is at rest. The first ending is kept.
     fn end_at_rest(&mut self, ending: Ending) {
         if self.ramp.is_none() {
             self.neighbours.stop_commanding();
@@ -322,7 +322,7 @@ impl Run {
         }
     }
 
-    /// A tick is over: the end of the run, if the robot rests for it.
+    /// After a tick: the ending, if the robot is at rest for it.
     fn at_rest(&mut self, memory: &CommonMemory) -> Option<Ending> {
         self.rest.observe(memory);
         let ramp = self.ramp.as_mut()?;
@@ -334,7 +334,7 @@ impl Run {
         Some(if matches!(ending, Ending::Stopped) { self.left(ending) } else { ending })
     }
 
-    /// The rest of a tick: the cell moves.
+    /// The rest of a tick: advance the cell.
     fn advance(&mut self, tick: Tick, outputs: &DeviceOutputs) {
         let controller = self.runner.levels();
         self.inputs = self
@@ -342,8 +342,8 @@ impl Run {
             .advance(tick, &mut self.workstation.cell, outputs, || acknowledged(&controller.state()));
     }
 
-    /// A board is lost. The robot gets no more frames and the valves stay as they are, while the cell is simulated
-    /// further.
+    /// Handle the loss of a board: the robot gets no more frames and the valves keep their state, while the simulation
+    /// of the cell continues.
     fn lost(&mut self, lost: &Lost, external: &ExternalInputs) -> Failure {
         let memory = *self.runner.memory();
         let silent = DeviceOutputs { link_tx: LinkBytes::default(), ..memory.device_outputs() };
@@ -358,7 +358,7 @@ impl Run {
         }
     }
 
-    /// Accept the reloads that the job has asked for; they take effect in the next tick if no command is in progress.
+    /// Accept the reloads that the job has requested; they take effect in the next tick if no command is in progress.
     fn reload(&mut self) {
         let reloads = &self.job.reloads;
         let reload =
@@ -370,7 +370,7 @@ impl Run {
         if !self.generations.advance(self.runner.memory()) {
             return;
         }
-        // Reloads are proposed in their order, so that a generation has the number of its reload.
+        // Reloads are proposed in order, so that the number of a generation is that of its reload.
         let (tick, number) = (self.runner.tick().next(), self.generations.number());
         if let (Some(log), Some(reload)) = (&mut self.log, reload(number)) {
             log.reload(tick, number, &reload.source);
@@ -378,13 +378,13 @@ impl Run {
     }
 }
 
-/// The position that the robot has acknowledged or reported last, while the link runs.
+/// The position that the robot has last acknowledged or reported, while the link runs.
 fn acknowledged(state: &LadderState) -> Option<Plate> {
     let host = state.t3i.host;
     host.is_running().then(|| host.position())
 }
 
-/// The tool frame that Prim has commanded in this tick, as T3I gets it and as Prim means it.
+/// The tool frame that Prim has commanded in this tick, as T3I gets it and exactly.
 fn commanded(state: &LadderState, memory: &CommonMemory) -> Option<(WireFrame, Frame)> {
     state.prim.motion.map(|motion| (memory.prim.t3i.frame, motion.frame()))
 }

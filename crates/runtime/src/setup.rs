@@ -1,4 +1,4 @@
-//! Everything that is set up before the first tick.
+//! The set-up of a run before the first tick.
 
 use std::{
     fs,
@@ -45,7 +45,7 @@ pub const EXTENSION: &str = "job";
 
 pub use plant::description::CELL;
 
-/// Ticks in 40 ms at most: a tick with the simulated cell takes some 0.2 ms.
+/// Largest number of ticks in 40 ms: a tick with the simulated cell takes about 0.2 ms.
 pub const MOST_SPEED: u8 = 20;
 
 /// The parts of a run.
@@ -54,19 +54,19 @@ pub struct Setup {
     pub store: Store,
     /// The job.
     pub job: Job,
-    /// The cell description as written.
+    /// Text of the cell description.
     pub description_text: String,
     /// The cell description.
     pub description: CellDescription,
     /// The cell.
     pub cell: Cell,
-    /// The file of faults as written; empty without one.
+    /// Text of the fault file; empty without one.
     pub faults_text: String,
-    /// The other end of the line.
+    /// The other end of the DEPC line.
     pub robot: Robot,
     /// The source of commands, and the Data System.
     pub neighbours: Neighbours,
-    /// Where the log goes.
+    /// File of the log, if there is one.
     pub log: Option<LogFile>,
     /// The live view.
     pub live: Option<Live>,
@@ -105,7 +105,7 @@ impl Setup {
             LogTarget::Default => Some(LogFile::claim_free(Path::new("runs"), &job.name)?),
         };
         let neighbours = neighbours(config, &job, &description, observer)?;
-        // The last of all: a robot hears nothing of a run that cannot begin.
+        // Last of all, so that no byte is sent to the robot if the run cannot begin.
         let robot = match &config.robot.kind {
             RobotKind::Sim => Robot::Simulated(faults.line.map(|plan| Box::new(Injector::new(&plan)))),
             RobotKind::Serial(settings) => Robot::Serial(Port::new(SerialLine::open(settings.clone())?)),
@@ -131,16 +131,16 @@ impl Setup {
 pub struct TaskFiles {
     /// Task data.
     pub store: Store,
-    /// The job, with the task data that it loads on the way.
+    /// The job, with the task data that it loads during the run.
     pub job: Job,
-    /// Its file; empty without one.
+    /// Path of the job's file; empty without one.
     pub job_path: PathBuf,
-    /// Lines that say that there are warnings.
+    /// Lines that report the number of warnings.
     pub warnings: Vec<String>,
 }
 
 impl TaskFiles {
-    /// Read and check task data and job; without one it has no steps: another process commands.
+    /// Read and check task data and job. Without a job there are no steps: another process commands.
     ///
     /// # Errors
     /// [`StartError`], with all errors of the data.
@@ -167,11 +167,11 @@ impl TaskFiles {
 
 /// The cell description of a data directory.
 pub struct CellFile {
-    /// As written.
+    /// Text of the description.
     pub text: String,
-    /// As read.
+    /// The description.
     pub description: CellDescription,
-    /// A line that says that there are warnings.
+    /// Line that reports the number of warnings, if any.
     pub warning: Option<String>,
 }
 
@@ -200,7 +200,7 @@ impl CellFile {
     }
 }
 
-/// The neighbours in this process, and the address at which the others connect.
+/// The neighbours in this process, and the address for those in other processes.
 fn neighbours(
     config: &RunConfig,
     job: &Job,
@@ -245,7 +245,7 @@ fn neighbours(
     Ok(Neighbours::new(workstation, data_system, pedestal, vision, network))
 }
 
-/// Where updates wait for a Data System in another process.
+/// The file for updates that wait for a Data System in another process.
 fn outbox(config: &RunConfig) -> Result<Outbox, StartError> {
     if config.data_base.is_some() {
         return Err(StartError::DataBaseElsewhere);
@@ -258,7 +258,7 @@ fn outbox(config: &RunConfig) -> Result<Outbox, StartError> {
     Ok(Outbox::open(file)?)
 }
 
-/// The faults of `--faults`, none without it, with their text.
+/// The faults of `--faults`, and the text of the file; empty without the option.
 fn faults(config: &RunConfig, cell: &CellDescription) -> Result<(FaultFile, String), StartError> {
     let Some(path) = &config.faults else { return Ok(Default::default()) };
     let (faults, text) = fault_file(path, cell)?;
@@ -268,10 +268,10 @@ fn faults(config: &RunConfig, cell: &CellDescription) -> Result<(FaultFile, Stri
     Ok((faults, text))
 }
 
-/// Read a file of faults; also its text.
+/// Read a fault file. Also returns its text.
 ///
 /// # Errors
-/// [`StartError`], with all mistakes of the file.
+/// [`StartError`], with all errors of the file.
 pub fn fault_file(path: &Path, cell: &CellDescription) -> Result<(FaultFile, String), StartError> {
     let text = files::read_text(path).map_err(|source| StartError::Read { path: path.to_owned(), source })?;
     let source = Source { name: path.display().to_string(), text: text.clone().into() };
@@ -283,7 +283,7 @@ pub fn fault_file(path: &Path, cell: &CellDescription) -> Result<(FaultFile, Str
     }
 }
 
-/// Warnings do not prevent a run; one line gives their number.
+/// Warnings do not prevent a run; this line reports their number.
 fn warning(report: &Diagnostics, what: &str) -> Option<String> {
     match report.warnings().count() {
         0 => None,
@@ -292,7 +292,7 @@ fn warning(report: &Diagnostics, what: &str) -> Option<String> {
     }
 }
 
-/// The file of a job: a path if it looks like one or is one, else a name in the data directory.
+/// The file of a job: `job` as a path if it looks like one or exists, else as a name in the data directory.
 pub fn job_path(job: &str, data: &Path) -> Result<PathBuf, StartError> {
     let path = PathBuf::from(job);
     let named = data.join(JOBS).join(job).with_added_extension(EXTENSION);

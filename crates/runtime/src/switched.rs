@@ -6,8 +6,8 @@
 //!    └──── PAUSE, next line ◄──── it has disconnected, and no command is executed ◄───┘
 //! ```
 //!
-//! The numbers of the commands are one sequence. A workstation controller that connects before the line
-//! waits: it reads no status.
+//! The numbers of the commands form one sequence. A workstation controller that connects before the line waits: it
+//! reads no status.
 
 use std::{
     thread,
@@ -29,37 +29,37 @@ use crate::{
     event::Event, neighbours::Emulator, outside::OutsideWorkstation, workstation::SimulatedWorkstation,
 };
 
-/// Where the robot must be when the workstation controller takes over (IV.4.1).
+/// Location of the robot when the workstation controller takes over (IV.4.1).
 const HOME: &str = "HOME";
-/// The command that must be the last one then.
+/// Last command before the workstation controller takes over.
 const PAUSE: &str = "PAUSE";
 
-/// What a tick has written, and what is known around it.
+/// Outputs of a tick, and data around them.
 pub struct Around<'a> {
     /// The tick.
     pub tick: Tick,
-    /// What it has written.
+    /// Common memory after the tick.
     pub memory: &'a CommonMemory,
-    /// Task data, with which lines for the cell are read.
+    /// Task data, for reading lines for the cell.
     pub store: &'a Store,
-    /// The Data System is connected, or in the controller's own process.
+    /// True if the Data System is connected, or runs in the controller's process.
     pub has_data_system: bool,
 }
 
-/// A job, and a workstation controller in another process that it hands over to.
+/// A job, and the workstation controller in another process to which it hands over.
 pub struct Switched {
     job: Emulator,
     outside: OutsideWorkstation,
-    /// Seconds that the workstation controller is waited for.
+    /// Time limit for the connection of the workstation controller, s.
     wait: u32,
-    /// When it took over.
+    /// Tick in which it took over.
     since: Tick,
-    /// It has been connected since.
+    /// True if it has been connected since then.
     was_connected: bool,
 }
 
 impl Switched {
-    /// The job begins.
+    /// Start with the job in command.
     #[must_use]
     pub fn new(hwsc: Hwsc, endpoint: Endpoint, wait: u32) -> Self {
         Self {
@@ -71,7 +71,7 @@ impl Switched {
         }
     }
 
-    /// The workstation controller commands.
+    /// True if the workstation controller commands.
     #[must_use]
     pub fn is_handed_over(&self) -> bool {
         self.job.hwsc.is_handed_over()
@@ -93,20 +93,20 @@ impl Switched {
         if self.is_handed_over() { self.outside.begun_steps() } else { self.job.hwsc.begun_steps() }
     }
 
-    /// Steps of the job, and the commands that were sent since it has handed over.
+    /// Steps of the job, and the commands since the hand-over.
     #[must_use]
     pub fn all_steps(&self) -> Vec<BegunStep> {
         let outside = if self.is_handed_over() { self.outside.begun_steps() } else { &[] };
         [self.job.hwsc.begun_steps(), outside].concat()
     }
 
-    /// The commands of the job that were sent again after they had failed.
+    /// The commands of the job that failed and were sent again.
     #[must_use]
     pub fn retried(&self) -> &[Retry] {
         self.job.hwsc.retried()
     }
 
-    /// Once a tick, after controller and cell.
+    /// Called once per tick, after controller and cell.
     pub fn step(
         &mut self,
         around: &Around<'_>,
@@ -122,7 +122,7 @@ impl Switched {
         if self.is_handed_over() { self.hand_over(around, gate, events) } else { progress }
     }
 
-    /// The line `** workstation` has come.
+    /// Carry out the line `** workstation`.
     fn hand_over(&mut self, around: &Around<'_>, gate: &mut Gate, events: &mut Vec<Event>) -> Progress {
         if let Some(obstacle) = obstacle(around.memory, gate.command(), around.has_data_system) {
             return self.refuse(around.tick, obstacle);
@@ -130,7 +130,7 @@ impl Switched {
         events.push(Event::HandedOver);
         gate.initialize();
         (self.since, self.was_connected) = (around.tick, false);
-        // In fast clock hours would go by until it comes.
+        // In fast clock, hours of simulated time would pass before it connects.
         if self.outside.endpoint().clock() == ClockKind::Fast {
             self.wait_here();
         }
@@ -146,7 +146,7 @@ impl Switched {
         }
     }
 
-    /// The workstation controller commands, or has disconnected.
+    /// Follow the workstation controller's commands, or its disconnection.
     fn follow(
         &mut self,
         around: &Around<'_>,
@@ -190,7 +190,7 @@ impl Switched {
     }
 }
 
-/// What keeps the workstation controller from taking over (IV.4.1).
+/// The reason why the workstation controller cannot take over (IV.4.1); `None` if it can.
 pub fn obstacle(memory: &CommonMemory, last: &HwsCommand, has_data_system: bool) -> Option<String> {
     let needs = "the workstation controller is connected with";
     let place = memory.emove.beliefs.place.map(|place| place.location);

@@ -1,4 +1,4 @@
-//! How a run ended, and why: the last line on standard error and the exit status follow from it.
+//! How a run ended, and the reason, from which the last line on standard error and the exit status follow.
 
 use ::neighbours::workstation::player::{JobFailure, Workstation as _};
 use executive::failure::{self, Failure};
@@ -10,11 +10,11 @@ use crate::Run;
 
 /// How a run ended.
 pub enum Ending {
-    /// The job is over.
+    /// The job has finished.
     Finished,
-    /// `--ticks` were run.
+    /// The run has reached `--ticks`.
     Stopped,
-    /// Something went wrong.
+    /// An error has ended the run.
     Failed(Failure),
 }
 
@@ -29,7 +29,8 @@ impl Ending {
         }
     }
 
-    /// A job with an error in the cell counts as failed; a job that failed may have failed because of it.
+    /// The ending with a verdict on the cell: a job with an error in the cell counts as failed, and a job that failed
+    /// may have failed because of it.
     fn checked(self, verdict: Failure) -> Self {
         match self {
             Self::Finished | Self::Stopped => Self::Failed(verdict),
@@ -44,7 +45,7 @@ impl Ending {
 }
 
 impl Run {
-    /// The end of a run, with what went wrong in the cell: what the robot ran into, and what is not where it should be.
+    /// The ending with the verdicts on the cell: collisions of the robot, and parts that are not at their places.
     pub(super) fn checked(&self, ending: Ending) -> Ending {
         let parts = self.workstation.cell.parts();
         let mut verdicts: Vec<Failure> =
@@ -57,13 +58,13 @@ impl Run {
         verdicts.into_iter().map(simulated).fold(ending, Ending::checked)
     }
 
-    /// The end of a run that another process commands. It has no job that can fail, so the state of the robot decides.
+    /// The ending of a run that another process commands: without a job that can fail, the state of the robot decides.
     pub(super) fn left(&self, ending: Ending) -> Ending {
         let commanding = self.neighbours.are_commanding();
         self.standing().filter(|_| commanding).map_or(ending, Ending::Failed)
     }
 
-    /// What prevents the robot from moving at the end: an emergency, or a lost link.
+    /// The emergency or lost link that prevents the robot from moving at the end.
     fn standing(&self) -> Option<Failure> {
         if let Some(what) = self.workstation.emergency() {
             return self.stopped(&what);
@@ -79,7 +80,7 @@ impl Run {
         })
     }
 
-    /// A lost link with the warning of the T3 controller that it follows from.
+    /// The failure of a lost link, with the T3 controller's warning that caused it.
     fn warned(&self, failure: Failure) -> Failure {
         match &self.warning {
             Some((tick, warning)) if failure.stopped && *tick <= failure.tick => {
@@ -89,14 +90,15 @@ impl Run {
         }
     }
 
-    /// The emergency that has stopped the robot, and where the arm is.
+    /// The emergency that has stopped the robot, and the state of the arm.
     fn stopped(&self, what: &str) -> Option<Failure> {
         let emergency = self.workstation.last_emergency()?;
         let text = format!("{what}; the arm {}", emergency.droop.end());
         Some(Failure { stopped: true, ..outside(emergency.tick, "T3", text) })
     }
 
-    /// Why the job failed: the reason of the process that reports it, or what the workstation controller saw.
+    /// The failure of the job: the reason of the process that reports it, or the observation of the workstation
+    /// controller.
     pub(super) fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Failure {
         match failure {
             JobFailure::Emergency(what) => {

@@ -1,4 +1,4 @@
-//! The workstation of the simulated cell, as the workstation controller's emulator sees it.
+//! The workstation of the simulated cell, in the interface of the workstation controller's emulator.
 
 use interfaces::device::{joystick_frame, single_step};
 use neighbours::workstation::player::Workstation;
@@ -12,52 +12,52 @@ use taskdata::load::job::{
     ViseOpening, Workstation as Action,
 };
 
-/// Ticks to wait for an arm without pressure to come to rest before the run ends: two minutes. From HOME it takes 40 s;
-/// an arm that slides off an obstacle takes twice as long.
+/// Time limit for an arm without pressure to come to rest before the run ends, ticks: two minutes. From HOME it takes
+/// 40 s; an arm that slides off an obstacle takes twice as long.
 const SETTLING_LIMIT: u64 = 120_000 / TICK_MS;
 
-/// A job that hands over needs a run in which a workstation controller can connect.
+/// Refusal of a job with a hand-over in a run to which no workstation controller can connect.
 const NO_HAND_OVER: &str = "no workstation controller can connect to this run; \
                             --network ADDRESS --outside workstation --stand-alone lets one";
 
 /// An emergency that has stopped the robot.
 #[derive(Clone, Debug)]
 pub struct Emergency {
-    /// When the pressure went.
+    /// Tick in which the pressure was lost.
     pub tick: Tick,
     /// Cause, position, and the state of the arm.
     pub droop: Droop,
 }
 
-/// The cell, with what went wrong in it.
+/// The cell, with its emergencies and failures.
 pub struct SimulatedWorkstation {
     /// The cell.
     pub cell: Cell,
     state: WorkstationState,
 }
 
-/// State of a workstation beside its cell.
+/// State of a workstation in addition to its cell.
 #[derive(Clone, Debug, Default)]
 pub struct WorkstationState {
     fault: Option<String>,
-    /// The robot is not the simulated one: its panel is out of reach.
+    /// True if the robot is not the simulated one: its panel is out of reach.
     robot_elsewhere: bool,
-    /// A workstation controller can connect, and the job hand over to it.
+    /// True if a workstation controller can connect, and the job can hand over to it.
     hands_over: bool,
     emergency: Option<Emergency>,
-    /// The arm had no pressure after the last tick.
+    /// True if the arm had no pressure after the last tick.
     stopped: bool,
-    /// Numbers of the reloads that were asked for since the last look.
+    /// Numbers of the reloads requested since the last call of `loads`.
     loads: Vec<u32>,
 }
 
 impl SimulatedWorkstation {
-    /// A workstation around a cell.
+    /// A workstation with a cell.
     pub fn new(cell: Cell) -> Self {
         Self::with_state(cell, WorkstationState::default())
     }
 
-    /// A workstation around a cell that was restored, which goes on from the state that was kept with it.
+    /// A workstation with a restored cell and the state that was saved with it.
     pub const fn with_state(cell: Cell, state: WorkstationState) -> Self {
         Self { cell, state }
     }
@@ -67,22 +67,22 @@ impl SimulatedWorkstation {
         &self.state
     }
 
-    /// The cell follows a robot elsewhere, whose controller no line of a job can reach.
+    /// Note that the cell follows a robot elsewhere, whose controller no line of a job can reach.
     #[must_use]
     pub fn with_robot_elsewhere(mut self) -> Self {
         self.state.robot_elsewhere = true;
         self
     }
 
-    /// The job can hand over to a workstation controller in another process.
+    /// Note that the job can hand over to a workstation controller in another process.
     #[must_use]
     pub fn with_hand_over(mut self) -> Self {
         self.state.hands_over = true;
         self
     }
 
-    /// What happened in the cell in `tick`, which is over. A simulation that has failed is a fault of the
-    /// workstation, and so is a vise that has.
+    /// Events of the cell in `tick`, which has ended. A failed simulation or a failed vise is a fault of the
+    /// workstation.
     pub fn events(&mut self, tick: Tick) -> Vec<CellEvent> {
         let events = self.cell.events();
         if let Some(droop) = self.cell.droop().filter(|droop| droop.cause.is_emergency()) {
@@ -100,13 +100,13 @@ impl SimulatedWorkstation {
         events
     }
 
-    /// The last emergency, also if the robot has been started again since.
+    /// The last emergency, also if the robot has been restarted since.
     #[must_use]
     pub const fn last_emergency(&self) -> Option<&Emergency> {
         self.state.emergency.as_ref()
     }
 
-    /// The arm has lost its pressure in an emergency, has not come to rest, and may yet run into something.
+    /// True if the arm has lost its pressure in an emergency and has not come to rest: it can still touch something.
     #[must_use]
     pub fn is_settling(&self, tick: Tick) -> bool {
         let sinks =
@@ -114,20 +114,20 @@ impl SimulatedWorkstation {
         self.state.stopped && self.state.emergency.as_ref().is_some_and(sinks)
     }
 
-    /// Numbers of the reloads of task data that the job has asked for since the last call.
+    /// Numbers of the reloads of task data that the job has requested since the last call.
     pub fn loads(&mut self) -> Vec<u32> {
         std::mem::take(&mut self.state.loads)
     }
 
-    /// Begin an action that an operator asks for; `line` is its text.
+    /// Begin an action of an operator; `line` is its text.
     ///
     /// # Errors
-    /// A sentence, if the workstation cannot do it.
+    /// A message if the workstation cannot carry it out.
     pub fn begin_line(&mut self, action: &Action, line: &str) -> Result<(), String> {
         self.begin(action, line)
     }
 
-    /// What the cell has to do for an action, in this order.
+    /// The actions of the cell for an action of a job, in order.
     fn translate(&self, action: &Action) -> Result<Vec<WorkstationAction>, String> {
         let at_the_robot = matches!(action, Action::Press(_) | Action::Release(_) | Action::Panel(_));
         if at_the_robot && self.state.robot_elsewhere {
@@ -137,16 +137,17 @@ impl SimulatedWorkstation {
     }
 }
 
-/// What an action asks of a cell, in this order.
+/// The actions of a cell for an action of a job, in order.
 ///
 /// # Errors
-/// [`WorkstationError`] if the cell has no such vise. Whether it has all else that is named the cell says.
+/// [`WorkstationError`] if the cell has no such vise. The cell itself checks all other names.
 pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<WorkstationAction>, WorkstationError> {
     Ok(vec![match action {
         Action::Tray { location, object, offset } => WorkstationAction::Place {
             part: object.to_string(),
             unit: location.name.to_string(),
-            // The task data have this sector, and none below 0; no cell has one beyond what fits.
+            // The task data contain this sector, so it is not negative; a number that does not fit is beyond every
+            // cell.
             sector: location.sector.map_or(0, |sector| u16::try_from(sector).unwrap_or(u16::MAX)),
             placement: offset.as_ref().map_or(Placement::Random, placement),
         },
@@ -173,7 +174,7 @@ pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<Workstation
         Action::Release(site) => WorkstationAction::T3(Key::Release(estop(*site))),
         Action::Panel(key) => WorkstationAction::T3(at_the_panel(*key)),
         Action::Table(key) => WorkstationAction::Table(at_the_table(*key)),
-        // These are not the cell's.
+        // These actions do not affect the cell.
         Action::Wait { .. } | Action::Load { .. } | Action::HandOver => return Ok(Vec::new()),
     }])
 }
@@ -254,7 +255,7 @@ const fn switch(process: Stepped) -> u8 {
     }
 }
 
-/// Jobs are written in hundredths, the cell has inches and degrees.
+/// Converts the hundredths of a job to inches and degrees.
 fn placement(offset: &Offset) -> Placement {
     let hundredths = |value: i32| f64::from(value) / 100.0;
     Placement::At { x: hundredths(offset.x), y: hundredths(offset.y), angle: hundredths(offset.angle) }
@@ -281,7 +282,7 @@ impl Workstation for SimulatedWorkstation {
         self.state.fault.clone()
     }
 
-    /// From the loss of pressure to FAULT RESET.
+    /// The emergency as text, from the loss of pressure to FAULT RESET.
     fn emergency(&self) -> Option<String> {
         let faulted = self.cell.t3().stage() == Stage::Faulted;
         let droop = self.cell.droop().filter(|droop| faulted && droop.cause.is_emergency())?;
@@ -298,7 +299,7 @@ mod tests {
     use std::path::Path;
     use taskdata::load::{Job, Source, Step, Store};
 
-    /// A workstation of the shipped cell, and the task data that its jobs are read with.
+    /// A workstation with the shipped cell, and the task data for its jobs.
     struct Bench {
         workstation: SimulatedWorkstation,
         store: Store,
@@ -313,7 +314,7 @@ mod tests {
             Self { workstation: SimulatedWorkstation::new(cell), store }
         }
 
-        /// Begin what a line says, and let the cell go on until it is over.
+        /// Begin a line, and run the cell until the line has ended.
         fn play(&mut self, line: &str) -> Result<Vec<DeviceInputs>, String> {
             let source = Source { name: "try.job".into(), text: line.into() };
             let (job, _) = Job::from_source(source, &self.store).map_err(|report| report.to_string())?;
@@ -371,7 +372,7 @@ mod tests {
         assert!(bench.workstation.cell.drum_closed());
     }
 
-    /// What the panel has to be told after an emergency stop, and what each key leads to.
+    /// Keys of the panel after an emergency stop, and the stage to which each key leads.
     const RESTART: [(&str, Stage); 6] = [
         ("fault-reset", Stage::Ready),
         ("hydraulics enable", Stage::Enabled),

@@ -10,7 +10,7 @@ fn config(job: &str) -> RunConfig {
     RunConfig { log: LogTarget::None, shared_memory: false, ..RunConfig::new(DATA, job) }
 }
 
-/// Notes the lines of the job that have begun.
+/// Records the lines of the job that have begun.
 #[derive(Clone, Default)]
 struct Lines(Arc<Mutex<Vec<String>>>);
 

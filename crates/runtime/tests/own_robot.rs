@@ -1,4 +1,4 @@
-//! A robot of the caller's own in the place of the T3.
+//! A robot of the caller instead of the T3.
 
 use depc::{
     Plate,
@@ -8,7 +8,7 @@ use depc::{
 use geometry::kinematics::{HOME_JOINTS, Joints, T3};
 use runtime::{Ending, LogTarget, OwnRobot, Run, RunConfig, RunOutcome, StartError};
 
-/// Stands where it is sent, a tick later, and complains after so many points.
+/// Reaches each point one tick later, and reports a fault after a number of points.
 struct Follower {
     joints: Joints,
     goal: Plate,

@@ -1,4 +1,4 @@
-//! What a run shows to programs outside.
+//! The view of a run in other programs.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ fn config(test: &str) -> RunConfig {
     RunConfig { log: LogTarget::None, name, ..RunConfig::new(data, "linkbar") }
 }
 
-/// Run to a tick; `look` is called after each.
+/// Run to a tick; calls `look` after each tick.
 fn run(config: RunConfig, last: u64, mut look: impl FnMut(&Run, &Attached)) -> CellView {
     let name = config.name.clone().expect("it has one");
     let mut run = Run::new(config, Box::new(())).expect("the data are sound");
@@ -50,7 +50,7 @@ fn the_cell_shows_what_it_does() {
 fn every_header_of_a_run_has_the_row_that_its_values_give() {
     let (mut seen, mut near) = (Tick::BEFORE_START, 0);
     run(config("rows"), 881, |run, reader| {
-        // As seldom as a reader may look without losing a tick.
+        // The longest interval at which a reader loses no tick.
         if !run.last_tick().0.is_multiple_of(250) {
             return;
         }

@@ -1,4 +1,4 @@
-//! The buffers of a process: what it reads and what it writes, field by field.
+//! The buffers that a process reads and writes, field by field.
 
 use std::sync::LazyLock;
 
@@ -9,22 +9,22 @@ use record::layout::{self, Leaf};
 use super::{Section, Text, Tone, units::unit};
 use crate::picture::Picture;
 
-/// All fields of common memory, and all inputs from outside.
+/// All fields of common memory and of the external inputs.
 static MEMORY: LazyLock<Vec<Leaf>> = LazyLock::new(|| layout::leaves(CommonMemory::STRUCT));
 static OUTSIDE: LazyLock<Vec<Leaf>> = LazyLock::new(|| layout::leaves(ExternalInputs::STRUCT));
 
 /// A field of a buffer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    /// Name from the buffer inwards: the manual's in Rust's spelling.
+    /// Path from the buffer to the field: the manual's names in Rust's spelling.
     pub name: String,
-    /// Value, as people write it.
+    /// Value as text.
     pub value: String,
-    /// What it holds: `u32`, `option text 10`, the name of an enum.
+    /// Type: `u32`, `option text 10`, or the name of an enum.
     pub kind: String,
     /// Unit; empty for none.
     pub unit: &'static str,
-    /// The value is not that of the picture before.
+    /// True if the value differs from the previous picture.
     pub changed: bool,
 }
 
@@ -46,7 +46,7 @@ fn image<T: Plain>(value: &T) -> Vec<u8> {
     bytes
 }
 
-/// What a process reads: its command, the status of the processes below it, its inputs from outside.
+/// The buffers that a process reads: its command, the status of the processes below it, its external inputs.
 #[must_use]
 pub fn inputs(process: ProcessId, picture: &Picture, last: Option<&Picture>) -> Vec<Field> {
     let (now, was) = (Images::of(picture), last.map(Images::of));
@@ -68,7 +68,7 @@ pub fn inputs(process: ProcessId, picture: &Picture, last: Option<&Picture>) -> 
     inner.chain(outer).collect()
 }
 
-/// What a process writes, but for its header.
+/// The buffers that a process writes, without its header.
 #[must_use]
 pub fn outputs(process: ProcessId, picture: &Picture, last: Option<&Picture>) -> Vec<Field> {
     let (now, was) = (Images::of(picture), last.map(Images::of));
@@ -81,7 +81,7 @@ pub fn outputs(process: ProcessId, picture: &Picture, last: Option<&Picture>) ->
         .collect()
 }
 
-/// True if a field is the buffer, or in it.
+/// True if a field is the buffer itself or inside it.
 #[must_use]
 pub fn is_within(path: &str, buffer: &str) -> bool {
     path.strip_prefix(buffer).is_some_and(|rest| rest.starts_with(['.', '[']) || rest.is_empty())
@@ -118,7 +118,7 @@ fn field(leaf: &Leaf, now: &[u8], was: Option<&Vec<u8>>) -> Field {
     }
 }
 
-/// The buffers as lines, those that hold the text of the filter.
+/// The buffers as lines, only those that contain the text of the filter.
 #[must_use]
 pub fn section(process: ProcessId, picture: &Picture, last: Option<&Picture>, filter: &str) -> Section {
     let lines = |way: &'static str, fields: Vec<Field>| {

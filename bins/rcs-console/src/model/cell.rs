@@ -1,4 +1,4 @@
-//! The cell as the controller senses it: joints with their margins, the hand, grippers, holsters, parts.
+//! The cell screen: the controller's sensors with joints and their margins, hand, grippers and holsters, and the parts.
 
 use std::f64::consts::TAU;
 
@@ -14,11 +14,11 @@ use crate::{picture::Picture, source::Cell};
 
 /// The emergency stops, in the order of the cell (III.6).
 const ESTOPS: [&str; 5] = ["control panel", "teach pendant", "terminals", "joystick box", "pedestal"];
-/// Degrees to a limit below which a joint is marked.
+/// A joint nearer to a limit than this is marked, degrees.
 const NEAR: f64 = 10.0;
-/// Degrees of margin for a sign of the bar.
+/// Margin per character of the bar, degrees.
 const BAR: f64 = 10.0;
-/// Signs of the longest bar.
+/// Length of the longest bar, characters.
 const LONGEST: f64 = 12.0;
 
 /// The sections, from the top.
@@ -28,7 +28,7 @@ pub fn sections(picture: &Picture, cell: &Cell) -> Vec<Section> {
     vec![joints(devices), hand(&picture.memory, devices), holsters(devices), parts(cell), surroundings(cell)]
 }
 
-/// The cell in two views, with the arm as the resolvers tell it.
+/// Drawings of the cell in two views, with the arm at the joint angles of the resolvers.
 #[must_use]
 pub fn drawn(picture: &Picture, drawing: &Drawing) -> Vec<Section> {
     let devices = &picture.external.devices;
@@ -38,7 +38,7 @@ pub fn drawn(picture: &Picture, drawing: &Drawing) -> Vec<Section> {
     drawing.sections(&angles(devices))
 }
 
-/// The joint angles that the resolvers tell, radians, turned into the limits of the arm.
+/// Joint angles from the resolvers, rad, shifted by full turns into the limits of the arm.
 fn angles(devices: &DeviceInputs) -> Joints {
     let turn = TAU / f64::from(RESOLVER_COUNTS);
     T3.within_limits(&devices.resolvers.counts.map(|counts| f64::from(counts) * turn))
@@ -178,7 +178,7 @@ fn part(part: &PartView) -> Text {
     Text::plain(format!(" {:<17} {x:>8.2} {y:>8.2} {z:>8.2} in  {place}", part.name.as_str()))
 }
 
-/// What else the cell shows: E-stops, robot controller and job of a run; clearance and contacts of a log.
+/// Further information of the source: E-stops, robot controller and job of a run; clearance and contacts of a log.
 fn surroundings(cell: &Cell) -> Section {
     let faint = |text: &str| vec![Text::new(Tone::Faint, text)];
     match cell {
@@ -232,7 +232,7 @@ mod tests {
     #[test]
     fn angles_are_turned_into_the_limits() {
         let mut devices = DeviceInputs::default();
-        // 190 degrees back, as the resolver tells it.
+        // 190 degrees back, in the resolver's counts.
         devices.resolvers.counts[0] = RESOLVER_COUNTS * 170 / 360;
         let base = angles(&devices)[0].to_degrees();
         assert!((base + 190.0).abs() < 0.01, "{base}");

@@ -1,5 +1,5 @@
-//! The cell from above and from the side, in signs: what stands in it, the arm by its resolvers, and what the robot is
-//! nearest to.
+//! A drawing of the cell in characters, from above and from the side: its bodies, the arm at the resolvers' angles, and
+//! the bodies nearest to the robot.
 
 use std::path::Path;
 
@@ -19,23 +19,23 @@ use super::{Section, Text, Tone};
 
 /// Columns and lines of a drawing.
 const SIZE: (usize, usize) = (76, 15);
-/// Least size of what is drawn, in: the rest is marked by its name alone.
+/// A smaller body is only marked by its name, in.
 const LEAST: f64 = 6.0;
-/// What is larger is left out, in.
+/// A larger body is not drawn, in.
 const LARGEST: f64 = 200.0;
-/// How far around the arm is looked, in.
+/// Range around the arm within which near bodies are searched, in.
 const NEAR: f64 = 24.0;
-/// The nearest so many are named.
+/// Number of near bodies that are named.
 const NAMED: usize = 3;
 
-/// The cell of a description.
+/// The bodies of a cell description.
 pub struct Drawing {
     room: Room,
     /// Name, lowest and highest corner, in.
     blocks: Vec<(String, [f64; 3], [f64; 3])>,
 }
 
-/// From where it is looked.
+/// Direction of view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// From above: X to the right, Y up.
@@ -53,11 +53,11 @@ impl Side {
     }
 }
 
-/// Signs, and the part of the world that they show.
+/// A sheet of characters, and the part of the world that it shows.
 struct Sheet {
     signs: Vec<Vec<char>>,
     low: (f64, f64),
-    /// Inches a column and a line.
+    /// Inches per column and per line.
     scale: (f64, f64),
 }
 
@@ -68,7 +68,7 @@ impl Sheet {
         };
         let (low, high) = (fold(f64::min, f64::MAX), fold(f64::max, f64::MIN));
         let (columns, lines) = (SIZE.0 as f64 - 1.0, SIZE.1 as f64 - 1.0);
-        // A sign is twice as high as wide.
+        // A character is twice as high as wide.
         let inches = ((high.0 - low.0) / columns).max((high.1 - low.1) / lines / 2.0).max(0.1);
         Self { signs: vec![vec![' '; SIZE.0]; SIZE.1], low, scale: (inches, 2.0 * inches) }
     }
@@ -88,7 +88,7 @@ impl Sheet {
         }
     }
 
-    /// The outline of a block, with its name in the upper border.
+    /// Draw the outline of a block, with its name in the upper border.
     fn block(&mut self, name: &str, low: (f64, f64), high: (f64, f64)) {
         let ((left, bottom), (right, top)) = (self.place(low), self.place(high));
         let width = usize::try_from(right - left + 1).unwrap_or(0);
@@ -106,7 +106,7 @@ impl Sheet {
         self.put((left + 1, top), &shown);
     }
 
-    /// A straight line between two points.
+    /// Draw a straight line between two points.
     fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
         let (from, to) = (self.place(from), self.place(to));
         let steps = (to.0 - from.0).abs().max((to.1 - from.1).abs()).max(1);
@@ -125,18 +125,18 @@ impl Sheet {
 }
 
 impl Drawing {
-    /// The cell that a text describes.
+    /// Read the cell from the text of a description.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The errors of the description.
     pub fn of(text: &str) -> Result<Self, String> {
         CellDescription::from_toml(text).map(|cell| Self::of_cell(&cell)).map_err(|error| error.to_string())
     }
 
-    /// The cell of a data directory.
+    /// Read the cell of a data directory.
     ///
     /// # Errors
-    /// Why it cannot be read.
+    /// The reason why it cannot be read.
     pub fn load(directory: &Path) -> Result<Self, String> {
         let path = directory.join("cell.toml");
         let cell = CellDescription::load(&path);
@@ -151,7 +151,7 @@ impl Drawing {
                 let corner = Vector::new(sign(0, x), sign(1, y), sign(2, z));
                 <[f64; 3]>::from(block.frame.position + block.frame.rotation * corner)
             };
-            // The box around it, however it is turned.
+            // The bounding box of the body in its orientation.
             let extreme = |with: fn(f64, f64) -> f64| {
                 (0..8)
                     .map(corner)
@@ -160,14 +160,14 @@ impl Drawing {
             (block.name, extreme(f64::min).unwrap_or_default(), extreme(f64::max).unwrap_or_default())
         };
         let blocks = furniture(cell).into_iter().map(around);
-        // The floor of the hall reaches beyond the picture.
+        // The floor of the hall is larger than the drawing.
         let fits = |(_, low, high): &(String, [f64; 3], [f64; 3])| {
             (0..3).all(|axis| high[axis] - low[axis] < LARGEST)
         };
         Self { room: Room::new(cell), blocks: blocks.filter(fits).collect() }
     }
 
-    /// The cell with the arm at these joint angles.
+    /// Draw the cell with the arm at these joint angles.
     #[must_use]
     pub fn sections(&self, joints: &Joints) -> Vec<Section> {
         let mut sections = vec![

@@ -1,11 +1,11 @@
-//! The frames of a tick on the DEPC line, in words (A 2.3).
+//! The frames of a tick on the DEPC line, as text (A 2.3).
 
 use depc::{
     Plate,
     wire::{Control, DataCommand, FILL, FRAME_BYTES, Report, Response, START},
 };
 
-/// What the host sent in a tick.
+/// The frames that the host sent in a tick.
 #[must_use]
 pub fn sent(bytes: &[u8]) -> Vec<String> {
     split(bytes, |bytes| match bytes.first()? {
@@ -24,7 +24,7 @@ pub fn sent(bytes: &[u8]) -> Vec<String> {
     })
 }
 
-/// What came from the robot controller for a tick.
+/// The frames that came from the robot controller for a tick.
 #[must_use]
 pub fn received(bytes: &[u8]) -> Vec<String> {
     split(bytes, |bytes| match bytes.first()? {
@@ -43,8 +43,8 @@ pub fn received(bytes: &[u8]) -> Vec<String> {
     })
 }
 
-/// Frames from the front on. Bytes from where no frame begins are told as they are: the receivers drop them, or
-/// wait for the rest of a frame.
+/// The frames from the first byte on. Bytes at which no frame begins are shown as they are: the receivers discard them,
+/// or wait for the rest of a frame.
 fn split(mut bytes: &[u8], frame: impl Fn(&[u8]) -> Option<(String, usize)>) -> Vec<String> {
     let mut found = Vec::new();
     while let Some((text, length)) = frame(bytes) {

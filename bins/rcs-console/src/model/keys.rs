@@ -1,16 +1,16 @@
-//! What a key does.
+//! Carries out the keys.
 
 use interfaces::ProcessId;
 
 use super::{Model, Pane, Place, Prompt, Screen, buffers, drawing::Drawing, ladder, views::fields_named};
 use crate::source::{Source, State};
 
-/// Ticks of a second.
+/// Ticks per second.
 const SECOND: u64 = 25;
-/// Lines of a page.
+/// Lines per page.
 const PAGE: usize = 8;
 
-/// A key, whatever the terminal.
+/// A key, independent of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
     /// A character.
@@ -45,23 +45,23 @@ pub enum Key {
     F1,
     /// F2.
     F2,
-    /// Control and C.
+    /// Control-C.
     Interrupt,
 }
 
-/// What the terminal is to do after a key.
+/// The action of the terminal after a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// Draw and go on.
+    /// Draw the screen and continue.
     Draw,
-    /// End.
+    /// End the console.
     Quit,
     /// Open the log of this run at the first cause of its failure.
     OpenLog,
 }
 
 impl Model {
-    /// Take a key.
+    /// Carry out a key.
     pub fn key(&mut self, key: Key, source: &dyn Source) -> Effect {
         self.answer = None;
         if self.screen == Screen::Terminal && self.prompt.is_none() && self.edit(key) {
@@ -139,7 +139,7 @@ impl Model {
         Effect::Draw
     }
 
-    /// Keep the scrolling within what there is.
+    /// Limit the scrolling to the available lines: `up` above, `down` below.
     pub fn limit_scroll(&mut self, up: usize, down: usize) {
         let least = 0_isize.saturating_sub_unsigned(up);
         self.scroll = self.scroll.clamp(least, 0_isize.saturating_add_unsigned(down));
@@ -168,7 +168,7 @@ impl Model {
         }
     }
 
-    /// The cell screen shows the cell drawn, or its values again.
+    /// Switch the cell screen between drawing and values.
     fn draw_or_not(&mut self, source: &dyn Source) {
         self.scroll = 0;
         if self.drawing.take().is_some() {
@@ -184,12 +184,12 @@ impl Model {
         }
     }
 
-    /// The process screen shows what is watched, or the buffers again.
+    /// Switch the process screen between watched fields and buffers.
     fn turn_to_watch(&mut self) {
         (self.pane, self.scroll, self.shows_watch) = (Pane::Buffers, 0, !self.shows_watch);
     }
 
-    /// Watch what a name means, or watch it no more.
+    /// Start or stop watching the fields of a name.
     fn watch_or_not(&mut self, name: &str) {
         let mut found: Vec<String> = fields_named(name, &[]).into_iter().map(str::to_owned).collect();
         if buffers::paths().any(|path| buffers::is_within(path, name)) {
@@ -207,7 +207,7 @@ impl Model {
         (self.pane, self.scroll, self.shows_watch) = (Pane::Buffers, 0, true);
     }
 
-    /// Freeze the picture, or let it go on. The run goes on in either case.
+    /// Freeze or release the picture. The run continues in either case.
     fn freeze(&mut self, source: &dyn Source) {
         if source.about().state == State::Log {
             self.answer = Some("a log does not run: [ ] moves a tick, { } a second".to_owned());
@@ -219,7 +219,7 @@ impl Model {
         }
     }
 
-    /// Go to a tick, or to the nearest there is.
+    /// Go to a tick, or to the nearest available one.
     fn go(&mut self, tick: u64, source: &dyn Source) {
         let Some((first, last)) = source.range() else { return };
         self.answer = match tick {
@@ -230,7 +230,7 @@ impl Model {
         self.place = Place::At(tick.clamp(first, last));
     }
 
-    /// Go to the next or the previous change: on the process screen of this process, else of any.
+    /// Go to the next or previous change: of this process on the process screen, else of any process.
     fn go_to_change(&mut self, forward: bool, source: &dyn Source) {
         let processes = match self.screen {
             Screen::Process => std::slice::from_ref(&self.process),
@@ -252,7 +252,7 @@ impl Model {
         }
     }
 
-    /// Go to the first cause of the last failure, and to the process that knows it.
+    /// Go to the first cause of the last failure, and to the process that reports it.
     fn go_to_cause(&mut self, source: &dyn Source) {
         match source.story().first_cause() {
             Some(cause) => {

@@ -1,4 +1,4 @@
-//! The ladder (VI.6): a line for each process and for each neighbour, with its command, status and row.
+//! The ladder (VI.6): a line per process and per neighbour, with command, status and row.
 
 use executive::failure;
 use interfaces::{CommonMemory, Header, ProcessId, device::VisionStatus, for_each_process};
@@ -10,37 +10,37 @@ use crate::{
     story::{self, Story},
 };
 
-/// What a line is about.
+/// Subject of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Item {
     /// A control process.
     Process(ProcessId),
-    /// The workstation controller: what it commands, and what it is told.
+    /// The workstation controller: its command, and its status from Task.
     Workstation,
-    /// The Data System: what it is asked, and what it answers.
+    /// The Data System: its request and its answer.
     DataSystem,
-    /// The vision system, likewise.
+    /// The vision system: its request and its answer.
     Vision,
     /// The robot controller behind the link.
     Robot,
 }
 
-/// How a line hangs on the one above.
+/// Connection of a line to the lines above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Branch {
     /// A level of the hierarchy.
     Level,
-    /// A process or neighbour beside it, with others after it.
+    /// A process or neighbour beside the level, with others after it.
     Beside,
-    /// The last one.
+    /// The last one beside the level.
     Last,
-    /// Below one that has others after it.
+    /// A process below one that has others after it.
     Below,
-    /// The last one below.
+    /// A process below the last one.
     LastBelow,
 }
 
-/// The lines, from the top.
+/// The lines from top to bottom.
 const LINES: [(Branch, Item); 16] = [
     (Branch::Level, Item::Workstation),
     (Branch::Level, Item::Process(ProcessId::Task)),
@@ -60,49 +60,49 @@ const LINES: [(Branch, Item); 16] = [
     (Branch::Level, Item::Robot),
 ];
 
-/// What a mark in the first two columns says.
+/// The marks in the first two columns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mark {
     /// It reports a failure or an error.
     pub trouble: bool,
-    /// It is the process that knows why Task fails.
+    /// It is the process in which Task's failure originates.
     pub cause: bool,
-    /// It was not stepped, or nothing came from it.
+    /// It was not executed, or no data came from it.
     pub absent: bool,
-    /// It is the gripper that is on the robot.
+    /// It is the gripper on the robot.
     pub on: bool,
-    /// It is not what it was in the picture before.
+    /// It differs from the previous picture.
     pub changed: bool,
 }
 
 /// A line of the ladder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// What it is about.
+    /// Subject of the line.
     pub item: Item,
-    /// How it hangs on the one above.
+    /// Connection to the lines above.
     pub branch: Branch,
-    /// What the first columns say.
+    /// The marks.
     pub mark: Mark,
     /// Name.
     pub name: &'static str,
-    /// Command, in the manual's words; empty for none.
+    /// Command, in the manual's spelling; empty for none.
     pub command: String,
-    /// Number of the command; none for none.
+    /// Number of the command, if any.
     pub number: Option<u32>,
     /// Status.
     pub status: String,
-    /// Number that the status is about.
+    /// Number of the command to which the status belongs.
     pub echo: Option<u32>,
     /// Table and row.
     pub row: String,
-    /// What the row says, in the manual's words.
+    /// Text of the row, in the manual's spelling.
     pub text: String,
-    /// Seconds since the row fired; none for one of this tick.
+    /// Seconds since the row fired; `None` for a row of this tick.
     pub age: Option<f64>,
 }
 
-/// The ladder of a picture. `last` is the picture that was shown before it.
+/// The ladder of a picture. `last` is the previous picture on the screen.
 #[must_use]
 pub fn lines(picture: &Picture, last: Option<&Picture>, story: &Story) -> Vec<Line> {
     let line = |(branch, item)| {
@@ -111,7 +111,7 @@ pub fn lines(picture: &Picture, last: Option<&Picture>, story: &Story) -> Vec<Li
             let was = self::line(branch, item, last, story);
             let key = |line: &Line| (line.number, line.status.clone(), line.row.clone());
             match item {
-                // It has a new command in every tick.
+                // It gets a new command in every tick.
                 Item::Process(ProcessId::T3i) => {
                     (was.status, was.row) != (line.status.clone(), line.row.clone())
                 }
@@ -168,13 +168,13 @@ fn process_line(branch: Branch, process: ProcessId, picture: &Picture, story: &S
     }
 }
 
-/// Seconds since the row fired; none if that was in this tick, or if it is not known.
+/// Seconds since the row fired; `None` if it fired in this tick, or if the time is not known.
 fn age(header: &Header) -> Option<f64> {
     let ticks = header.age().filter(|ticks| *ticks > 0)?;
     Some(ticks as f64 * TICK_S)
 }
 
-/// The gripper that is on the robot, as the id pins say (VI.2).
+/// The gripper on the robot, according to the id pins (VI.2).
 fn gripper_on(picture: &Picture) -> Option<ProcessId> {
     match picture.memory.quick_change.status.end_effector_id? {
         1 => Some(ProcessId::Grip),
@@ -184,7 +184,7 @@ fn gripper_on(picture: &Picture) -> Option<ProcessId> {
     }
 }
 
-/// A line of a neighbour: no row, no age.
+/// The line of a neighbour, without row and age.
 fn neighbour_line(branch: Branch, item: Item, name: &'static str) -> Line {
     Line {
         item,
@@ -263,7 +263,7 @@ fn robot(branch: Branch, picture: &Picture) -> Line {
     }
 }
 
-/// The process `by` lines below or above another one.
+/// The process that is `by` lines below or above another one.
 #[must_use]
 pub fn neighbour(process: ProcessId, by: usize, down: bool) -> ProcessId {
     let processes = || {
@@ -277,7 +277,7 @@ pub fn neighbour(process: ProcessId, by: usize, down: bool) -> ProcessId {
     processes().take(wanted + 1).last().unwrap_or(process)
 }
 
-/// What the process under the cursor does and why, in a sentence each.
+/// What the process under the cursor does and why, one sentence each.
 #[must_use]
 pub fn explanation(process: ProcessId, picture: &Picture, story: &Story) -> [String; 2] {
     let line = process_line(Branch::Level, process, picture, story);
@@ -299,7 +299,7 @@ pub fn explanation(process: ProcessId, picture: &Picture, story: &Story) -> [Str
     [first, second]
 }
 
-/// What a failure that no process reports may come from: the commands that are executed.
+/// Possible causes of a failure that no process reports: the commands in progress.
 #[must_use]
 pub fn present_commands(picture: &Picture) -> String {
     failure::present_commands(Ladder::processes(), &picture.external.hws, &picture.memory)
@@ -316,7 +316,7 @@ macro_rules! echoes {
             reads: $reads:expr;
         }
     )+) => {
-        /// Number of the command that the status of a process is about.
+        /// Number of the command to which the status of a process belongs.
         #[must_use]
         pub const fn echo(memory: &CommonMemory, process: ProcessId) -> u32 {
             match process { $( ProcessId::$id => memory.$field.status.echo, )+ }

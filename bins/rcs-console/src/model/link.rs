@@ -1,4 +1,4 @@
-//! The link to the robot and the times of the ticks.
+//! The link screen: the link to the robot, and the times of the ticks.
 
 use depc::warning::Warning;
 use executive::memory::cell::LatenessView;
@@ -10,14 +10,14 @@ use record::{Level, reader::LogLine};
 use super::{Section, Text, Tone, frames};
 use crate::{picture::Picture, source::Cell, story::Story};
 
-/// Messages that are shown.
+/// Number of messages shown.
 const MESSAGES: usize = 6;
-/// Re-starts that are shown.
+/// Number of re-starts shown.
 const RESTARTS: usize = 3;
-/// Sources of messages about link, robot controller and clock.
+/// Sources of the messages about link, robot controller and clock.
 const SOURCES: [&str; 4] = ["T3 Interface", "cell", "fault", "executive"];
 
-/// The sections, from the top.
+/// The sections from top to bottom.
 #[must_use]
 pub fn sections(picture: &Picture, story: &Story, cell: &Cell) -> Vec<Section> {
     vec![
@@ -113,7 +113,7 @@ fn times(picture: &Picture, story: &Story, cell: &Cell) -> Section {
     Section::new("time", lines)
 }
 
-/// How late ticks begin on the 40 ms grid.
+/// Lateness of the ticks on the 40 ms grid.
 fn lateness(cell: &Cell) -> Text {
     match cell {
         Cell::Shown(view) => {
@@ -162,7 +162,7 @@ fn at(tick: u64) -> f64 {
     tick as f64 * TICK_S
 }
 
-/// The codes on the screen of the robot controller, in words.
+/// Meaning of the codes on the screen of the robot controller.
 fn codes() -> Section {
     let Schema::Enum(warnings) = Warning::SCHEMA else { return Section::default() };
     let lines = warnings.variants.iter().filter(|warning| !warning.text.is_empty());

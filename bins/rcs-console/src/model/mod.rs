@@ -1,4 +1,4 @@
-//! What is shown, without a terminal: keys and pictures in, a choice of screen, tick and process out.
+//! The state of the console without a terminal: keys and pictures change it; it selects screen, tick and process.
 
 pub mod buffers;
 pub mod cell;
@@ -75,7 +75,7 @@ impl Screen {
     }
 }
 
-/// A pane of the process screen. The one that has the keys has the most lines.
+/// A pane of the process screen. The one with the keyboard focus has the most lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pane {
     /// The decision table.
@@ -88,39 +88,39 @@ pub enum Pane {
 }
 
 impl Pane {
-    /// All panes, from the top.
+    /// All panes from top to bottom.
     pub const ALL: [Self; 3] = [Self::Table, Self::Rows, Self::Buffers];
 }
 
-/// The tick that is shown.
+/// The tick on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// The last one there is, as it goes on.
+    /// The last available tick.
     Last,
-    /// This one.
+    /// A fixed tick.
     At(u64),
 }
 
-/// How a line of text is meant. The text says the same in words or marks.
+/// Emphasis of a line. Words or marks in the text express the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
-    /// As any other.
+    /// Normal.
     #[default]
     Plain,
     /// Trouble.
     Trouble,
-    /// The row that fired, or a value that is new.
+    /// The row that fired, or a changed value.
     Marked,
-    /// What stands for nothing now.
+    /// A value without meaning at present.
     Faint,
 }
 
 /// A line of text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Text {
-    /// How it is meant.
+    /// Emphasis.
     pub tone: Tone,
-    /// What it says.
+    /// The text.
     pub text: String,
 }
 
@@ -131,93 +131,93 @@ impl Text {
         Self { tone, text: text.into() }
     }
 
-    /// A line as any other.
+    /// A line without emphasis.
     #[must_use]
     pub fn plain(text: impl Into<String>) -> Self {
         Self::new(Tone::Plain, text)
     }
 }
 
-/// Lines under a title.
+/// Lines with a title.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Section {
     /// The title.
     pub title: String,
     /// The lines.
     pub lines: Vec<Text>,
-    /// The line that must be seen, if the section does not fit.
+    /// Index of the line that must be visible if the section does not fit.
     pub at: usize,
 }
 
 impl Section {
-    /// A section that is read from its first line.
+    /// A section that is shown from its first line.
     #[must_use]
     pub fn new(title: impl Into<String>, lines: Vec<Text>) -> Self {
         Self { title: title.into(), lines, at: 0 }
     }
 }
 
-/// What is being typed.
+/// Text input of the console.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Prompt {
-    /// Text that a line of the process screen must hold.
+    /// Filter for the lines of the process screen.
     Filter(String),
-    /// A tick to go to.
+    /// Tick to go to.
     Tick(String),
     /// A request to the run, or words of a board's terminal.
     Request(String),
-    /// A field or buffer to watch, or to watch no more.
+    /// Field or buffer to watch, or to stop watching.
     Watch(String),
-    /// Why a step of a procedure is left out.
+    /// Reason for skipping a step of a procedure.
     Reason(String),
 }
 
-/// The state of the screen.
+/// State of the console.
 pub struct Model {
-    /// The screen.
+    /// The present screen.
     pub screen: Screen,
-    /// The page with the keys is shown over it.
+    /// True if the help page covers the screen.
     pub help: bool,
     /// The process under the cursor.
     pub process: ProcessId,
-    /// The pane that has the keys.
+    /// The pane with the keyboard focus.
     pub pane: Pane,
-    /// First line of the pane that is shown, counted from where it stands by itself.
+    /// First visible line of the pane, relative to its default position.
     pub scroll: isize,
-    /// Text that a line of a table or buffer must hold; empty for all lines.
+    /// Text that a line of a table or buffer must contain; empty for all lines.
     pub filter: String,
-    /// What is being typed.
+    /// The present text input, if any.
     pub prompt: Option<Prompt>,
-    /// The tick that is shown.
+    /// The tick on the screen.
     pub place: Place,
-    /// Messages up to this tick have been acknowledged.
+    /// Last tick whose messages have been acknowledged.
     pub acknowledged: u64,
-    /// The answer to the last key, where it did nothing else.
+    /// Answer to the last key, if it had no other effect.
     pub answer: Option<String>,
-    /// How far the procedures have come.
+    /// Progress of the procedures.
     pub procedures: Progress,
-    /// The robot is at a port, and its E-stops with it.
+    /// True if the robot and its E-stops are at a port.
     pub robot_elsewhere: bool,
-    /// What an operator asks for; none on a console that looks only.
+    /// The operator's requests; `None` on a console without `--operate`.
     pub operating: Option<Operating>,
     /// The terminal of a board.
     pub terminal: BoardTerminal,
-    /// Fields and buffers that are watched.
+    /// Watched fields and buffers.
     pub watch: Vec<String>,
-    /// The process screen shows them in the place of the buffers.
+    /// True if the process screen shows the watched fields instead of the buffers.
     pub shows_watch: bool,
-    /// The cell screen shows the cell drawn.
+    /// The drawing of the cell screen, if it is on.
     pub drawing: Option<Drawing>,
-    /// It shows the table as it stands in the code.
+    /// True if the process screen shows the table's source text.
     pub shows_source: bool,
-    /// The picture.
+    /// The present picture.
     pub picture: Option<Picture>,
-    /// The picture before it on the screen.
+    /// The previous picture on the screen.
     pub last: Option<Picture>,
 }
 
 impl Model {
-    /// The first screen.
+    /// The console with its first screen.
     #[must_use]
     pub fn new(screen: Screen) -> Self {
         Self {
@@ -244,12 +244,12 @@ impl Model {
         }
     }
 
-    /// Show a tick of another source: nothing of the one before stays on the screen.
+    /// Show a tick of another source, and discard the state of the previous source.
     pub fn show(&mut self, place: Place, process: Option<ProcessId>) {
         *self = Self { place, process: process.unwrap_or(self.process), ..Self::new(self.screen) };
     }
 
-    /// Take the picture that is to be shown from the source.
+    /// Get the picture to show from the source.
     pub fn take(&mut self, source: &dyn Source) {
         let Some((first, last)) = source.range() else { return };
         let wanted = match self.place {
@@ -267,7 +267,7 @@ impl Model {
         }
     }
 
-    /// What a picture shows of the procedures: only what goes on, not what is looked at again.
+    /// Update the procedures from a picture, but only from a picture of the present.
     fn look_at_procedures(&mut self, source: &dyn Source) {
         if let (Some(picture), Place::Last) = (&self.picture, self.place) {
             let cell = source.cell(picture.tick.0);
@@ -280,25 +280,25 @@ impl Model {
         }
     }
 
-    /// The tick that is shown; 0 before there is one.
+    /// The tick on the screen; 0 before the first.
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.picture.as_ref().map_or(0, |picture| picture.tick.0)
     }
 
-    /// A person is asked whether this console takes the command over.
+    /// True while the console asks whether to take the command over.
     #[must_use]
     pub fn taking_over(&self) -> Option<TakeOver> {
         self.operating.as_ref()?.take_over
     }
 
-    /// The joystick box as the controller reads it.
+    /// The joystick box in the controller's inputs.
     #[must_use]
     pub fn joystick(&self) -> JoystickBox {
         self.picture.as_ref().map_or_else(JoystickBox::default, |picture| picture.external.devices.joystick)
     }
 
-    /// The picture does not go on with the run.
+    /// True if the picture does not follow the run.
     #[must_use]
     pub fn is_frozen(&self, source: &dyn Source) -> bool {
         self.place != Place::Last && source.about().state != State::Log

@@ -1,4 +1,4 @@
-//! What an operator asks of a run: the conversation with it, and the keys that ask.
+//! Requests of an operator to a run, the run's answers, and the keys that send requests.
 
 use interfaces::device::{KNOB_FULL, single_step};
 
@@ -9,52 +9,52 @@ use super::{
 };
 use crate::picture::Picture;
 
-/// Exchanges that are kept.
+/// Number of requests and answers kept.
 const KEPT: usize = 200;
 /// Lengths of a jog, in.
 pub const JOGS: [f64; 4] = [0.10, 0.50, 2.00, 0.02];
-/// A request, and what became of it.
+/// A request and its answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exchange {
-    /// The number of the request.
+    /// Number of the request.
     pub number: u32,
-    /// What was asked for.
+    /// Text of the request.
     pub line: String,
-    /// The answer; none before it comes.
+    /// The answer, once it has come.
     pub answer: Option<Result<String, String>>,
-    /// What has become of the command that it gave, as far as it went.
+    /// Progress of the command that it has sent, if any.
     pub stages: Vec<String>,
 }
 
-/// An operator at work.
+/// The session of an operator.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Operating {
-    /// What the run says of itself: who commands, whether the job waits, where the knob is.
+    /// The status line of the run: the source of commands, whether the job waits, the velocity knob.
     pub status: String,
-    /// Requests, the oldest first.
+    /// Requests, oldest first.
     pub exchanges: Vec<Exchange>,
-    /// How many requests were sent in all.
+    /// Number of all requests sent.
     count: u64,
-    /// The directory of the run's task data, once the run has said it.
+    /// Directory of the run's task data, once the run has answered.
     pub directory: Option<String>,
-    /// Requests that are to be sent.
+    /// Requests to be sent.
     pub outbox: Vec<String>,
-    /// Why the run cannot be reached any more.
+    /// The reason why the connection was lost.
     pub lost: Option<String>,
-    /// The length of a jog: which of [`JOGS`].
+    /// Index of the jog length in [`JOGS`].
     pub jog: usize,
-    /// The key of the panels under the cursor.
+    /// Index of the panel key under the cursor.
     pub cursor: usize,
-    /// The next F1 presses the emergency stop.
+    /// True if the next F1 presses the emergency stop.
     pub is_armed: bool,
-    /// How many requests back the arrow keys of the prompt have gone.
+    /// Number of requests by which the arrow keys of the prompt have gone back.
     pub back: usize,
-    /// A person is asked whether this console takes the command over.
+    /// The question whether to take the command over, if it is open.
     pub take_over: Option<TakeOver>,
 }
 
 impl Operating {
-    /// A request was sent.
+    /// Note that a request was sent.
     pub fn sent(&mut self, number: u32, line: String) {
         if self.exchanges.len() == KEPT {
             self.exchanges.remove(0);
@@ -63,19 +63,19 @@ impl Operating {
         self.exchanges.push(Exchange { number, line, answer: None, stages: Vec::new() });
     }
 
-    /// How many requests were sent in all.
+    /// Number of all requests sent.
     #[must_use]
     pub const fn count(&self) -> u64 {
         self.count
     }
 
-    /// The requests with their place among all that were sent, from 1 on.
+    /// The requests with their numbers among all that were sent, from 1.
     pub fn numbered(&self) -> impl Iterator<Item = (u64, &Exchange)> {
         let kept = u64::try_from(self.exchanges.len()).unwrap_or(u64::MAX);
         (self.count.saturating_sub(kept) + 1..).zip(&self.exchanges)
     }
 
-    /// What a picture shows of the commands that were given.
+    /// Update the progress of the commands from a picture.
     pub fn look(&mut self, picture: &Picture) {
         self.exchanges.iter_mut().for_each(|exchange| follow(exchange, picture));
         if is_due(self.take_over, picture.tick) && self.outbox.is_empty() {
@@ -84,7 +84,7 @@ impl Operating {
         }
     }
 
-    /// An answer has come: to a request, or about the status.
+    /// Note an answer to a request or to the question about the status.
     pub fn answered(&mut self, number: u32, verdict: Result<String, String>) {
         match self.exchanges.iter_mut().rev().find(|exchange| exchange.number == number) {
             Some(exchange) => {
@@ -98,19 +98,19 @@ impl Operating {
         }
     }
 
-    /// The job waits for an operator.
+    /// True if the job waits for an operator.
     #[must_use]
     pub fn job_waits(&self) -> bool {
         self.status.starts_with("the job waits")
     }
 
-    /// The number of the last request that was sent; 0 before the first.
+    /// Number of the last request; 0 before the first.
     #[must_use]
     pub fn newest(&self) -> u32 {
         self.exchanges.last().map_or(0, |exchange| exchange.number)
     }
 
-    /// All requests behind this one have been sent, answered and taken.
+    /// True if all requests after this one have been sent, answered and accepted.
     #[must_use]
     pub fn has_taken_since(&self, number: u32) -> bool {
         let mut since = self.exchanges.iter().filter(|exchange| exchange.number > number).peekable();
@@ -118,12 +118,12 @@ impl Operating {
         sent && since.all(|exchange| matches!(exchange.answer, Some(Ok(_))))
     }
 
-    /// Ask the run for something.
+    /// Queue a request to the run.
     pub fn ask(&mut self, line: impl Into<String>) {
         self.outbox.push(line.into());
     }
 
-    /// A line that was asked for before; `by` goes back, or on with 0.
+    /// An earlier request for the prompt: the previous one if `back`, else the next.
     fn recall(&mut self, back: bool) -> Option<String> {
         self.back = if back { self.back + 1 } else { self.back.saturating_sub(1) };
         self.back = self.back.min(self.exchanges.len());
@@ -133,7 +133,7 @@ impl Operating {
 }
 
 impl Model {
-    /// A key that asks something of the run; false if it is none.
+    /// Carry out a key that sends a request. Returns false for other keys.
     pub(super) fn operate(&mut self, key: Key) -> bool {
         let on_panels = self.screen == Screen::Panels;
         let velocity = self.joystick().velocity;
@@ -170,7 +170,7 @@ impl Model {
         true
     }
 
-    /// A key of the panels: of the joystick box, or of the list of keys beside it.
+    /// Carry out a key of the panel screen: of the joystick box, or of the key list beside it.
     fn work_a_panel(&mut self, key: Key) -> bool {
         let frame = self.joystick().frame;
         let Some(operating) = &mut self.operating else { return false };
@@ -229,7 +229,7 @@ impl Model {
         true
     }
 
-    /// A key while a request is typed.
+    /// Carry out a key of the request prompt.
     pub(super) fn type_request(&mut self, mut text: String, key: Key) {
         let mut recall = |back| self.operating.as_mut().and_then(|operating| operating.recall(back));
         match key {
@@ -255,23 +255,24 @@ impl Model {
     }
 }
 
-/// Speed of a stick at full deflection and full knob, in/s (`levels::prim::manual`).
+/// Speed with the stick at full deflection and the velocity knob at its maximum, in/s (`levels::prim::manual`).
 const SPEED: f64 = 5.0;
-/// Its acceleration, in/s².
+/// Acceleration of the stick's motion, in/s².
 const ACCELERATION: f64 = 10.0;
-/// Play of the stick, a share of its way.
+/// Dead zone of the stick, as a share of its range.
 const PLAY: f64 = 0.03;
-/// Ticks in a second.
+/// Ticks per second.
 const TICKS: f64 = 25.0;
 
-/// Deflection, a share, and ticks that move the hand so far at full knob: the ramps at both ends cancel each other.
+/// Deflection, as a share, and ticks for a motion of this length at full knob: the ramps at both ends cancel each
+/// other.
 fn stick(inches: f64) -> (f64, u32) {
     let ticks = (inches * TICKS).clamp(2.0, 20.0).round();
     let share = (inches * TICKS / ticks / SPEED).clamp(0.0, 1.0);
     (PLAY + share * (1.0 - PLAY), ticks as u32)
 }
 
-/// Ticks that a button is held to move about so far at full knob: its speed is always the full one.
+/// Ticks to hold a button for a motion of about this length at full knob; its speed is always the full one.
 fn button_ticks(inches: f64) -> u32 {
     let ramp = SPEED / ACCELERATION;
     let seconds = if inches < SPEED * ramp { (inches / ACCELERATION).sqrt() } else { inches / SPEED };

@@ -1,5 +1,5 @@
-//! Joystick box (III.3.3), robot controller (IV.3.3), emergency stops (III.6) and rotary table (IV.1 step 3), as they
-//! are now, and the requests to a run.
+//! The panel screen: joystick box (III.3.3), robot controller (IV.3.3), emergency stops (III.6) and rotary table (IV.1
+//! step 3) in their present state, and the requests to a run.
 
 use executive::memory::cell::TableView;
 use interfaces::device::{
@@ -12,7 +12,7 @@ use super::{
 };
 use crate::source::Cell;
 
-/// What the list of keys presses, in its order.
+/// The requests of the key list, in order.
 pub const KEYS: [&str; 36] = [
     "job go",
     "job wait",
@@ -51,13 +51,13 @@ pub const KEYS: [&str; 36] = [
     "table mode prog",
     "leave",
 ];
-/// Keys around the cursor that are shown.
+/// Number of keys shown around the cursor.
 const SHOWN: usize = 3;
 /// The emergency stops, in the order of the cell.
 const ESTOPS: [&str; 5] =
     ["control panel", "teach pendant", "terminals", "joystick box", "near the pedestal"];
 
-/// Box, controller and keys, from the top.
+/// The sections: box, controller and keys, from top to bottom.
 #[must_use]
 pub fn sections(devices: &DeviceInputs, cell: &Cell, operating: Option<&Operating>) -> Vec<Section> {
     let mut sections = vec![joystick_box(&devices.joystick, operating), controller(cell)];
@@ -150,7 +150,7 @@ fn controller(cell: &Cell) -> Section {
     Section::new("robot controller", lines)
 }
 
-/// The counter reads degrees, with two places behind the point (IV.1 step 3).
+/// The counter of the table, in degrees with two decimals (IV.1 step 3).
 fn rotary_table(sensors: &PedestalSensors, panel: TableView) -> Section {
     let counter = f64::from(sensors.motor_counter) / f64::from(TABLE_STEPS_PER_TENTH * 10);
     let at = match (sensors.limit_plus, sensors.limit_minus) {

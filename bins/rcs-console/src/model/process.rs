@@ -1,4 +1,4 @@
-//! A process: the decision table that decided last, the rows that fired before, and what they mean.
+//! The process screen: the decision table consulted last, the rows that fired before, and their meaning.
 
 use interfaces::{Header, ProcessId};
 use levels::ladder::{Ladder, ProcessInfo};
@@ -14,8 +14,8 @@ use crate::{
     story::{Doing, Story},
 };
 
-/// The table that decided last, with the row that fired marked; a line about what the row asks for, one about what it
-/// does, then the rows. Lines without the text of the filter are left out.
+/// The table that decided last, with the fired row marked: a line with the row's conditions, a line with its action,
+/// then the rows. Lines without the text of the filter are omitted.
 #[must_use]
 pub fn table(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     let info = &Ladder::processes()[process.position()];
@@ -58,7 +58,7 @@ pub fn table(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     Section { title, lines, at }
 }
 
-/// The values with which the table was consulted, of the variables that its rows ask for.
+/// Values of the variables in the table's conditions at the last decision.
 fn asked(table: &Table, values: Values) -> String {
     let asked: Vec<&str> = table.asked().map(|variable| variable.name).collect();
     let known = table.values(values).filter(|(variable, _)| asked.contains(&variable.name));
@@ -67,7 +67,7 @@ fn asked(table: &Table, values: Values) -> String {
     format!("       values: {}", step.into_iter().chain(values).collect::<Vec<_>>().join(", "))
 }
 
-/// With which other value of one variable a row would have fired; none if with no such value.
+/// The single changes of a variable with which a row would have fired; `None` if there is none.
 fn near(table: &Table, row: &Row, values: Values) -> Option<String> {
     let misses = table.near_misses(values).filter(|miss| miss.row.number == row.number);
     let misses: Vec<String> =
@@ -75,14 +75,14 @@ fn near(table: &Table, row: &Row, values: Values) -> Option<String> {
     (!misses.is_empty()).then(|| format!("   [with {}]", misses.join(" or ")))
 }
 
-/// The rows of other tables that fired beside the one that decided.
+/// The rows of other tables that fired in addition to the deciding one.
 fn beside(info: &ProcessInfo, header: &Header) -> Vec<Text> {
     let rows = header.beside.iter().flatten().filter_map(|consulted| info.row(consulted.decided));
     rows.map(|(table, row)| Text::plain(format!("       beside: {} {}: {row}", table.name, row.number)))
         .collect()
 }
 
-/// What a row means, in the words of the source: each condition, the action, the next step.
+/// The meaning of a row in the words of the source: each condition, the action, the next step.
 #[must_use]
 pub fn meaning(table: &Table, row: &Row) -> Vec<String> {
     let mut lines = Vec::new();
@@ -118,7 +118,7 @@ fn sentence(word: &str, name: &str, value: &str, doc: &str) -> String {
     }
 }
 
-/// The rows that fired before, the newest first: since when, for how long, which.
+/// The rows that fired before, newest first: start, duration, row.
 #[must_use]
 pub fn rows(process: ProcessId, picture: &Picture, story: &Story) -> Section {
     let info = &Ladder::processes()[process.position()];

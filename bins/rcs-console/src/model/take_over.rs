@@ -1,29 +1,29 @@
-//! Taking the command over from the workstation controller of another process, and giving it back (IV.4.1).
+//! Takes the command over from the workstation controller of another process, and gives it back (IV.4.1).
 
 use rcs_core::tick::Tick;
 
 use super::{Key, Model, Section, Text, Tone};
 use crate::picture::Picture;
 
-/// How a refusal says that the command can be taken over.
+/// Part of a refusal which says that the command can be taken over.
 const OFFER: &str = "`stand-alone` takes over";
 /// Ticks between two attempts.
 const AGAIN: u64 = 25;
 
-/// A take-over under way.
+/// State of a take-over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TakeOver {
-    /// A person is asked whether, and how.
+    /// The console asks the operator whether and how to take over.
     Asks,
-    /// The end of the command is waited for.
+    /// The console waits for the end of the command in progress.
     Waits {
-        /// When it was asked for last.
+        /// Tick of the last request.
         since: Tick,
     },
 }
 
 impl TakeOver {
-    /// What an answer of the run begins or ends: a refusal that offers it, or a request that was taken.
+    /// The state after an answer of the run: a refusal that offers a take-over begins it, an accepted request ends it.
     #[must_use]
     pub fn after(self_: Option<Self>, line: &str, verdict: &Result<String, String>) -> Option<Self> {
         match verdict {
@@ -34,7 +34,7 @@ impl TakeOver {
     }
 }
 
-/// The screen.
+/// The screen of the question.
 #[must_use]
 pub fn sections(state: TakeOver, picture: &Picture) -> Vec<Section> {
     let command = &picture.external.hws;
@@ -74,7 +74,7 @@ pub fn sections(state: TakeOver, picture: &Picture) -> Vec<Section> {
 }
 
 impl Model {
-    /// A key while a person is asked about a take-over; false if it is none of its own.
+    /// Carry out a key while the question is open. Returns false for other keys.
     pub(super) fn take_over(&mut self, key: Key) -> bool {
         let tick = Tick(self.tick());
         let Some(operating) = &mut self.operating else { return false };
@@ -92,7 +92,7 @@ impl Model {
     }
 }
 
-/// Ask again while the end of the command is waited for.
+/// Repeat the request while the command in progress continues.
 #[must_use]
 pub fn is_due(state: Option<TakeOver>, tick: Tick) -> bool {
     matches!(state, Some(TakeOver::Waits { since }) if tick.since(since) >= AGAIN)

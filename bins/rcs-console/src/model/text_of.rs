@@ -1,4 +1,4 @@
-//! Where what decided stands: the text of the decision table in the code, with the row that fired.
+//! The source text of the decision table that decided, with the fired row.
 
 use interfaces::ProcessId;
 use levels::ladder::Ladder;
@@ -9,7 +9,7 @@ use crate::picture::Picture;
 /// Files with decision tables, and their texts.
 static FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/tables.rs"));
 
-/// The text of the table that decided last, from its first line to its end.
+/// The complete source text of the table that decided last.
 #[must_use]
 pub fn section(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     let info = &Ladder::processes()[process.position()];
@@ -42,7 +42,7 @@ pub fn section(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     Section { title, lines, at }
 }
 
-/// The line without the blanks that only align it with others, and without the indentation of the macro.
+/// The line without alignment blanks, and without the indentation of the macro.
 fn shortened(line: &str) -> String {
     let text = line.trim_start();
     let indent = (line.len() - text.len()).saturating_sub(4);
@@ -56,7 +56,7 @@ mod tests {
     use interfaces::{CommonMemory, Decided, ExternalInputs};
     use rcs_core::tick::Tick;
 
-    /// Every table of every process is found, and each of its rows.
+    /// Every table of every process is found in the sources, with each of its rows.
     #[test]
     fn every_row_of_every_table_stands_in_its_text() {
         for (process, info) in ProcessId::ALL.iter().zip(Ladder::processes()) {
@@ -71,7 +71,7 @@ mod tests {
                         section.lines.iter().filter(|line| line.tone == Tone::Marked).collect();
                     assert_eq!(marked.len(), 1, "{}", section.title);
                     assert_eq!(section.lines.get(section.at), Some(marked[0]));
-                    // A row may go on in the next lines.
+                    // A row may continue in the next lines.
                     let rest = section.lines.get(section.at..).unwrap_or_default();
                     let end = rest.iter().position(|line| line.text.ends_with(';')).unwrap_or(0);
                     let row_text: String = rest[..=end].iter().map(|line| line.text.as_str()).collect();

@@ -1,7 +1,7 @@
-//! Units of the buffers' numbers. The manual's borders have integers (docs/design/units.md); what is no length, angle,
-//! force or count of a converter has no unit.
+//! Units of the numbers in the buffers. The manual's interfaces use integers (docs/design/units.md); numbers that are
+//! not a length, angle, force or converter count have no unit.
 
-/// Ends of field names, from the more particular to the more general, and their units.
+/// Ends of field names, from specific to general, with their units.
 const UNITS: [(&str, &str); 42] = [
     ("range_mm", "mm"),
     ("nearest.inches", "in"),
@@ -47,7 +47,7 @@ const UNITS: [(&str, &str); 42] = [
     ("finger", "0.01 in"),
 ];
 
-/// The unit of a field by its path; empty for none.
+/// The unit of a field, from its path; empty for none.
 #[must_use]
 pub fn unit(path: &str) -> &'static str {
     let plain: String = strip_indices(path);
@@ -55,7 +55,7 @@ pub fn unit(path: &str) -> &'static str {
     UNITS.iter().find(|(end, _)| fits(end)).map_or("", |(_, unit)| unit)
 }
 
-/// A path without the places in arrays: `poses[2].tool[0]` is `poses.tool`.
+/// A path without array indices: `poses[2].tool[0]` becomes `poses.tool`.
 fn strip_indices(path: &str) -> String {
     let mut depth = 0_u32;
     let keep = |letter: &char| {

@@ -1,18 +1,18 @@
-//! Groups of values: the show words of IV.2.6, the vocabularies of IV.2.5, and what a person watches (VI.6.1).
+//! Groups of values: the show words of IV.2.6, the vocabularies of IV.2.5, and the watched fields (VI.6.1).
 
 use interfaces::ProcessId;
 
 use super::{Section, Text, Tone, buffers};
 use crate::picture::Picture;
 
-/// A show word (IV.2.6): the board on which it is a word, what it shows, and the buffers.
+/// A show word (IV.2.6): its board, its subject, and its buffers.
 #[derive(Debug)]
 pub struct ShowWord {
     /// The word.
     pub word: &'static str,
-    /// The board.
+    /// The board on whose terminal the word is known.
     pub board: u8,
-    /// What it shows.
+    /// Subject.
     pub about: &'static str,
     /// The buffers.
     pub buffers: &'static [&'static str],
@@ -52,8 +52,8 @@ pub static SHOW_WORDS: [ShowWord; 5] = [
     },
 ];
 
-/// The vocabularies (IV.2.5; V to VII): the process of each; none for SDEF, which each board has, and for FDEF,
-/// that of the task data. The name of T3 Interface's is lost (VI.1).
+/// The vocabularies (IV.2.5; V to VII) and their processes; `None` for SDEF, which each board has, and for FDEF, that
+/// of the task data. The name of T3 Interface's is not known (VI.1).
 pub static VOCABULARIES: [(&str, Option<ProcessId>); 10] = [
     ("SDEF", None),
     ("TDEF", Some(ProcessId::Task)),
@@ -67,7 +67,7 @@ pub static VOCABULARIES: [(&str, Option<ProcessId>); 10] = [
     ("FDEF", None),
 ];
 
-/// The manual's names of the interface variables, with the fields that they are here (docs/traceability.md).
+/// The manual's names of the interface variables, with their fields here (docs/traceability.md).
 static NAMES: &[(&str, &str)] = &[
     ("command-#-in", "hws.number"),
     ("command-16", "hws.command"),
@@ -200,13 +200,13 @@ static NAMES: &[(&str, &str)] = &[
     ("SECTOR#", "task.data_base.sector"),
 ];
 
-/// The manual's name of a field; none for what is ours.
+/// The manual's name of a field; `None` for fields that the manual does not name.
 #[must_use]
 pub fn manual_name(path: &str) -> Option<&'static str> {
     NAMES.iter().find(|(_, field)| buffers::is_within(path, field)).map(|(name, _)| *name)
 }
 
-/// The fields that a name means: the manual's, or the end of a field's.
+/// The fields with a name: the manual's name, or the end of a field's path.
 #[must_use]
 pub fn fields_named(name: &str, among: &[&str]) -> Vec<&'static str> {
     let plain = name.trim_matches('"').to_lowercase();
@@ -226,7 +226,7 @@ pub fn fields_named(name: &str, among: &[&str]) -> Vec<&'static str> {
     found
 }
 
-/// The values of buffers or fields, each with the manual's name where it has one.
+/// The values of buffers or fields, with the manual's names where they exist.
 #[must_use]
 pub fn lines(of: &[&str], picture: &Picture, last: Option<&Picture>) -> Vec<Text> {
     let found = buffers::under(of, picture, last);
@@ -241,7 +241,7 @@ pub fn lines(of: &[&str], picture: &Picture, last: Option<&Picture>) -> Vec<Text
         .collect()
 }
 
-/// What a person watches.
+/// The watched fields.
 #[must_use]
 pub fn watched(watch: &[String], picture: &Picture, last: Option<&Picture>) -> Section {
     let of: Vec<&str> = watch.iter().map(String::as_str).collect();

@@ -1,7 +1,7 @@
 //! The ticks of a log in memory: differences from tick to tick, and whole images once a second, as in the file.
 //!
-//! A log of an hour has 90,000 ticks. As whole images they would take half a gigabyte; as differences they take a
-//! fiftieth of it, and any tick is there after 25 steps at most.
+//! A log of an hour has 90,000 ticks. Whole images would take half a gigabyte; differences take a fiftieth of it, and
+//! any tick is decoded in 25 steps at most.
 
 use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{
@@ -13,10 +13,10 @@ use record::{delta::Codec, reader::LoggedTick, writer::FULL_SET};
 
 use crate::picture::{Picture, Timing};
 
-/// A tick as it is kept.
+/// A stored tick.
 struct Kept {
     tick: Tick,
-    /// The deltas are from zeros.
+    /// True if the deltas are relative to zeros.
     full: bool,
     external: Vec<u8>,
     memory: Vec<u8>,
@@ -44,7 +44,7 @@ pub struct Deltas {
 }
 
 impl Deltas {
-    /// Without a tick.
+    /// An empty store.
     pub fn new() -> Self {
         Self {
             external: Codec::new(ExternalInputs::STRUCT),
@@ -54,7 +54,7 @@ impl Deltas {
         }
     }
 
-    /// Add the next tick, and give its picture.
+    /// Add the next tick, and return its picture.
     pub fn push(&mut self, logged: LoggedTick) -> Result<Picture, DecodeError> {
         let timing = logged.timing.map(|timing| Timing {
             controller_ns: timing.controller_ns,
@@ -79,7 +79,7 @@ impl Deltas {
         Some((self.kept.first()?.tick.0, self.kept.last()?.tick.0))
     }
 
-    /// The picture of the last tick that is not later than a tick.
+    /// The picture of the last tick up to `tick`.
     pub fn picture(&self, tick: u64) -> Option<Picture> {
         let end = self.kept.partition_point(|kept| kept.tick.0 <= tick);
         let wanted = self.kept.get(..end)?;

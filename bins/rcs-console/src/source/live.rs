@@ -1,4 +1,4 @@
-//! A running run as a source: its buffers in shared memory, and the last pictures of them.
+//! A run in progress as a source: its buffers in shared memory, and their last pictures.
 
 use std::{
     collections::VecDeque,
@@ -15,16 +15,16 @@ use crate::{
     story::Story,
 };
 
-/// Pictures that are kept: ten seconds, if none is missed.
+/// Number of pictures kept: ten seconds, if none is missed.
 const KEPT: usize = 250;
-/// Entries of the story that are kept.
+/// Number of story entries kept.
 const STORY: usize = 4096;
-/// Attempts to read a picture of one tick. In a fast run the next tick may begin in the middle of one.
+/// Number of attempts to read a consistent picture. In a fast run the next tick may begin during one.
 const ATTEMPTS: usize = 10;
-/// A run without a new tick for this long is silent.
+/// Time without a new tick after which a run is silent.
 const SILENCE: Duration = Duration::from_secs(1);
 
-/// A running run.
+/// A run in progress.
 pub struct Live {
     run: Attached,
     pictures: VecDeque<Picture>,
@@ -53,8 +53,8 @@ impl Live {
         Ok(live)
     }
 
-    /// A picture of one tick, and whether it is the last one of the run; none if the next tick began at every attempt,
-    /// or none has begun.
+    /// A picture of one tick, and true if it is the last one of the run. `None` if the next tick began during every
+    /// attempt, or if no tick has begun.
     fn read(&self) -> Result<Option<(Picture, bool)>, ReadError> {
         for _ in 0..ATTEMPTS {
             let pulse = self.run.pulse()?;
@@ -82,7 +82,7 @@ impl Live {
             self.pictures.pop_front();
         }
         self.pictures.push_back(picture);
-        // The cell shows itself after the tick; what cannot be read now is read with the next one.
+        // The cell is published after the tick; if it cannot be read now, it is read with the next tick.
         if let Ok(Some(cell)) = self.run.cell() {
             if self.cells.len() == KEPT {
                 self.cells.pop_front();

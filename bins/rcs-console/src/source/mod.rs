@@ -1,4 +1,4 @@
-//! Where pictures come from: a run that goes on, or a log.
+//! Sources of pictures: a run in progress, or a log.
 
 mod deltas;
 mod live;
@@ -12,79 +12,79 @@ use taskdata::load::Source as Blocks;
 
 use crate::{picture::Picture, story::Story};
 
-/// A source of pictures. None of them ever writes to what it reads.
+/// A source of pictures. No source writes to the data that it reads.
 pub trait Source {
-    /// What is looked at.
+    /// Name and state of the source.
     fn about(&self) -> About<'_>;
 
-    /// Take in what is new.
+    /// Read new data.
     fn refresh(&mut self);
 
-    /// First and last tick that can be shown; none before there is one.
+    /// First and last available tick; `None` before the first.
     fn range(&self) -> Option<(u64, u64)>;
 
-    /// The last picture that is not later than a tick.
+    /// The picture of the last tick up to `tick`.
     fn picture(&self, tick: u64) -> Option<Picture>;
 
-    /// What happened from tick to tick.
+    /// The changes from tick to tick.
     fn story(&self) -> &Story;
 
-    /// The cell as it was in a tick.
+    /// The cell in a tick.
     fn cell(&self, tick: u64) -> Cell;
 
-    /// The description of the cell, if the source holds it.
+    /// The description of the cell, if the source contains it.
     fn cell_text(&self) -> Option<&str> {
         None
     }
 
-    /// The blocks of the task data, if the source holds them.
+    /// The blocks of the task data, if the source contains them.
     fn blocks(&self) -> Option<&[Blocks]> {
         None
     }
 }
 
-/// What is looked at.
+/// Name and state of a source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct About<'a> {
     /// Name of the run, or of the log file.
     pub name: &'a str,
-    /// It is a log, or a run in some state.
+    /// Log, or state of the run.
     pub state: State,
-    /// How the run ended, one line; none while it is not known.
+    /// Ending of the run, one line; `None` while not known.
     pub result: Option<&'a str>,
-    /// What of a log cannot be read, in words.
+    /// The parts of a log that cannot be read, as text.
     pub damage: Option<String>,
 }
 
-/// A log, or what is known of a run.
+/// A log, or the state of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum State {
     /// A log.
     Log,
-    /// The run goes on.
+    /// The run is in progress.
     Runs,
-    /// The run has ended, and has said so.
+    /// The run has ended in an orderly way.
     Over,
-    /// No new tick has come for so many seconds.
+    /// No new tick has come for this number of seconds.
     Silent(u64),
-    /// Its buffers were being written, or could not be read, at the last attempts.
+    /// At the last attempts its buffers were being written, or could not be read.
     Torn,
 }
 
-/// What a source tells of the cell, beside what the controller senses.
+/// State of the cell in a source, in addition to the controller's sensors.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// Nothing: the robot is at a port.
+    /// None: the robot is at a port.
     NotPublished,
-    /// What a simulated cell shows.
+    /// The published state of a simulated cell.
     Shown(Box<CellView>),
-    /// What a log has.
+    /// The data of a log.
     Recorded {
         /// Name and position in inches of each part that has moved or been delivered.
         parts: Vec<(String, [f64; 3])>,
-        /// Closest clearance and contacts of the whole run; none before its end, or if nothing is said of them.
+        /// Closest clearance and contacts of the whole run; `None` before its end, or if the log has none.
         clearance: Option<String>,
-        /// Contacts of the whole run that are not permitted.
+        /// Collisions of the whole run.
         contacts: Option<String>,
     },
 }

@@ -1,4 +1,4 @@
-//! A log as a source: every tick, back and forth.
+//! A log as a source, with access to every tick.
 
 use std::{
     collections::BTreeMap,
@@ -13,13 +13,13 @@ use crate::{error::ConsoleError, picture::Picture, story::Story};
 
 /// Metres to inches.
 const INCHES: f64 = 1.0 / 0.0254;
-/// Beginning of the names of the links that are parts.
+/// Prefix of the names of links that are parts.
 const PART: &str = "part_";
 
-/// Places of a link from ticks on, in inches.
+/// Positions of a link, each with its first tick, in.
 type Places = Vec<(u64, [f64; 3])>;
 
-/// A log.
+/// A log in memory.
 pub struct Recorded {
     path: PathBuf,
     name: String,
@@ -35,11 +35,11 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// Read a log whole.
+    /// Read a whole log.
     ///
     /// # Errors
-    /// [`ConsoleError::Log`] if it is none, or was written by another program; [`ConsoleError::Empty`] if it has no
-    /// tick. What is damaged is left out, and told in [`About::damage`].
+    /// [`ConsoleError::Log`] if the file is not a log or was written by another program; [`ConsoleError::Empty`] if it
+    /// has no tick. Damaged parts are skipped, and described in [`About::damage`].
     pub fn open(path: &Path) -> Result<Self, ConsoleError> {
         let failed = |source: ReadError| ConsoleError::Log { path: path.to_owned(), source };
         let log = Log::open(path).map_err(failed)?;
@@ -88,14 +88,14 @@ impl Recorded {
         })
     }
 
-    /// The file.
+    /// Path of the file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 }
 
-/// The blocks of the run, those that were loaded while it went on last.
+/// The blocks of the run; blocks loaded during the run come last.
 fn blocks(log: &Log) -> Vec<Blocks> {
     let first = log.attachments.iter().filter_map(|attachment| {
         let name = attachment.name.strip_prefix(Attachment::TASK_DATA)?;
@@ -105,7 +105,7 @@ fn blocks(log: &Log) -> Vec<Blocks> {
     first.chain(later).collect()
 }
 
-/// Where the parts were, tick by tick.
+/// Positions of the parts, tick by tick.
 fn parts(log: &Log) -> BTreeMap<String, Places> {
     let mut parts: BTreeMap<String, Places> = BTreeMap::new();
     for (tick, moved) in log.places() {
@@ -152,7 +152,7 @@ impl Source for Recorded {
         let at = |(name, places): (&String, &Places)| {
             let end = places.partition_point(|(from, _)| *from <= tick);
             let (_, place) = places.get(end.checked_sub(1)?)?;
-            // What has not been delivered yet stands at the origin of the world.
+            // A part that has not been delivered yet is at the origin of the world.
             (*place != [0.0; 3]).then(|| (name.clone(), *place))
         };
         Cell::Recorded {

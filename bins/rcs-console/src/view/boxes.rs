@@ -1,4 +1,4 @@
-//! The ladder as boxes with lines between them, as VI.6.2 has it, on a terminal that has room for them.
+//! The ladder as boxes with lines between them, as in VI.6.2, on a terminal that has room for them.
 
 use interfaces::ProcessId;
 use ratatui::{
@@ -12,20 +12,20 @@ use crate::model::{
     ladder::{self, Item},
 };
 
-/// The least size of a terminal for boxes: columns, and lines of the body.
+/// Smallest terminal for boxes: columns, and lines of the body.
 pub const LEAST: (usize, usize) = (120, 35);
-/// Columns of a box, with its borders.
+/// Columns of a box, including its borders.
 const WIDTH: usize = 38;
-/// Column of the line from one level to the next.
+/// Column of the line between levels.
 const JOINT: usize = 24;
 /// Columns between two boxes.
 const GAP: usize = 2;
-/// Lines of a box, with its borders.
+/// Lines of a box, including its borders.
 const HEIGHT: usize = 4;
 /// Lines of all boxes.
 pub const LINES: usize = 7 * HEIGHT;
 
-/// Where each box stands: column and line of boxes; and the line of the box on its left that it hangs on.
+/// Position of each box: column and line of boxes, and line of the left box to which it is connected.
 const PLACES: [(Item, usize, usize, usize); 16] = [
     (Item::Workstation, 0, 0, 0),
     (Item::Process(ProcessId::Task), 0, 1, 1),
@@ -45,7 +45,7 @@ const PLACES: [(Item, usize, usize, usize); 16] = [
     (Item::Process(ProcessId::ToolGrip), 2, 6, 6),
 ];
 
-/// Signs with their tones.
+/// Characters with their emphasis.
 struct Grid(Vec<Vec<(char, Tone, bool)>>);
 
 impl Grid {
@@ -72,7 +72,7 @@ impl Grid {
     }
 }
 
-/// The boxes; the one of the process under the cursor is marked.
+/// Draw the boxes, with a mark on that of the process under the cursor.
 pub fn lines(ladder: &[ladder::Line], chosen: ProcessId, look: Look, width: usize) -> Vec<Line<'static>> {
     let mut grid = Grid(vec![vec![(' ', Tone::Plain, false); width]; LINES]);
     for (item, column, row, left) in PLACES {
@@ -99,7 +99,7 @@ fn draw(grid: &mut Grid, (x, y): (usize, usize), line: &ladder::Line, chosen: bo
         _ => "",
     };
     let cause = if line.mark.cause { " <= CAUSE" } else { "" };
-    // The line to the box above begins behind it.
+    // The line to the box above begins after the name.
     let name = fit(&format!("{mark}{}{cause}", line.name), JOINT - 4);
     let title = format!("─ {} ", name.trim_end());
     let border = format!("┌{title}{}┐", "─".repeat(inside.saturating_sub(title.chars().count())));
@@ -116,7 +116,7 @@ fn draw(grid: &mut Grid, (x, y): (usize, usize), line: &ladder::Line, chosen: bo
     grid.put(x, y + 3, &format!("└{}┘", "─".repeat(inside)), tone, chosen);
 }
 
-/// A line from the box on the left to the one at `x`.
+/// Draw a line from the left box to the one at `x`.
 fn connect(grid: &mut Grid, x: usize, y: usize, from: usize) {
     let gap = x - GAP;
     let (top, bottom) = (y.min(from), y.max(from));

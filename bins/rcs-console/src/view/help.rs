@@ -1,11 +1,11 @@
-//! The page with the keys.
+//! The help page.
 
 use ratatui::text::Line;
 
 use super::Look;
 use crate::model::Tone;
 
-/// What each key does.
+/// The keys and their effects.
 const KEYS: [(&str, &str); 16] = [
     ("1 ... 7", "screens: ladder, process, link, cell, terminal, panels, procedures"),
     ("j k, arrows, PgUp PgDn", "choose a process; scroll"),
@@ -25,10 +25,10 @@ const KEYS: [(&str, &str); 16] = [
     ("q, Control-C", "quit; the run is not affected"),
 ];
 
-/// What each mark says.
+/// The marks and their meaning.
 const MARKS: &str = " !! trouble   * gripper on the robot   - not stepped, or lost   > new";
 
-/// The page.
+/// The lines of the page.
 pub fn lines(look: Look) -> Vec<Line<'static>> {
     let keys = KEYS.iter().map(|(key, does)| look.line(Tone::Plain, format!(" {key:<24} {does}")));
     let words = [

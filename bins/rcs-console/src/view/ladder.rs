@@ -1,4 +1,4 @@
-//! The ladder as columns.
+//! The ladder in columns.
 
 use interfaces::ProcessId;
 use ratatui::{style::Modifier, text::Line};
@@ -16,9 +16,9 @@ use crate::{
     source::Source,
 };
 
-/// Columns that the command may have more on a wide terminal.
+/// Largest number of additional columns for the command on a wide terminal.
 const MORE_COMMAND: usize = 24;
-/// Least columns for the text of a row.
+/// Least number of columns for the text of a row.
 const LEAST_TEXT: usize = 24;
 
 /// Widths of the columns.
@@ -36,7 +36,7 @@ impl Widths {
     }
 }
 
-/// The body of the screen.
+/// The lines of the screen's body.
 pub fn body(
     model: &Model,
     picture: &Picture,
@@ -72,7 +72,7 @@ pub fn body(
         let drawn = look.line(tone(&line.mark), row(&widths, &line));
         lines.push(if chosen { drawn.patch_style(Modifier::REVERSED) } else { drawn });
     }
-    // In the least terminal there is room for two sentences and no more.
+    // In the smallest terminal there is room for two sentences only.
     if room > lines.len() + 2 {
         lines.push(look.line(Tone::Plain, rule("", width)));
     }
@@ -81,7 +81,7 @@ pub fn body(
     lines
 }
 
-/// The process under the cursor in as many lines as there are; each sentence has its share of them.
+/// The sentences about the process under the cursor, each in at most half of the available lines.
 fn explanation(
     process: ProcessId,
     picture: &Picture,
@@ -101,7 +101,7 @@ fn explanation(
         .collect()
 }
 
-/// The first lines; the last of them says that more follows.
+/// The first lines; the last one shows that more follow.
 fn shortened(mut lines: Vec<String>, share: usize, width: usize) -> Vec<String> {
     lines.truncate(share);
     if let Some(last) = lines.last_mut() {

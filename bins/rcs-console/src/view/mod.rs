@@ -1,7 +1,7 @@
-//! The model as a frame of text.
+//! Draws the model as a frame of text.
 //!
-//! Line 1 has the screens, line 2 the run, line 3 is a rule; the last line has the keys, the one before it the newest
-//! thing to know. What a colour says, a mark or a word says too.
+//! Line 1 has the screens, line 2 the run, line 3 is a rule; the last line has the keys, the one before it the latest
+//! news. A mark or a word always expresses the same as a colour.
 
 mod boxes;
 mod help;
@@ -30,17 +30,17 @@ use crate::{
 use text::{fit, rule};
 pub use waiting::Waiting;
 
-/// The least size of a terminal: columns and lines.
+/// Smallest size of a terminal: columns and lines.
 pub const LEAST: (u16, u16) = (80, 24);
 /// Lines above and below the body.
 const FRAME: usize = 5;
 
-/// How a terminal wants its text.
+/// Capabilities of a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
     /// With colours.
     pub colour: bool,
-    /// Without signs that ASCII does not have.
+    /// ASCII characters only.
     pub ascii: bool,
 }
 
@@ -60,7 +60,7 @@ impl Look {
         Line::styled(self.signs(text.into()), self.style(tone))
     }
 
-    /// The text with signs that the terminal has.
+    /// The text in the characters of the terminal.
     fn signs(self, text: String) -> String {
         let sign = |sign: char| match sign {
             '─' => '-',
@@ -74,7 +74,7 @@ impl Look {
     }
 }
 
-/// How far the body can be scrolled up and down from where it stands by itself.
+/// Number of lines by which the body can be scrolled from its default position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reach {
     /// Lines above.
@@ -83,7 +83,7 @@ pub struct Reach {
     pub down: usize,
 }
 
-/// What is on the screen.
+/// The content of the screen.
 pub enum Scene<'a> {
     /// A run or a log.
     Source(&'a Model, &'a dyn Source),
@@ -91,7 +91,7 @@ pub enum Scene<'a> {
     Waiting(&'a Waiting),
 }
 
-/// Draw the screen; says how far its body can be scrolled.
+/// Draw the screen. Returns the limits of scrolling.
 pub fn draw(frame: &mut Frame<'_>, scene: &Scene<'_>, look: Look) -> Reach {
     let area = frame.area();
     let (lines, reach) = compose(scene, look, area.width.into(), area.height.into());
@@ -99,7 +99,7 @@ pub fn draw(frame: &mut Frame<'_>, scene: &Scene<'_>, look: Look) -> Reach {
     reach
 }
 
-/// The lines of a screen of a size.
+/// The lines of a screen.
 #[must_use]
 pub fn compose(scene: &Scene<'_>, look: Look, width: usize, height: usize) -> (Vec<Line<'static>>, Reach) {
     let (columns, rows) = (usize::from(LEAST.0), usize::from(LEAST.1));
@@ -211,7 +211,7 @@ const fn state_tone(state: State) -> Tone {
     }
 }
 
-/// The line about the run: its name, the tick, the knob, and in which state it is.
+/// The line about the run: its name, tick, velocity knob, and state.
 fn run(model: &Model, source: &dyn Source, about: &About<'_>, width: usize) -> String {
     let (_, last) = source.range().unwrap_or_default();
     let knob = model.picture.as_ref().map_or(0, |picture| picture.external.devices.joystick.velocity / 10);
@@ -239,7 +239,7 @@ fn run(model: &Model, source: &dyn Source, about: &About<'_>, width: usize) -> S
     format!("{} {right}", fit(&left, room))
 }
 
-/// The newest thing to know: what is typed, the answer to a key, an alarm, the end of the run.
+/// The news line: text input, answer to a key, alarm, or ending of the run.
 fn news(model: &Model, source: &dyn Source, about: &About<'_>, look: Look, width: usize) -> Line<'static> {
     let line = |tone, text: &str| look.line(tone, fit(text, width));
     match &model.prompt {
@@ -288,7 +288,7 @@ fn news(model: &Model, source: &dyn Source, about: &About<'_>, look: Look, width
     }
 }
 
-/// What became of the newest request: a refusal, or that the connection is lost.
+/// The result of the last request if it was refused or the connection is lost.
 fn said_last(operating: &Operating) -> Option<(Tone, String)> {
     if let Some(lost) = &operating.lost {
         return Some((Tone::Trouble, format!("!!{lost}")));
@@ -300,7 +300,7 @@ fn said_last(operating: &Operating) -> Option<(Tone, String)> {
     }
 }
 
-/// How a run ended that has said only that it has.
+/// The ending of a run that has published no result.
 fn ending(model: &Model) -> String {
     let Some(picture) = &model.picture else { return "before its first tick".to_owned() };
     let status = &picture.memory.task.status;

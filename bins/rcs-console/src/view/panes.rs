@@ -1,4 +1,4 @@
-//! Sections below each other: in panes that share the height, or in one column that scrolls.
+//! Sections below each other: in panes that share the height, or in one column with scrolling.
 
 use ratatui::text::Line;
 
@@ -12,10 +12,10 @@ use crate::{
     source::Source,
 };
 
-/// Least lines of a pane that does not have the keys.
+/// Least number of lines of a pane without the keyboard focus.
 const LEAST: usize = 2;
 
-/// The process screen: table, rows, buffers. The pane that has the keys gets the most lines.
+/// The process screen: table, rows, buffers. The pane with the keyboard focus gets the most lines.
 pub fn process(
     model: &Model,
     picture: &Picture,
@@ -81,7 +81,7 @@ pub fn column(
         all.extend(body(section, width));
     }
     let mut reach = Reach::default();
-    // A line says how much is left, where not all is seen.
+    // If lines are hidden, one line shows how many.
     let height = if all.len() > room { room - 1 } else { room };
     let start = scrolled(0, model.scroll, all.len(), height, &mut reach);
     let length = all.len();
@@ -96,13 +96,13 @@ pub fn column(
     (lines, reach)
 }
 
-/// Sections of which the line that must be seen stays on the screen, without scrolling by hand.
+/// Sections scrolled automatically, so that the line that must be visible stays on the screen.
 pub fn list(sections: &[Section], look: Look, width: usize, room: usize) -> Vec<Line<'static>> {
     let mut lines = Vec::new();
     for section in sections {
         let (body, at) = (body(section, width), at(section, width));
         let height = room.saturating_sub(lines.len() + 1);
-        // The details of the step that must be seen come below it.
+        // The details of that line are below it.
         let start = at.saturating_sub(height / 3).min(body.len().saturating_sub(height));
         let more = more(start, body.len(), height);
         lines.push(look.line(Tone::Plain, rule(&format!("{}{more}", section.title), width)));
@@ -112,7 +112,7 @@ pub fn list(sections: &[Section], look: Look, width: usize, room: usize) -> Vec<
     lines
 }
 
-/// The lines of a section in the width.
+/// The lines of a section, wrapped to the width.
 fn body(section: &Section, width: usize) -> Vec<Text> {
     let wrapped = |line: &Text| {
         let tone = line.tone;
@@ -121,19 +121,19 @@ fn body(section: &Section, width: usize) -> Vec<Text> {
     section.lines.iter().flat_map(wrapped).collect()
 }
 
-/// Where the line that must be seen stands in the width.
+/// Index of the line that must be visible, after wrapping.
 fn at(section: &Section, width: usize) -> usize {
     section.lines.iter().take(section.at).map(|line| wrap(&line.text, width).len()).sum()
 }
 
-/// The first line that is shown, if the pane stands at a line by itself.
+/// The first visible line, if the default position of the pane shows a certain line.
 fn scrolled(at: usize, scroll: isize, length: usize, height: usize, reach: &mut Reach) -> usize {
     let most = length.saturating_sub(height).max(at);
     *reach = Reach { up: at, down: most - at };
     at.saturating_add_signed(scroll).min(most)
 }
 
-/// How many lines of a pane are not seen.
+/// Text with the number of hidden lines of a pane.
 fn more(start: usize, length: usize, height: usize) -> String {
     match (start, length.saturating_sub(start + height)) {
         (0, 0) => String::new(),

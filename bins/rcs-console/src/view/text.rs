@@ -1,6 +1,6 @@
-//! Text in columns: every sign is one column wide.
+//! Text in columns: every character is one column wide.
 
-/// Text of exactly so many columns; what does not fit ends with an ellipsis.
+/// Text of exactly `width` columns; an ellipsis ends a text that is too long.
 pub fn fit(text: &str, width: usize) -> String {
     let length = text.chars().count();
     if length <= width {
@@ -13,8 +13,8 @@ pub fn fit(text: &str, width: usize) -> String {
     cut
 }
 
-/// Text in lines of at most so many columns. Lines after the first are indented by two columns more than the text
-/// behind blanks and marks.
+/// Text in lines of at most `width` columns. The indentation of further lines is two columns more than that of the text
+/// after blanks and marks.
 pub fn wrap(text: &str, width: usize) -> Vec<String> {
     let indent = text.chars().take_while(|sign| " >~!".contains(*sign)).count() + 2;
     let mut lines = Vec::new();
@@ -37,14 +37,14 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
     }
 }
 
-/// A rule with a title in it.
+/// A rule that contains a title.
 pub fn rule(title: &str, width: usize) -> String {
     let head = if title.is_empty() { String::new() } else { format!("─ {} ", fit_short(title, width)) };
     let rest = width.saturating_sub(head.chars().count());
     head + &"─".repeat(rest)
 }
 
-/// A title that leaves room for the rule.
+/// A title shortened to leave room for the rule.
 fn fit_short(title: &str, width: usize) -> String {
     let room = width.saturating_sub(4);
     if title.chars().count() > room { fit(title, room) } else { title.to_owned() }

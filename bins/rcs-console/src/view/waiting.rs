@@ -1,4 +1,4 @@
-//! The screen without a run: what runs there are, or how one begins.
+//! The screen without a run: the choice of runs, or how to start one.
 
 use executive::{boards::Board, memory::RunName};
 use ratatui::{style::Modifier, text::Line};
@@ -12,18 +12,18 @@ use crate::model::Tone;
 /// The runs to choose from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Waiting {
-    /// Living runs of this user.
+    /// Runs of this user in progress.
     pub runs: Vec<RunName>,
-    /// The one under the cursor.
+    /// Index of the run under the cursor.
     pub cursor: usize,
-    /// The boards of that one, each with whether it is there, if it waits for them (IV.2.1, IV.2.8).
+    /// The boards of that run, with true for those that have joined, while it waits for boards (IV.2.1, IV.2.8).
     pub boards: Vec<(Board, bool)>,
-    /// Why the last one could not be looked at.
+    /// The reason why the last run could not be shown.
     pub refused: Option<String>,
 }
 
 impl Waiting {
-    /// Take in the runs that live now; the cursor stays on one of them.
+    /// Update the list of runs; the cursor stays on one of them.
     pub fn take(&mut self, runs: Vec<RunName>) {
         self.cursor = self.cursor.min(runs.len().saturating_sub(1));
         self.runs = runs;

@@ -1,5 +1,5 @@
-//! The start-up of the manual (IV.3.3) and a taught point (III.3.3), by the keys of a person; and a recording of it for
-//! `asciinema play`:
+//! The start-up of the manual (IV.3.3) and a taught point (III.3.3), with the keys that a person presses; and a
+//! recording of it for `asciinema play`:
 //!
 //! ```sh
 //! RCS_RECORDING=docs/console.cast cargo test --release -p rcs-console --test terminal recording
@@ -14,12 +14,12 @@ use super::*;
 
 /// The last step of IV.3.3.
 const LAST: &str = "19b";
-/// The step for which a person has to look.
+/// The step that a person must confirm.
 const LOOK: &str = "6";
-/// An Enter that came before the robot controller could take its key is pressed again after this time.
+/// Time after which Enter is pressed again, because the robot controller was not ready for its key.
 const AGAIN: Duration = Duration::from_secs(3);
 
-/// A recording in version 2 of asciicast: a header, then a line for what the program has written in a moment.
+/// A recording in version 2 of asciicast: a header, then a line per piece of output.
 fn asciicast(written: &Written) -> String {
     let title = "rcs-console: start-up of the robot (IV.3.3), and a taught point (III.3.3)";
     let header =
@@ -28,7 +28,7 @@ fn asciicast(written: &Written) -> String {
     let mut rest: Vec<u8> = Vec::new();
     for (time, bytes) in written {
         rest.extend_from_slice(bytes);
-        // A character may have been read in two parts.
+        // A read can split a character.
         let whole = match std::str::from_utf8(&rest) {
             Ok(all) => all.len(),
             Err(error) => error.valid_up_to(),
@@ -42,7 +42,7 @@ fn asciicast(written: &Written) -> String {
     text
 }
 
-/// The mark and the number of the step under the cursor.
+/// Mark and number of the step under the cursor.
 fn step_under_cursor(screen: &str) -> Option<(String, String)> {
     let line = screen.lines().skip(3).find(|line| line.starts_with("> "))?;
     let part =
@@ -50,7 +50,7 @@ fn step_under_cursor(screen: &str) -> Option<(String, String)> {
     Some((part(2, 8), part(8, 13)))
 }
 
-/// Do the steps of the procedure that is open, each when it is its turn.
+/// Carry out the steps of the open procedure, in order.
 fn do_all_steps(console: &mut Terminal, pause: Duration) {
     let mut done = Vec::new();
     loop {
@@ -85,7 +85,7 @@ fn do_all_steps(console: &mut Terminal, pause: Duration) {
         }
         done.push(step);
     }
-    // What was so from the beginning needs no key.
+    // Steps whose conditions hold from the beginning need no key.
     for step in ["1b", "2", "4", "5", "6", "7", "8", "9", "10", "12", "12b", "13", "14", "15", "17", "19"] {
         assert!(done.iter().any(|one| one == step), "step {step} was not done by a key: {done:?}");
     }
@@ -99,7 +99,7 @@ fn a_recording_shows_the_start_up_of_the_robot_and_a_taught_point() {
     let data = own_data(directory.path());
     let name = format!("recorded-{}", std::process::id());
     let (run, stop) = waiting_run(directory.path(), &data, &name, speed);
-    // A run begins with the robot under control: the power goes first.
+    // A run begins with the robot under control, so the power is switched off first.
     let socket = executive::memory::operator_socket(&name.parse().unwrap());
     let mut before = Client::connect(&socket, &"before".parse().unwrap()).unwrap();
     for line in ["estop terminals", "panel power off", "leave"] {
@@ -121,7 +121,7 @@ fn a_recording_shows_the_start_up_of_the_robot_and_a_taught_point() {
     do_all_steps(&mut console, pause);
     drop(before);
     thread::sleep(pause);
-    // The knob stays at 0 when the start-up is over.
+    // The knob stays at 0 after the start-up.
     console.press(":joystick velocity 1000\r");
     console.wait_for("knob 100 %");
     teach(&mut console, pause);
@@ -133,7 +133,7 @@ fn a_recording_shows_the_start_up_of_the_robot_and_a_taught_point() {
     run.join().unwrap();
     let poses = std::fs::read_to_string(data.join("poses.blk")).unwrap();
     assert!(poses.contains("-pose-   ...         VIA-1"));
-    // The recording is what was on the screen: played back, it ends with the taught point.
+    // The recording equals the screen: played back, it ends with the taught point.
     let text = asciicast(&written);
     let mut played = vt100::Parser::new(LINES, COLUMNS, 0);
     let mut shown = Vec::new();

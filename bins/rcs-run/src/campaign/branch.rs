@@ -1,10 +1,10 @@
-//! A run that can be forked: controller, cell, line, mailboxes and Data System, without log, clock, network and
-//! shared memory.
+//! A run that can be forked: controller, cell, line, mailboxes and Data System, without log, clock, network and shared
+//! memory.
 //!
 //!
-//! A [`Branch`] does in a tick what `rcs-run run` does in fast clock with the simulated robot, in the same
-//! order, so that both have the same digest. A [`Fork`] is what the next tick depends on; any number of
-//! branches can go on from it, each in its own thread.
+//! A tick of a [`Branch`] does what a tick of `rcs-run run` does with the fast clock and the simulated robot, in the
+//! same order, so that both have the same digest. A [`Fork`] is the state between two ticks. Any number of branches can
+//! continue from it, each in its own thread.
 
 use std::{convert::Infallible, sync::Arc};
 
@@ -44,10 +44,10 @@ use runtime::{
 
 use crate::error::Error;
 
-/// Ticks that a late answer needs more than one that is not: beyond the three that the host waits.
+/// Ticks of delay of a late answer: more than the three ticks for which the host waits.
 const LATE: u16 = 5;
 
-/// What all branches of a campaign share.
+/// The data that all branches of a campaign share.
 pub struct Facility {
     /// Task data.
     pub store: Store,
@@ -59,9 +59,9 @@ pub struct Facility {
     pub seed: u64,
 }
 
-/// What commands Task in a branch, and works the cell beside the robot.
+/// Commands Task in a branch, and operates the workstation beside the robot.
 pub trait Commander {
-    /// Once a tick: read Task's status and write a command, if one is to be sent.
+    /// Called once per tick: reads Task's status and returns the command to write into the mailbox, if any.
     fn step(
         &mut self,
         tick: Tick,
@@ -85,11 +85,11 @@ impl Commander for Hwsc {
 /// The line to the robot controller.
 #[derive(Clone, Copy, Debug, Default)]
 struct RobotLine {
-    /// The faults of a file.
+    /// Faults of a fault file.
     file: Option<Injector>,
-    /// The next answer suffers this.
+    /// Fault of the next answer.
     armed: Option<FaultKind>,
-    /// What the last answer that was struck suffers.
+    /// Carries out the fault of the last answer that was hit.
     answer: Option<Injector>,
 }
 
@@ -107,21 +107,21 @@ impl RobotLine {
         inputs
     }
 
-    /// The answer that was waited for has come: the line has a fault in this tick.
+    /// Hits an answer: if a fault is armed and bytes have come, the line has this fault in this tick.
     fn strike(&mut self, tick: Tick, inputs: &DeviceInputs) {
         let Some(kind) = self.armed.filter(|_| inputs.link_rx.length > 0) else { return };
         self.armed = None;
         let rule = Rule::new(kind).at(tick.0).only(Direction::ToHost);
         let rule = if kind == FaultKind::Delay { rule.ticks(LATE) } else { rule };
         let mut plan = Plan::new(tick.0);
-        // A rule for a single tick is never refused as the only one of its plan.
+        // A plan with one rule accepts every rule for a single tick.
         if plan.add(rule).is_ok() {
             self.answer = Some(Injector::new(&plan));
         }
     }
 }
 
-/// The ladder without the processes that are lost: they write nothing, so that their stamps stay.
+/// The ladder of processes. Lost processes do not run: they write nothing, so that their stamps do not change.
 #[derive(Clone)]
 struct Present {
     ladder: Ladder,
@@ -145,7 +145,7 @@ impl Levels<TaskData<'_>> for Present {
     }
 }
 
-/// Everything but the cell and the Data System.
+/// The state of a branch without cell and Data System.
 #[derive(Clone)]
 struct Control {
     course: Course<Present>,
@@ -155,21 +155,21 @@ struct Control {
     check: ContactCheck,
     inputs: DeviceInputs,
     line: RobotLine,
-    /// Generation of the task data, and how many were asked for.
+    /// Generation of the task data, and the requested reloads that wait for the end of a command.
     generation: u32,
     asked: Vec<u32>,
-    /// What Task has told the Data System, and when.
+    /// Statements that Task has sent to the Data System, with their ticks.
     told: Vec<(Tick, DataBaseCommand)>,
 }
 
-/// A run that goes on from a tick.
+/// A run that continues from a tick.
 pub struct Branch<'f> {
     facility: &'f Facility,
     control: Control,
     data_system: DataSystem,
-    /// The cell, and what is done in it beside the robot.
+    /// The cell and the workstation's other equipment.
     pub workstation: SimulatedWorkstation,
-    /// What has happened in the cell in the last tick.
+    /// Events in the cell in the last tick.
     pub events: Vec<CellEvent>,
 }
 
@@ -221,7 +221,7 @@ impl<'f> Branch<'f> {
         })
     }
 
-    /// A branch that goes on from a state.
+    /// A branch that continues from a state.
     ///
     /// # Errors
     /// [`Error`] if the cell or its data base cannot be built.
@@ -266,7 +266,7 @@ impl<'f> Branch<'f> {
         control.course.sum_up(&control.external);
         let mut outputs = control.course.memory().device_outputs();
         if !control.course.levels().processes.contains(&ProcessId::T3i) {
-            // The frame that it sent last goes out once.
+            // The last frame of a lost process goes out only once.
             outputs.link_tx = LinkBytes::ZERO;
         }
         control.inputs = control.line.advance(control.course.tick(), &mut self.workstation.cell, &outputs);
@@ -277,7 +277,7 @@ impl<'f> Branch<'f> {
         self.reload();
     }
 
-    /// What has happened in the cell.
+    /// Record what has happened in the cell.
     fn observe(&mut self) {
         let control = &mut self.control;
         let tick = control.course.tick();
@@ -296,7 +296,7 @@ impl<'f> Branch<'f> {
         self.data_system.step(tick, &command);
     }
 
-    /// Task's status goes to the commander, and its command comes back.
+    /// Pass Task's status to the commander, and its command to Task.
     fn exchange(&mut self, commander: &mut impl Commander) {
         let control = &mut self.control;
         let (tick, memory) = (control.course.tick(), control.course.memory());
@@ -304,14 +304,14 @@ impl<'f> Branch<'f> {
         let command = status::decode(control.gate.status_box().data())
             .ok()
             .and_then(|status| commander.step(tick, &status, &mut self.workstation));
-        // Commands are those of a job, whose fields fit into the mailbox.
+        // The commands come from a job, whose fields fit into the mailbox.
         if let Some(bytes) = command.and_then(|command| command::encode(&command).ok()) {
             let _ = control.command_box.write(&bytes);
         }
         control.gate.read(&control.command_box);
     }
 
-    /// Task data that the job has loaded become visible when no command is executed.
+    /// Make the task data that the job has loaded visible when Task executes no command.
     fn reload(&mut self) {
         let control = &mut self.control;
         control.asked.extend(self.workstation.loads());
@@ -320,50 +320,50 @@ impl<'f> Branch<'f> {
         }
     }
 
-    /// A process forgets everything.
+    /// Restart a process: it loses its state.
     pub fn restart(&mut self, process: ProcessId) {
         self.control.course.levels_mut().ladder.restart(process);
     }
 
-    /// A process writes nothing from now on.
+    /// Lose a process: it writes nothing from now on.
     pub fn lose(&mut self, process: ProcessId) {
         self.control.course.levels_mut().processes.retain(|present| *present != process);
     }
 
-    /// The next answer of the robot controller suffers this.
+    /// Give the next answer of the robot controller a fault.
     pub const fn spoil_answer(&mut self, kind: FaultKind) {
         self.control.line.armed = Some(kind);
     }
 
-    /// From now on the line has the faults of a plan.
+    /// Give the line the faults of a plan from now on.
     pub fn spoil_line(&mut self, plan: &Plan) {
         self.control.line.file = Some(Injector::new(plan));
     }
 
-    /// The cable to the robot controller is cut: from now on no byte arrives, and DTR of the other end is off.
+    /// Cut the cable to the robot controller: from now on no byte arrives, and DTR of the other end is off.
     pub fn cut(&mut self) {
         let from = self.at().0 + 1;
         let mut plan = Plan::new(0);
         for kind in [FaultKind::Drop, FaultKind::CtsLow] {
-            // Two rules of different kinds are never refused.
+            // Two rules of different kinds never conflict.
             let _ = plan.add(Rule::new(kind).window(from, u64::MAX));
         }
         self.spoil_line(&plan);
     }
 
-    /// The tick that was run last.
+    /// The last tick.
     #[must_use]
     pub const fn at(&self) -> Tick {
         self.control.course.tick()
     }
 
-    /// Common memory as the last tick left it.
+    /// Common memory after the last tick.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
         self.control.course.memory()
     }
 
-    /// What came from outside for the last tick.
+    /// The inputs from outside for the last tick.
     #[must_use]
     pub const fn external(&self) -> &ExternalInputs {
         &self.control.external
@@ -375,32 +375,32 @@ impl<'f> Branch<'f> {
         self.control.course.digest()
     }
 
-    /// What the robot has touched.
+    /// The contacts of the robot.
     #[must_use]
     pub const fn check(&self) -> &ContactCheck {
         &self.control.check
     }
 
-    /// Who failed first, and why.
+    /// The process that failed first, and its reason.
     #[must_use]
     pub const fn watch(&self) -> &Watch {
         self.control.course.watch()
     }
 
-    /// Number of the command that Task has.
+    /// Number of Task's present command.
     #[must_use]
     pub const fn command(&self) -> &HwsCommand {
         self.control.gate.command()
     }
 
-    /// What is shared.
+    /// The data that all branches share.
     #[must_use]
     pub const fn facility(&self) -> &'f Facility {
         self.facility
     }
 }
 
-/// The task data of a generation: 0 as loaded, then one for each reload of the job.
+/// The task data of a generation: 0 as loaded, then one per reload of the job.
 fn data(facility: &Facility, generation: u32) -> TaskData<'_> {
     let reload = usize::try_from(generation).ok().and_then(|number| number.checked_sub(1));
     reload.and_then(|at| facility.job.reloads.get(at)).map_or(&facility.store, |reload| &reload.store).view()

@@ -1,4 +1,4 @@
-//! What has become of the world: compared with the undisturbed run, and watched for what must not happen.
+//! Compares the cell with that of the undisturbed run, and watches for harm.
 
 use plant::{CellEvent, t3::Stage};
 use rcs_core::tick::Tick;
@@ -6,25 +6,25 @@ use rcs_core::tick::Tick;
 use super::branch::Branch;
 use runtime::contacts::{Collision, Commands};
 
-/// A part may lie so far from where the undisturbed run has it, in.
+/// Greatest distance of a part from its position in the undisturbed run, in.
 const PART: f64 = 0.5;
-/// The hand may stand so far from where the undisturbed run has it, in.
+/// Greatest distance of the hand from its position in the undisturbed run, in.
 const HAND: f64 = 0.5;
 
-/// Does the DEPC function have the robot, so that it goes where it is commanded?
+/// True if the DEPC function controls the robot, so that it follows commanded points.
 #[must_use]
 pub fn is_commanded(branch: &Branch<'_>) -> bool {
     let t3 = branch.workstation.cell.t3();
     t3.stage() == Stage::Depc && t3.cut().is_none()
 }
 
-/// Where everything is at the end of a command.
+/// Parts, gripper and hand at the end of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     parts: Vec<PartAt>,
     /// End effector id of the gripper on the robot, if there is one.
     gripper: Option<u8>,
-    /// Middle between the fingertips, world, in.
+    /// Middle between the fingertips, world coordinates, in.
     hand: [f64; 3],
 }
 
@@ -42,7 +42,7 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 impl World {
-    /// The world of a branch now.
+    /// The present world of a branch.
     #[must_use]
     pub fn of(branch: &Branch<'_>) -> Self {
         let cell = &branch.workstation.cell;
@@ -56,7 +56,7 @@ impl World {
         Self { parts: parts.collect(), gripper: cell.gripper(), hand: cell.tool().position.into() }
     }
 
-    /// What is unlike in the undisturbed run; `None` if nothing is.
+    /// The first difference from the undisturbed run, as text; `None` if there is none.
     #[must_use]
     pub fn unlike(&self, undisturbed: &Self) -> Option<String> {
         if self.gripper != undisturbed.gripper {
@@ -98,47 +98,48 @@ impl PartAt {
     }
 }
 
-/// Something that must not happen.
+/// An event that must not happen, such as a contact or a part that slips.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Harm {
-    /// When.
+    /// Tick of the event.
     pub tick: Tick,
-    /// What, in a sentence.
+    /// The event as a sentence.
     pub what: String,
-    /// What it is like, without numbers: to be counted.
+    /// The sentence without numbers, by which harms are counted.
     pub kind: String,
-    /// A commanded point has caused it: not an arm without pressure, a person at the joystick box, or the travel of
-    /// the robot controller to HOME.
+    /// True if a commanded point has caused it; false for an arm without pressure, a person at the joystick box, or the
+    /// robot controller's travel to HOME.
     pub commanded: bool,
-    /// Which contact it is, if it is one.
+    /// Index of the contact, if it is one.
     contact: Option<usize>,
 }
 
-/// Watches a branch.
+/// Watches a branch for harm.
 pub struct HarmMonitor {
     seen: usize,
     harms: Vec<Harm>,
-    /// What has slid in the fingers while no point was commanded, as when the arm jumps at the start-up.
+    /// The first part that has slid in the fingers while no point was commanded, for example when the arm jumps at the
+    /// start-up.
     slide: Option<(String, Harm)>,
     /// Parts in contacts that no commanded point has caused.
     moved: Vec<String>,
 }
 
 impl HarmMonitor {
-    /// Watch what happens from now on.
+    /// Watch from now on.
     #[must_use]
     pub fn from_now(branch: &Branch<'_>) -> Self {
         Self { seen: branch.check().collisions().len(), harms: Vec::new(), slide: None, moved: Vec::new() }
     }
 
-    /// What has happened: the first that a commanded point has caused, or else the first.
+    /// The first harm that a commanded point has caused, or else the first harm.
     #[must_use]
     pub fn worst(&self) -> Option<&Harm> {
         self.harms.iter().find(|harm| harm.commanded).or_else(|| self.harms.first())
     }
 
-    /// Is what `unlike` says of a part the consequence of a slide? It is a harm then: no sensor shows where in the
-    /// fingers the part is. One that has no consequence is none.
+    /// True if the difference `unlike` of a part is the consequence of a slide, which then counts as a harm: no sensor
+    /// shows where in the fingers the part is. A slide without consequence is no harm.
     pub fn blame_slide(&mut self, unlike: &str) -> bool {
         match self.slide.take_if(|(part, _)| unlike.is_empty() || unlike.starts_with(part.as_str())) {
             Some((_, harm)) => {
@@ -149,7 +150,7 @@ impl HarmMonitor {
         }
     }
 
-    /// Look at a tick; `person` moves the robot at the joystick box.
+    /// Check a tick. `person` is true while a person moves the robot at the joystick box.
     pub fn look(&mut self, branch: &Branch<'_>, person: bool) {
         let tick = branch.at();
         let commanded = is_commanded(branch) && !person;
@@ -166,7 +167,7 @@ impl HarmMonitor {
             }
         }
         self.seen = contacts.len();
-        // What has become of a contact is known later than that it is there.
+        // The consequence of a contact is known later than the contact itself.
         for harm in &mut self.harms {
             if let Some(contact) = harm.contact.and_then(|at| contacts.get(at)) {
                 harm.what = contact.to_string();
@@ -187,15 +188,15 @@ impl HarmMonitor {
         }
     }
 
-    /// Is it a part that may lie elsewhere than the controller can know: it has slid in the fingers, or it was in a
-    /// contact that no commanded point has caused?
+    /// True if the controller cannot know where the part lies: it has slid in the fingers, or was in a contact that no
+    /// commanded point has caused.
     fn is_moved(&self, part: &str) -> bool {
         self.slide.as_ref().is_some_and(|(slid, _)| slid == part)
             || self.moved.iter().any(|moved| moved == part)
     }
 
-    /// An arm without pressure or a person has touched something, or let a part slide in the fingers: the
-    /// controller cannot know where parts are then.
+    /// True if an arm without pressure or a person has touched something or made a part slide in the fingers. The
+    /// controller cannot know the positions of parts then.
     fn is_displaced(&self) -> bool {
         self.slide.is_some() || self.harms.iter().any(|harm| !harm.commanded)
     }

@@ -1,4 +1,4 @@
-//! What interrupts a branch: kinds, their names on the command line, and what is done tick by tick.
+//! The kinds of interruptions, their names on the command line, and the steps that carry them out.
 
 use std::{fmt, path::Path, sync::Arc};
 
@@ -16,45 +16,45 @@ use runtime::{StartError, setup::fault_file};
 use super::branch::Branch;
 use crate::error::Error;
 
-/// Ticks of Hold: 3 s.
+/// Duration of a Hold, ticks: 3 s.
 const HOLD: u64 = 75;
-/// Ticks for which a process is held.
+/// Ticks for which the box holds a process.
 const HELD: u64 = 50;
-/// Ticks for which a fault is switched on.
+/// Ticks for which a fault is on.
 pub const FAULT: u64 = 20;
-/// Ticks between the emergency stop and its release: time to walk there.
+/// Ticks between the emergency stop and its release: the time to walk there.
 const STOPPED: u64 = 100;
-/// How far a robot is led away, in.
+/// Height by which the robot is moved away, in.
 const RISE: f64 = 3.0;
-/// A robot that is led back goes on so far when the button is let go, in.
+/// Distance that a robot continues when the button is released on the way back, in.
 const GOES_ON: f64 = 0.8;
-/// Ticks for which a button of the joystick box is held down at most.
+/// Longest time for which a button of the joystick box is held down, ticks.
 const LED: u64 = 100;
-/// Ticks for which a key of the panel is tried.
+/// Ticks for which a refused key of the panel is tried again.
 const PATIENCE: u64 = 2000;
 /// Ticks from CYCLE START to the DEPC function: the program makes two short motions.
 const REHEARSAL: u64 = 75;
-/// A fault by chance must be there at least so often to be seen in [`FAULT`] ticks: millionths a tick or byte.
+/// Least probability of a random fault, millionths per tick or byte, so that it occurs within [`FAULT`] ticks.
 const CHANCE: u32 = 50_000;
 
 /// A kind of interruption.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
-    /// None: the branch goes on as its parent.
+    /// None: the branch continues as its parent.
     None,
     /// PAUSE.
     Pause,
-    /// PAUSE, and another one during the recovery.
+    /// PAUSE, and a second PAUSE during the recovery.
     PauseTwice,
     /// A command with a misspelt location.
     Refused,
-    /// Another good command, then the old one.
+    /// Another valid command, then the interrupted command again.
     Replaced,
     /// One answer of the robot controller is lost.
     AnswerLost,
-    /// One answer is late.
+    /// One answer of the robot controller is late.
     AnswerLate,
-    /// One answer is damaged.
+    /// One answer of the robot controller is damaged.
     AnswerDamaged,
     /// Hold of the robot controller for 3 s.
     Hold,
@@ -62,7 +62,7 @@ pub enum Kind {
     Nudge,
     /// The joystick moves the robot 3 in away and back.
     Away,
-    /// A process is held by its switch on the joystick box, and freed.
+    /// A switch on the joystick box holds a process, and releases it again.
     Held(ProcessId),
     /// A process is restarted.
     Restart(ProcessId),
@@ -70,9 +70,9 @@ pub enum Kind {
     Lost(ProcessId),
     /// The cable to the robot controller is cut.
     Cut,
-    /// Emergency stop, and the start-up by the panel.
+    /// Emergency stop, and the start-up at the panel.
     Estop,
-    /// The faults of a file, for a short time.
+    /// The faults of a file for [`FAULT`] ticks, with the name of the file.
     Fault(String, Arc<FaultFile>),
 }
 
@@ -112,17 +112,17 @@ impl fmt::Display for Kind {
     }
 }
 
-/// A process on the command line.
+/// Name of a process on the command line.
 fn word(process: ProcessId) -> &'static str {
     process.field()
 }
 
 impl Kind {
-    /// The kinds that a word of the command line stands for: `restart` for one of each process, `fault` for each file
-    /// that can be switched on.
+    /// The kinds that a word of the command line selects: `restart` selects one per process, `fault` one per file that
+    /// can be switched on.
     ///
     /// # Errors
-    /// [`Error::Campaign`] with all words.
+    /// [`Error::Campaign`] for an unknown word; it lists all words.
     pub fn named(text: &str, data: &Path, cell: &CellDescription) -> Result<Vec<Self>, Error> {
         let process = |name: &str| ProcessId::ALL.iter().copied().find(|process| word(*process) == name);
         let found = match text.split_once(':') {
@@ -155,7 +155,7 @@ impl Kind {
         found.ok_or_else(|| Error::Campaign(format!("no interruption {text}: expected {}", words())))
     }
 
-    /// The interrupted command goes on by itself unless it fails.
+    /// True if the interrupted command continues by itself unless it fails.
     #[must_use]
     pub const fn leaves_command(&self) -> bool {
         matches!(
@@ -173,19 +173,19 @@ impl Kind {
         )
     }
 
-    /// It stops the robot, or takes from it who commands it.
+    /// True if it stops the robot, or changes who controls the robot.
     #[must_use]
     pub const fn is_stop(&self) -> bool {
         matches!(self, Self::Pause | Self::Hold | Self::Estop) || self.is_for_good()
     }
 
-    /// Nobody takes it back.
+    /// True if nothing ends the interruption.
     #[must_use]
     pub const fn is_for_good(&self) -> bool {
         matches!(self, Self::Cut | Self::Lost(_))
     }
 
-    /// What is done.
+    /// The steps of the interruption.
     #[must_use]
     pub fn script(&self) -> Script {
         let hands = match self {
@@ -218,14 +218,14 @@ impl Kind {
     }
 }
 
-/// A control of the joystick box.
+/// An action on a control of the joystick box.
 const fn at_box(action: BoxAction) -> Hand {
     Hand::Act(WorkstationAction::Joystick(action))
 }
 
-/// What is done at the box between the two throws of the frame switch.
+/// The actions at the box between the two throws of the frame switch.
 fn joystick(knob: u16, hands: impl IntoIterator<Item = Hand>) -> Vec<Hand> {
-    // A motion that is under way ramps down first.
+    // A robot in motion ramps down first.
     let mut all = vec![
         at_box(BoxAction::Velocity(knob)),
         at_box(BoxAction::Frame(joystick_frame::WORLD)),
@@ -236,7 +236,7 @@ fn joystick(knob: u16, hands: impl IntoIterator<Item = Hand>) -> Vec<Hand> {
     all
 }
 
-/// The stick is deflected along X for some ticks, and back.
+/// Deflect the stick along X for some ticks, and back.
 fn nudge() -> Vec<Hand> {
     const TICKS: u32 = 11;
     let stick =
@@ -244,14 +244,14 @@ fn nudge() -> Vec<Hand> {
     joystick(100, [1000, -1000].into_iter().flat_map(stick))
 }
 
-/// The robot is stopped with the box, led up, and back by eye to the height at which it stopped.
+/// Stop the robot with the box, move it up, and move it back by eye to the height at which it stopped.
 fn away() -> Vec<Hand> {
     let stop = [at_box(BoxAction::Press(BoxButton::Up, 2)), Hand::Wait(25)];
     let lead = [Hand::Rise, Hand::Wait(15), Hand::Sink, Hand::Wait(15)];
     joystick(500, stop.into_iter().chain(lead))
 }
 
-/// The words of the command line.
+/// All words of the command line, for messages.
 fn words() -> String {
     let plain = PLAIN.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
     let processes = ProcessId::ALL.iter().map(|process| word(*process)).collect::<Vec<_>>().join(", ");
@@ -260,7 +260,7 @@ fn words() -> String {
     )
 }
 
-/// All files of faults that can be switched on.
+/// All fault files that can be switched on.
 fn faults(data: &Path, cell: &CellDescription) -> Result<Vec<Kind>, Error> {
     let directory = data.join("faults");
     let unreadable = |source| StartError::Read { path: directory.clone(), source };
@@ -269,7 +269,7 @@ fn faults(data: &Path, cell: &CellDescription) -> Result<Vec<Kind>, Error> {
     paths.iter().filter_map(|path| fault(path, cell).transpose()).collect()
 }
 
-/// The faults of a file; none if it has none that can be switched on for a time.
+/// The faults of a file; `None` if the file has none that can be limited to a time.
 fn fault(path: &Path, cell: &CellDescription) -> Result<Option<Kind>, Error> {
     let (file, _) = fault_file(path, cell)?;
     let lasting = |what: &What| !what.is_delivery() && !matches!(what, What::PedestalMoved { .. });
@@ -278,7 +278,7 @@ fn fault(path: &Path, cell: &CellDescription) -> Result<Option<Kind>, Error> {
     Ok(switchable.then(|| Kind::Fault(name, Arc::new(file))))
 }
 
-/// A fault of the cell in a window; one by chance comes often enough to be seen.
+/// The faults of the cell in a window, with random faults frequent enough to occur in it.
 fn cell_faults(plan: &FaultPlan, from: u64) -> FaultPlan {
     let mut plan = plan.clone();
     plan.faults.retain(|fault| !fault.what.is_delivery());
@@ -289,7 +289,7 @@ fn cell_faults(plan: &FaultPlan, from: u64) -> FaultPlan {
     plan
 }
 
-/// Faults of the line in a window.
+/// The faults of the line in a window.
 fn line_faults(plan: &Plan, from: u64) -> Plan {
     let mut windowed = Plan::new(plan.seed());
     for rule in plan.rules() {
@@ -299,13 +299,13 @@ fn line_faults(plan: &Plan, from: u64) -> Plan {
             false if rule.rate == 0 => rule.window(from, from + FAULT),
             false => rule.window(from, from + FAULT).rate(rule.rate.max(CHANCE)),
         };
-        // The rules fit together in their own windows; those that do not in this one are left out.
+        // Rules that do not fit together in this window, only in their own ones, are left out.
         let _ = windowed.add(rule);
     }
     windowed
 }
 
-/// Something that is done between two ticks.
+/// An action between two ticks.
 #[derive(Clone, Debug)]
 enum Hand {
     Act(WorkstationAction),
@@ -317,13 +317,13 @@ enum Hand {
     Faults(Arc<FaultFile>),
     /// ENTER, if the robot controller shows a warning.
     Enter,
-    /// The start-up by the panel, if the robot controller has lost its pressure.
+    /// The start-up at the panel, if the robot controller has lost its pressure.
     StartUp,
-    /// A key of the panel, as soon as the controller takes it.
+    /// A key of the panel, as soon as the controller accepts it.
     Key(Key),
-    /// The button D of the joystick box, until the robot is [`RISE`] higher, or goes no further.
+    /// Button D of the joystick box, until the robot is [`RISE`] higher or stops rising.
     Rise,
-    /// The button E, until it is almost at the height at which it rose.
+    /// Button E, until the robot is almost back at the height at which it rose.
     Sink,
 }
 
@@ -337,23 +337,23 @@ impl Hand {
 const START_UP: [Key; 6] =
     [Key::FaultReset, Key::Hydraulics(true), Key::Manual(true), Key::Align(None), Key::Auto, Key::CycleStart];
 
-/// What is done, tick by tick.
+/// The steps of an interruption, tick by tick.
 pub struct Script {
     hands: Vec<Hand>,
     at: usize,
     until: Option<Tick>,
-    /// Height of the tool before it was led away, in.
+    /// Height of the tool before it was moved away, in.
     height: f64,
 }
 
 impl Script {
-    /// It is over.
+    /// True if no step is left.
     #[must_use]
     pub const fn is_over(&self) -> bool {
         self.at >= self.hands.len()
     }
 
-    /// Do what is to be done before the next tick. Returns what the cell refuses.
+    /// Carry out the steps that come before the next tick. Returns the message of the cell if it refuses one.
     pub fn step(&mut self, branch: &mut Branch<'_>) -> Option<String> {
         let mut refused = None;
         while let Some(hand) = self.hands.get(self.at).cloned() {
@@ -413,7 +413,7 @@ impl Script {
                     }
                 }
                 Hand::Enter => {
-                    // Only a warning takes the key.
+                    // Only a warning accepts the key.
                     let _ = branch.workstation.cell.press(Key::Enter);
                 }
                 Hand::StartUp => self.start_up(branch),

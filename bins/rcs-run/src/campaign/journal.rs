@@ -1,7 +1,7 @@
-//! The file into which a campaign writes each branch as soon as it is judged, so that it can be stopped and go on.
+//! The file into which a campaign writes each branch as soon as it is judged, so that it can be stopped and continued.
 //!
-//! Each line is a JSON object: the campaign, the branch, and the rows that it was the first one to fire. A line counts if it
-//! is of the same campaign: same undisturbed run, program and procedure.
+//! Each line is a JSON object: the campaign, the branch, and the decision rows that this branch fired first. A line
+//! counts if it belongs to the same campaign: same undisturbed run, program and procedure.
 
 use std::{
     borrow::Cow,
@@ -33,7 +33,8 @@ struct Line<'a> {
     rows: RowsFired,
 }
 
-/// What was judged before, and where more is written; the default one has nothing and writes nothing.
+/// The branches judged before, and the file to which new ones are appended. The default journal is empty and writes
+/// nothing.
 #[derive(Debug, Default)]
 pub struct Journal {
     file: Option<(PathBuf, File)>,
@@ -42,7 +43,7 @@ pub struct Journal {
     rows: RowsFired,
 }
 
-/// What tells a campaign from others: a branch of the same one ends the same.
+/// Identifies a campaign: equal branches of the same campaign end the same way.
 #[must_use]
 pub fn campaign(facility: &Facility, parent: &Parent, procedure: Procedure) -> String {
     let Procedure { recovery, tries, until } = procedure;
@@ -53,11 +54,11 @@ pub fn campaign(facility: &Facility, parent: &Parent, procedure: Procedure) -> S
 }
 
 impl Journal {
-    /// Read what the file has of a campaign. It is made if there is none. A last line that is not whole, as a program leaves
-    /// it that was killed, is cut off.
+    /// Read the lines of a campaign from the file, which is created if it does not exist. An incomplete last line, as a
+    /// killed program leaves it, is cut off.
     ///
     /// # Errors
-    /// [`Error`] if the file cannot be read or written, or is no journal.
+    /// [`Error`] if the file cannot be read or written, or is not a journal.
     pub fn open(path: &Path, campaign: &str) -> Result<Self, Error> {
         let read = |source| StartError::Read { path: path.to_owned(), source };
         let mut file = OpenOptions::new()
@@ -91,13 +92,13 @@ impl Journal {
         Ok(journal)
     }
 
-    /// What became of a branch, if it was judged before.
+    /// The result of a branch that was judged before, if any.
     #[must_use]
     pub fn result(&self, plan: &Plan) -> Option<&BranchResult> {
         self.known.get(&(plan.at, plan.series.to_string()))
     }
 
-    /// A branch is judged.
+    /// Append the result of a branch.
     ///
     /// # Errors
     /// [`Error`] if it cannot be written.
@@ -107,7 +108,7 @@ impl Journal {
             Line { campaign: self.campaign.clone(), branch: Cow::Borrowed(result), rows: rows.clone() };
         let mut text = serde_json::to_string(&line).map_err(io::Error::from)?;
         text.push('\n');
-        // In one piece: two lines never mix.
+        // One write per line: lines of several threads do not mix.
         (&*file).write_all(text.as_bytes()).map_err(|source| Error::Write { path: path.clone(), source })
     }
 

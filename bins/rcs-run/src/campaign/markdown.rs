@@ -1,27 +1,28 @@
-//! The table of a page: a column a job, made anew for the jobs that were run and kept for the others.
+//! The Markdown table of a campaign, one column per job: columns of the jobs that were run are replaced, others are
+//! kept.
 
 use std::fmt::Write as _;
 
-/// The line in front of the table.
+/// The line before the table.
 const BEGIN: &str = "<!-- campaign: made by rcs-run campaign JOB... --markdown FILE -->";
-/// The line behind it.
+/// The line after the table.
 const END: &str = "<!-- end of the campaign -->";
-/// The head of the first column.
+/// Heading of the first column.
 const FIRST: &str = "interruption";
 
-/// What came of a job, for each interruption.
+/// Results of a job, one per interruption.
 #[derive(Debug, PartialEq)]
 pub struct Column {
     /// The job.
     pub job: String,
-    /// Interruption, and what came of it.
+    /// Pairs of interruption and result.
     pub cells: Vec<(String, String)>,
 }
 
-/// A page with the table: the table alone if there is no page yet.
+/// The page with the table, or the table alone if there is no page yet.
 ///
 /// # Errors
-/// A sentence, if the page has no place for the table.
+/// A message if the page has no place for the table.
 pub fn page(page: Option<&str>, fresh: &[Column]) -> Result<String, String> {
     let parts = match page {
         None => Some(("", "", "\n")),
@@ -40,7 +41,7 @@ pub fn page(page: Option<&str>, fresh: &[Column]) -> Result<String, String> {
     Ok(format!("{before}{BEGIN}\n{}{END}{after}", table(&replaced.chain(new).collect::<Vec<_>>())))
 }
 
-/// The columns of a table as [`table`] writes it; none if it is another.
+/// The columns of a table in the form of [`table`]; empty if it has another form.
 fn columns(table: &str) -> Vec<Column> {
     let mut rows = table.lines().filter_map(|line| {
         let line = line.trim().strip_prefix('|')?.strip_suffix('|')?;
@@ -59,7 +60,7 @@ fn columns(table: &str) -> Vec<Column> {
     jobs.iter().enumerate().map(column).collect()
 }
 
-/// Columns side by side, their interruptions in the order in which they occur first.
+/// A table of columns, with the interruptions in the order of their first occurrence.
 fn table(columns: &[&Column]) -> String {
     let mut interruptions: Vec<&str> = Vec::new();
     for (interruption, _) in columns.iter().flat_map(|column| &column.cells) {

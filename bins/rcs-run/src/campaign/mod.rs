@@ -1,5 +1,5 @@
-//! `rcs-run campaign`: a job is interrupted at many ticks, an operator follows the recovery procedure, and
-//! each branch is judged.
+//! `rcs-run campaign`: interrupts a job at many ticks, follows the operator's recovery procedure, and judges each
+//! branch.
 //!
 //! ```text
 //!   undisturbed run:  ──●────●────●────●────●──►     once to list the ticks and the world after each line, once to fork
@@ -8,9 +8,9 @@
 //!                   interruption ──► PAUSE, the same command, up to three tries ──► next command ──► verdict
 //! ```
 //!
-//! With `--random` ticks and series of interruptions are drawn. A branch does in a tick what a run does
-//! ([`branch`]); what it knows of the control processes is their interfaces.
-//! docs/campaign.md says what is judged how.
+//! With `--random`, ticks and series of interruptions are drawn. A tick of a branch does what a tick of a run does
+//! ([`branch`]); the campaign knows the control processes only by their interfaces. docs/campaign.md describes the
+//! verdicts.
 
 mod arguments;
 mod branch;
@@ -60,13 +60,13 @@ use self::{
 };
 use crate::error::Error;
 
-/// Ticks between two forks unless others are asked for.
+/// Default number of ticks between two forks.
 const EVERY: u64 = 23;
 
-/// Run a campaign and print what came of it.
+/// Run a campaign and print the results.
 ///
 /// # Errors
-/// [`Error`] if data or arguments cannot be used, or if the job does not finish undisturbed.
+/// [`Error`] if data or arguments cannot be used, or if the undisturbed job does not finish.
 pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
     let mut columns = Vec::new();
     for job in &arguments.jobs {
@@ -84,7 +84,7 @@ pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The campaign of a job; its column of the table, none if a single branch was printed.
+/// Run the campaign of one job. Returns its column of the table, or `None` if it printed a single branch.
 fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::Column>, Error> {
     let facility = facility(arguments, job)?;
     let procedure =
@@ -116,7 +116,7 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
     Ok(Some(report.column()))
 }
 
-/// Run the branches that the journal does not have; what came of all of them.
+/// Run the branches that the journal does not contain, and return the results of all.
 fn branches(
     arguments: &CampaignArguments,
     facility: &Facility,
@@ -151,7 +151,7 @@ fn branches(
     Ok(Outcome { results, rows })
 }
 
-/// The branches that are asked for.
+/// The branches that the arguments ask for.
 fn plans(
     arguments: &CampaignArguments,
     facility: &Facility,
@@ -202,7 +202,7 @@ fn ticks(arguments: &CampaignArguments) -> Ticks {
     }
 }
 
-/// Progress on a terminal; none if standard error is no terminal.
+/// The progress bar on a terminal; `None` if standard error is not a terminal.
 fn bar(branches: usize, known: usize) -> Option<ProgressBar> {
     io::stderr().is_terminal().then(|| {
         let bar = ProgressBar::new(branches as u64).with_position(known as u64).with_elapsed(Duration::ZERO);

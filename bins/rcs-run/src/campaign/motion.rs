@@ -1,23 +1,24 @@
-//! Whether everything has come to rest: the robot, the fingers of its gripper, the Active Pedestal.
+//! Detects when everything is at rest: the robot, the fingers of its gripper, the Active Pedestal.
 
 use geometry::{frame::Rotation, kinematics::Joints};
 use rcs_core::tick::Tick;
 
 use super::{branch::Branch, trial::Verdict};
 
-/// Ticks without motion after which all is at rest: 12 s, longer than the controller waits before it moves on.
+/// Ticks without motion after which everything is at rest: 12 s, longer than the controller waits between motions.
 const STILL: u64 = 300;
-/// Ticks in which all must be at rest: five minutes, as for a command.
+/// Ticks within which everything must come to rest: five minutes, the time limit of a command.
 const LIMIT: u64 = 7500;
-/// What moves less in a tick does not move, radians: a fiftieth of what [`plant::t3::T3Controller::at_rest`] allows.
+/// Motion per tick below which a joint is at rest, radians: a fiftieth of the limit of
+/// [`plant::t3::T3Controller::at_rest`].
 const ANGLE: f64 = 2e-6;
-/// The same of fingers, in.
+/// Motion per tick below which a finger is at rest, in.
 const OPENING: f64 = 1e-4;
 
-/// Where everything stands that a control process moves.
+/// Positions of everything that a control process moves.
 #[derive(Clone, Debug)]
 struct Posture {
-    /// Joints of the robot, rad. None if it has no pressure and has sagged: it creeps for minutes.
+    /// Joints of the robot, rad; `None` if it has sagged without pressure, where it creeps for minutes.
     joints: Option<Joints>,
     /// Rotation of the rotary table.
     table: Rotation,
@@ -57,20 +58,20 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// The stop comes after the present tick.
+    /// Start at a stop that comes after the present tick.
     #[must_use]
     pub fn from_now(branch: &Branch<'_>) -> Self {
         let began = branch.at();
         Self { posture: Posture::of(branch), began, now: began, last: began }
     }
 
-    /// No tick has followed the stop.
+    /// True if no tick has followed the stop.
     #[must_use]
     pub fn has_just_begun(&self) -> bool {
         self.now == self.began
     }
 
-    /// Look at a tick.
+    /// Check a tick for motion.
     pub fn look(&mut self, branch: &Branch<'_>) {
         let posture = Posture::of(branch);
         self.now = branch.at();
@@ -86,7 +87,8 @@ impl Motion {
         self.last.since(self.began)
     }
 
-    /// Whether the branch can be judged. `commanded` says of the worst harm whether a commanded point has caused it.
+    /// The verdict, as soon as the branch can be judged. `commanded` tells whether a commanded point has caused the
+    /// worst harm.
     #[must_use]
     pub fn verdict(&self, commanded: Option<bool>) -> Option<Verdict> {
         let (still, all) = (self.now.since(self.last), self.now.since(self.began));

@@ -1,7 +1,7 @@
-//! What plays the job from an interruption on: the recovery procedure of an operator, and then the rest of the job.
+//! Plays the job from an interruption on: first the recovery procedure of an operator, then the rest of the job.
 //!
-//! The procedure is what an operator does first: PAUSE, and the same command again, up to a number of tries. When the
-//! command ends `finished` the job goes on with its next line. `** after` lines that were begun are not begun again.
+//! The procedure: PAUSE, and the same command again, up to a number of tries. When the command ends with `finished`,
+//! the job continues with its next line. `** after` lines that have begun are not begun again.
 //!
 //! ```text
 //!   interruption ──► [a command of the operator] ──► PAUSE ──► the same command ──► next lines of the job ──► over
@@ -20,29 +20,29 @@ use taskdata::load::job::{JobLine, Step, Workstation as Action};
 use super::branch::Commander;
 use runtime::workstation::SimulatedWorkstation;
 
-/// Ticks that the robot may take to come to rest after the joystick box is off.
+/// Ticks within which the robot must come to rest after the joystick box is off.
 const REST_LIMIT: u64 = 25;
-/// Ticks that a command may take: five minutes, as in a run.
+/// Time limit of a command, ticks: five minutes, as in a run.
 const TIME_LIMIT: u64 = neighbours::workstation::player::TIME_LIMIT;
-/// Ticks in which Task has to echo a command.
+/// Ticks within which Task must echo a command.
 const ECHO_LIMIT: u64 = 25;
 
-/// What is going on.
+/// State of the operator.
 #[derive(Clone, Debug, PartialEq)]
 enum Doing {
-    /// A command that is not one of the job: what follows its end.
+    /// A command that is not one of the job, and what follows its end.
     Own(Then),
     /// PAUSE.
     Pause,
-    /// The current line is a command, and Task has it.
+    /// The current line is a command, which Task has accepted.
     Command,
-    /// The command failed; the interruption still goes on.
+    /// The command failed while the interruption continues.
     Failed,
     /// The current line is an action of the workstation.
     Action,
-    /// Nothing more.
+    /// The job is over.
     Over,
-    /// No try is left.
+    /// The command failed, and no try is left.
     Stranded,
 }
 
@@ -51,7 +51,7 @@ enum Doing {
 pub enum Then {
     /// The recovery procedure.
     Recovery,
-    /// The interrupted command at once.
+    /// The interrupted command, without recovery.
     SameCommand,
     /// Nothing more.
     Nothing,
@@ -66,48 +66,48 @@ pub enum Recovery {
     Same,
 }
 
-/// What an operator told the trial of.
+/// The end of a command or action.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ended {
-    /// The tick in which the end was seen.
+    /// Tick in which the operator saw the end.
     pub tick: Tick,
     /// Position in the job: 0 for the first PAUSE.
     pub line: usize,
     /// The command; empty for an action of the workstation.
     pub command: String,
-    /// It is the line of the job, not a command of the recovery.
+    /// True for a line of the job, false for a command of the recovery.
     pub of_job: bool,
-    /// How it ended: empty for `finished`, else why it failed.
+    /// Empty for `finished`, else why the command failed.
     pub failure: String,
 }
 
-/// An action that waits for its time.
+/// An action that begins at a later tick.
 struct Later {
     due: Tick,
     action: Action,
     text: String,
 }
 
-/// The operator.
+/// The simulated operator.
 pub struct Operator<'f> {
     lines: &'f [JobLine],
     /// Position in the job: 0 is the first PAUSE, `n` is `lines[n - 1]`.
     current: usize,
     doing: Doing,
-    /// When the command or the action began.
+    /// Tick in which the command or the action began.
     began: Tick,
     number: u32,
-    /// Number of the command of the job that a command of the operator replaces.
+    /// Number of the job's command that a command of the operator replaces.
     replaced: Option<u32>,
-    /// It finished before Task took the operator's command, and is not sent again.
+    /// True if that command finished before Task accepted the operator's command; it is not sent again.
     has_finished: bool,
     outgoing: Option<HwsCommand>,
-    /// The interruption goes on: nothing is tried.
+    /// True while the interruption continues: the operator waits.
     pub is_waiting: bool,
     recovery: Recovery,
     tries: u32,
     tried: u32,
-    /// Ticks after which the first command that is sent again is paused; none if it is not.
+    /// Ticks from the first command that is sent again to its PAUSE; `None` for no PAUSE.
     second_pause: Option<u64>,
     later: Vec<Later>,
     delayed: Vec<(u64, Action, String)>,
@@ -116,7 +116,7 @@ pub struct Operator<'f> {
 }
 
 impl<'f> Operator<'f> {
-    /// An operator at line `current` of a job, which began at `began`; `last` is the command that Task has.
+    /// An operator at line `current` of a job, which began at `began`; `last` is Task's present command.
     #[must_use]
     pub fn new(lines: &'f [JobLine], current: usize, began: Tick, last: &HwsCommand, tries: u32) -> Self {
         let mut operator = Self {
@@ -142,15 +142,15 @@ impl<'f> Operator<'f> {
         operator
     }
 
-    /// The operator follows this procedure.
+    /// Set the recovery procedure.
     #[must_use]
     pub const fn with_recovery(mut self, recovery: Recovery) -> Self {
         self.recovery = recovery;
         self
     }
 
-    /// The branch is interrupted, for the first time or once more: all tries are left. The first command that is
-    /// sent again is paused after `second_pause` ticks.
+    /// Note an interruption, the first or another one: all tries are left again. The first command that is sent again
+    /// gets a PAUSE after `second_pause` ticks.
     pub const fn interrupt(&mut self, second_pause: Option<u64>) {
         self.tried = 0;
         self.second_pause = second_pause;
@@ -162,7 +162,7 @@ impl<'f> Operator<'f> {
         self.current
     }
 
-    /// The command of a line; PAUSE for the first one.
+    /// The command of a line; line 0 is PAUSE.
     #[must_use]
     pub fn command_at(&self, line: usize) -> Option<HwsCommand> {
         match line.checked_sub(1) {
@@ -196,37 +196,37 @@ impl<'f> Operator<'f> {
         self.send(tick, command);
     }
 
-    /// The operator has sent the robot elsewhere, instead of the command of the job.
+    /// Note that the operator has sent the robot elsewhere, instead of the command of the job.
     #[must_use]
     pub const fn has_replaced(&self) -> bool {
         matches!(self.doing, Doing::Own(Then::SameCommand))
     }
 
-    /// What has ended since the last call.
+    /// The commands and actions that have ended since the last call.
     pub fn ended(&mut self) -> Vec<Ended> {
         std::mem::take(&mut self.ended)
     }
 
-    /// The job is over.
+    /// True if the job is over.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.doing == Doing::Over && self.later.is_empty()
     }
 
-    /// Why the job does not go on, if it does not.
+    /// Why the job does not continue, if it does not.
     #[must_use]
     pub fn stranded(&self) -> Option<&str> {
         (self.doing == Doing::Stranded).then_some(self.reason.as_str())
     }
 
     fn send(&mut self, tick: Tick, command: &HwsCommand) {
-        // Numbers in the mailbox have two bytes, and 0 means none.
+        // A number takes two bytes in the mailbox, and 0 means none.
         self.number = if self.number >= 0xFFFF { 1 } else { self.number + 1 };
         self.outgoing = Some(HwsCommand { number: self.number, ..*command });
         self.began = tick;
     }
 
-    /// How the command that was sent last ended; `None` while it goes on.
+    /// The result of the last command; `None` while Task executes it.
     fn end(&self, tick: Tick, status: &Status<'_>) -> Option<Result<(), String>> {
         let ticks = tick.since(self.began);
         if status.task == TaskState::Held {
@@ -241,7 +241,7 @@ impl<'f> Operator<'f> {
         match status.report {
             HwsReport::Finished | HwsReport::Idle => Some(Ok(())),
             HwsReport::Error => Some(Err(status.code.text().to_owned())),
-            // Task says so until what it has stopped below is at rest.
+            // Task reports this until the processes below it, which it has stopped, are at rest.
             HwsReport::JoystickOn => (ticks > REST_LIMIT).then(|| Err("the joystick box is on".to_owned())),
             HwsReport::Executing => (ticks > TIME_LIMIT).then(|| Err("not finished within 300 s".to_owned())),
         }
@@ -257,7 +257,7 @@ impl<'f> Operator<'f> {
         });
     }
 
-    /// The current line again, or the line that was going on.
+    /// Repeat the current line, or the line that was being executed.
     fn same(&mut self, tick: Tick) {
         match self.command_at(self.current) {
             Some(command) => {
@@ -285,7 +285,7 @@ impl<'f> Operator<'f> {
         }
     }
 
-    /// The next line of the job.
+    /// Begin the next line of the job.
     fn next(&mut self, tick: Tick, workstation: &mut SimulatedWorkstation) {
         self.current += 1;
         self.tried = 0;
@@ -318,7 +318,7 @@ impl<'f> Operator<'f> {
         }
     }
 
-    /// The action of the current line has come to its end.
+    /// True if the action of the current line has ended.
     fn is_done(&self, tick: Tick, workstation: &SimulatedWorkstation) -> bool {
         match self.current.checked_sub(1).and_then(|at| self.lines.get(at)).map(|line| &line.step) {
             Some(Step::Workstation(Action::Wait { ticks })) => tick.since(self.began) >= u64::from(*ticks),
@@ -335,7 +335,7 @@ impl Commander for Operator<'_> {
         workstation: &mut SimulatedWorkstation,
     ) -> Option<HwsCommand> {
         for later in self.later.extract_if(.., |later| later.due <= tick) {
-            // What a job does beside a command that was interrupted may come too late to be done.
+            // The cell can refuse an action that comes too late because its command was interrupted.
             let _ = workstation.begin(&later.action, &later.text);
         }
         if let Some(fault) = workstation.fault() {
@@ -381,7 +381,7 @@ impl Commander for Operator<'_> {
 }
 
 impl Operator<'_> {
-    /// A command of the job goes on, or ends.
+    /// Advance a command of the job by one tick.
     fn follow(&mut self, tick: Tick, status: &Status<'_>, workstation: &mut SimulatedWorkstation) {
         let paused =
             self.tried == 1 && self.second_pause.is_some_and(|ticks| tick.since(self.began) >= ticks);

@@ -1,5 +1,5 @@
-//! The undisturbed run: which line of the job goes on in a tick, what the world is like at the end of each, and in which ticks
-//! something changes.
+//! The undisturbed run: which line of the job is executed in each tick, the world at the end of each line, and the
+//! ticks in which something changes.
 
 use std::collections::HashSet;
 
@@ -14,24 +14,24 @@ use super::{
 };
 use crate::error::Error;
 
-/// Which ticks of the parent are forked.
+/// Selects the ticks at which the parent is forked.
 #[derive(Clone, Debug)]
 pub enum Ticks {
-    /// Every so many.
+    /// Every n-th tick.
     Every(u64),
-    /// These.
+    /// The given ticks.
     At(Vec<u64>),
-    /// Those in which a step or a command number changes, and the two after it.
+    /// Ticks in which a step or a command number changes, and the two ticks after each.
     Changes,
     /// The first tick of each state of the control processes: their steps, and the rows that they fired last.
     States,
-    /// Both: every so many, and those in which something changes.
+    /// Every n-th tick, and the ticks of `Changes`.
     Both(u64),
 }
 
 /// The undisturbed run.
 pub struct Parent {
-    /// First tick of each line: 0 is the first PAUSE.
+    /// First tick of each line; line 0 is the first PAUSE.
     begun: Vec<Tick>,
     /// The world at the end of each line.
     worlds: Vec<World>,
@@ -44,8 +44,8 @@ pub struct Parent {
     pub digest: String,
 }
 
-/// Steps and command numbers of all processes. The number of the T3 interface's command is left out: Prim sends one for
-/// each trajectory point, so while the robot moves it changes in every tick.
+/// Steps and command numbers of all processes, without the command number of the T3 interface: Prim sends it one
+/// command per trajectory point, so that the number changes in every tick of a motion.
 type Steps = Vec<(Option<Name16>, Option<u32>)>;
 
 fn steps(memory: &CommonMemory, task: u32) -> Steps {
@@ -56,7 +56,7 @@ fn steps(memory: &CommonMemory, task: u32) -> Steps {
     ProcessId::ALL.iter().map(step).collect()
 }
 
-/// Of each process its step, and the row that it fired last.
+/// Step and last fired row of each process.
 fn state(memory: &CommonMemory) -> Vec<(Option<Name16>, Option<Decided>)> {
     let of = |process: &ProcessId| {
         let header = memory.header(*process);
@@ -65,7 +65,7 @@ fn state(memory: &CommonMemory) -> Vec<(Option<Name16>, Option<Decided>)> {
     ProcessId::ALL.iter().map(of).collect()
 }
 
-/// The emulator of a job before its first tick.
+/// The workstation controller's emulator with a job, before its first tick.
 #[must_use]
 pub fn emulator(facility: &Facility) -> Hwsc {
     Hwsc::new(facility.job.steps.clone(), TIME_LIMIT)
@@ -75,7 +75,7 @@ impl Parent {
     /// Run the job to its end.
     ///
     /// # Errors
-    /// [`Error`] if the job does not finish undisturbed.
+    /// [`Error`] if the undisturbed job does not finish.
     pub fn run(facility: &Facility) -> Result<Self, Error> {
         let mut branch = Branch::start(facility)?;
         let mut hwsc = emulator(facility);
@@ -118,7 +118,7 @@ impl Parent {
         }
     }
 
-    /// The line that goes on after a tick, and when it began.
+    /// The line that continues after a tick, and the tick in which it began.
     #[must_use]
     pub fn line_at(&self, tick: Tick) -> (usize, Tick) {
         let line = self.begun.iter().rposition(|began| *began <= tick).unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Runs the branches: one thread runs the undisturbed job and forks it, others run what it forks.
+//! Runs the branches: one thread runs and forks the undisturbed job, the other threads run the forks.
 
 use std::sync::{Arc, Mutex, mpsc};
 use std::thread;
@@ -12,34 +12,34 @@ use super::{
 };
 use crate::error::Error;
 
-/// A branch that is to be run.
+/// A branch to run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// The tick after which the job is forked.
+    /// Tick after which the job is forked.
     pub at: u64,
-    /// What interrupts it.
+    /// The interruptions of the branch.
     pub series: Series,
-    /// How it is recovered and judged.
+    /// How the branch is recovered and judged.
     pub procedure: Procedure,
 }
 
-/// A state, and which plan begins with it.
+/// A forked state, and the index of the plan that begins with it.
 type Work = (Arc<Fork>, usize);
 
-/// What came of branches.
+/// The results of branches.
 #[derive(Debug, Default)]
 pub struct Outcome {
-    /// In the order of the plans.
+    /// Results in the order of the plans.
     pub results: Vec<BranchResult>,
-    /// The rows that have fired in them.
+    /// Rows that have fired in the branches.
     pub rows: RowsFired,
 }
 
-/// Run a branch for each plan. `done` gets each result as it comes, and the rows that no branch before has fired. The
+/// Run a branch for each plan. Calls `done` with each new result and the rows that no earlier branch has fired. The
 /// outcome does not depend on `threads`.
 ///
 /// # Errors
-/// [`Error`] if the run cannot be forked, and those of `done`.
+/// [`Error`] if the run cannot be forked, and the errors of `done`.
 pub fn run(
     facility: &Facility,
     parent: &Parent,
@@ -48,7 +48,7 @@ pub fn run(
     done: &(impl Fn(&BranchResult, &RowsFired) -> Result<(), Error> + Sync),
 ) -> Result<Outcome, Error> {
     let collected = Mutex::new((Vec::with_capacity(plans.len()), RowsFired::default()));
-    // A branch takes longer than a fork: what waits is bounded.
+    // A branch takes longer than a fork, so the queue of forks is bounded.
     let (send, receive) = mpsc::sync_channel::<Work>(2 * threads);
     let receive = Mutex::new(receive);
     let outcome = thread::scope(|scope| {
@@ -57,7 +57,7 @@ pub fn run(
                 scope.spawn(|| {
                     let mut outcome = Ok(());
                     while let Some((fork, at)) = next(&receive) {
-                        // After an error what waits is taken and left, so that the thread that forks is not kept waiting.
+                        // After an error the workers drain the queue, so that the forking thread is not blocked.
                         if outcome.is_err() {
                             continue;
                         }
@@ -91,7 +91,7 @@ pub fn run(
     Ok(Outcome { results: results.into_iter().map(|(_, result)| result).collect(), rows })
 }
 
-/// The next state to interrupt; none if there will be none.
+/// The next fork; `None` if there are no more.
 fn next(receive: &Mutex<mpsc::Receiver<Work>>) -> Option<Work> {
     receive.lock().ok()?.recv().ok()
 }
@@ -107,7 +107,7 @@ fn fork_all(facility: &Facility, plans: &[Plan], send: mpsc::SyncSender<Work>) -
         }
         let fork = Arc::new(branch.fork()?);
         for at in same {
-            // The receiver outlives the workers.
+            // The receiver lives longer than the workers.
             let _ = send.send((Arc::clone(&fork), *at));
         }
     }

@@ -1,4 +1,4 @@
-//! Branches drawn at random, and the smallest series of interruptions that does what a drawn one has done.
+//! Branches drawn at random, and the smallest series of interruptions with the same outcome as a drawn one.
 
 use std::iter;
 
@@ -13,23 +13,24 @@ use super::{
     trial::{Procedure, Until},
 };
 
-/// Ticks between two interruptions are drawn up to one of these: at once, within a step, within a command.
+/// Upper limits of the ticks between two interruptions, one of which is drawn: at once, within a step, within a
+/// command.
 const BETWEEN: [u64; 3] = [3, 60, 600];
 
-/// What is drawn.
+/// Parameters of the draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Draw {
-    /// How many branches.
+    /// Number of branches.
     pub branches: usize,
-    /// The most interruptions of a branch.
+    /// Largest number of interruptions of a branch.
     pub longest: usize,
     /// Seed of the draw.
     pub seed: u64,
 }
 
 impl Draw {
-    /// The branches. One half begins in ticks in which something changes. A stop is put behind the drawn interruptions
-    /// of a branch that is judged at rest.
+    /// The drawn branches. Half of them begin in ticks in which something changes. A branch that is judged at rest gets
+    /// a stop after its drawn interruptions.
     #[must_use]
     pub fn plans(&self, parent: &Parent, kinds: &[Kind], procedure: Procedure) -> Vec<Plan> {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
@@ -57,21 +58,21 @@ impl Draw {
     }
 }
 
-/// The word of a kind without its parameter.
+/// The command line word of a kind, without its parameter.
 fn word(kind: &Kind) -> String {
     kind.to_string().split(':').next().unwrap_or_default().to_owned()
 }
 
-/// A kind: each word as often as any other, whatever number of kinds it stands for.
+/// Draw a kind: each word is equally likely, whatever number of kinds it selects.
 fn kind(groups: &[&[Kind]], random: &mut impl Rng) -> Option<Kind> {
     groups.choose(random)?.choose(random).cloned()
 }
 
-/// The smallest series found by leaving interruptions out and putting them nearer to each other, for which
-/// `is_same` holds.
+/// The smallest series, found by leaving out interruptions and shortening the time between them, for which `is_same`
+/// holds.
 ///
 /// # Errors
-/// Those of `is_same`.
+/// The errors of `is_same`.
 pub fn smallest<E>(
     series: &Series,
     mut is_same: impl FnMut(&Series) -> Result<bool, E>,

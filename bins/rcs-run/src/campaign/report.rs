@@ -1,4 +1,4 @@
-//! What a campaign prints: a table, the branches that are not done, and both as JSON or Markdown.
+//! The report of a campaign: a table, the branches that are not done, and both as JSON or Markdown.
 
 use std::{collections::BTreeMap, fmt::Write as _, io};
 
@@ -12,21 +12,21 @@ use super::{
 };
 use crate::error::Error;
 
-/// Branches that are listed for each reason.
+/// Branches listed per reason.
 const LISTED: usize = 3;
 
-/// What came of a kind of interruption.
+/// Results of a kind of interruption.
 #[derive(Debug, Default, Serialize)]
 struct Row {
     interruption: String,
     branches: usize,
-    /// Branches that were interrupted while no command was executed.
+    /// Branches that were interrupted while Task executed no command.
     without_command: usize,
     done: usize,
     stranded: usize,
     apart: usize,
     hurt: usize,
-    /// Most ticks from the interruption to rest, if that was asked for.
+    /// Largest number of ticks from the interruption to rest, if the branches are judged at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     rest_after: Option<u64>,
 }
@@ -44,7 +44,7 @@ impl Row {
         }
     }
 
-    /// How many of the branches are done, and what became of the others.
+    /// Number of branches that are done, and the verdicts of the others.
     fn cell(&self) -> String {
         let mut text = format!("{}/{}", self.done, self.branches);
         for (count, word) in [(self.stranded, "stranded"), (self.hurt, "hurt"), (self.apart, "apart")] {
@@ -61,7 +61,7 @@ impl Row {
     }
 }
 
-/// The row of the table in which a branch is counted: its interruption, or how many there were.
+/// The row of the table that counts a branch: its interruption, or the number of its interruptions.
 fn title(result: &BranchResult) -> String {
     match result.interruption.matches('+').count() {
         0 => result.interruption.clone(),
@@ -69,7 +69,7 @@ fn title(result: &BranchResult) -> String {
     }
 }
 
-/// What branches are counted by: of one that is stranded, who failed in which command and in which row.
+/// The cause by which a branch is counted; for a stranded branch the process that failed, its command and its row.
 fn cause(result: &BranchResult) -> &str {
     let known = (result.verdict == Verdict::Stranded)
         .then(|| result.detail.strip_prefix("tick ")?.split_once(": "))
@@ -77,13 +77,13 @@ fn cause(result: &BranchResult) -> &str {
     known.map_or(&result.reason, |(_, cause)| cause)
 }
 
-/// A campaign that is over.
+/// The results of a finished campaign.
 pub struct CampaignReport<'a> {
     job: &'a str,
     parent: &'a Parent,
     results: &'a [BranchResult],
     rows: Vec<Row>,
-    /// Rows of the decision tables: how many there are, and which have not fired in any branch.
+    /// Number of rows of the decision tables, and the rows that have fired in no branch.
     decisions: usize,
     never_fired: Vec<String>,
     command: String,
@@ -97,13 +97,13 @@ struct Json<'a> {
     digest: &'a str,
     rows: &'a [Row],
     branches: &'a [BranchResult],
-    /// Rows of the decision tables, and those that have not fired in any branch.
+    /// Number of rows of the decision tables, and the rows that have fired in no branch.
     decisions: usize,
     never_fired: &'a [String],
 }
 
 impl<'a> CampaignReport<'a> {
-    /// The report on these branches; `command` runs the campaign again.
+    /// A report on these branches; `command` is the command line that repeats the campaign.
     #[must_use]
     pub fn new(job: &'a str, command: String, parent: &'a Parent, outcome: &'a Outcome) -> Self {
         let mut rows: Vec<Row> = Vec::new();
@@ -119,7 +119,7 @@ impl<'a> CampaignReport<'a> {
         Self { job, parent, results: &outcome.results, rows, decisions, never_fired, command }
     }
 
-    /// As one JSON object.
+    /// The report as one JSON object.
     ///
     /// # Errors
     /// [`Error::Output`] if it cannot be written.
@@ -130,14 +130,14 @@ impl<'a> CampaignReport<'a> {
         Ok(serde_json::to_string(&json).map_err(io::Error::from)? + "\n")
     }
 
-    /// A column of the table of a page.
+    /// The campaign as a column of the Markdown table.
     #[must_use]
     pub fn column(&self) -> Column {
         let cells = self.rows.iter().map(|row| (row.interruption.clone(), row.cell()));
         Column { job: self.job.to_owned(), cells: cells.collect() }
     }
 
-    /// For people.
+    /// The report as text.
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = format!(
@@ -170,7 +170,7 @@ impl<'a> CampaignReport<'a> {
         text
     }
 
-    /// How often each reason of a verdict was given, the most frequent first.
+    /// Number of branches of a verdict per reason, most frequent first.
     fn totals(&self, verdict: Verdict) -> String {
         let mut totals: BTreeMap<&str, usize> = BTreeMap::new();
         for result in self.results.iter().filter(|result| result.verdict == verdict) {
@@ -181,7 +181,7 @@ impl<'a> CampaignReport<'a> {
         totals.iter().map(|(reason, count)| format!("{count:>6}  {reason}\n")).collect()
     }
 
-    /// The branches of a verdict, by cause; the most frequent one first.
+    /// List the branches of a verdict by cause, most frequent first.
     fn list(&self, text: &mut String, verdict: Verdict, title: &str) {
         let mut reasons: BTreeMap<&str, Vec<&BranchResult>> = BTreeMap::new();
         for result in self.results.iter().filter(|result| result.verdict == verdict) {

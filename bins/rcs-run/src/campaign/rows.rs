@@ -1,4 +1,4 @@
-//! Which rows of the decision tables have fired in branches.
+//! The rows of the decision tables that have fired in branches.
 
 use std::collections::BTreeSet;
 
@@ -11,20 +11,21 @@ use serde::{Deserialize, Serialize};
 
 use super::{branch::Branch, trial::Observer};
 
-/// The rows of all processes that have fired.
+/// The fired rows of all processes.
 ///
-/// In a journal each is the place of its process among [`ProcessId::ALL`], the number of its table, and its own number.
+/// A journal stores each row as three numbers: index of the process in [`ProcessId::ALL`], of the table, and of the
+/// row.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct RowsFired(BTreeSet<(u8, u8, u8)>);
 
 impl RowsFired {
-    /// Take in what another branch has fired; what of it is new.
+    /// Merge the rows of another branch. Returns the rows that are new.
     pub fn take_in(&mut self, other: Self) -> Self {
         Self(other.0.into_iter().filter(|row| self.0.insert(*row)).collect())
     }
 
-    /// How many rows there are, and those that have not fired: `Prim: GOTO-PT 3`.
+    /// Number of all rows, and the names of the rows that have not fired, such as `Prim: GOTO-PT 3`.
     #[must_use]
     pub fn missing(&self) -> (usize, Vec<String>) {
         let (mut count, mut missing) = (0, Vec::new());
@@ -42,8 +43,8 @@ impl RowsFired {
     }
 }
 
-/// Does a header ever name a row with this action? Not those that pass on to the table below, nor those of EXECUTE
-/// that do not refuse.
+/// True if a header can name a row with this action. Headers do not name rows that pass on to the next table, nor rows
+/// of EXECUTE that do not refuse.
 fn is_named(table: &str, action: &str) -> bool {
     action != "consult" && (table != EXECUTE.name || action == "Refuse")
 }

@@ -1,4 +1,4 @@
-//! Interruptions of a branch, one after the other: `hold+35:pause` is Hold, and a PAUSE 35 ticks after it is over.
+//! A series of interruptions: `hold+35:pause` is Hold, and a PAUSE 35 ticks after Hold has ended.
 
 use std::{fmt, path::Path};
 
@@ -7,16 +7,16 @@ use plant::CellDescription;
 use super::interruption::Kind;
 use crate::error::Error;
 
-/// One of them.
+/// One interruption of a series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interruption {
-    /// Ticks since the one before was over; of the first, 0.
+    /// Ticks since the end of the interruption before; 0 for the first.
     pub after: u64,
-    /// What is done.
+    /// Kind of the interruption.
     pub kind: Kind,
 }
 
-/// What interrupts a branch: at least one interruption.
+/// The interruptions of a branch, at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series(Vec<Interruption>);
 
@@ -40,20 +40,20 @@ impl fmt::Display for Series {
 }
 
 impl Series {
-    /// The same with another interruption at its end.
+    /// The series with another interruption at its end.
     #[must_use]
     pub fn then(mut self, after: u64, kind: Kind) -> Self {
         self.0.push(Interruption { after, kind });
         self
     }
 
-    /// The interruptions in their order.
+    /// The interruptions in order.
     #[must_use]
     pub fn interruptions(&self) -> &[Interruption] {
         &self.0
     }
 
-    /// The same without one of the interruptions; none if there is no other.
+    /// The series without one interruption; `None` if it is the only one.
     #[must_use]
     pub fn without(&self, at: usize) -> Option<Self> {
         let mut others = self.0.clone();
@@ -62,7 +62,7 @@ impl Series {
         Some(Self(others))
     }
 
-    /// The same with half the ticks before one of the interruptions; none if there are none.
+    /// The series with half the ticks before one interruption; `None` if there are no ticks before it.
     #[must_use]
     pub fn sooner(&self, at: usize) -> Option<Self> {
         let mut sooner = self.clone();
@@ -71,10 +71,10 @@ impl Series {
         Some(sooner)
     }
 
-    /// The series that a word of the command line stands for: as many as its words stand for kinds.
+    /// The series that a word of the command line selects: one per combination of the kinds that its parts select.
     ///
     /// # Errors
-    /// [`Error::Campaign`] for a word that is no kind, or ticks that are no number.
+    /// [`Error::Campaign`] for an unknown kind, or for ticks that are not a number.
     pub fn named(text: &str, data: &Path, cell: &CellDescription) -> Result<Vec<Self>, Error> {
         let mut parts = text.split('+');
         let first = parts.next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! A single branch, told row by row: for those who mend the control processes.
+//! A single branch, row by row, for the analysis of the control processes.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use super::{
     trial::{BranchResult, Observer},
 };
 
-/// What is said of a process.
+/// The state of a process that the story prints.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Said {
     command: String,
@@ -22,7 +22,7 @@ struct Said {
     why: &'static str,
 }
 
-/// Tells what each process does: every change of command, status and step, and near the interruption every row.
+/// Prints the branch: every change of command, status and step, and every fired row near the interruption.
 pub struct Story {
     text: String,
     at: u64,
@@ -31,13 +31,13 @@ pub struct Story {
 }
 
 impl Story {
-    /// A story of a branch that is interrupted after tick `at`.
+    /// The story of a branch that is interrupted after tick `at`.
     #[must_use]
     pub fn new(at: u64, around: u64) -> Self {
         Self { text: String::new(), at, around, last: Vec::new() }
     }
 
-    /// The whole story.
+    /// The story as text.
     #[must_use]
     pub fn told(mut self, result: &BranchResult) -> String {
         let BranchResult { at, interruption, verdict, detail, line, until, .. } = result;

@@ -1,4 +1,4 @@
-//! Forks are exact, and the monitor finds what is planted. tests/campaign.rs compares a branch with an ordinary run.
+//! Forks are exact, and the monitor finds planted harm. tests/campaign.rs compares a branch with an ordinary run.
 
 use std::{fs, path::Path};
 
@@ -38,7 +38,7 @@ fn facility(job: &str) -> Facility {
     Facility { store, job, description, seed: 1 }
 }
 
-/// A facility with a job of its own.
+/// Campaign data with another job.
 fn with_job(text: &str) -> Facility {
     let shipped = facility("linkbar");
     let source = Source { name: "try.job".into(), text: text.into() };
@@ -51,7 +51,7 @@ fn series(facility: &Facility, text: &str) -> Series {
     all.remove(0)
 }
 
-/// The emulator, whose commands another branch hears too.
+/// The emulator, with a record of its commands for another branch.
 struct Tape<'h> {
     hwsc: &'h mut Hwsc,
     sent: Option<HwsCommand>,
@@ -69,7 +69,7 @@ impl Commander for Tape<'_> {
     }
 }
 
-/// Sends what was sent elsewhere.
+/// Sends recorded commands.
 struct Playback(Option<HwsCommand>);
 
 impl Commander for Playback {
@@ -78,14 +78,14 @@ impl Commander for Playback {
     }
 }
 
-/// All ticks so far, and all that the next one depends on in the cell.
+/// Digest of all ticks so far, and digest of the cell's state.
 fn fingerprint(branch: &Branch<'_>) -> (Digest, u64) {
     (branch.digest(), branch.workstation.cell.digest())
 }
 
 #[test]
 fn a_fork_goes_on_as_its_parent_bit_for_bit() {
-    // STARTUP tells the Data System of the robot: an answer is under way at one of the forks.
+    // STARTUP sends a statement about the robot to the Data System: at one of the forks an answer is pending.
     let facility = with_job(
         "== STARTUP -- +0 -- 0 +0 -- 0 -- 0\n\
          ** tray UNIT_1 4 LINKBAR1_BH\n\
@@ -112,7 +112,7 @@ fn a_fork_goes_on_as_its_parent_bit_for_bit() {
     }
 }
 
-/// An undisturbed move of the empty robot, and a state of it that can be tampered with.
+/// An undisturbed move of the empty robot, and a state of it that a test can change.
 fn empty_move() -> (Facility, Parent, Fork) {
     let facility = with_job("== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n");
     let parent = Parent::run(&facility).expect("the job finishes");
@@ -148,7 +148,7 @@ fn a_command_that_finishes_while_it_is_replaced_is_not_sent_again() {
     assert!(sent_again(&fork) && !sent_again(&at_end));
 }
 
-/// A part in the way of the hand: the contact, the tick and the command are named.
+/// A part in the path of the hand: the report names the contact, the tick and the command.
 #[test]
 fn the_monitor_finds_a_contact_that_was_planted() {
     let (facility, parent, fork) = empty_move();
@@ -169,7 +169,7 @@ fn the_monitor_finds_a_contact_that_was_planted() {
     assert!(result.detail.starts_with("tick 1"), "{result:?}");
 }
 
-/// A part that stands where no command has put it: every command finishes, and the world is not as they say.
+/// A part at a place where no command has put it: every command finishes, and the world differs.
 #[test]
 fn the_monitor_finds_a_world_that_is_unlike_what_a_command_says() {
     let (facility, parent, fork) = empty_move();
@@ -187,7 +187,7 @@ fn the_monitor_finds_a_world_that_is_unlike_what_a_command_says() {
     assert_eq!(result.reason, "MOVE is finished, but 1 parts in the cell, not 0");
 }
 
-/// The arm jumps when the pressure comes back, and the clevis slides in the fingers: no sensor shows where it is then.
+/// The arm jumps when the pressure comes back, and the clevis slides in the fingers, which no sensor shows.
 #[test]
 fn a_part_that_slides_while_no_point_is_commanded_is_counted_apart() {
     let facility = facility("clevis");
@@ -226,7 +226,7 @@ fn all_threads_give_the_same_judgements_in_the_same_order() {
     assert_eq!(one, campaign(3));
 }
 
-/// A campaign that was killed while it wrote a line goes on with the branches whose lines are whole.
+/// A campaign that was killed while it wrote a line continues after the last complete line.
 #[test]
 fn a_campaign_goes_on_from_its_journal() {
     let (facility, parent, _) = empty_move();
@@ -268,7 +268,7 @@ fn every_interruption_has_a_name_that_is_read_back() {
     assert!(unknown.to_string().contains("expected none, pause"), "{unknown}");
 }
 
-/// docs/campaign.md says of each file of faults whether it can be switched on.
+/// docs/campaign.md says for each fault file whether it can be switched on.
 #[test]
 fn the_page_lists_the_faults_that_can_be_switched_on() {
     let facility = facility("linkbar");
@@ -284,10 +284,10 @@ fn the_page_lists_the_faults_that_can_be_switched_on() {
     }
 }
 
-/// Ticks in which the robot ramps down from the greatest speed of a job, or fingers finish what they were told: 3 s.
+/// Ticks in which the robot ramps down from the greatest speed of a job, or fingers finish their command: 3 s.
 const STOPS: u64 = 75;
 
-/// Ticks in which gripper and pedestal calibrate themselves after a start, whatever is commanded.
+/// Ticks in which gripper and pedestal calibrate themselves after a start, whatever their command.
 const CALIBRATED: u64 = 150;
 
 #[test]
@@ -376,7 +376,7 @@ fn a_draw_repeats_and_another_seed_draws_other_branches() {
 fn a_series_is_made_as_small_as_it_goes() {
     let facility = facility("linkbar");
     let drawn = series(&facility, "hold+100:pause+70:nudge");
-    // It takes a nudge, 10 ticks after something else at least.
+    // The test fails with a nudge at least 10 ticks after another interruption.
     let fails = |series: &Series| {
         let all = series.interruptions();
         let nudge = all.iter().position(|one| one.kind == Kind::Nudge);

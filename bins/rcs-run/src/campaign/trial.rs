@@ -1,4 +1,4 @@
-//! One branch: it is interrupted, an operator follows the recovery procedure, and what became of it is judged.
+//! One branch: interrupts it, lets an operator follow the recovery procedure, and judges the result.
 
 use executive::failure;
 use interfaces::HwsCommand;
@@ -18,10 +18,10 @@ use super::{
 };
 use crate::error::Error;
 
-/// A location that no task data have.
+/// A location that is not in the task data.
 const MISSPELT: &str = "NOWHERRE";
 
-/// Ticks that a branch goes on after a commanded point has done damage: 2 s.
+/// Ticks for which a branch continues after a commanded point has done damage: 2 s.
 const AFTERMATH: u64 = 50;
 
 /// When a branch is judged.
@@ -35,74 +35,74 @@ pub enum Until {
     Rest,
 }
 
-/// How branches are run.
+/// How a branch is recovered and judged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Procedure {
-    /// What the operator does first.
+    /// First action of the operator.
     pub recovery: Recovery,
-    /// How often the interrupted command is sent again.
+    /// Number of times that the interrupted command is sent again.
     pub tries: u32,
     /// When a branch is judged.
     pub until: Until,
 }
 
-/// What became of a branch.
+/// The verdict on a branch.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The job went on.
+    /// The job continued.
     Done,
-    /// It did not, for the reason that is given.
+    /// The job did not continue, for the given reason.
     Stranded,
     /// An arm without pressure, its alignment, its own travel to HOME or a person has touched something, or let a part
     /// slide in the fingers.
     Apart,
-    /// A commanded point has done damage, or a command that finished has not done what it says.
+    /// A commanded point has done damage, or a finished command has not had its effect.
     Hurt,
 }
 
-/// The verdict on a branch.
+/// The result of a branch.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct BranchResult {
-    /// The tick after which it was interrupted.
+    /// Tick after which the branch was interrupted.
     pub at: u64,
-    /// How.
+    /// The interruptions, as on the command line.
     pub interruption: String,
     /// The smallest series of interruptions with the same verdict and reason, if there were several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub smallest: Option<String>,
     /// What became of it.
     pub verdict: Verdict,
-    /// Why it is not done; to be counted.
+    /// Reason of a verdict other than done, without numbers, by which branches are counted.
     pub reason: String,
-    /// The same with numbers, the tick in which it began, and who said so.
+    /// The reason with numbers, the tick in which it began, and the process that reported it.
     pub detail: String,
-    /// Line of the job that was interrupted.
+    /// The line of the job that was interrupted.
     pub line: String,
-    /// It was a command.
+    /// True if that line was a command.
     pub met_command: bool,
-    /// What each process had to do when it was interrupted.
+    /// The command of each process at the interruption.
     pub doing: Vec<String>,
-    /// What ended since: tick, command and how.
+    /// The commands that have ended since: tick, command and result.
     pub ended: Vec<String>,
     /// Last tick of the branch.
     pub until: u64,
     /// Ticks from the interruption to the last motion, if the branch is judged at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest_after: Option<u64>,
-    /// Fingerprint of the branch.
+    /// Digest of the branch.
     pub digest: String,
 }
 
-/// Told of each tick of a branch.
+/// Observes a branch.
 pub trait Observer {
-    /// A tick is over.
+    /// Called after each tick.
     fn tick(&mut self, branch: &Branch<'_>);
-    /// Something was done between two ticks.
+    /// Called for an action between two ticks.
     fn say(&mut self, tick: Tick, text: &str);
 }
 
-/// NoObserver looks on.
+/// An observer that ignores everything.
 pub struct NoObserver;
 
 impl Observer for NoObserver {
@@ -110,36 +110,36 @@ impl Observer for NoObserver {
     fn say(&mut self, _: Tick, _: &str) {}
 }
 
-/// A branch with its operator and the monitor.
+/// A branch with its operator and the monitor of harm.
 struct Trial<'f, 'p> {
     parent: &'p Parent,
     branch: Branch<'f>,
     operator: Operator<'f>,
     monitor: HarmMonitor,
     series: &'p Series,
-    /// Which interruption goes on or was the last.
+    /// Index of the present or last interruption.
     interruption: usize,
-    /// The tick in which it was over.
+    /// Tick in which that interruption ended.
     over: Option<Tick>,
-    /// The job is played on: the command under way goes on, or the operator recovers it.
+    /// True while the job is played: the interrupted command continues, or the operator recovers it.
     following: bool,
     until: Until,
     begun_at: Tick,
     line: usize,
-    /// The line with whose end the branch is judged.
+    /// The line at whose end the branch is judged.
     goal: usize,
     ended: Vec<String>,
     mismatch: Option<(String, String)>,
-    /// The operator has moved the robot away with a part that the vise has, too.
+    /// True if the operator has moved the robot away with a part that the vise holds, too.
     tears: bool,
-    /// Of the last interruption, if the branch is judged at rest.
+    /// Motion since the last interruption, if the branch is judged at rest.
     motion: Option<Motion>,
 }
 
-/// Interrupt a fork after its last tick, and see what becomes of it.
+/// Interrupt a fork after its last tick, and judge the branch.
 ///
 /// # Errors
-/// [`Error`] if the fork cannot go on.
+/// [`Error`] if the branch cannot be made from the fork.
 pub fn run(
     facility: &Facility,
     parent: &Parent,
@@ -176,7 +176,7 @@ pub fn run(
     Ok(trial.play(doing, observer))
 }
 
-/// What each process has to do.
+/// The present command of each process.
 fn present(branch: &Branch<'_>) -> Vec<String> {
     let (hws, memory) = (&branch.external().hws, branch.memory());
     let lines = ProcessId::ALL.iter().zip(Ladder::processes()).filter_map(|(id, process)| {
@@ -197,7 +197,7 @@ impl Trial<'_, '_> {
     fn play(mut self, doing: Vec<String>, observer: &mut impl Observer) -> BranchResult {
         let mut script = self.begin(observer);
         loop {
-            // A stop is not taken back.
+            // A stop continues: the later steps of its script, which would release it, are skipped.
             if self.motion.as_ref().is_none_or(Motion::has_just_begun)
                 && let Some(refused) = script.step(&mut self.branch)
             {
@@ -207,7 +207,7 @@ impl Trial<'_, '_> {
             self.operator.is_waiting = !over;
             if over && !self.following && self.motion.is_none() {
                 self.following = true;
-                // PAUSE is what interrupts, or what an operator begins with who has worked at box or panel.
+                // PAUSE is the interruption, or the first action of an operator who has worked at box or panel.
                 self.operator.pause(self.branch.at());
             }
             if self.following {
@@ -236,17 +236,17 @@ impl Trial<'_, '_> {
         }
     }
 
-    /// The interruption that goes on or was the last.
+    /// The present or last interruption.
     fn kind(&self) -> &Kind {
         &self.series.interruptions()[self.interruption].kind
     }
 
-    /// Ticks that pass before the next interruption; none if there is none.
+    /// Ticks before the next interruption; `None` if there is none.
     fn next(&self) -> Option<u64> {
         self.series.interruptions().get(self.interruption + 1).map(|next| next.after)
     }
 
-    /// An interruption begins.
+    /// Begin an interruption.
     fn begin(&mut self, observer: &mut impl Observer) -> Script {
         let (at, kind) = (self.branch.at(), self.kind().clone());
         if self.interruption > 0 {
@@ -261,27 +261,27 @@ impl Trial<'_, '_> {
             Until::Next => {
                 let steps = self.branch.facility().job.steps.len();
                 let commands = self.operator.current()..=steps;
-                // The interrupted command, or the next one, and the one after it.
+                // The interrupted command or the next one, and the command after it.
                 let commands = commands.filter(|line| self.operator.command_at(*line).is_some());
                 commands.take(2).last().unwrap_or(usize::MAX)
             }
         };
-        // Another place in each branch, the same in each run.
+        // A delay that differs between branches and is the same in each run.
         self.operator.interrupt((kind == Kind::PauseTwice).then_some(1 + at.0 * 37 % 120));
-        // After a stop nothing is commanded.
+        // No command follows a stop.
         self.following = kind.leaves_command() && self.motion.is_none();
         self.send(&kind, observer);
         kind.script()
     }
 
-    /// The operator moves the robot away while fingers and vise both have a part: no sensor of the controller shows
-    /// the vise.
+    /// True if the operator moves the robot away while both fingers and vise hold a part: no sensor shows the vise's
+    /// part to the controller.
     fn takes_from_vise(&self) -> bool {
         self.operator.has_replaced()
             && self.branch.workstation.cell.parts().iter().any(|part| part.held && part.clamped)
     }
 
-    /// A command that interrupts.
+    /// Send the command of an interruption.
     fn send(&mut self, kind: &Kind, observer: &mut impl Observer) {
         let at = self.branch.at();
         let current = self.operator.command_at(self.operator.current());
@@ -300,7 +300,7 @@ impl Trial<'_, '_> {
         self.following = true;
     }
 
-    /// Whether the branch can be judged.
+    /// The verdict, as soon as the branch can be judged.
     fn verdict(&mut self, observer: &mut impl Observer) -> Option<Verdict> {
         let mut reached = false;
         for ended in self.operator.ended() {
@@ -321,7 +321,7 @@ impl Trial<'_, '_> {
             return motion.verdict(worst.map(|(commanded, _)| commanded));
         }
         if let Some((true, tick)) = worst {
-            // How deep it gets is worth knowing.
+            // Continue for a while, to learn the full extent of the damage.
             return (self.branch.at().since(tick) >= AFTERMATH).then_some(Verdict::Hurt);
         }
         let stranded = self.operator.stranded().is_some() || self.branch.check().is_stuck();
@@ -335,10 +335,10 @@ impl Trial<'_, '_> {
         }
     }
 
-    /// A command says that it is finished: is the world as the undisturbed run has it then?
+    /// Compare the world with that of the undisturbed run when a command finishes.
     fn compare(&mut self, line: usize, command: &str) {
         let Some(world) = self.parent.world_after(line) else { return };
-        // What has touched something without command may have displaced it; and an arm without pressure sinks.
+        // A contact without command can have moved a part, and an arm without pressure sinks.
         if self.monitor.worst().is_some() || !is_commanded(&self.branch) {
             return;
         }
@@ -384,7 +384,7 @@ impl Trial<'_, '_> {
         }
     }
 
-    /// Reason and detail.
+    /// The reason and the detail of a verdict.
     fn why(&self, verdict: Verdict) -> (String, String) {
         match verdict {
             Verdict::Done => (String::new(), String::new()),
@@ -417,13 +417,13 @@ impl Trial<'_, '_> {
     }
 }
 
-/// A sentence without its numbers, to be counted.
+/// A sentence without its numbers, by which it can be counted.
 fn general(text: &str) -> String {
     let number = |word: &str| word.parse::<f64>().is_ok() && word.contains('.');
     text.split(' ').map(|word| if number(word) { "some" } else { word }).collect::<Vec<_>>().join(" ")
 }
 
-/// MOVE to a location with nothing in the hand.
+/// The command MOVE to a location with an empty hand.
 fn go(location: &str) -> HwsCommand {
     HwsCommand {
         command: Name16::clipped("MOVE"),
@@ -432,7 +432,7 @@ fn go(location: &str) -> HwsCommand {
     }
 }
 
-/// Commands nothing: the command that Task has goes on.
+/// A commander that sends nothing: Task continues its command.
 struct Silent;
 
 impl super::branch::Commander for Silent {

@@ -1,4 +1,4 @@
-//! A file that cannot be read, beside files with mistakes.
+//! A file that cannot be read, and files with mistakes.
 
 use std::{fs, path::Path};
 
@@ -6,7 +6,7 @@ use taskdata::load::source::read_blocks_under;
 
 use super::{Checked, Flights, data::copy};
 
-/// What is said of a data directory, but for the counts.
+/// The printed findings of a data directory, without the counts.
 fn said(data: &Path) -> String {
     let checked = Checked::of(data, &Flights::default());
     let reports = checked.reports.iter().map(|(_, report)| report.to_string());

@@ -1,7 +1,7 @@
-//! Wrong variants of the shipped data (variants.toml): what `rcs-run check` says of each stands in
-//! docs/check-variants.md, and each is refused before anything moves, or harmless for a reason.
+//! Wrong variants of the shipped data (variants.toml). docs/check-variants.md shows the findings of `rcs-run check` for
+//! each. Each variant is refused before anything moves, or gives a reason why it is harmless.
 //!
-//! `RCS_VARIANTS=write cargo test --release -p rcs-run --bin rcs-run variants` writes the page anew.
+//! `RCS_VARIANTS=write cargo test --release -p rcs-run --bin rcs-run variants` writes the page again.
 
 use std::{
     fmt::Write as _,
@@ -15,7 +15,7 @@ use serde::Deserialize;
 
 use super::{Checked, Finding, Flights, data::copy};
 
-/// The directory of the workspace.
+/// The root directory of the workspace.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
@@ -32,12 +32,12 @@ struct Variant {
     group: String,
     name: String,
     file: String,
-    /// The first of these becomes `to`.
+    /// The edit replaces the first occurrence of this text by `to`.
     from: Option<String>,
     to: Option<String>,
     /// A change of the whole file.
     edit: Option<Edit>,
-    /// Why it need not be refused.
+    /// The reason why `check` may accept the variant.
     harmless: Option<String>,
 }
 
@@ -56,7 +56,7 @@ enum Edit {
 }
 
 impl Variant {
-    /// The file with the edit; `None` if it is gone.
+    /// The text of the file after the edit; `None` if the edit removes the file.
     fn edited(&self, text: &str) -> Option<Vec<u8>> {
         let Some(edit) = self.edit else {
             let (from, to) = (self.from.as_deref().unwrap(), self.to.as_deref().unwrap());
@@ -76,14 +76,14 @@ impl Variant {
     }
 }
 
-/// What `check` finds in a data directory.
+/// The findings of `check` in a data directory.
 fn findings(data: &Path, flights: &Flights) -> Vec<Finding> {
     let outcome = Checked::of(data, flights).outcome();
     assert_eq!(outcome.ok, outcome.findings.iter().all(|finding| finding.severity != "error"));
     outcome.findings
 }
 
-/// What is said of a variant, one line a finding.
+/// The findings for a variant, one line per finding.
 fn said(variant: &Variant, data: &Path, flights: &Flights) -> String {
     let file = data.join(&variant.file);
     let text = fs::read_to_string(&file).unwrap();
@@ -127,7 +127,7 @@ fn messages(found: &[Finding]) -> Vec<&str> {
     found.iter().map(|finding| finding.message.as_str()).collect()
 }
 
-/// What is said of all variants, in their order: on two threads, with a data directory each.
+/// The findings for all variants, in order. Two threads check them, each in its own copy of the data directory.
 fn all_said(variants: &[Variant]) -> Vec<String> {
     let (next, flights) = (AtomicUsize::new(0), Flights::default());
     let work = || {

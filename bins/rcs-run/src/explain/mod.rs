@@ -1,8 +1,8 @@
-//! `rcs-run check --explain COMMAND`: the whole way of a command, as the levels would find it in the task data.
+//! `rcs-run check --explain COMMAND`: the complete motion of a command, as the levels find it in the task data.
 //!
-//! Places, grips, approaches and trajectories are looked up by E-move's own route ([`paths::walk`]), so that
-//! what is printed is what would be flown; times come from Prim's own motion with the knob at full speed.
-//! What the fingers, the camera and the pedestal take is not counted, nor is the lag of line and arm.
+//! E-move's own route ([`paths::walk`]) looks up places, grips, approaches and trajectories, so that the output shows
+//! the motion that a run would make. Times come from Prim's own motion with the knob at full speed. The times of
+//! fingers, camera and pedestal, and the lag of line and arm, are not included.
 
 use std::{fmt, process::ExitCode};
 
@@ -24,22 +24,22 @@ use crate::{
     long_json,
 };
 
-/// A command, explained.
+/// The motion of a command.
 #[derive(Clone, Debug, Serialize)]
 struct Explanation {
     command: String,
     from: String,
-    /// `endeff-id#` of the object; none if any gripper will do.
+    /// `endeff-id#` of the object; `None` if any gripper will do.
     gripper: Option<i32>,
     phases: Vec<Phase>,
-    /// Motion alone, seconds.
+    /// Time of the motion alone, s.
     motion_s: f64,
 }
 
-/// Explain a command of [`CheckArguments`]. Exit status 2 if a way is missing.
+/// Explain a command of [`CheckArguments`]. Exit status 2 if a path is missing.
 ///
 /// # Errors
-/// A command, a start or task data that cannot be read.
+/// If the command, the start or the task data cannot be read.
 pub fn explain(arguments: &CheckArguments, text: &str) -> Result<ExitCode, Error> {
     let unusable = |what: String| move |report: Box<Diagnostics>| StartError::Data { what, report };
     let (store, _) = Store::load(&arguments.data)
@@ -54,7 +54,7 @@ pub fn explain(arguments: &CheckArguments, text: &str) -> Result<ExitCode, Error
     Ok(ExitCode::from(if complete { 0 } else { UNUSABLE }))
 }
 
-/// Read the nine fields, with or without `==`, as a job line.
+/// Read the nine fields of a command, with or without `==`, as a line of a job.
 fn command_of(text: &str, store: &Store) -> Result<HwsCommand, Box<Diagnostics>> {
     let fields = text.trim_start().trim_start_matches("==");
     let source = Source { name: "command".to_owned(), text: format!("== {fields}\n").into() };

@@ -17,7 +17,7 @@ fn explanation(text: &str, from: &str) -> Explanation {
     explained(&store, &command, text, from).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The points of a phase: part and name.
+/// The points of a phase: part of the motion and name of the point.
 fn points(explanation: &Explanation, phase: usize) -> Vec<(&'static str, &str)> {
     explanation.phases[phase].legs.iter().map(|leg| (leg.part, leg.point.as_str())).collect()
 }
@@ -45,7 +45,7 @@ fn a_transfer_is_explained_point_by_point() {
     let place = points(&found, 2);
     assert_eq!(place.iter().filter(|(part, _)| *part == "trajectory").count(), 4);
     assert_eq!(place.first().map(|p| p.0), Some("depart"));
-    // VIII.9.5: the finished bar is fetched at (68.25, -43.85, -3.00), fingers 3.00 open for it.
+    // VIII.9.5: the finished bar is acquired at (68.25, -43.85, -3.00), with the fingers opened 3.00 in before.
     let goal = found.phases[0].legs.last().unwrap();
     assert!(goal.position_in.iter().zip([68.25, -43.85, -3.0]).all(|(a, b)| (a - b).abs() < 1e-9));
     assert_eq!((goal.acc_fac, goal.vel_max, goal.smooth, goal.brk_dst), (4, 5, 40, 0));
@@ -85,7 +85,7 @@ fn vision_comes_before_an_object_in_a_tray() {
             "MOV-TO-OBJ LINKBAR1_BH with grip +2 at UNIT_1 sector 4",
         ]
     );
-    // Within the location there is no trajectory: the depart of the view, if any, and the approach.
+    // Within the location there is no trajectory: the departure from the view, if any, and the approach.
     assert!(points(&found, 2).iter().all(|(part, _)| *part != "trajectory"));
     assert_eq!(found.phases.last().unwrap().what, "MOV-OBJ-TO LINKBAR1_BH with grip +2 at PFIXTURE");
 }
@@ -95,7 +95,7 @@ fn times_are_those_of_the_motion() {
     let found = explanation("MOVE -- +0 -- 0 +0 SAFE 0 -- 0", "HOME");
     let legs = &found.phases[0].legs;
     assert_eq!(points(&found, 0).iter().filter(|(part, _)| *part == "trajectory").count(), 3);
-    // 10 in/s at the most (VII.6: 100 counts), and every point costs time.
+    // At most 10 in/s (VII.6: 100 counts), and every point costs time.
     let mut way = 0.0;
     let mut before = [0.0, -71.45, -14.83];
     for leg in legs {
@@ -150,8 +150,7 @@ fn a_regrip_leads_over_the_pedestal() {
             "RELEASE LCLEVIS_IH: to 4.00 in",
         ]
     );
-    // These data have no approaches of the clevis; each is named, and the rest is explained
-    // all the same.
+    // These data have no approaches of the clevis. The explanation names each of them and continues.
     let missing: Vec<&str> = found.phases.iter().filter_map(|phase| phase.missing.as_deref()).collect();
     assert_eq!(missing.first(), Some(&"from HOME: no approach trajectory for the object at the location"));
     assert_eq!(missing.len(), 5, "{missing:?}");

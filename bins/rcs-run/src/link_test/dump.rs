@@ -1,6 +1,6 @@
-//! The dump: one line a frame, with time and direction.
+//! The dump: one line per frame, with time and direction.
 //!
-//! A frame comes in pieces; what belongs together is told by the pauses.
+//! A frame arrives in pieces; a pause separates frames.
 
 use std::time::{Duration, Instant};
 
@@ -15,30 +15,30 @@ pub enum Way {
     Received,
 }
 
-/// Prints bytes, if asked for.
+/// Prints the bytes of the line, if the dump is on.
 pub struct Dump {
     on: bool,
-    /// Standard output belongs to the JSON object.
+    /// True if standard output is used for the JSON object.
     on_stderr: bool,
     begun: Instant,
-    /// Received bytes that are not shown yet, with the times of the first and the last of them.
+    /// Received bytes that are not printed yet, with the times of the first and the last of them.
     pending: Vec<u8>,
     first: Instant,
     last: Instant,
 }
 
-/// A longer pause ends a frame: five bytes at 9600 baud.
+/// A longer pause ends a frame: the time of five bytes at 9600 baud.
 const PAUSE: Duration = Duration::from_millis(5);
 
 impl Dump {
-    /// A dump that begins now.
+    /// A dump whose time begins now.
     #[must_use]
     pub fn new(on: bool, json: bool) -> Self {
         let now = Instant::now();
         Self { on, on_stderr: json, begun: now, pending: Vec::new(), first: now, last: now }
     }
 
-    /// Show bytes that passed at `now`.
+    /// Print bytes that passed at `now`.
     pub fn show(&mut self, now: Instant, way: Way, bytes: &[u8]) {
         if !self.on || bytes.is_empty() {
             return;
@@ -58,7 +58,7 @@ impl Dump {
         self.pending.extend(bytes);
     }
 
-    /// Show what is pending.
+    /// Print the pending bytes.
     pub fn flush(&mut self) {
         if !self.pending.is_empty() {
             self.print(self.first, Way::Received, &self.pending);
@@ -76,8 +76,8 @@ impl Dump {
     }
 }
 
-/// `   1.234567 > 03 00 ...  data`: seconds, direction (`>` to the robot), bytes, and what they are, as far as
-/// they tell by themselves.
+/// `   1.234567 > 03 00 ...  data`: seconds, direction (`>` to the robot), bytes, and their meaning as far as the bytes
+/// alone determine it.
 fn line(seconds: f64, way: Way, bytes: &[u8]) -> String {
     let arrow = match way {
         Way::Sent => '>',

@@ -1,4 +1,4 @@
-//! The result of a link test: counts, latencies, and the verdict in words.
+//! The result of a link test: counts, latencies, and the verdict.
 
 use std::{fmt, time::Duration};
 
@@ -7,29 +7,30 @@ use interfaces::t3i::LinkCounters;
 use rcs_core::tick::TICK_MS;
 use serde::Serialize;
 
-/// An ACK that comes within a tick.
+/// Longest latency of an ACK that is in time.
 const IN_TIME: Duration = Duration::from_millis(TICK_MS);
-/// Share of frames acknowledged in time from which a link is good.
+/// Least share of frames acknowledged in time for `good`.
 const GOOD: f64 = 0.95;
-/// Share from which it is usable.
+/// Least share for `usable`.
 const USABLE: f64 = 0.90;
-/// Share of frames without an answer up to which a link is good. Each costs a restart, and 10 restarts in 10 s are a lost link
-/// (docs/design/link.md "Recovery"): of 250 frames 1.25 are lost on average then, and 10 in one run of 250 in a million.
+/// Largest share of frames without an answer for `good`. Each such frame costs a restart, and 10 restarts in 10 s lose
+/// the link (docs/design/link.md "Recovery"): of 250 frames 1.25 are lost on average, and 10 in one run of 250 in a
+/// million.
 const LOST_GOOD: f64 = 0.005;
-/// Share up to which it is usable: 10 of 250 in one run of 5000.
+/// Largest share for `usable`: 10 of 250 frames are lost in one run of 5000.
 const LOST_USABLE: f64 = 0.01;
 
-/// What the numbers mean.
+/// The verdict on a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// From 0.95 of the frames in time, and at most 0.005 of them lost; the port was there all the time.
+    /// At least 0.95 of the frames in time and at most 0.005 lost, and the port was there all the time.
     Good,
-    /// From 0.90, and at most 0.01 lost.
+    /// At least 0.90 of the frames in time, and at most 0.01 lost.
     Usable,
-    /// Fewer in time, or more lost.
+    /// Fewer frames in time, or more lost.
     NotUsable,
-    /// No position was ever reported, or the link was down at the end.
+    /// The robot never reported a position, or the link was down at the end.
     NoLink,
 }
 
@@ -56,14 +57,14 @@ impl Verdict {
     }
 }
 
-/// From a data command to the byte of its ACK, milliseconds.
+/// Time from a data command to the byte of its ACK, ms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Latency {
-    /// The shortest.
+    /// Shortest time.
     pub min: f64,
-    /// Half of them took at most this.
+    /// Median time.
     pub median: f64,
-    /// The longest.
+    /// Longest time.
     pub max: f64,
 }
 
@@ -82,19 +83,19 @@ impl Latency {
 /// The result. The names of the fields are those of the JSON object.
 #[derive(Clone, Debug, Serialize)]
 pub struct Tally {
-    /// The port.
+    /// Path of the port.
     pub port: String,
-    /// The port has modem lines: the robot's DTR is watched, and the robot sees ours.
+    /// True if the port has modem lines: host and robot see each other's DTR.
     pub modem_lines: bool,
-    /// The link ran at the end.
+    /// True if the link was up at the end.
     pub connected: bool,
-    /// Times that the link began: reports that were accepted.
+    /// Number of starts of the link, that is of accepted reports.
     pub starts: u32,
     /// Data commands sent.
     pub sent: u32,
     /// Data commands acknowledged.
     pub acknowledged: u32,
-    /// Of these, within a tick.
+    /// Data commands acknowledged within a tick.
     pub in_time: usize,
     /// Data commands refused with a NAK.
     pub refused: u32,
@@ -104,31 +105,31 @@ pub struct Tally {
     pub restarts: u32,
     /// Reports with a wrong checksum.
     pub checksum_errors: u32,
-    /// Times that the port disappeared.
+    /// Number of times that the port disappeared.
     pub port_lost: u32,
     /// Share of the data commands that were acknowledged in time.
     pub share_in_time: f64,
-    /// Share of them without an answer; each costs a restart of the link.
+    /// Share of the data commands without an answer; each costs a restart of the link.
     pub share_lost: f64,
     /// Latency of ACKs.
     pub ack_ms: Option<Latency>,
-    /// In words.
+    /// The verdict.
     pub verdict: Verdict,
 }
 
-/// What a test sees of a link beside the counters.
+/// What the test observes of a link in addition to the counters.
 #[derive(Clone, Copy, Debug)]
 pub struct Observed {
-    /// The port has modem lines.
+    /// True if the port has modem lines.
     pub modem_lines: bool,
-    /// The link runs at the end.
+    /// True if the link is up at the end.
     pub connected: bool,
-    /// How often it began.
+    /// Number of starts of the link.
     pub starts: u32,
 }
 
 impl Tally {
-    /// Sum up what was observed, what the two ends of the program counted, and the latencies of all ACKs.
+    /// Combine the observations, the counters of both ends of the program, and the latencies of all ACKs.
     #[must_use]
     pub fn new(
         settings: &SerialSettings,
@@ -163,7 +164,7 @@ impl Tally {
         }
     }
 
-    /// Why the link cannot be used, in a sentence; `None` if it can.
+    /// The reason why the link is not usable, as a sentence; `None` if it is usable.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
         let port = &self.port;

@@ -1,4 +1,4 @@
-//! Files of a data directory as they are to be: shown as a diff, tried in a copy, written.
+//! Planned changes of a data directory: shown as a diff, tried in a copy, written.
 
 use std::{
     collections::BTreeMap,
@@ -12,17 +12,17 @@ use taskdata::load::{Source, source::BLOCK_LINES, source::blocks};
 
 use crate::error::Error;
 
-/// Lines of a file that the diff shows around what has changed.
+/// Unchanged lines that the diff shows around a change.
 const AROUND: usize = 2;
 
-/// The files that change.
+/// Changed files by their path in the data directory.
 #[derive(Clone)]
 pub struct Change {
     data: PathBuf,
     files: BTreeMap<String, Texts>,
 }
 
-/// A file before and after; a new one is empty before.
+/// Text of a file before and after; a new file is empty before.
 #[derive(Clone)]
 struct Texts {
     before: String,
@@ -30,12 +30,12 @@ struct Texts {
 }
 
 impl Change {
-    /// Nothing changes yet.
+    /// No change yet.
     pub fn of(data: &Path) -> Self {
         Self { data: data.to_owned(), files: BTreeMap::new() }
     }
 
-    /// The text of a file, by its path in the data directory, to be changed.
+    /// The text of a file, to be changed; `file` is its path in the data directory.
     ///
     /// # Errors
     /// [`Error::New`] if it cannot be read.
@@ -49,10 +49,10 @@ impl Change {
         Ok(&mut self.files.entry(file.to_owned()).or_insert_with(Texts::empty).after)
     }
 
-    /// A new file.
+    /// Add a new file.
     ///
     /// # Errors
-    /// [`Error::New`] if there is a file of that name.
+    /// [`Error::New`] if the file exists.
     pub fn add(&mut self, file: &str, text: String) -> Result<(), Error> {
         if fs::symlink_metadata(self.data.join(file)).is_ok() || files::is_file(&self.data.join(file)) {
             let path = self.data.join(file);
@@ -62,10 +62,10 @@ impl Change {
         Ok(())
     }
 
-    /// Put a line behind the last line of a block.
+    /// Insert a line after the last line of a block.
     ///
     /// # Errors
-    /// [`Error::New`] if the block is full, or not there.
+    /// [`Error::New`] if the block is full or missing.
     pub fn add_to_block(&mut self, file: &str, block: u32, line: &str) -> Result<(), Error> {
         let text = self.text(file)?;
         let source = Source { name: file.to_owned(), text: text.as_str().into() };
@@ -83,10 +83,10 @@ impl Change {
         Ok(())
     }
 
-    /// Give an owner (VII.5) one more member, a location point.
+    /// Add a member, a location point, to an owner (VII.5).
     ///
     /// # Errors
-    /// [`Error::New`] if its form is not there.
+    /// [`Error::New`] if the owner has no form in the file.
     pub fn add_member(&mut self, file: &str, owner: &str, member: &str) -> Result<(), Error> {
         let text = self.text(file)?;
         let mut lines: Vec<&str> = text.lines().collect();
@@ -101,10 +101,11 @@ impl Change {
         Ok(())
     }
 
-    /// Put a table behind the last table of the same kind that has an entry, such as `name = "SHAFT"`; any has an empty one.
+    /// Insert a table after the last table of kind `kind` that contains the entry `behind`, such as `name = "SHAFT"`;
+    /// an empty `behind` matches every table.
     ///
     /// # Errors
-    /// [`Error::New`] if there is none that begins in a line of its own.
+    /// [`Error::New`] if no such table begins in a line of its own.
     pub fn add_table(&mut self, file: &str, kind: &str, behind: &str, table: &str) -> Result<(), Error> {
         let text = self.text(file)?;
         let mut lines: Vec<&str> = text.lines().collect();
@@ -122,7 +123,7 @@ impl Change {
         Ok(())
     }
 
-    /// What changes, for people.
+    /// The diff of all files.
     pub fn diff(&self) -> String {
         let one = |(file, texts): (&String, &Texts)| {
             let path = self.data.join(file).display().to_string();
@@ -133,7 +134,7 @@ impl Change {
         self.files.iter().map(one).collect()
     }
 
-    /// Write the whole data directory, as it is to be, into another one.
+    /// Write the whole data directory with the changes into another directory.
     ///
     /// # Errors
     /// [`Error`] if a file cannot be read or written.
@@ -153,10 +154,10 @@ impl Change {
         self.files.iter().try_for_each(|(file, texts)| put(&directory.join(file), &texts.after))
     }
 
-    /// Write the files that change.
+    /// Write the changed files.
     ///
     /// # Errors
-    /// [`Error::Write`] if one cannot be written.
+    /// [`Error::Write`] if a file cannot be written.
     pub fn write(&self) -> Result<(), Error> {
         self.files.iter().try_for_each(|(file, texts)| put(&self.data.join(file), &texts.after))
     }
@@ -168,10 +169,10 @@ impl Texts {
     }
 }
 
-/// Whether files of a data directory can be changed.
+/// Check whether the files of a data directory can be changed.
 ///
 /// # Errors
-/// [`Error::New`] if the data are those in the program.
+/// [`Error::New`] if the data are those built into the program.
 pub fn changeable(data: &Path) -> Result<(), Error> {
     let why = "the data are those in the program: `rcs-run init .` writes a copy that can be changed";
     data.is_dir().then_some(()).ok_or_else(|| Error::New(why.to_owned()))

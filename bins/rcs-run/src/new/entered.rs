@@ -1,4 +1,4 @@
-//! What was entered in the blocks of the task data, and which blocks load which.
+//! The entries in the blocks of the task data, and which blocks load which.
 
 use diagnostics::{BlockNumber, Problems};
 use taskdata::load::{Store, entries::Entry, lex, parse::parse, source::blocks};
@@ -9,7 +9,7 @@ pub struct Entered {
     blocks: Vec<Loads>,
 }
 
-/// A block, its file, and what it loads.
+/// A block, its file, and the blocks that it loads.
 struct Loads {
     file: String,
     block: BlockNumber,
@@ -17,7 +17,7 @@ struct Loads {
 }
 
 impl Entered {
-    /// Read the blocks of task data without errors.
+    /// Read the blocks of task data that have no errors.
     pub fn of(store: &Store) -> Self {
         let mut entered = Self { all: Vec::new(), blocks: Vec::new() };
         for source in store.sources() {
@@ -38,7 +38,7 @@ impl Entered {
         self.all.iter().map(|(_, entry)| entry)
     }
 
-    /// The block of the first entry of a kind.
+    /// The block of the first entry for which `kind` is true.
     pub fn block_of(&self, kind: impl Fn(&Entry) -> bool) -> Option<BlockNumber> {
         self.all.iter().find(|(_, entry)| kind(entry)).map(|(block, _)| *block)
     }
@@ -48,7 +48,7 @@ impl Entered {
         self.blocks.iter().find(|loads| loads.block == block).map(|loads| loads.file.as_str())
     }
 
-    /// The owners that have a location point, with the blocks of their forms.
+    /// The owners that contain a location point, with the blocks of their forms.
     pub fn owners_of(&self, point: &str) -> impl Iterator<Item = (BlockNumber, &str)> {
         self.all.iter().filter_map(move |(block, entry)| match entry {
             Entry::Owner(owner) if owner.members.iter().any(|member| member.name.name.as_str() == point) => {
@@ -58,13 +58,13 @@ impl Entered {
         })
     }
 
-    /// The directory block that loads a block, and its file.
+    /// The directory block that loads a block, with its file.
     pub fn directory(&self, block: BlockNumber) -> Option<(&str, BlockNumber)> {
         let loads = self.blocks.iter().find(|loads| loads.named.contains(&block))?;
         Some((&loads.file, loads.block))
     }
 
-    /// The first of as many numbers in a row that no block of an area has.
+    /// The first number of a sequence of `count` block numbers that are free in an area.
     pub fn free_blocks(&self, offset: u32, count: u32) -> Option<u32> {
         let used = |number: u32| {
             let block = BlockNumber { offset, number };

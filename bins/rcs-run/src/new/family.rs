@@ -1,5 +1,4 @@
-//! The parts that a new part is made after: blank, what machining makes of it, and the virtual objects of hold
-//! and seat.
+//! The parts from which a new part is derived: blank, machined parts, and the virtual objects of hold and seat.
 
 use std::path::Path;
 
@@ -20,25 +19,26 @@ use crate::error::Error;
 
 /// A family of parts.
 pub struct Family {
-    /// From the blank to the finished part, as the job has them.
+    /// From the blank to the finished part, in the order of the job.
     pub parts: Vec<PartType>,
-    /// What their names have in common.
+    /// The common beginning of their names.
     pub stem: String,
-    /// Of a tool: the other tools of the job.
+    /// For a tool: the other tools of the job.
     pub others: Vec<String>,
     /// The text of the job.
     pub job: Source,
-    /// The program of the vise in the job, if the vise has a part in it.
+    /// The program of the vise in the job, if the vise holds one of the parts.
     pub program: Option<ViseProgram>,
     /// All entries of the task data.
     pub entered: Entered,
 }
 
 impl Family {
-    /// The family of a part: what the job with the fewest parts has beside it. A tool is alone.
+    /// The family of a part: the parts in the job with the fewest parts that contains it. A tool has no other family
+    /// members.
     ///
     /// # Errors
-    /// [`Error::New`] if there is no such part, no job for it, or its parts have nothing in common.
+    /// [`Error::New`] if the part or a job with it does not exist, or its parts' names have no common beginning.
     pub fn of(like: &str, store: &Store, cell: &CellDescription, data: &Path) -> Result<Self, Error> {
         let Some(part) = cell.part(like) else {
             let known: Vec<_> = cell.part.iter().map(|part| part.name.as_str()).collect();
@@ -69,8 +69,8 @@ impl Family {
         Ok(Self { parts, stem, others, job: job.source().clone(), program, entered: Entered::of(store) })
     }
 
-    /// The part of the family that an object is, or is a hold or seat pose of: its number, and whether it is the
-    /// part itself.
+    /// The part of the family to which an object belongs, as the part itself or as its hold or seat pose: index, and
+    /// true for the part itself.
     pub fn part_of(&self, object: &Name16) -> Option<(usize, bool)> {
         let at = |name: &str| self.parts.iter().position(|part| part.name == name);
         let name = object.as_str();
@@ -78,7 +78,7 @@ impl Family {
         at(name).map(|part| (part, true)).or_else(virtual_one)
     }
 
-    /// The entries of the family's objects.
+    /// The entries about the family's objects.
     pub fn entries(&self) -> impl Iterator<Item = &Entry> {
         let belongs = |entry: &Entry| subject(entry).is_some_and(|object| self.part_of(&object).is_some());
         self.entered.all().filter(move |entry| belongs(entry))
@@ -92,7 +92,7 @@ impl Family {
         })
     }
 
-    /// The movetable of a name.
+    /// The movetable with a name.
     pub fn movetable(&self, name: &str) -> Option<&MovetableEntry> {
         self.entered.all().find_map(|entry| match entry {
             Entry::Movetable(table) if table.name.name.as_str() == name => Some(table),
@@ -100,7 +100,7 @@ impl Family {
         })
     }
 
-    /// The numbers of the camera for all objects.
+    /// The camera's numbers of all objects.
     pub fn vision_ids(&self) -> impl Iterator<Item = i32> {
         self.entered.all().filter_map(|entry| match entry {
             Entry::View(view) => Some(view.id),
@@ -108,15 +108,15 @@ impl Family {
         })
     }
 
-    /// The name of a part or an object after another stem.
+    /// The name of a part or an object, with another beginning.
     pub fn renamed(&self, name: &str, stem: &str) -> String {
         name.replacen(&self.stem, stem, 1)
     }
 
-    /// The directory block that leads to the family's forms: its file and number.
+    /// The directory block that loads the family's forms: its file and number.
     ///
     /// # Errors
-    /// [`Error::New`] if no directory names the family's own one.
+    /// [`Error::New`] if no directory loads the family's own directory block.
     pub fn directory(&self) -> Result<(&str, BlockNumber), Error> {
         let is_first = |entry: &Entry| match entry {
             Entry::Object(object) => self.part_of(&object.name.name).is_some_and(|(_, own)| own),
@@ -129,7 +129,7 @@ impl Family {
     }
 }
 
-/// The object that an entry is about.
+/// The object that an entry describes.
 pub fn subject(entry: &Entry) -> Option<Name16> {
     match entry {
         Entry::Object(e) => Some(e.name.name),
@@ -143,7 +143,7 @@ pub fn subject(entry: &Entry) -> Option<Name16> {
     }
 }
 
-/// The parts of a job in their order: those that it delivers, makes or moves.
+/// The parts that a job delivers, makes or moves, in order.
 fn parts(job: &Job, cell: &CellDescription) -> Vec<PartType> {
     let mut names: Vec<Name16> = Vec::new();
     for line in &job.steps {
@@ -164,7 +164,7 @@ fn parts(job: &Job, cell: &CellDescription) -> Vec<PartType> {
     parts
 }
 
-/// The program by which the vise opens in a job.
+/// The program with which a job opens the vise.
 fn program(job: &Job, cell: &CellDescription) -> Option<ViseProgram> {
     let used = job.steps.iter().filter_map(|line| match &line.step {
         Step::Workstation(Workstation::Vise { program, .. }) => Some(program.as_ref()),
@@ -177,7 +177,7 @@ fn program(job: &Job, cell: &CellDescription) -> Option<ViseProgram> {
     named.and_then(of_name).or_else(first).cloned()
 }
 
-/// The shortest name, if all others begin with it.
+/// The shortest name, if all other names begin with it.
 fn stem(parts: &[PartType]) -> Option<String> {
     let shortest = parts.iter().min_by_key(|part| part.name.len())?.name.clone();
     let whole = shortest.split_once('_').map_or(shortest.as_str(), |(stem, _)| stem).to_owned();

@@ -1,11 +1,11 @@
-//! The file of blocks of what is new.
+//! The file of blocks for the new forms.
 
 use taskdata::load::{entries::Entry, print, source::BLOCK_LINES};
 
-/// Lines of a directory block for load lines, two to a line.
+/// Load commands per line of a directory block.
 const LOADS_A_LINE: usize = 2;
 
-/// Blocks of forms, and before them the directory block that loads them.
+/// Blocks of forms, and the directory block that loads them, which comes first.
 pub struct Blocks {
     name: String,
     from: String,
@@ -14,12 +14,12 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// No form yet. `from` says what they are derived from.
+    /// No form yet. `from` names the source from which the forms are derived.
     pub fn new(name: &str, from: String, area: u32) -> Self {
         Self { name: name.to_owned(), from, area, blocks: Vec::new() }
     }
 
-    /// Forms of one kind, in as many blocks as they need.
+    /// Add forms of one kind, in as many blocks as they need.
     pub fn group(&mut self, title: &str, entries: &[Entry]) {
         let mut forms: Vec<Vec<String>> = entries.iter().map(print::form).collect();
         align(&mut forms);
@@ -34,12 +34,12 @@ impl Blocks {
         }
     }
 
-    /// How many blocks there are, with the directory.
+    /// Number of blocks, with the directory block.
     pub fn count(&self) -> u32 {
         u32::try_from(self.blocks.len() + 1).unwrap_or(u32::MAX)
     }
 
-    /// The file, the directory block first.
+    /// Text of the file; `first` is the number of the directory block.
     pub fn text(&self, first: u32) -> String {
         let Self { name, from, area, .. } = self;
         let derived = "%% From: derived, as the first line of this file says.\n";
@@ -59,7 +59,7 @@ impl Blocks {
     }
 }
 
-/// Set the words of forms of one line in columns.
+/// Align the words of one-line forms in columns.
 fn align(forms: &mut [Vec<String>]) {
     let alone = forms.iter().all(|form| form.len() == 1);
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();

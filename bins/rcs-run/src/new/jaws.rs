@@ -1,69 +1,70 @@
-//! The step of the vise in which a new part stands: one that is there, or one that is cut into the jaws.
+//! Chooses the step of the vise for a new part: an existing step, or a new step in the jaws.
 //!
-//! A step is a notch in both jaws, from the front to its back, down to its ledge, as deep as its clamping face. A part fits
-//! if it stands by itself before it is pushed to the back, comes out in front far enough to be pushed, and is wider than
-//! what is left between the ledges. A new step is deeper than all others and ends above their ledges: so it takes no ledge
-//! from them, and of each clamping face it leaves what is below.
+//! A step is a notch in both jaws, from the front to its back and down to its ledge, as deep as its clamping face. A
+//! part fits if it stands by itself before it is pushed to the back, projects in front far enough to be pushed, and is
+//! wider than the remaining gap between the ledges. A new step is deeper than all others and ends above their ledges,
+//! so that it takes no ledge from them and leaves the lower part of each clamping face.
 
 use plant::description::{Vise, ViseProgram};
 
-/// A part comes out of its step so far in front that fingers push it to the back, in.
+/// Length by which a part projects from its step in front, so that fingers can push it to the back, in.
 const PUSHED: f64 = 0.05;
-/// Before it is pushed the middle of a part is so far behind the front edge of its ledge, in.
+/// Distance of the middle of a part behind the front edge of its ledge, before it is pushed, in.
 const STANDS: f64 = 0.03;
-/// A part is let go so far before the back at least, in.
+/// Least distance of a part from the back where it is released, in.
 const NEAREST: f64 = 0.02;
-/// What the last digits of the description may do, in.
+/// Rounding error of the cell description, in.
 const ROUNDING: f64 = 1e-6;
-/// The jaws meet a part before they meet each other, in.
+/// Least gap of the jaws when they close on a part, in.
 const CLOSED: f64 = 0.05;
-/// Fingers have at least so much of a part above the jaws, in.
+/// Least height of a part above the jaws for the fingers, in.
 pub const GRIPPED: f64 = 0.50;
-/// A part lies on at least so much of each ledge, in.
+/// Least width of a part on each ledge, in.
 pub const LEDGE: f64 = 0.04;
-/// A ledge is so wide at least, in.
+/// Least width of a ledge, in.
 const STRIP: f64 = 0.02;
-/// A new step is so much deeper than the deepest, in, its ledge so much of the way up to the top, and at least so low, in.
+/// Geometry of a new step: depth beyond the deepest step, in; height of its ledge as a share of the height to the top;
+/// and greatest height of the ledge, in.
 const DEEPER: f64 = 0.10;
 const HIGHER: f64 = 0.6;
 const LOWEST: f64 = -0.30;
 
-/// What a part asks of a step, in.
+/// Requirements of a part for a step, in.
 pub struct Wanted {
-    /// Height of the blank as it lies: into the vise as it stands there.
+    /// Height of the blank in the orientation in which it enters the vise.
     pub height: f64,
-    /// Least height of what is pushed to the back; `None` if nothing is.
+    /// Least height of the parts that are pushed to the back; `None` if none is.
     pub pushed: Option<f64>,
-    /// How far the blank shall come out in front.
+    /// Length by which the blank projects in front.
     pub out: f64,
-    /// How far before the back it is let go.
+    /// Distance before the back where the part is released.
     pub behind: f64,
-    /// Width of the blank, and of the narrowest that becomes of it.
+    /// Width of the blank, and of the narrowest machined part.
     pub width: f64,
     pub narrowest: f64,
-    /// Length: it stands upright.
+    /// Length, which is vertical in the vise.
     pub length: f64,
     /// Height of the lower edge of the fingers above the jaws.
     pub fingers: f64,
-    /// By how much the vise opens beyond the width: partially and wide.
+    /// Openings of the vise beyond the width: partial and wide.
     pub partial: f64,
     pub open: f64,
-    /// It has to stand on the ledges of the open vise.
+    /// True if the part must stand on the ledges of the open vise.
     pub stands_in_open: bool,
 }
 
-/// A step, and whether it is cut for this part.
+/// A step, and whether it is new.
 pub struct Chosen {
     pub program: ViseProgram,
     pub is_new: bool,
-    /// How far before the back the part is let go, in.
+    /// Distance before the back where the part is released, in.
     pub behind: f64,
 }
 
-/// The first step that fits: that of the like part, the others, a new one.
+/// The first step that fits: the step of the like part, another step, or a new one.
 ///
 /// # Errors
-/// Why none does, a line for each.
+/// The reasons why no step fits, one line per step.
 pub fn choose(vise: &Vise, like: &ViseProgram, name: &str, wanted: &Wanted) -> Result<Chosen, Vec<String>> {
     let others = vise.program.iter().filter(|other| other.name != like.name);
     let mut reasons: Vec<String> = Vec::new();
@@ -86,10 +87,10 @@ pub fn choose(vise: &Vise, like: &ViseProgram, name: &str, wanted: &Wanted) -> R
 }
 
 impl Wanted {
-    /// From where to where the back of a step may be, if its ledge begins at `front`.
+    /// The range for the back of a step whose ledge begins at `front`.
     ///
     /// # Errors
-    /// If no back does.
+    /// A message if no back fits.
     fn backs(&self, front: f64) -> Result<[f64; 2], String> {
         let least = front + STANDS + NEAREST.min(self.behind) + self.height / 2.0;
         let most = self.pushed.map_or(self.height, |height| height - PUSHED);
@@ -99,7 +100,7 @@ impl Wanted {
         })
     }
 
-    /// The program of a step for the part, and how far before its back the part is let go.
+    /// The program of a step for the part, and the distance before its back where the part is released.
     fn program(&self, vise: &Vise, step: &ViseProgram, name: &str) -> Result<(ViseProgram, f64), String> {
         let front = front(vise, step).ok_or("deeper steps leave it no ledge")?;
         let [least, most] = self.backs(front)?;
@@ -151,7 +152,7 @@ impl Wanted {
         Ok((program, behind))
     }
 
-    /// A new step.
+    /// A new step in the jaws.
     fn cut(&self, vise: &Vise, like: &ViseProgram) -> Result<ViseProgram, String> {
         let highest = vise.program.iter().map(|step| step.ledge).fold(f64::NEG_INFINITY, f64::max);
         let deepest = vise.program.iter().map(|step| step.depth).fold(0.0, f64::max);
@@ -175,8 +176,8 @@ impl Wanted {
     }
 }
 
-/// Where the ledge of a step begins that carries a part, from the front: what lower and deeper steps leave of it, at the depth
-/// at which they leave most. `None` if they leave nothing.
+/// Where the ledge of a step begins, from the front, at the depth where lower and deeper steps leave most of it. `None`
+/// if they leave nothing.
 fn front(vise: &Vise, step: &ViseProgram) -> Option<f64> {
     let lower: Vec<_> = vise.program.iter().filter(|other| other.ledge < step.ledge).collect();
     let carries = step.depth - LEDGE;
@@ -194,12 +195,12 @@ fn front(vise: &Vise, step: &ViseProgram) -> Option<f64> {
     begins.min_by(f64::total_cmp)
 }
 
-/// To a thousandth of an inch.
+/// Rounded to a thousandth of an inch.
 fn rounded(inches: f64) -> f64 {
     (inches * 1000.0).round() / 1000.0
 }
 
-/// To a hundredth of an inch.
+/// Rounded to a hundredth of an inch.
 fn hundredth(inches: f64) -> f64 {
     (inches * 100.0).round() / 100.0
 }
@@ -213,7 +214,7 @@ mod tests {
         CellDescription::from_toml(include_str!("../../../../data/cell.toml")).expect("it is sound").vise
     }
 
-    /// A clevis of another size.
+    /// The requirements of a clevis of another size.
     fn clevis(height: f64, width: f64, length: f64) -> Wanted {
         Wanted {
             height,

@@ -1,4 +1,5 @@
-//! `rcs-run new`: data for something new, worked out from what is there, tried, shown as a diff, and written if asked.
+//! `rcs-run new`: derives data for something new from existing data, tries them, shows a diff, and writes them on
+//! request.
 
 mod arguments;
 mod change;
@@ -33,10 +34,10 @@ use self::{
 };
 use crate::{cli::CheckArguments, error::Error, pose, ways};
 
-/// Make what is new.
+/// Make new data.
 ///
 /// # Errors
-/// [`Error`] with the reason; then nothing is written.
+/// [`Error`] with the reason, if nothing was written.
 pub fn new(arguments: &NewArguments) -> Result<ExitCode, Error> {
     match &arguments.what {
         What::Part(arguments) => {
@@ -54,7 +55,7 @@ pub fn new(arguments: &NewArguments) -> Result<ExitCode, Error> {
     }
 }
 
-/// The task data, which are to be changed if `write`.
+/// Load the task data; if `write`, they must be changeable.
 fn loaded(data: &Path, write: bool) -> Result<Store, Error> {
     if write {
         change::changeable(data)?;
@@ -126,7 +127,7 @@ fn tray(arguments: &TrayArguments) -> Result<ExitCode, Error> {
     finish(&made.change, lines, write.then_some(next))
 }
 
-/// Show what changes, and write it if a next command is named.
+/// Show the changes. Write them if `next` names a next command.
 fn finish(change: &Change, lines: Vec<(&str, String)>, next: Option<String>) -> Result<ExitCode, Error> {
     let mut text = change.diff() + "\n";
     let mut before = "";

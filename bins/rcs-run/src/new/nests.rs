@@ -1,8 +1,8 @@
-//! Parts that lie in nests, cylinders and tools: where a part of another size comes to rest in the nests of the like part, and
-//! what follows for its grips.
+//! Parts that lie in nests (cylinders and tools): where a part of another size comes to rest in the nests of the like
+//! part, and how its grips move.
 //!
-//! A grip keeps its place on the part, seen from the middle. So a grip at a nest moves with the middle of the part, and elsewhere
-//! it stays. A part that does not come to rest like the like part does not fit its nests.
+//! A grip keeps its place relative to the middle of the part: a grip at a nest moves with the middle of the part, other
+//! grips stay. A part that does not come to rest like the like part does not fit its nests.
 
 use geometry::{
     frame::{Frame, Vector},
@@ -31,9 +31,9 @@ use super::{
 };
 use crate::error::Error;
 
-/// A part is let down from so high above its nest, in.
+/// Height above its nest from which a part is lowered, in.
 const ABOVE: f64 = 3.0;
-/// Its lower side comes to rest so near to where the like part's is, in.
+/// Greatest difference between the resting heights of the part's lower side and of the like part's, in.
 const SAME: f64 = 0.10;
 
 /// New parts and their nests.
@@ -41,15 +41,16 @@ pub struct Nested<'a> {
     family: &'a Family,
     store: &'a Store,
     parts: Vec<PartType>,
-    /// The like part's nests, and how far the middle of the new blank is from that of the like one, world, in.
+    /// The like part's nests, with the vector from the middle of the like blank to that of the new one, world
+    /// coordinates, in.
     nests: Vec<(Nest, Vector)>,
 }
 
 impl<'a> Nested<'a> {
-    /// Work out where a blank of a size (along its axes, in) lies.
+    /// Compute where a blank of a size (along its axes, in) lies.
     ///
     /// # Errors
-    /// [`Error::New`] with the reason if it does not fit nests or fingers.
+    /// [`Error::New`] with the reason if it does not fit the nests or the fingers.
     pub fn new(
         (store, cell): (&'a Store, &CellDescription),
         family: &'a Family,
@@ -75,7 +76,7 @@ impl<'a> Nested<'a> {
         Ok(Self { family, store, parts, nests })
     }
 
-    /// How far a grip at a place is moved, in axes of the place.
+    /// Displacement of a grip at a place, in axes of the place.
     fn shift(&self, object: &Name16, place: &Typed) -> Result<Vector, Error> {
         let data = self.store.view();
         let name = place.name.name;
@@ -105,7 +106,7 @@ impl Numbers for Nested<'_> {
         &self.parts
     }
 
-    /// A grip that holds anywhere stays, and has another one beside it for the array of the nests.
+    /// A grip that is valid at any place stays, and gets a second grip for the array of the nests.
     fn grips(&self, grip: &GripEntry) -> Result<Vec<(Typed, Vec<MovetableLine>)>, Error> {
         let object = grip.object.name;
         let table = self.family.movetable(grip.movetable.name.as_str());
@@ -126,7 +127,7 @@ impl Numbers for Nested<'_> {
         Ok(grips)
     }
 
-    /// The grasp size is the diameter.
+    /// Openings of an object: the grasp size is the diameter.
     fn openings(&self, object: &Name16, [appr, grasp, force, depart]: [i32; 4]) -> [i32; 4] {
         let part = self.family.part_of(object).map(|(part, _)| part);
         let width =
@@ -149,7 +150,7 @@ impl Numbers for Nested<'_> {
     }
 }
 
-/// The fingers close on a part and open around it.
+/// Check that the fingers close on a part and open around it.
 fn fingers_reach(room: &Room, family: &Family, part: &PartType) -> Result<(), String> {
     let gripper = family.entries().find_map(|entry| match entry {
         Entry::ObjGrips(grips) => room.gripper(u8::try_from(grips.values[0]).ok()?),
@@ -165,13 +166,13 @@ fn fingers_reach(room: &Room, family: &Family, part: &PartType) -> Result<(), St
     })
 }
 
-/// Where a nest is, for people.
+/// Name of a nest's place for messages.
 fn place(nest: &Nest) -> String {
     let sector = if nest.sector == 0 { String::new() } else { format!(" sector {}", nest.sector) };
     format!("{}{sector}", nest.location)
 }
 
-/// How far the middle of a part is from that of another one in the same nest, world, hundredths of an inch.
+/// Vector from the middle of a part to that of another part in the same nest, world coordinates, 0.01 in.
 fn moved(room: &Room, nest: &Nest, old: &PartType, new: &PartType) -> Result<Vector, String> {
     let seat = nest.frame();
     let axes = [seat.x(), seat.y(), seat.z()];
@@ -194,7 +195,7 @@ fn moved(room: &Room, nest: &Nest, old: &PartType, new: &PartType) -> Result<Vec
     Ok(by.map(|inches| f64::from(hundredths(inches)) / 100.0))
 }
 
-/// Lines of a movetable with an offset in axes of the place before them.
+/// Lines of a movetable that begin with an offset in axes of the place.
 fn shifted(mut lines: Vec<MovetableLine>, by: Vector) -> Vec<MovetableLine> {
     let by = [by.x, by.y, by.z].map(hundredths);
     if by == [0; 3] {
@@ -207,7 +208,7 @@ fn shifted(mut lines: Vec<MovetableLine>, by: Vector) -> Vec<MovetableLine> {
     lines
 }
 
-/// A nest in the cell description.
+/// The table of a nest in the cell description.
 fn table(like: &Nest, parts: &[&str], by: Vector) -> String {
     let Points { wrist, tool, finger } = like.seat;
     let by = [by.x, by.y, by.z].map(hundredths);

@@ -1,4 +1,4 @@
-//! `rcs-run new part`: forms, movetables, entries of the cell and a job for a part that is like another one.
+//! `rcs-run new part`: forms, movetables, cell description and a job for a part that is like another one.
 
 use std::path::Path;
 
@@ -17,54 +17,54 @@ use taskdata::load::{
 use super::{change::Change, family::Family, forms::Blocks, nests::Nested, size::Size, sizes::Sizes};
 use crate::error::Error;
 
-/// Longest name: `S-` and `_BH` go around it, and an object has 16 characters.
+/// Longest name of a part: `S-` and `_BH` are added to it, and an object has 16 characters.
 const LONGEST: usize = 11;
-/// Characters of the name with which its movetables begin.
+/// Number of the name's characters with which its movetables begin.
 const BEGINS: usize = 6;
 
-/// What is asked for.
+/// The request for a part or a tool.
 pub struct Order<'a> {
     pub name: &'a str,
     pub like: &'a str,
-    /// A tool, and no part.
+    /// True for a tool, false for a part.
     pub tool: bool,
-    /// That of the like part if it is not given.
+    /// Size of the blank; `None` for the size of the like part.
     pub size: Option<Size>,
-    /// Of the blank, lb; if it is not given, by the volume.
+    /// Weight of the blank, lb; `None` to compute it from the volume.
     pub weight: Option<f64>,
 }
 
-/// What a new part changes, and what it leaves to people.
+/// The changes for a new part, and the remaining manual work.
 pub struct Made {
     pub change: Change,
-    /// The change, with jobs that only try it.
+    /// The changes, with additional jobs for the trial only.
     pub trial: Change,
-    /// The job that moves it, and those.
+    /// The job that moves the part, and the additional ones.
     pub jobs: Vec<String>,
-    /// Jobs of other parts are tried, too.
+    /// True if jobs of other parts are tried, too.
     pub others: bool,
     pub size: Size,
-    /// What was chosen, line by line, each with what it is about.
+    /// The choices that were made: pairs of subject and text.
     pub chosen: Vec<(&'static str, String)>,
-    /// What has to be taught at the machine.
+    /// The poses that must be taught at the machine.
     pub to_teach: Vec<String>,
 }
 
-/// What becomes of the numbers of a family when its parts have other sizes.
+/// Computes the numbers of a family whose parts have other sizes.
 pub trait Numbers {
     /// The new parts.
     fn parts(&self) -> &[PartType];
 
-    /// The places of the new grips that come of a grip, and the lines of their movetables.
+    /// The places of the new grips that replace a grip, and the lines of their movetables.
     ///
     /// # Errors
-    /// [`Error::New`] if the grip is at a place of which nothing is known here.
+    /// [`Error::New`] if the grip is at an unsupported place.
     fn grips(&self, grip: &GripEntry) -> Result<Vec<(Typed, Vec<MovetableLine>)>, Error>;
 
-    /// Approach, grasp, force and depart of an object, 0.01 in and lb.
+    /// Approach and grasp openings, force and depart opening of an object, in 0.01 in and lb.
     fn openings(&self, object: &Name16, values: [i32; 4]) -> [i32; 4];
 
-    /// The same of the pedestal: approach, grasp, force, release, table, flip.
+    /// Numbers of an object at the pedestal: approach, grasp, force, release, table, flip.
     fn pedestal(&self, _object: &Name16, values: [i32; 6]) -> [i32; 6] {
         values
     }
@@ -74,25 +74,25 @@ pub trait Numbers {
         range
     }
 
-    /// Describe vise or nests in the cell.
+    /// Add the vise's program or the nests to the cell description.
     ///
     /// # Errors
-    /// [`Error::New`] if there is no table to put theirs behind.
+    /// [`Error::New`] if there is no table after which theirs can be inserted.
     fn places(&self, change: &mut Change) -> Result<Places, Error>;
 }
 
-/// What vise or nests are for the new parts.
+/// The changes of vise or nests for the new parts.
 pub struct Places {
     pub chosen: Vec<(&'static str, String)>,
     pub to_teach: Vec<String>,
-    /// Other parts have to be tried, too.
+    /// True if other parts must be tried, too.
     pub others: bool,
 }
 
 /// Make the data of a part or a tool.
 ///
 /// # Errors
-/// [`Error::New`] with the reason if there cannot be such a part.
+/// [`Error::New`] with the reason if such a part is not possible.
 pub fn make(
     order: &Order<'_>,
     (store, cell, data): (&Store, &CellDescription, &Path),
@@ -148,7 +148,7 @@ pub fn make(
     Ok(Made { change, trial, jobs, others, size, chosen, to_teach })
 }
 
-/// Whether a name can be given.
+/// Check the name of the new part.
 fn is_name(order: &Order<'_>, family: &Family, store: &Store, cell: &CellDescription) -> Result<(), Error> {
     let Order { name, tool, .. } = *order;
     let fits = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || (c == '-' && tool);
@@ -175,7 +175,7 @@ fn is_name(order: &Order<'_>, family: &Family, store: &Store, cell: &CellDescrip
     Ok(())
 }
 
-/// A new family.
+/// The data of a new family.
 struct New<'a> {
     name: &'a str,
     family: &'a Family,
@@ -185,7 +185,7 @@ struct New<'a> {
 }
 
 impl New<'_> {
-    /// A number of the camera that nothing has; 0 if the camera does not look for the like part.
+    /// A free number of the camera; 0 if the camera does not look for the like part.
     fn vision_id(&self, cell: &CellDescription) -> u16 {
         let looks = self.family.entries().any(|entry| matches!(entry, Entry::View(_)));
         let of_parts = cell.part.iter().map(|part| i32::from(part.vision_id));
@@ -286,8 +286,8 @@ impl New<'_> {
         Ok((tables, grips))
     }
 
-    /// The job of the like part with other names, and without its comments, which are about the like part. A part named
-    /// `like` and its family are the new ones.
+    /// The job of the like part with the new names, and without its comments, which describe the like part. `like` and
+    /// its family are replaced by the new parts.
     fn job(&self, like: &str) -> String {
         let mut text = format!("% {}, made like {} by rcs-run new.\n\n", self.name, self.family.stem);
         let mut opened = false;
@@ -312,7 +312,7 @@ impl New<'_> {
     }
 }
 
-/// A part in the cell description.
+/// The table of a part in the cell description.
 fn table_of_part(part: &PartType, id: u16) -> String {
     let [x, y, z] = part.size;
     let shape = match part.shape {

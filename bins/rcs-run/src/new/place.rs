@@ -1,4 +1,4 @@
-//! `rcs-run new place`: a pose, a location point, and the trajectories and approaches of a place that is there.
+//! `rcs-run new place`: a pose, a location point, and trajectories and approaches, derived from an existing place.
 
 use std::path::Path;
 
@@ -16,15 +16,15 @@ use taskdata::{
 use super::{change::Change, entered::Entered, forms::Blocks};
 use crate::error::Error;
 
-/// Longest name: `-P` stands behind it in a name of 10 characters.
+/// Longest name: `-P` is added to it in a name of 10 characters.
 const LONGEST: usize = 8;
-/// Characters of the name with which its trajectories begin.
+/// Number of the name's characters with which its trajectories begin.
 const BEGINS: usize = 6;
 
 /// Make the data of a place.
 ///
 /// # Errors
-/// [`Error::New`] with the reason if there cannot be such a place.
+/// [`Error::New`] with the reason if such a place is not possible.
 pub fn make(name: &str, frame: &Frame, like: &str, store: &Store, data: &Path) -> Result<Change, Error> {
     let entered = Entered::of(store);
     is_name(name, store)?;
@@ -42,10 +42,10 @@ pub fn make(name: &str, frame: &Frame, like: &str, store: &Store, data: &Path) -
     with_blocks(name, &blocks, &entered, (directory, number), data)
 }
 
-/// A file with the blocks of a place, and a line for it in the directory block that loads the place it is like.
+/// Add a file with the blocks of a place, and its load command to the directory block that loads the like place.
 ///
 /// # Errors
-/// [`Error::New`] if the area is full, if there is a file of that name, or if the directory block has no room.
+/// [`Error::New`] if the area is full, the file exists, or the directory block has no room.
 pub fn with_blocks(
     name: &str,
     blocks: &Blocks,
@@ -62,10 +62,10 @@ pub fn with_blocks(
     Ok(change)
 }
 
-/// Whether a name can be given to a place.
+/// Check the name of a new place.
 ///
 /// # Errors
-/// [`Error::New`] if it is no name, or is there already.
+/// [`Error::New`] if the name is invalid or exists.
 pub fn is_name(name: &str, store: &Store) -> Result<(), Error> {
     let fits = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_';
     if name.is_empty() || name.len() > LONGEST || !name.chars().all(fits) {
@@ -99,26 +99,26 @@ pub fn clipped(name: &str) -> Named<10> {
     Named { name: Name10::clipped(name), at: At::default() }
 }
 
-/// A place and the one that it is like.
+/// A new place, and the existing place from which it is derived.
 pub struct New<'a> {
     pub name: Named<10>,
     pub like: &'a str,
 }
 
 impl New<'_> {
-    /// Whether a location is the like place.
+    /// True if a location is the like place.
     pub fn is_like(&self, end: &Typed) -> bool {
         end.kind == RefType::LocationPoint && end.name.name.as_str() == self.like
     }
 
-    /// Name the new place where the like place is named.
+    /// Replace the name of the like place by that of the new place.
     pub fn rename(&self, end: &mut Typed) {
         if self.is_like(end) {
             end.name.name = Name::clipped(self.name.name.as_str());
         }
     }
 
-    /// Name of its pose.
+    /// Name of the place's pose.
     pub fn pose_name(&self) -> Named<10> {
         clipped(&format!("{}-P", self.name.name))
     }
@@ -134,12 +134,12 @@ impl New<'_> {
         })
     }
 
-    /// Its location point.
+    /// Location point of the place.
     pub fn point(&self, movetable: &Named<10>) -> Entry {
         Entry::Locpt(PointAt { name: self.name, pose: self.pose_name(), movetable: *movetable })
     }
 
-    /// The trajectories from and to it, and how it is approached and left.
+    /// The trajectories from and to the place, and its approaches and departures.
     pub fn ways(&self, entered: &Entered) -> Vec<Entry> {
         let begins: String = self.name.name.as_str().chars().take(BEGINS).collect();
         let mut numbers = 1..;

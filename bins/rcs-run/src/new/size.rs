@@ -1,4 +1,4 @@
-//! The size of a blank as it is typed: three sides of a box, or length and diameter of a cylinder.
+//! The size of a blank in text form: three sides of a box, or length and diameter of a cylinder.
 
 use std::{fmt, str::FromStr};
 
@@ -10,7 +10,7 @@ const GREATEST: f64 = 20.0;
 /// The size of a blank, in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Size {
-    /// Length, width and height as it lies.
+    /// Box: length, width and height in the orientation in which it lies.
     Box { length: f64, width: f64, height: f64 },
     /// A cylinder.
     Round { length: f64, diameter: f64 },
@@ -36,10 +36,10 @@ impl FromStr for Size {
 }
 
 impl Size {
-    /// Sizes along the axes of a part of the shape of another one.
+    /// Lengths of the sides along the axes of a part with the shape of `part`, in.
     ///
     /// # Errors
-    /// What was expected.
+    /// A message with the expected form.
     pub fn like(&self, part: &PartType) -> Result<[f64; 3], String> {
         match (*self, part.shape) {
             (Self::Box { length, width, height }, Shape::Box) => Ok([height, width, length]),

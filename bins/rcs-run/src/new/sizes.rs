@@ -1,8 +1,9 @@
-//! What becomes of the numbers of a family when its parts have other sizes: where each grip goes, how far the fingers open,
-//! how hard they close.
+//! Computes the numbers of a family whose parts have other sizes: the place of each grip, and the openings and forces
+//! of the fingers.
 //!
-//! A grip is moved with what it refers to: in a tray with the floor, in the vise with back, ledge and fixed face of the step,
-//! a push with the front face, at the pedestal with the middle of the part. So the gaps that the like part has stay.
+//! A grip moves with the face to which it refers: in a tray with the floor, in the vise with back, ledge and fixed face
+//! of the step, for a push with the front face, at the pedestal with the middle of the part. So the clearances of the
+//! like part remain.
 
 use plant::{
     CellDescription,
@@ -25,18 +26,18 @@ use super::{
 };
 use crate::error::Error;
 
-/// Fingers reach over this share of a low part at most, and leave the rest to the floor.
+/// Largest share of a low part's height that fingers cover; the rest keeps them off the floor.
 const REACH: f64 = 2.0 / 3.0;
-/// The fingers are so far above jaws and hands, in.
+/// Clearance of the fingers above jaws and hands, in.
 const CLEAR: f64 = 0.25;
-/// An open gripper has so much room beside a part at least, on both sides together, in.
+/// Least clearance of an open gripper around a part, both sides together, in.
 pub const ROOM: f64 = 0.5;
-/// The fingers bear so many times what weight and lever ask of them.
+/// Safety factor of the grasp force over the force that weight and lever require.
 const SAFE: f64 = 3.0;
 /// Millimetres in an inch.
 const MM: f64 = 25.4;
 
-/// Where a grip is.
+/// Kind of a grip's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Tray,
@@ -44,27 +45,27 @@ enum Place {
     Pedestal,
 }
 
-/// A family and the new one.
+/// A family, and the new family.
 pub struct Sizes<'a> {
     cell: &'a CellDescription,
     family: &'a Family,
     /// The new parts.
     pub parts: Vec<PartType>,
-    /// The step of the like part, and the new one's.
+    /// The step of the like part, and that of the new part.
     before: ViseProgram,
     pub step: Chosen,
-    /// How far above the floor the tips of the fingers are.
+    /// Height of the fingertips above the floor, in: like part and new part.
     tips: [f64; 2],
-    /// How far above the lower end of a standing part the tool point is.
+    /// Height of the tool point above the lower end of a vertical part, in: like part and new part.
     height: [f64; 2],
-    /// How far before the back the like part is let go.
+    /// Distance before the back where the like part is released, in.
     behind: f64,
-    /// Grasp force, lb, if the like part's is too small.
+    /// Grasp force, lb, if that of the like part is too small.
     force: f64,
 }
 
 impl<'a> Sizes<'a> {
-    /// Work out what the sizes of a blank (height, width, length, in) lead to.
+    /// Compute the numbers for a blank of a size (height, width, length, in).
     ///
     /// # Errors
     /// [`Error::New`] with the reason if such parts cannot be handled.
@@ -137,7 +138,7 @@ impl<'a> Sizes<'a> {
         Ok(sizes)
     }
 
-    /// A part stays in its tray wherever a seed puts it.
+    /// Check that a part stays in its tray at every position that a seed can give it.
     fn lies_in_tray(&self) -> Result<(), String> {
         let Some([_, width, length]) = self.parts.first().map(|part| part.size) else { return Ok(()) };
         let around = width.hypot(length) / 2.0 + self.cell.tray_shape.random_offset;
@@ -152,7 +153,7 @@ impl<'a> Sizes<'a> {
         })
     }
 
-    /// The fingers are long enough, and open wide enough.
+    /// Check that the fingers are long enough, and open wide enough.
     fn is_reached(&self) -> Result<(), String> {
         let Gripper { fingers, opening, .. } = &self.cell.gripper.parts;
         let [height, width, _] = self.parts.first().map_or([0.0; 3], |part| part.size);
@@ -167,7 +168,7 @@ impl<'a> Sizes<'a> {
         Ok(())
     }
 
-    /// The force that weight and lever of the parts ask for, lb.
+    /// The force that weight and lever of the parts require, lb.
     fn needed_force(&self) -> f64 {
         let gripper = &self.cell.gripper.parts;
         let [length, _, wide] = gripper.fingers;
@@ -185,7 +186,7 @@ impl<'a> Sizes<'a> {
     /// The lines of the movetable of a grip.
     ///
     /// # Errors
-    /// [`Error::New`] if the grip is at a place of which nothing is known here.
+    /// [`Error::New`] if the grip is at an unsupported place.
     pub fn moved(&self, grip: &GripEntry) -> Result<Vec<MovetableLine>, Error> {
         let (name, table) = (&grip.object.name, grip.movetable.name);
         let unknown = |what: String| Error::New(format!("the grip of {name} cannot be made: {what}"));
@@ -205,7 +206,7 @@ impl<'a> Sizes<'a> {
         Ok(lines)
     }
 
-    /// By how much a grip is moved, in tool axes, in.
+    /// Displacement of a grip, in tool axes, in.
     fn shift(&self, place: Place, part: usize, own: bool, [x, z]: [f64; 2]) -> [f64; 3] {
         let size = |parts: &[PartType]| parts.get(part).map_or([0.0; 3], |part| part.size);
         let (old, new) = (size(&self.family.parts), size(&self.parts));
@@ -217,13 +218,13 @@ impl<'a> Sizes<'a> {
         match (place, own) {
             (Place::Tray, _) => [deeper, 0.0, higher - (new[2] - old[2]) / 2.0],
             (Place::Vise, true) => {
-                // What is let go before the back is let go nearer if it would not stand else.
+                // A part that would not stand otherwise is released nearer to the back.
                 let gap = (before.back - x - self.tips[0]).max(0.0);
                 let nearer =
                     if self.behind > 0.0 { gap * (1.0 - self.step.behind / self.behind) } else { 0.0 };
                 [after.back - before.back + deeper + nearer, aside, after.ledge - before.ledge + higher]
             }
-            // A push stays as far up its ledge; it is behind the front face by as much.
+            // A push stays at its height above the ledge, and at its distance behind the front face.
             (Place::Vise, false) => {
                 let up = z * after.ledge / before.ledge - z;
                 [(after.back - new[0]) - (before.back - old[0]), aside, up]
@@ -232,14 +233,14 @@ impl<'a> Sizes<'a> {
         }
     }
 
-    /// By how much a part is wider than before, and how wide it is; `None` for a push.
+    /// The increase of a part's width, and its new width; `None` for a push.
     fn wider(&self, object: &Name16) -> Option<(f64, f64)> {
         let (part, _) = self.family.part_of(object).filter(|(_, own)| *own)?;
         let (old, new) = (self.family.parts.get(part)?, self.parts.get(part)?);
         Some((new.size[1] - old.size[1], new.size[1]))
     }
 
-    /// An opening around a wider part, within the stroke.
+    /// An opening around a wider part, limited to the stroke.
     fn opened(&self, size: i32, wider: f64, width: f64, gripper: &Gripper) -> i32 {
         let [_, most] = gripper.opening;
         let wanted = (f64::from(size) / 100.0 + wider).max(width + ROOM);
@@ -270,7 +271,7 @@ impl Numbers for Sizes<'_> {
         [room(appr), grasp + hundredths(wider), force, room(release), table, flip]
     }
 
-    /// To the top of the part.
+    /// The range to the top of the part, mm.
     fn range(&self, object: &Name16, range: i32) -> i32 {
         let at = self.family.part_of(object).map(|(part, _)| part);
         let height = |parts: &[PartType]| at.and_then(|at| parts.get(at)).map_or(0.0, |part| part.size[0]);
@@ -278,7 +279,7 @@ impl Numbers for Sizes<'_> {
         range - whole(nearer)
     }
 
-    /// The vise gets a program, and perhaps a new step.
+    /// Add a program of the vise, and a new step if there is one.
     fn places(&self, change: &mut Change) -> Result<Places, Error> {
         let program = &self.step.program;
         let last = self.cell.vise.program.last().map_or("", |program| program.name.as_str());
@@ -294,7 +295,7 @@ impl Numbers for Sizes<'_> {
     }
 }
 
-/// What the like part's own numbers say.
+/// Rules that the like part's own numbers follow.
 struct Rules<'a> {
     cell: &'a CellDescription,
     family: &'a Family,
@@ -302,16 +303,16 @@ struct Rules<'a> {
 }
 
 struct Like {
-    /// How far before the back the blank is let go, in.
+    /// Distance before the back where the blank is released, in.
     behind: f64,
-    /// How far above the lower end of a seated part the tool point is, in.
+    /// Height of the tool point above the lower end of a seated part, in.
     height: f64,
-    /// How much of the lower end the pedestal's hand has, in.
+    /// Length of the lower end in the pedestal's hand, in.
     in_hand: Option<f64>,
 }
 
 impl Rules<'_> {
-    /// These numbers, and how far above the floor the fingers' tips are.
+    /// These numbers, and the height of the fingertips above the floor, in.
     fn read(&self) -> Result<(Like, f64), String> {
         let last = self.family.parts.len().saturating_sub(1);
         let tips = -self.offset(Place::Tray, |part| part == 0).ok_or("no grip takes it from a tray")?[0];
@@ -334,7 +335,7 @@ impl Rules<'_> {
     }
 }
 
-/// What kind of place a grip is at. One that holds anywhere with the movetable of a place belongs to that place.
+/// Kind of a grip's place. A grip that is valid at any place belongs to the place of its movetable.
 fn place(cell: &CellDescription, family: &Family, grip: &GripEntry) -> Option<Place> {
     let at = |place: &Typed| {
         let name = place.name.name;
@@ -357,7 +358,7 @@ fn place(cell: &CellDescription, family: &Family, grip: &GripEntry) -> Option<Pl
     family.grips().find(same).map_or(Some(Place::Tray), |other| at(&other.place))
 }
 
-/// A part whose blank has another size.
+/// A part whose blank has another size: each side changes by as much as that of the blank, the weight with the volume.
 pub fn resized(part: &PartType, blank: &PartType, size: [f64; 3], name: &str) -> PartType {
     let mut new = part.clone();
     name.clone_into(&mut new.name);
@@ -369,7 +370,7 @@ pub fn resized(part: &PartType, blank: &PartType, size: [f64; 3], name: &str) ->
     new
 }
 
-/// Inches as numbers of 0.01 in.
+/// Inches in units of 0.01 in.
 pub fn hundredths(inches: f64) -> i32 {
     whole(inches * 100.0)
 }

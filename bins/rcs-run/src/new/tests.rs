@@ -28,7 +28,7 @@ fn made(name: &str, size: &str, like: &str) -> Result<Made, Error> {
     make(&Order { name, like, tool, size, weight: None }, (&store, &cell, &data()))
 }
 
-/// Made, checked and run.
+/// Make a new part, check it and run it.
 fn tried(name: &str, size: &str, like: &str) -> Result<usize, Error> {
     let made = made(name, size, like)?;
     let trial = Trial::checked(&made.trial, name)?;
@@ -60,7 +60,7 @@ fn a_part_of_the_same_size_has_the_same_numbers() {
 
 #[test]
 fn a_smaller_clevis_is_machined_on_both_sides() {
-    // The vise gets a step for it.
+    // The part gets a new step of the vise.
     assert_eq!(tried("HINGE", "3x1.5x1", "LCLEVIS").map_err(|error| error.to_string()), Ok(3));
 }
 
@@ -83,7 +83,7 @@ fn a_longer_tool_goes_into_the_drum_and_out_of_it() {
 fn what_lies_in_nests_moves_with_its_middle() {
     let diff =
         |name, size, like| made(name, size, like).map(|made| made.change.diff()).expect("it can be made");
-    // Another tool in the same holder is held where the like one is.
+    // Another tool in the same holder is held at the same place as the like one.
     let tool = diff("TAP-4", "", "DRILL-2");
     for line in [
         "+  -obj- TAP-4 1 400 175 80 400",

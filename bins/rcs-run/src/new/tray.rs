@@ -1,4 +1,4 @@
-//! `rcs-run new tray`: a tray that is divided, seen and reached like one that is there.
+//! `rcs-run new tray`: a tray with the sectors, views and approaches of an existing tray.
 
 use std::path::Path;
 
@@ -19,19 +19,19 @@ use super::{
 };
 use crate::error::Error;
 
-/// What a new tray changes, and a job that tries it.
+/// The changes for a new tray, and a job that tries it.
 pub struct Made {
     pub change: Change,
-    /// The change, and with it a job of the like tray with the new one.
+    /// The changes, and a job of the like tray in which the new tray replaces it.
     pub trial: Change,
     /// Name of that job.
     pub job: String,
 }
 
-/// Make the data of a tray with its centre at a point, in.
+/// Make the data of a tray whose centre is at a point, in.
 ///
 /// # Errors
-/// [`Error::New`] with the reason if there cannot be such a tray.
+/// [`Error::New`] with the reason if such a tray is not possible.
 pub fn make(
     name: &str,
     centre: [f64; 2],
@@ -92,7 +92,7 @@ fn unknown(like: &str, cell: &CellDescription) -> Error {
     Error::New(format!("no tray is named {like}{near}; the cell has {}", known.join(", ")))
 }
 
-/// Whether no other tray is there.
+/// Check that no other tray is at the point.
 fn stands_alone([x, y]: [f64; 2], cell: &CellDescription) -> Result<(), Error> {
     let side = cell.tray_shape.inside + 2.0 * cell.tray_shape.wall;
     let other = cell.tray.iter().find(|other| {
@@ -107,7 +107,7 @@ fn stands_alone([x, y]: [f64; 2], cell: &CellDescription) -> Result<(), Error> {
     })
 }
 
-/// The pose of the corner, moved.
+/// The pose of the tray's corner, displaced.
 fn corner(new: &New<'_>, pose: &PoseEntry, [dx, dy]: [f64; 2]) -> Entry {
     let hundredths = |inches: f64| (inches * 100.0).round() as i32;
     let (dx, dy) = (hundredths(dx), hundredths(dy));
@@ -115,7 +115,7 @@ fn corner(new: &New<'_>, pose: &PoseEntry, [dx, dy]: [f64; 2]) -> Entry {
     Entry::Pose(PoseEntry { points, name: new.pose_name(), ..pose.clone() })
 }
 
-/// The owner that has the arrays of the tray.
+/// The owners that contain the arrays of the tray.
 fn owners(new: &New<'_>, entered: &Entered) -> Vec<Entry> {
     let own = entered.all().filter_map(|entry| match entry {
         Entry::Owner(owner) if owner.name.name.as_str() == new.like => Some(owner.clone()),
@@ -129,7 +129,7 @@ fn owners(new: &New<'_>, entered: &Entered) -> Vec<Entry> {
     renamed.collect()
 }
 
-/// What an entry says of the like tray, said of the new one.
+/// An entry about the like tray, changed for the new one; `None` if it is about another place.
 fn at_the_tray(new: &New<'_>, entry: &Entry) -> Option<Entry> {
     let moved = |place: &Typed| {
         let mut place = *place;
@@ -147,7 +147,7 @@ fn at_the_tray(new: &New<'_>, entry: &Entry) -> Option<Entry> {
     Some(entry)
 }
 
-/// The tray in the cell description.
+/// The table of the tray in the cell description.
 fn table(name: &str, like: &Tray, [dx, dy]: [f64; 2]) -> String {
     let thousandth = |inches: f64| (inches * 1000.0).round() / 1000.0;
     let moved = |[x, y]: [f64; 2]| format!("[{:?}, {:?}]", thousandth(x + dx), thousandth(y + dy));
@@ -160,7 +160,7 @@ fn table(name: &str, like: &Tray, [dx, dy]: [f64; 2]) -> String {
     )
 }
 
-/// The shortest job that brings loose parts from the like tray only, with the new one: its name and text.
+/// The shortest job that takes loose parts from the like tray only, changed for the new one: its name and text.
 fn job(like: &str, name: &str, cell: &CellDescription, data: &Path) -> Result<(String, String), Error> {
     let loose =
         |part: &str| cell.part(part).is_some_and(|part| !cell.nest.iter().any(|nest| nest.takes(part)));

@@ -1,4 +1,4 @@
-//! New data are tried before they are written: check, and runs in the simulated cell.
+//! Tries new data before they are written, with the checks and with runs in the simulated cell.
 
 use std::{panic::resume_unwind, path::Path, thread};
 
@@ -8,29 +8,29 @@ use tempfile::TempDir;
 use super::change::Change;
 use crate::{check, error::Error};
 
-/// Seeds of the runs of a new job.
+/// Seeds for the runs of a new job.
 const SEEDS: [u64; 3] = [1, 2, 3];
-/// Runs at a time.
+/// Number of runs at the same time.
 const AT_A_TIME: usize = 2;
 
-/// A copy of the data with the change.
+/// A copy of the data directory with the change.
 pub struct Trial {
     place: TempDir,
-    /// Warnings about what is new.
+    /// Warnings about the new data.
     pub warnings: Vec<String>,
 }
 
 impl Trial {
-    /// Copy and check. `name` is in all warnings that are told.
+    /// Copy and check the data. Only warnings that contain `name` are returned.
     ///
     /// # Errors
-    /// [`Error::New`] with every error that `check` finds.
+    /// [`Error::New`] with every error that the check finds.
     pub fn checked(change: &Change, name: &str) -> Result<Self, Error> {
         let place = tempfile::tempdir()?;
         change.copy_to(place.path())?;
         let (errors, mut warnings) = check::findings(place.path());
         if !errors.is_empty() {
-            // The copy is gone when this is read.
+            // The copy no longer exists when the message is read.
             let copy = format!("{}/", place.path().display());
             let errors = errors.join("\n  ").replace(&copy, "");
             return Err(Error::New(format!("check finds errors:\n  {errors}")));
@@ -39,12 +39,12 @@ impl Trial {
         Ok(Self { place, warnings })
     }
 
-    /// The copy.
+    /// The directory of the copy.
     pub fn data(&self) -> &Path {
         self.place.path()
     }
 
-    /// Run the new job with some seeds, and all other jobs once if `others`. Returns how many runs finished.
+    /// Run the new job with several seeds, and every other job once if `others`. Returns the number of finished runs.
     ///
     /// # Errors
     /// [`Error::New`] with the first run that did not finish.
@@ -63,7 +63,7 @@ impl Trial {
         Ok(wanted.len())
     }
 
-    /// One run.
+    /// One run of a job.
     fn finishes(&self, job: &str, seed: u64) -> Result<(), Error> {
         let config = RunConfig {
             seed,

@@ -1,24 +1,24 @@
-//! The form of a pose or a movetable in the text of a file of blocks.
+//! Inserts the form of a pose or a movetable into the text of a file of blocks.
 
 use taskdata::load::{
     Source,
     source::{BLOCK_LINES, blocks},
 };
 
-/// A text with a form in it.
+/// A text after the insertion of a form.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Changed {
     /// The whole text.
     pub text: String,
-    /// First line that has changed, from 1.
+    /// First changed line, from 1.
     pub line: usize,
-    /// Lines that are gone.
+    /// Removed lines.
     pub removed: Vec<String>,
-    /// Lines that are new.
+    /// Added lines.
     pub added: Vec<String>,
 }
 
-/// What a form is of.
+/// Kind of a form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A pose (VII.1).
@@ -28,7 +28,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The compiling word, which stands in the last line.
+    /// The compiling word, which is in the last line of the form.
     const fn word(self) -> &'static str {
         match self {
             Self::Pose => "-pose-",
@@ -36,7 +36,7 @@ impl Kind {
         }
     }
 
-    /// How many lines the form has that ends with line `last`.
+    /// Number of lines of the form that ends with line `last`.
     fn lines(self, lines: &[String], last: usize) -> usize {
         match self {
             Self::Pose => 3,
@@ -49,10 +49,10 @@ impl Kind {
     }
 }
 
-/// Put a form into a text: in the place of the form of that name, or behind the last line of the block.
+/// Insert a form: in place of the form of that name, or after the last line of the block.
 ///
 /// # Errors
-/// What is missing: no block of that number, or no room in it.
+/// A message if the text has no block of that number, or if the block has no room.
 pub fn put(
     text: &str,
     block: Option<u32>,
@@ -81,7 +81,7 @@ pub fn put(
     Ok(Changed { text: lines.join("\n") + "\n", line: at + 1, removed, added })
 }
 
-/// The number of lines up to the end of what stands in a block, where a form of so many lines and a blank one have room.
+/// Number of lines up to the end of the block's text, if a form of `form` lines and a blank line fit after it.
 fn end_of(text: &str, block: Option<u32>, form: usize) -> Result<usize, String> {
     let block = block.ok_or("there is no form of that name: say with --block where it is to stand")?;
     let source = Source { name: String::new(), text: text.into() };

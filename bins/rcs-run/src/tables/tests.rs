@@ -1,4 +1,4 @@
-//! The page of a small example, and that nothing in the tables of the controller goes unexplained.
+//! The page of a small example, and a check that it explains every name in the controller's tables.
 
 use super::*;
 use rcs_core::{Actions, Plain, Variables, decision_table};
@@ -204,7 +204,7 @@ fn links_of_doc_comments_are_left_out() {
     assert_eq!(prose("The sector, [1, 16], of poses[2]"), "The sector, [1, 16], of poses[2]");
 }
 
-/// A name in a row that the page does not explain would be a riddle.
+/// The page explains every name in a row.
 #[test]
 fn whatever_the_rows_name_has_a_meaning() {
     let tables = Ladder::processes().iter().flat_map(|process| process.tables);

@@ -16,9 +16,9 @@
 //! |                          | text, and an optional field for what each carries, number code + 2.  |
 //! |                          | The enum is in a nested message: a variant and its field are alike   |
 //!
-//! The wrapping message gives each enum a scope of its own: protobuf forbids two enums of one scope to share
-//! a variant. A field of a union is named after its variant, so that a reader finds `goal.at_a_place.x` under
-//! the path that [`crate::layout`] has for it.
+//! The wrapping message gives each enum its own scope: protobuf forbids two enums of one scope to share a variant. A
+//! field of a union is named after its variant, so that a reader finds `goal.at_a_place.x` under the path that
+//! [`crate::layout`] gives it.
 
 use prost::Message as _;
 use prost_types::{
@@ -33,7 +33,7 @@ use crate::layout;
 /// Package of all messages of this project.
 pub const PACKAGE: &str = "rcs";
 
-/// The field of a union's message that says which variant it is.
+/// The field of a union's message with the variant.
 pub const KIND: &str = "kind";
 
 /// Full name of the message of a record.
@@ -42,7 +42,7 @@ pub fn message_name(record: &StructSchema) -> String {
     format!("{PACKAGE}.{}", record.name)
 }
 
-/// The encoded `FileDescriptorSet` that describes the message of a record and all that it holds.
+/// The encoded `FileDescriptorSet` with the message of a record and all messages that it contains.
 #[must_use]
 pub fn descriptor_set(record: &StructSchema) -> Vec<u8> {
     let mut messages = Vec::new();
@@ -50,7 +50,7 @@ pub fn descriptor_set(record: &StructSchema) -> Vec<u8> {
     encode_set(vec![file("rcs.proto", PACKAGE, &[], messages)])
 }
 
-/// A `FileDescriptorSet` as it stands in an MCAP schema.
+/// A `FileDescriptorSet` in the form of an MCAP schema.
 #[must_use]
 pub fn encode_set(files: Vec<FileDescriptorProto>) -> Vec<u8> {
     FileDescriptorSet { file: files }.encode_to_vec()
@@ -74,7 +74,7 @@ pub fn file(
     }
 }
 
-/// A message with its fields. Protobuf wants a oneof for each field that is [`optional`].
+/// A message with its fields. Protobuf requires a oneof for each field that is [`optional`].
 #[must_use]
 pub fn message(name: &str, mut fields: Vec<FieldDescriptorProto>) -> DescriptorProto {
     let mut oneofs = Vec::new();
@@ -91,7 +91,7 @@ pub fn message(name: &str, mut fields: Vec<FieldDescriptorProto>) -> DescriptorP
     }
 }
 
-/// A field of a kind that has no type of its own.
+/// A field of a scalar type.
 #[must_use]
 pub fn field(name: &str, number: i32, kind: Type) -> FieldDescriptorProto {
     FieldDescriptorProto {
@@ -109,13 +109,13 @@ pub fn typed_field(name: &str, number: i32, kind: Type, of: &str) -> FieldDescri
     FieldDescriptorProto { type_name: Some(format!(".{of}")), ..field(name, number, kind) }
 }
 
-/// The same field, repeated.
+/// The field as a repeated one.
 #[must_use]
 pub fn repeated(field: FieldDescriptorProto) -> FieldDescriptorProto {
     FieldDescriptorProto { label: Some(Label::Repeated.into()), ..field }
 }
 
-/// The same field, if it is there. A message is absent if it is not written, an array if it is empty.
+/// The field as an optional one. Messages and repeated fields need no mark: they are absent or empty if not written.
 #[must_use]
 pub fn optional(field: FieldDescriptorProto) -> FieldDescriptorProto {
     let absent_anyway = field.r#type() == Type::Message || field.label() == Label::Repeated;
@@ -194,13 +194,13 @@ fn add_union(of: &'static UnionSchema, messages: &mut Vec<DescriptorProto>) {
     payloads().for_each(|payload| add_schema(payload, messages));
 }
 
-/// Number of the field for what a variant carries.
+/// Number of the field for the value of a variant.
 #[must_use]
 pub fn payload_number(code: u8) -> u16 {
     u16::from(code) + 2
 }
 
-/// Message for an element of an array that can be absent.
+/// Name of the message for an optional element of an array.
 fn element_name(option: &Schema) -> String {
     fn type_name(schema: &Schema) -> String {
         match schema {
@@ -242,9 +242,8 @@ fn enum_identifiers(of: &EnumSchema) -> Vec<(i32, String)> {
     identifiers(of.variants.iter().map(|variant| (variant.code, variant.text)))
 }
 
-/// Code and identifier of each variant, from its code and text. Protobuf wants identifiers: every other
-/// character becomes `_`, the empty text `NONE`, and a text that is then like an earlier one gets its code at
-/// the end.
+/// Code and identifier of each variant, from its code and text. Protobuf requires identifiers: every other character
+/// becomes `_`, the empty text `NONE`, and a text that would equal an earlier one gets its code as a suffix.
 #[must_use]
 pub fn identifiers<'a>(variants: impl Iterator<Item = (u8, &'a str)>) -> Vec<(i32, String)> {
     let mut names: Vec<(i32, String)> = Vec::new();
@@ -351,7 +350,7 @@ mod tests {
         }
     }
 
-    /// Messages are told apart by name only, so two records, or a record and an enum, must not share one.
+    /// Messages are distinguished by name only, so two records, or a record and an enum, must not share a name.
     #[test]
     fn names_are_not_shared() {
         fn walk(schema: &'static Schema, seen: &mut BTreeMap<&'static str, String>) {
@@ -379,7 +378,7 @@ mod tests {
         assert!(seen.len() > 20);
     }
 
-    /// Field name, number, type or name of the type, and whether it is `optional` or repeated.
+    /// Field name, number, type or name of the type, and true for optional and repeated fields.
     fn fields(message: &DescriptorProto) -> Vec<(&str, i32, &str, &str)> {
         fn told(field: &FieldDescriptorProto) -> (&str, i32, &str, &str) {
             let kind = field.type_name.as_deref().unwrap_or_else(|| field.r#type().as_str_name());

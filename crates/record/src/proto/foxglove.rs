@@ -1,4 +1,4 @@
-//! Messages of the `foxglove` package: viewers recognize them by their names.
+//! Messages of the `foxglove` package, which viewers recognize by name.
 //!
 //! Fields and numbers are those that foxglove publishes in its schema repository for `FrameTransforms` and
 //! `Log`; fields that this log never fills (message id, lineage) are not described.
@@ -21,19 +21,19 @@ pub const LOG: &str = "foxglove.Log";
 /// Severity of a log line; the codes are those of `foxglove.Log`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// Details for finding faults of the program.
+    /// Details for debugging.
     Debug = 1,
     /// A normal event.
     #[default]
     Info = 2,
-    /// Something unusual without harm so far.
+    /// An unusual event without harm so far.
     Warning = 3,
     /// A command failed.
     Error = 4,
 }
 
 impl Level {
-    /// The level with a code; an unknown code is an error.
+    /// The level with a code; an unknown code counts as an error.
     #[must_use]
     pub const fn from_code(code: u64) -> Self {
         match code {
@@ -45,7 +45,7 @@ impl Level {
     }
 }
 
-/// A place of a frame in another: metres, and a unit quaternion x, y, z, w.
+/// Pose of a frame in another: metres, and a unit quaternion x, y, z, w.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
     /// Origin of the frame, metres.
@@ -55,7 +55,7 @@ pub struct Transform {
 }
 
 impl Transform {
-    /// The frame itself.
+    /// The identity.
     pub const IDENTITY: Self = Self { position: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0] };
 }
 
@@ -118,7 +118,7 @@ pub fn compressed_image_descriptor() -> Vec<u8> {
     ])
 }
 
-/// Append a `CompressedImage` message: a PNG file, with the frame of its camera. `time` in nanoseconds since 1970.
+/// Append a `CompressedImage` message: a PNG file, and the frame of its camera. `time` in nanoseconds since 1970.
 pub fn put_png(time: u64, frame: &str, png: &[u8], out: &mut Vec<u8>) {
     timestamp(time, out);
     wire::bytes(2, png, out);
@@ -171,8 +171,8 @@ pub(super) fn put_doubles(values: &[f64], out: &mut Vec<u8>) {
     (1..).zip(values).for_each(|(number, value)| wire::double(number, *value, out));
 }
 
-/// Append a `Log` message. `time` in nanoseconds since 1970; `file` and `line` say where the row stands, or
-/// are empty and 0.
+/// Append a `Log` message. `time` in nanoseconds since 1970; `file` and `line` are the source of the decision row, or
+/// empty and 0.
 pub fn put_log(time: u64, level: Level, text: &str, source: &str, file: &str, line: u32, out: &mut Vec<u8>) {
     timestamp(time, out);
     wire::unsigned(2, level as u64, out);
@@ -207,7 +207,7 @@ fn take_transform(data: &[u8]) -> (Link, Transform) {
     (link, place)
 }
 
-/// Fields 1, 2, ... of a message of doubles.
+/// Fields 1, 2, ... of a message whose fields are all doubles.
 fn take_doubles(data: &[u8], out: &mut [f64]) {
     for field in wire::Fields(data) {
         let (number, Value::Bytes(bytes)) = field else { continue };

@@ -1,11 +1,11 @@
-//! A record's byte image as a protobuf message, described by [`super::descriptor`].
+//! Converts a record's byte image into a protobuf message, described by [`super::descriptor`].
 
 use rcs_core::plain::{Schema, StructSchema, UnionSchema};
 
 use super::{descriptor, wire};
 use crate::layout;
 
-/// Append the message of `record`, whose image is `image`.
+/// Append the message of `record`; `image` is its byte image.
 pub fn encode(record: &StructSchema, mut image: &[u8], out: &mut Vec<u8>) {
     for (number, field) in (1..).zip(record.fields) {
         let (bytes, rest) = image.split_at_checked(field.schema.size()).unwrap_or((image, &[]));
@@ -49,7 +49,7 @@ fn encode_field(number: u32, schema: &Schema, bytes: &[u8], out: &mut Vec<u8>) {
     }
 }
 
-/// The variant, and what it carries.
+/// Encode the variant and its value.
 fn encode_union(of: &UnionSchema, bytes: &[u8], out: &mut Vec<u8>) {
     let Some((code, carried)) = bytes.split_first() else { return };
     wire::unsigned(1, u64::from(*code), out);
@@ -60,7 +60,7 @@ fn encode_union(of: &UnionSchema, bytes: &[u8], out: &mut Vec<u8>) {
     }
 }
 
-/// An element of a packed array: the value without its field number.
+/// Encode an element of a packed array: the value without its field number.
 fn encode_packed(schema: &Schema, bytes: &[u8], out: &mut Vec<u8>) {
     match schema {
         Schema::F64 => out.extend_from_slice(bytes),

@@ -1,11 +1,11 @@
-//! Messages of the log's channels: protobuf for buffers, transforms and log lines, CDR for the two ROS
-//! messages that carry joints and the description of the cell.
+//! Messages of the log's channels: protobuf for buffers, transforms and log lines, CDR for the two ROS messages with
+//! the joints and the description of the cell.
 //!
 //! * [`wire`]: the wire format;
-//! * [`descriptor`]: a record's schema as protobuf descriptors, so that a reader needs only the file;
-//! * [`message`]: a record's byte image as a protobuf message;
-//! * [`foxglove`]: messages whose meaning viewers know;
-//! * [`scene`]: solids and names that viewers draw;
+//! * [`descriptor`]: a record's schema as protobuf descriptors, so that the file describes itself;
+//! * [`message`]: conversion of a record's byte image into a protobuf message;
+//! * [`foxglove`]: messages that viewers interpret;
+//! * [`scene`]: shapes and texts that viewers draw;
 //! * [`ros`]: `JointState` and `String`.
 
 pub mod descriptor;

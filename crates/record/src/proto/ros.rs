@@ -1,15 +1,15 @@
-//! Two ROS 2 messages in CDR: `sensor_msgs/msg/JointState`, which drives a robot description and gives curves
-//! by joint name, and `std_msgs/msg/String`, which carries the description itself.
+//! Two ROS 2 messages in CDR: `sensor_msgs/msg/JointState`, which moves a robot description and gives curves by joint
+//! name, and `std_msgs/msg/String`, which contains the description.
 //!
-//! CDR here is little-endian with the four-byte header of XCDR1; every number is aligned to its size, counted
-//! from behind the header.
+//! CDR here is little-endian with the four-byte header of XCDR1; every number is aligned to its size, counted from the
+//! end of the header.
 
 /// Schema name of [`joint_state`].
 pub const JOINT_STATE: &str = "sensor_msgs/msg/JointState";
 /// Schema name of [`string`].
 pub const STRING: &str = "std_msgs/msg/String";
 
-/// Definition of [`JOINT_STATE`], with what it refers to.
+/// Definition of [`JOINT_STATE`], including the messages to which it refers.
 pub const JOINT_STATE_DEFINITION: &str = "\
 std_msgs/Header header
 string[] name
@@ -29,7 +29,7 @@ uint32 nanosec
 /// Definition of [`STRING`].
 pub const STRING_DEFINITION: &str = "string data\n";
 
-/// Puts values into a CDR message.
+/// Appends values to a CDR message.
 struct Cdr<'a> {
     out: &'a mut Vec<u8>,
     start: usize,

@@ -1,6 +1,6 @@
-//! `foxglove.SceneUpdate`: solids, names and lines that a viewer draws on frames.
+//! `foxglove.SceneUpdate`: shapes, texts and lines that a viewer draws in frames.
 //!
-//! Numbers of fields are those of foxglove's schema repository. Primitives that this log never draws are not described.
+//! The numbers of fields are those of foxglove's schema repository. Primitives that this log never draws are omitted.
 
 use prost_types::{DescriptorProto, EnumDescriptorProto, field_descriptor_proto::Type};
 
@@ -27,24 +27,24 @@ pub type Colour = [f64; 4];
 pub enum Primitive<'a> {
     /// A GLB file: metres, Y up.
     Model(&'a [u8]),
-    /// A text that faces the viewer: where it stands, how high its letters are, its colour.
+    /// A text that faces the viewer: position, height of its letters, colour.
     Text(&'a str, [f64; 3], f64, Colour),
-    /// A line through points, with its thickness and colour.
+    /// A line through points: points, thickness, colour.
     Line(&'a [[f64; 3]], f64, Colour),
-    /// A ball: its middle, its diameter and its colour.
+    /// A ball: centre, diameter, colour.
     Ball([f64; 3], f64, Colour),
 }
 
-/// A thing to draw.
+/// An object to draw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entity<'a> {
-    /// Its name: the same name replaces it.
+    /// Its name: a later entity with the same name replaces it.
     pub id: &'a str,
-    /// The frame that it moves with.
+    /// The frame to which it is attached.
     pub frame: &'a str,
     /// Its shape.
     pub primitive: Primitive<'a>,
-    /// Keys and values that a viewer shows when it is selected.
+    /// Keys and values that a viewer shows for the selected entity.
     pub facts: &'a [(&'a str, String)],
 }
 
@@ -146,7 +146,7 @@ fn deletion() -> DescriptorProto {
     }
 }
 
-/// Append to a `SceneUpdate` the deletion of all earlier entities. `time` in nanoseconds since 1970.
+/// Append the deletion of all earlier entities to a `SceneUpdate`. `time` in nanoseconds since 1970.
 pub fn put_clear(time: u64, out: &mut Vec<u8>) {
     wire::nested(1, out, |out| {
         timestamp(time, out);
@@ -154,7 +154,7 @@ pub fn put_clear(time: u64, out: &mut Vec<u8>) {
     });
 }
 
-/// Append one entity, which stays until it is replaced, to a `SceneUpdate`. `time` in nanoseconds since 1970.
+/// Append one entity, which remains until it is replaced, to a `SceneUpdate`. `time` in nanoseconds since 1970.
 pub fn put_entity(time: u64, entity: &Entity<'_>, out: &mut Vec<u8>) {
     wire::nested(2, out, |out| {
         timestamp(time, out);

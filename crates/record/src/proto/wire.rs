@@ -1,13 +1,13 @@
 //! The part of the protobuf wire format that a log uses.
 //!
-//! Values that are zero are written too: otherwise readers that treat a missing field as missing would interrupt a
-//! curve at zero.
+//! Zero values are written, too: readers that treat an absent field as missing would otherwise interrupt a curve at
+//! zero.
 
 /// Wire type of varints.
 const VARINT: u64 = 0;
 /// Wire type of eight bytes.
 const FIXED64: u64 = 1;
-/// Wire type of a length and so many bytes.
+/// Wire type of a length and the bytes after it.
 const BYTES: u64 = 2;
 /// Wire type of four bytes.
 const FIXED32: u64 = 5;
@@ -21,7 +21,7 @@ pub fn put_varint(mut value: u64, out: &mut Vec<u8>) {
     out.push(value as u8);
 }
 
-/// Take a number from the front of `bytes`; `None` if it does not end or does not fit 64 bits.
+/// Take a number from the front of `bytes`; `None` if it has no end or does not fit in 64 bits.
 pub fn take_varint(bytes: &mut &[u8]) -> Option<u64> {
     let mut value = 0_u64;
     for group in 0..10_u32 {
@@ -55,7 +55,7 @@ fn tag(field: u32, wire_type: u64, out: &mut Vec<u8>) {
     put_varint(u64::from(field) << 3 | wire_type, out);
 }
 
-/// A `uint32`, `uint64`, `bool`, `int32` that is not negative, or enum field.
+/// A `uint32`, `uint64`, `bool`, enum, or non-negative `int32` field.
 pub fn unsigned(field: u32, value: u64, out: &mut Vec<u8>) {
     tag(field, VARINT, out);
     put_varint(value, out);
@@ -91,7 +91,7 @@ pub fn bytes(field: u32, value: &[u8], out: &mut Vec<u8>) {
     out.extend_from_slice(value);
 }
 
-/// A message or a packed array: the bytes that `body` appends, with their length before them.
+/// A message or a packed array: the bytes that `body` appends, preceded by their length.
 pub fn nested(field: u32, out: &mut Vec<u8>, body: impl FnOnce(&mut Vec<u8>)) {
     tag(field, BYTES, out);
     let start = out.len();
@@ -104,7 +104,7 @@ pub fn nested(field: u32, out: &mut Vec<u8>, body: impl FnOnce(&mut Vec<u8>)) {
     }
 }
 
-/// Fields of a message, in the order of the wire; ends at the first one that is not well-formed.
+/// Fields of a message, in the order of the wire; ends at the first malformed one.
 pub struct Fields<'a>(pub &'a [u8]);
 
 /// The value of a field on the wire.

@@ -1,10 +1,10 @@
-//! Objects that only the camera can tell apart (VII.7): forms and cell description are the same for both.
+//! Finds objects with equal forms and equal cell descriptions, which only the camera can distinguish (VII.7).
 
 use taskdata::load::alike::alike;
 
 use super::both::Both;
 
-/// Warn of each.
+/// Warn of each pair of such objects.
 pub fn check(both: &mut Both<'_>) {
     let cell = both.cell;
     for pair @ [_, object] in alike(&both.data) {

@@ -1,4 +1,4 @@
-//! Task data and cell description together: entries of both, with their places in the files.
+//! Task data and cell description together: entries of both, with their positions in the files.
 
 use diagnostics::{At, Diagnostics, Problems, Source};
 use plant::CellDescription;
@@ -8,7 +8,7 @@ use taskdata::{
     load::Store,
 };
 
-/// Both, and what was found wrong with either.
+/// Task data and cell description, and the findings in both.
 pub struct Both<'a> {
     pub cell: &'a CellDescription,
     pub store: &'a Store,
@@ -70,7 +70,7 @@ impl<'a> Both<'a> {
             .ok()
     }
 
-    /// Where the frame of a location was entered: its pose, or the array's name.
+    /// Position of the entry that gives the frame of a location: its pose, or the array's name.
     pub fn origin(&self, location: &Location) -> At {
         let origins = self.store.origins();
         let pose = self.data.locpt(location.place.locpt).and_then(|point| point.pose.index());

@@ -1,4 +1,4 @@
-//! What the lines of a job do to the trays and the vise of the cell.
+//! Follows the effects of a job's lines on the trays and the vise of the cell.
 
 use interfaces::HwsCommand;
 use plant::{
@@ -14,8 +14,8 @@ use taskdata::{
 /// Tolerance for rounding in the description, in.
 const ROUNDING: f64 = 1e-6;
 
-/// Why a part cannot be put into a sector: a fixture is in the way of the part, which lies at most `off` from the
-/// middle.
+/// The reason why a part cannot be put into a sector: a fixture is in the way of the part, whose centre is at most
+/// `off` from the middle of the sector.
 pub fn occupied(action: &WorkstationAction, cell: &CellDescription) -> Option<String> {
     let WorkstationAction::Place { part, unit, sector, placement } = action else { return None };
     let part = cell.part(part).filter(|part| !cell.nest.iter().any(|nest| nest.takes(part)))?;
@@ -61,7 +61,7 @@ fn in_the_way<'c>(
     near.filter(|(_, distance, room)| distance < room).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Why a command cannot work, the word of its line that causes it, and what to do.
+/// Why a command is impossible, the word of its line that causes it, and what to do.
 pub struct Refused {
     pub word: String,
     pub message: String,
@@ -73,15 +73,15 @@ pub struct State<'c> {
     cell: &'c CellDescription,
     /// The newest task data.
     pub data: TaskData<'c>,
-    /// `None` once it is not known.
+    /// `None` if it is unknown.
     jaws: Option<Jaws<'c>>,
-    /// What was brought into the vise last.
+    /// The object that was put into the vise last.
     in_vise: Option<Name16>,
-    /// Unit and sector of parts that were put down at random.
+    /// Unit and sector of parts that were put down at random positions.
     random: Vec<(Name10, Option<i32>)>,
 }
 
-/// The vise.
+/// The state of the vise.
 #[derive(Clone, Copy)]
 struct Jaws<'c> {
     program: &'c ViseProgram,
@@ -89,15 +89,15 @@ struct Jaws<'c> {
 }
 
 impl<'c> State<'c> {
-    /// As a run begins: the vise is open, by its first program.
+    /// The state at the start of a run: the vise is open, by its first program.
     pub fn new(cell: &'c CellDescription, data: TaskData<'c>) -> Self {
         let program = cell.vise.program.first();
         let jaws = program.map(|program| Jaws { program, opening: ViseOpening::Open });
         Self { cell, data, jaws, in_vise: None, random: Vec::new() }
     }
 
-    /// A `**` line; `lost` if it takes effect at another time, or was refused. Returns why it cannot be carried out, if
-    /// so.
+    /// Apply a `**` line. `lost` is true if it takes effect at another time or was refused. Returns the reason if it is
+    /// impossible.
     pub fn action(&mut self, action: &Workstation, lost: bool) -> Option<String> {
         let vise = self.cell.vise.location.as_str();
         match action {
@@ -120,7 +120,7 @@ impl<'c> State<'c> {
         None
     }
 
-    /// A command.
+    /// Apply a command.
     pub fn command(&mut self, command: &HwsCommand) -> Option<Refused> {
         let (verb, object) = (command.command.as_str(), command.object?);
         let part = self.cell.part(object.as_str())?;
@@ -136,7 +136,7 @@ impl<'c> State<'c> {
         Some(Refused { word: destination.to_string(), message, help })
     }
 
-    /// A part that was put down at random has to be looked for. Parts that have nests lie in them.
+    /// A part at a random position must be located by the camera. Parts that have nests lie in them.
     fn unseen(&self, command: &HwsCommand, part: &PartType) -> Option<Refused> {
         let (object, source) = (command.object?, command.source?);
         let location = self.data.resolve_location(&source, command.source_sector, Some(&object)).ok()?;
@@ -154,8 +154,8 @@ impl<'c> State<'c> {
 }
 
 impl Jaws<'_> {
-    /// Why a part cannot be brought in: no side of it fits between the clamping faces and is wider than what
-    /// is left between the inner faces, over which it would fall.
+    /// The reason why a part cannot be brought in: no side of it fits between the clamping faces and is wider than the
+    /// remaining gap between the inner faces, through which the part would fall.
     fn refuse(&self, part: &PartType) -> Option<String> {
         let (opening, how) = match self.opening {
             ViseOpening::Close => {

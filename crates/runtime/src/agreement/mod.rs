@@ -1,7 +1,7 @@
 //! Checks that task data, job and cell description describe the same cell.
 //!
-//! Each of the three has been checked by itself before. This module finds names that only one of them has: otherwise a
-//! run fails late, or the robot goes where nothing stands. It also compares numbers that several of them give: `sizes`,
+//! Each of the three has been checked alone before. This module finds names that only one of them has: they would make
+//! a run fail late, or send the robot to an empty place. It also compares numbers that several of them give: `sizes`,
 //! `places`, `job`.
 
 mod alike;
@@ -25,8 +25,8 @@ use taskdata::{
 
 use crate::workstation::orders;
 
-/// Names in the lines `**` of a job that the cell does not have. `source` is the text of the description, `path` its
-/// file.
+/// The names in the `**` lines of a job that the cell does not have. `source` is the text of the description, `path`
+/// its file.
 pub fn of_job(job: &Job, source: &Source, cell: &CellDescription, store: &Store, path: &Path) -> Diagnostics {
     let mut problems = Problems::default();
     let mut state = job::State::new(cell, store.view());
@@ -72,8 +72,8 @@ pub fn of_job(job: &Job, source: &Source, cell: &CellDescription, store: &Store,
     Diagnostics::of_file(problems, job.source())
 }
 
-/// Blocks that a line loads are checked against the cell as those of the data directory are. One that ends with
-/// `expect error` loads what does not fit.
+/// Check blocks that a line loads against the cell, as those of the data directory. A line that ends with `expect
+/// error` loads blocks that do not fit.
 fn load(
     job: &Source,
     line: &JobLine,
@@ -101,7 +101,7 @@ fn load(
     }
 }
 
-/// Where a word of an action stands; its line if it is not in it.
+/// Position of a word of an action, or of its line if the line does not contain the word.
 fn place(source: &Source, line: &JobLine, word: Option<&str>) -> At {
     let index = usize::try_from(line.line).unwrap_or(1).saturating_sub(1);
     let begin: usize = source.text.split_inclusive('\n').take(index).map(str::len).sum();
@@ -115,7 +115,7 @@ fn place(source: &Source, line: &JobLine, word: Option<&str>) -> At {
     At { source: 0, start: short(begin + start), length: short(length) }
 }
 
-/// Names in a cell description that the task data do not have: errors for locations, warnings for names that no job
+/// The names in a cell description that the task data do not have: errors for locations, warnings for names that no job
 /// needs.
 pub fn of_cell(source: Source, cell: &CellDescription, store: &Store) -> Diagnostics {
     let mut names = Names { source: &source, data: store.view(), problems: Problems::default() };
@@ -191,7 +191,7 @@ impl Names<'_> {
         }
     }
 
-    /// A nest is where a command can send its parts; a tray is divided as the task data divide it.
+    /// Check that a command can send parts to each nest, and that the sectors of each tray are those of the task data.
     fn sectors(&mut self, cell: &CellDescription) {
         for (number, nest) in cell.nest.iter().enumerate() {
             if !self.has_location(&nest.location) {
@@ -205,7 +205,7 @@ impl Names<'_> {
         }
         for (number, tray) in cell.tray.iter().enumerate() {
             let loose = cell.part.iter().filter(|part| !cell.nest.iter().any(|nest| nest.takes(part)));
-            // What the task data never put on this tray is left out.
+            // Parts that the task data never put on this tray are skipped.
             let here = |part: &&str| self.resolves(&tray.unit, 1, part);
             let parts: Vec<&str> = loose.map(|part| part.name.as_str()).filter(here).collect();
             let last = u16::try_from(tray.sectors.len()).unwrap_or(u16::MAX);
@@ -227,7 +227,7 @@ impl Names<'_> {
         self.unresolved(location, sector, [part].into_iter()).is_empty()
     }
 
-    /// Why the task data do not lead known objects to a sector; each reason once.
+    /// The reasons why known objects have no location in a sector of the task data; each reason once.
     fn unresolved<'p>(
         &self,
         location: &str,
@@ -244,7 +244,7 @@ impl Names<'_> {
             .collect()
     }
 
-    /// A part is an object; the camera finds it under the number that the task data ask for.
+    /// Check that each part is an object with the same number of the camera as in the task data.
     fn objects(&mut self, cell: &CellDescription) {
         for (number, part) in cell.part.iter().enumerate() {
             let object = Name16::new(&part.name).ok().and_then(|name| self.data.object_named(&name));

@@ -1,4 +1,4 @@
-//! Whether bodies stand where the task data have their places: trays, vise, pedestal, drum, nests and holsters.
+//! Checks that bodies stand at their places in the task data: trays, vise, pedestal, drum, nests and holsters.
 
 use geometry::frame::{Frame, Rotation, Vector};
 use plant::{
@@ -10,8 +10,8 @@ use taskdata::files::Location;
 
 use super::both::Both;
 
-/// Greatest distance of a body from its place in the task data, inches and degrees: less than the plays of the nests
-/// that a part is moved into (SPECNOTES).
+/// Greatest distance of a body from its place in the task data, inches and degrees: less than the clearances of the
+/// nests into which a part is moved (SPECNOTES).
 const INCHES: f64 = 0.25;
 const DEGREES: f64 = 2.0;
 
@@ -19,7 +19,7 @@ const DEGREES: f64 = 2.0;
 const HOLSTERS: [(&str, &str); 3] =
     [("HOLSTER-R", "holsters.right"), ("HOLSTER-L", "holsters.left"), ("HOLSTER-C", "holsters.centre")];
 
-/// Note each body that stands elsewhere.
+/// Add an error for each body that stands elsewhere.
 pub fn check(both: &mut Both<'_>) {
     let cell = both.cell;
     let pedestal = &cell.pedestal;
@@ -38,7 +38,7 @@ pub fn check(both: &mut Both<'_>) {
     nests(both);
 }
 
-/// A body stands at a location as such.
+/// Check that a body stands at a location.
 fn stands(both: &mut Both<'_>, entry: &str, name: &str, body: &Frame) {
     let Some(location) = both.location(name, 0, None) else { return };
     if let Some(apart) = apart(body, &location.frame) {
@@ -47,7 +47,7 @@ fn stands(both: &mut Both<'_>, entry: &str, name: &str, body: &Frame) {
     }
 }
 
-/// The sectors of loose parts.
+/// Check the sectors of loose parts.
 fn trays(both: &mut Both<'_>) {
     let cell = both.cell;
     let loose = |part: &&PartType| !cell.nest.iter().any(|nest| nest.takes(part));
@@ -70,7 +70,7 @@ fn trays(both: &mut Both<'_>) {
     }
 }
 
-/// The seats of nests.
+/// Check the seats of nests.
 fn nests(both: &mut Both<'_>) {
     let cell = both.cell;
     for (number, nest) in cell.nest.iter().enumerate() {
@@ -82,9 +82,9 @@ fn nests(both: &mut Both<'_>) {
     }
 }
 
-/// The tool point of a grip of a part in a nest must be inside the part, and at the same point of the part in all
-/// nests. For a cylinder, which may be turned about its axis, the position along the axis counts. Returns the first
-/// grip that is wrong, and why.
+/// Checks that the tool point of a grip of a part in a nest is inside the part, and at the same point of the part in
+/// all nests. For a cylinder, which may be turned about its axis, the position along the axis counts. Returns the first
+/// wrong grip, and the reason.
 fn beside(both: &Both<'_>, number: usize, part: &PartType) -> Option<(Location, String)> {
     let (name, data) = (Name16::clipped(&part.name), both.data);
     let nest = both.cell.nest.get(number)?;
@@ -123,7 +123,7 @@ fn grip_in(both: &Both<'_>, nest: &Nest, part: &Name16, grip: i32) -> Option<(Lo
     Some((location, nest.frame().inverse().compose(&frame).position))
 }
 
-/// The distance of a frame from another as text, if it is more than a body may be from its place.
+/// The distance between two frames as text, if it exceeds the tolerance.
 fn apart(one: &Frame, other: &Frame) -> Option<String> {
     let distance = (one.position - other.position).norm();
     let degrees = one.rotation.angle_to(&other.rotation).to_degrees();

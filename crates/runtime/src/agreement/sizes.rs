@@ -1,5 +1,5 @@
-//! Openings and forces of the forms against grippers and parts of the cell (VII.7.1, VII.7.2, VII.7.4), and
-//! view ranges against the camera (VII.7.6).
+//! Compares openings and forces of the forms with grippers and parts of the cell (VII.7.1, VII.7.2, VII.7.4), and view
+//! ranges with the camera (VII.7.6).
 
 use geometry::frame::Frame;
 use levels::subtask::aims::GRIPPERS;
@@ -22,7 +22,7 @@ fn inches(hundredths: i32) -> f64 {
     f64::from(hundredths) / 100.0
 }
 
-/// Note what does not fit.
+/// Add an error or a warning for each misfit.
 pub fn check(both: &mut Both<'_>) {
     for (index, record) in both.data.end_effs.iter().enumerate() {
         grip(both, index, record);
@@ -59,21 +59,21 @@ pub fn check(both: &mut Both<'_>) {
             both.form(origins, Some(index), message, "pedestal.table.limits");
         }
     }
-    // From a tray that stands elsewhere every range is wrong.
+    // If a tray stands elsewhere every range to it is wrong.
     let views = both.data.visions.iter().enumerate().filter(|(_, record)| record.enabled);
     for (index, record) in views.take_while(|_| both.places_agree()).collect::<Vec<_>>() {
         view(both, index, record);
     }
 }
 
-/// A size beyond the stroke of a gripper.
+/// The message for a size beyond the stroke of a gripper.
 fn beyond(what: &str, size: i32, [low, high]: [f64; 2], gripper: &str) -> Option<String> {
     let size = inches(size);
     let outside = size < low - ROUNDING || size > high + ROUNDING;
     outside.then(|| format!("{what} {size:.2} in, {gripper} opens from {low:.2} to {high:.2}"))
 }
 
-/// A force above the greatest of the fingers, or too small to hold anything.
+/// The message for a force above the greatest of the fingers, or too small to hold anything.
 fn unfit_force(what: &str, force: i32, gripper: &Gripper) -> Option<String> {
     let greatest = gripper.greatest_force;
     if force <= 0 {
@@ -94,20 +94,20 @@ fn gripper<'a>(both: &Both<'a>, id: i32) -> Option<(&'static str, &'static str, 
     }
 }
 
-/// A grip of an object: the stroke and the force of its gripper, the width of the part.
+/// Check a grip of an object: stroke and force of its gripper, width of the part.
 fn grip(both: &mut Both<'_>, index: usize, record: &EndEffPara) {
     let object = both.data.object_name(record.object);
     let origins = &both.store.origins().end_effs;
     let cell = both.cell;
     let part = cell.part.iter().position(|part| part.name == object.as_str());
     let what = format!("grip {:+} of {object}", record.grip);
-    // Grippers are objects too, and are locked on, not held.
+    // Grippers are objects too, but they are locked on the arm, not held.
     if GRIPPERS.contains(&object.as_str()) {
         return;
     }
     let id = both.data.obj_grips(&object).map(|grips| grips.endeff_id);
     let Some((table, name, gripper)) = id.and_then(|id| gripper(both, id)) else {
-        // Objects that are no parts, such as a push of the fingers, can do with any gripper.
+        // Objects that are not parts, such as a push of the fingers, are possible with any gripper.
         if let Some(part) = part.filter(|_| id.is_none()) {
             let message = format!("{object} is a part, and no OBJ-GRIPS record names its gripper (VII.7.2)");
             both.form(origins, Some(index), message, &format!("part[{part}].name"));
@@ -131,7 +131,7 @@ fn grip(both: &mut Both<'_>, index: usize, record: &EndEffPara) {
         return;
     }
     let Some((number, part)) = part.and_then(|number| Some((number, cell.part.get(number)?))) else { return };
-    // Grooves hold cylinders, and only the tool gripper has the force for a tool.
+    // Grooves hold cylinders, and only the tool gripper has enough force for a tool.
     let unfit = gripper.groove.is_some() && part.shape == Shape::Box;
     if unfit || part.tool != (id == Some(TOOL_GRIPPER)) {
         let kind = if part.tool {
@@ -157,7 +157,7 @@ fn grip(both: &mut Both<'_>, index: usize, record: &EndEffPara) {
         );
         both.form(origins, Some(index), message, &format!("part[{number}].size"));
     }
-    // The other grippers have no control of the force (VI.4).
+    // The other grippers have no force control (VI.4).
     let carried = 2.0 * gripper.friction * f64::from(record.grasp_force);
     if id == Some(1) && carried < part.weight {
         let message = format!(
@@ -168,8 +168,8 @@ fn grip(both: &mut Both<'_>, index: usize, record: &EndEffPara) {
     }
 }
 
-/// Widths of a part that can be between the fingers, in. On a tray its X points down and its Z along that of the
-/// sector, so the movetable of the grip there gives the side; elsewhere any side is possible.
+/// Possible widths of a part between the fingers, in. On a tray its X axis points down and its Z axis along that of the
+/// sector, so that the movetable of the grip there determines the side; elsewhere any side is possible.
 fn widths(both: &Both<'_>, record: &EndEffPara, part: &PartType) -> Vec<f64> {
     let on_tray = |kind| matches!(kind, RefType::Any | RefType::Array);
     let grips = both.data.grip_locs.iter().filter(|g| g.object == record.object && g.grip == record.grip);
@@ -190,8 +190,8 @@ fn widths(both: &Both<'_>, record: &EndEffPara, part: &PartType) -> Vec<f64> {
     known
 }
 
-/// The range of a view: from the image plane along the optical axis to the top of the part on the tray. An error of the
-/// range changes all lengths in the picture in proportion, and the part is not recognised.
+/// Check the range of a view: from the image plane along the optical axis to the top of the part on the tray. An error
+/// of the range scales all lengths in the picture, and recognition fails.
 fn view(both: &mut Both<'_>, index: usize, record: &VisionPara) {
     let object = both.data.object_name(record.object);
     let cell = both.cell;

@@ -4,7 +4,7 @@
 //! ([`Operator::at_the_box`]); entries at the terminals of the boards are a further input
 //! ([`Operator::at_the_terminals`]); requests to the cell are applied to the cell; a command goes through the mailbox
 //! of the job player and shares its command numbers. All of it happens in [`Run::operate`](crate::Run), after the cell
-//! has moved and before the job player steps: the next tick is the first one that sees it. Every request is in the log
+//! has moved and before the job player runs: the next tick is the first one that sees it. Every request is in the log
 //! with that tick, so that the inputs can be replayed.
 //!
 //! One operator commands at a time: the first that sends a request that moves something, until it sends `leave` or
@@ -32,63 +32,63 @@ pub use self::source::{Input, Inputs, WORKSTATION};
 use self::{request::Request, terminals::Terminals};
 use crate::{neighbours::Neighbours, workstation::SimulatedWorkstation};
 
-/// Most requests carried out in a tick; others wait for the next one.
+/// Largest number of requests carried out in a tick; others wait for the next one.
 pub const A_TICK: usize = 16;
 
 /// The operators of a run.
 pub struct Operator {
-    /// The joystick box of the operators; the lines of a job have their own.
+    /// The operators' joystick box; the lines of the job have another one.
     hand: Joystick,
-    /// Its state in the next tick.
+    /// State of that box in the next tick.
     shown: JoystickBox,
-    /// What is entered at the terminals of the boards.
+    /// Entries at the terminals of the boards.
     terminals: Terminals,
-    /// What the run itself is to do.
+    /// Part of a request that the run must carry out.
     later: Option<Later>,
-    /// The velocity knob is at zero until `go`.
+    /// True if the velocity knob is at zero until `go`.
     is_stopped: bool,
     /// Names of the connected operators.
     sessions: Vec<String>,
-    /// Name of the operator that commands.
+    /// Name of the operator in command.
     commander: Option<String>,
-    /// The robot is at a port: motion must stop when the operator is silent.
+    /// True for a robot at a port: motion must stop when the operator is silent.
     robot_elsewhere: bool,
     counts: Requests,
 }
 
-/// Counts of requests.
+/// Number of requests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Requests {
-    /// All, those about the status not counted.
+    /// All requests, except questions.
     pub requests: u64,
-    /// Those that were refused.
+    /// Requests that were refused.
     pub refused: u64,
 }
 
-/// What a request asks of the run itself.
+/// A request that the run itself must carry out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Later {
-    /// A block is to be loaded.
+    /// Load a block.
     Load(BlockNumber),
-    /// A job is to be played in the place of the rest of the present one.
+    /// Play a job instead of the rest of the present one.
     Play(String),
 }
 
 /// The parts of a run that a request reads and changes.
 pub struct Around<'a> {
-    /// The tick that is over.
+    /// The last tick.
     pub tick: Tick,
-    /// Common memory after it.
+    /// Common memory after that tick.
     pub memory: &'a CommonMemory,
-    /// Task data, with which lines are read.
+    /// Task data, for reading lines of a job.
     pub store: &'a Store,
-    /// Their directory.
+    /// Directory of the task data.
     pub data: &'a Path,
     /// The source of Task's commands.
     pub neighbours: &'a mut Neighbours,
     /// The cell.
     pub workstation: &'a mut SimulatedWorkstation,
-    /// A block is being checked: what moves the robot waits for it.
+    /// True while a block is being checked: what moves the robot must wait.
     pub loading: bool,
 }
 
@@ -109,7 +109,7 @@ impl Operator {
         }
     }
 
-    /// The joystick box of the next tick: that of the job's lines, with that of the operators beside it. The lower
+    /// The joystick box of the next tick, combined from that of the job's lines and that of the operators. The lower
     /// velocity counts; a moved stick and an enabled frame take precedence; switches and buttons are combined by OR.
     #[must_use]
     pub fn at_the_box(&self, job: JoystickBox) -> JoystickBox {
@@ -139,13 +139,13 @@ impl Operator {
         self.terminals.inputs()
     }
 
-    /// Once a tick, after all requests: what box and terminals show in the next one.
+    /// Called once per tick, after all requests: sets the box and the terminals for the next tick.
     pub fn end_tick(&mut self) {
         self.shown = self.hand.read();
         self.terminals.end_tick();
     }
 
-    /// What the run itself is to do for the last request.
+    /// The part of the last request that the run must carry out.
     pub const fn take_later(&mut self) -> Option<Later> {
         self.later.take()
     }
@@ -158,13 +158,13 @@ impl Operator {
         }
     }
 
-    /// How many requests there were; none if nobody has connected.
+    /// Number of requests; `None` if no operator has connected.
     #[must_use]
     pub fn requests(&self) -> Option<Requests> {
         (self.counts != Requests::default()).then_some(self.counts)
     }
 
-    /// Carry out an event. Returns the text of the answer, or why it is refused.
+    /// Carry out an event. Returns the text of the answer, or the reason of the refusal.
     pub fn carry_out(&mut self, input: &Input, around: &mut Around<'_>) -> Result<String, String> {
         let who = input.source();
         match input.event() {
@@ -189,7 +189,7 @@ impl Operator {
         Ok(String::new())
     }
 
-    /// The operator is silent: stick and buttons are released. A robot at a port comes to rest.
+    /// Release stick and buttons because the operator is silent. A robot at a port comes to rest.
     fn is_silent(&mut self, who: &str) -> Result<String, String> {
         if self.commander.as_deref() == Some(who) && self.hand.busy() {
             self.hand.let_go();
@@ -211,7 +211,7 @@ impl Operator {
         Ok(String::new())
     }
 
-    /// A job waits for an operator only while one is connected.
+    /// Tell the job whether an operator is connected: only then it waits for one.
     fn attend(&self, around: &mut Around<'_>) {
         if let Ok(job) = around.neighbours.job_under_way() {
             job.attend(!self.sessions.is_empty());
@@ -275,7 +275,7 @@ impl Operator {
         }
     }
 
-    /// One operator commands at a time.
+    /// Give the command to an operator, if no other one has it.
     fn take_command(&mut self, who: &str) -> Result<(), String> {
         match &self.commander {
             Some(other) if other != who => Err(format!(
@@ -309,7 +309,7 @@ fn directory(data: &Path) -> String {
     absolute.unwrap_or_else(|_| data.to_owned()).display().to_string()
 }
 
-/// The job, if it is the job that commands.
+/// The job, if it is the source of commands.
 fn job<'a>(around: &'a mut Around<'_>) -> Result<&'a mut Hwsc, String> {
     around.neighbours.job_under_way()
 }

@@ -1,4 +1,4 @@
-//! Requests of an operator, and their text.
+//! Requests of an operator, and their text form.
 
 use interfaces::HwsCommand;
 use plant::BoxAction;
@@ -17,38 +17,38 @@ pub enum Request {
     Status,
     /// Ask for the directory of the task data; changes nothing.
     Data,
-    /// The velocity knob to zero.
+    /// Set the velocity knob to zero.
     Stop,
-    /// The velocity knob back to where it was.
+    /// Set the velocity knob back.
     Go,
-    /// Another operator may command.
+    /// Give up the command, so that another operator may take it.
     Leave,
     /// A note for the log.
     Note,
-    /// The job waits when its line has ended.
+    /// Make the job wait at the end of its line.
     Wait,
-    /// The job goes on.
+    /// Continue the job.
     GoOn,
-    /// The job goes on behind the line that was interrupted.
+    /// Continue the job after the interrupted line.
     Skip,
-    /// A command for Task, and its line.
+    /// A command for Task, and its text.
     Command(String, HwsCommand),
     /// An action at the operator's own joystick box.
     Box(BoxAction),
-    /// Something at the terminal of a board.
+    /// An entry at the terminal of a board.
     Terminal(Entry),
-    /// A block of the data directory is loaded.
+    /// Load a block of the data directory.
     Load(BlockNumber),
-    /// A job of the data directory replaces the rest of the present one.
+    /// Play a job of the data directory instead of the rest of the present one.
     Play(String),
-    /// The operator takes over from a workstation controller in another process.
+    /// Take over from a workstation controller in another process.
     StandAlone {
         /// Also in the middle of a command.
         now: bool,
     },
-    /// The workstation controller commands again.
+    /// Give the command back to the workstation controller.
     Workstation,
-    /// Another action in the cell, and its line.
+    /// Another action in the cell, and its text.
     Cell(Workstation, String),
 }
 
@@ -59,7 +59,7 @@ const STATUS: &str = "status";
 /// Request for the directory of the task data.
 const DATA: &str = "data";
 
-/// The requests that are no lines of a job.
+/// The requests that are not lines of a job.
 const WORDS: &[(&str, Request)] = &[
     (STATUS, Request::Status),
     (DATA, Request::Data),
@@ -78,7 +78,7 @@ impl Request {
     /// Read a request.
     ///
     /// # Errors
-    /// A sentence.
+    /// A message about the error.
     pub fn read(line: &str, store: &Store) -> Result<Self, String> {
         let line = line.trim().trim_start_matches("**").trim_start();
         let words = line.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -112,7 +112,7 @@ impl Request {
         }
     }
 
-    /// It can only stop something, or changes nothing: every operator may send it, also while another commands.
+    /// True if it can only stop something, or changes nothing: every operator may send it, also while another commands.
     pub const fn is_stop(&self) -> bool {
         match self {
             Self::Status
@@ -141,7 +141,7 @@ impl Request {
         }
     }
 
-    /// It sends a command to Task.
+    /// True if it sends a command to Task.
     pub const fn is_of_the_job(&self) -> bool {
         matches!(
             self,
@@ -155,8 +155,8 @@ impl Request {
     }
 }
 
-/// `line-load BLOCK LINE LINE` (IV.3.3): the command in these lines of the block; `None` if the words begin another
-/// request.
+/// Read `line-load BLOCK LINE LINE` (IV.3.3): the command in these lines of the block; `None` if the words begin
+/// another request.
 fn line_load(words: &[&str], store: &Store) -> Option<Result<Request, String>> {
     let ["line-load", numbers @ ..] = words else { return None };
     let expected = || "line-load BLOCK LINE LINE was expected, such as line-load 863 12 12".to_owned();
@@ -170,7 +170,7 @@ fn line_load(words: &[&str], store: &Store) -> Option<Result<Request, String>> {
     }))
 }
 
-/// `run JOB`; none if the words begin another request.
+/// Read `run JOB`; `None` if the words begin another request.
 fn play(words: &[&str]) -> Option<Result<Request, String>> {
     match words {
         ["run", job] => Some(Ok(Request::Play((*job).to_owned()))),

@@ -1,4 +1,4 @@
-//! Where an operator's inputs come from: sessions, or a log.
+//! Sources of an operator's inputs: sessions, or a log.
 
 use std::{collections::VecDeque, fs, path::Path};
 
@@ -15,40 +15,41 @@ use crate::{
     observer::Observer,
 };
 
-/// Where inputs come from.
+/// Source of the inputs.
 pub enum Inputs {
-    /// Nowhere.
+    /// No source.
     None,
     /// Operators who connect.
     Sessions(Listener),
-    /// A log, tick by tick, with the texts that were loaded during the run.
+    /// A log, read tick by tick, with the texts that were loaded during the run.
     Recorded(VecDeque<OperatorLine>, Texts),
 }
 
 /// Blocks and jobs that were loaded during a run, from its log.
 #[derive(Default)]
 pub struct Texts {
-    /// Blocks by the generation of the task data that they made.
+    /// Blocks, by the generation of the task data that each has made.
     blocks: Vec<(u32, Source)>,
-    /// Jobs by their number.
+    /// Jobs, by number.
     jobs: Vec<(u32, Source)>,
-    /// Loads of the workstation controller. It asks for them itself, also in a repetition; their verdicts count.
+    /// Loads of the workstation controller. It also requests them in a repetition; only their verdicts are taken from
+    /// the log.
     workstation: VecDeque<OperatorLine>,
 }
 
-/// Source of the loads that the workstation controller asks for; no operator can have such a name.
+/// Source of the loads that the workstation controller requests; no operator can have this name.
 pub const WORKSTATION: &str = "workstation controller";
 
 /// An input from a session or a log.
 pub enum Input {
-    /// Of a session.
+    /// From a session.
     Given(Given),
-    /// Of a log.
+    /// From a log.
     Recorded(OperatorLine, Event),
 }
 
 impl Input {
-    /// Who.
+    /// Name of the operator.
     pub fn source(&self) -> &str {
         match self {
             Self::Given(given) => given.source.as_str(),
@@ -56,7 +57,7 @@ impl Input {
         }
     }
 
-    /// What.
+    /// The event.
     pub const fn event(&self) -> &Event {
         match self {
             Self::Given(given) => &given.event,
@@ -64,7 +65,7 @@ impl Input {
         }
     }
 
-    /// Why the log says that it was refused; none for one of a session, and for one that was taken.
+    /// The reason of a refusal in the log; `None` for an input of a session, and for an accepted one.
     pub fn refusal(&self) -> Option<&str> {
         match self {
             Self::Given(_) => None,
@@ -72,12 +73,12 @@ impl Input {
         }
     }
 
-    /// It changes nothing.
+    /// True if it changes nothing.
     pub fn is_question(&self) -> bool {
         QUESTIONS.contains(&self.event().to_string().as_str())
     }
 
-    /// Its line in the log, with the tick that sees it first; `None` if it changes nothing.
+    /// Its line in the log, with the first tick that sees it; `None` if it changes nothing.
     pub fn line(&self, tick: Tick, verdict: &Result<String, String>) -> Option<OperatorLine> {
         (!self.is_question()).then(|| OperatorLine {
             tick,
@@ -88,7 +89,7 @@ impl Input {
         })
     }
 
-    /// Answer it. In a repetition the verdict should be that of the log: if not, the difference is returned.
+    /// Answer it. In a repetition the verdict should be that of the log; a difference is returned.
     pub fn answer(self, tick: Tick, verdict: &Result<String, String>) -> Option<String> {
         match self {
             Self::Given(given) => {
@@ -112,7 +113,7 @@ impl Input {
 }
 
 impl Inputs {
-    /// What a configuration asks for. Operators can connect to a run that others can see, on the 40 ms grid.
+    /// Open the source of a configuration. Operators can connect to a run on the 40 ms grid that has shared memory.
     ///
     /// # Errors
     /// [`StartError::Inputs`].
@@ -125,7 +126,7 @@ impl Inputs {
             return Ok(Self::None);
         }
         let path = operator_socket(name);
-        // Of a killed run of the same name.
+        // A killed run of the same name may have left it.
         let _ = fs::remove_file(&path);
         match Listener::start(&path, name.as_str()) {
             Ok(listener) => Ok(Self::Sessions(listener)),
@@ -147,7 +148,7 @@ impl Inputs {
         Ok(Self::Recorded(operators, texts))
     }
 
-    /// Where operators connect, if they can.
+    /// Path at which operators connect, if they can.
     #[must_use]
     pub fn socket(&self) -> Option<&Path> {
         match self {
@@ -156,7 +157,7 @@ impl Inputs {
         }
     }
 
-    /// Where operators of a network come in, if any can connect.
+    /// Entry for operators of a network, if they can connect.
     #[must_use]
     pub fn entrance(&self) -> Option<Entrance> {
         match self {
@@ -165,7 +166,7 @@ impl Inputs {
         }
     }
 
-    /// The block that a log has for a generation of the task data; none if inputs do not come from a log.
+    /// The block that a log has for a generation of the task data; `None` if the inputs are not from a log.
     #[must_use]
     pub fn recorded_block(&self, generation: u32) -> Option<Option<Source>> {
         let Self::Recorded(_, texts) = self else { return None };
@@ -173,13 +174,13 @@ impl Inputs {
         Some(found.map(|(_, source)| source.clone()))
     }
 
-    /// Why the log says that the next load of the workstation controller was refused; none if it was not.
+    /// The reason why the log has refused the next load of the workstation controller; `None` if it was accepted.
     pub fn recorded_refusal(&mut self) -> Option<String> {
         let Self::Recorded(_, texts) = self else { return None };
         texts.workstation.pop_front()?.refused
     }
 
-    /// The job that a log has as the one of this number; none if inputs do not come from a log.
+    /// The job with this number in a log; `None` if the inputs are not from a log.
     #[must_use]
     pub fn recorded_job(&self, played: u32) -> Option<Option<Source>> {
         let Self::Recorded(_, texts) = self else { return None };
@@ -187,7 +188,7 @@ impl Inputs {
         Some(found.map(|(_, source)| source.clone()))
     }
 
-    /// The next input that `tick` is the first to see.
+    /// The next input that `tick` must see.
     pub fn next(&mut self, tick: Tick) -> Option<Input> {
         match self {
             Self::None => None,

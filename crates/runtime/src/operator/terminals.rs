@@ -1,5 +1,5 @@
-//! Entries at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3): boards are stopped and started, a level is executed
-//! once, the link is initialized. The record goes to the controller with the other inputs of the tick.
+//! Entries at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3): they stop and start boards, execute a level once,
+//! and initialize the link. The record is an input of the controller like the others of the tick.
 
 use std::{collections::VecDeque, mem};
 
@@ -13,33 +13,33 @@ use taskdata::files::TaskData;
 
 use super::written;
 
-/// Most passes of a process in one request.
+/// Largest number of passes of a process in one request.
 pub const PASSES: u8 = 100;
 
-/// An entry.
+/// An entry at a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entry {
-    /// `^C`: the processes of the board stop; of board 0, the pulse.
+    /// `^C`: stop the processes of the board; on board 0, the pulse.
     Stop(u8),
     /// `GO`, on board 0 `SSGO`.
     Go(u8),
-    /// `PRIM-LEVEL` and the like: so many passes of a process, in one tick each.
+    /// `PRIM-LEVEL` and the like: a number of passes of a process, one per tick.
     Execute(ProcessId, u8),
     /// `.R` on board 2.
     RobotInit,
-    /// DB-DONE of block 903: in or out.
+    /// DB-DONE of block 903: true if it is in the block.
     DbDone(bool),
-    /// `<= VALUE` of a variable.
+    /// `<= VALUE` for a variable.
     Write(Write),
 }
 
-/// The name of a process in requests.
+/// Name of a process in requests.
 fn name(process: ProcessId) -> String {
     process.field().to_uppercase().replace('_', "-")
 }
 
 impl Entry {
-    /// Read the words of a request; none if they begin another one.
+    /// Read the words of a request; `None` if they begin another request.
     pub fn read(words: &[&str]) -> Option<Result<Self, String>> {
         Some(match *words {
             ["board", number, verb @ ("stop" | "go")] => board(number).map(|board| match verb {
@@ -65,7 +65,7 @@ impl Entry {
         })
     }
 
-    /// It can only bring the robot to rest.
+    /// True if it can only bring the robot to rest.
     pub const fn is_stop(self) -> bool {
         matches!(self, Self::Stop(2))
     }
@@ -88,29 +88,29 @@ fn named(word: &str) -> Result<ProcessId, String> {
 #[derive(Debug, Default)]
 pub struct Terminals {
     shown: OperatorInputs,
-    /// Processes that are executed in the next ticks, a tick each.
+    /// Processes to execute in the next ticks, one entry per tick.
     passes: VecDeque<u16>,
-    /// Values that are written in the next tick.
+    /// Values to write in the next tick.
     writes: [Option<Write>; WRITES],
 }
 
 impl Terminals {
-    /// Their state as an input of the controller.
+    /// The terminals as an input of the controller.
     #[must_use]
     pub const fn inputs(&self) -> &OperatorInputs {
         &self.shown
     }
 
-    /// Once a tick, after all requests.
+    /// Called once per tick, after all requests.
     pub fn end_tick(&mut self) {
         self.shown.executed = self.passes.pop_front().unwrap_or_default();
         self.shown.writes = mem::take(&mut self.writes);
     }
 
-    /// Enter something. `memory` holds what the last tick has left, `data` are the task data of the next one.
+    /// Carry out an entry. `memory` is common memory after the last tick, `data` are the task data of the next one.
     ///
     /// # Errors
-    /// Why it is refused.
+    /// The reason of the refusal.
     pub fn enter(
         &mut self,
         entry: Entry,
@@ -152,7 +152,7 @@ impl Terminals {
         Ok(format!("{process} is executed, passes: {passes}"))
     }
 
-    /// Block 903 is edited while its board is stopped (IV.2.3, IV.3.2 step 1).
+    /// Edit block 903, whose board must be stopped (IV.2.3, IV.3.2 step 1).
     fn db_done(&mut self, on: bool, memory: &CommonMemory) -> Result<String, String> {
         written::stands(ProcessId::Task, memory)?;
         self.shown.db_done = on;
@@ -164,7 +164,7 @@ impl Terminals {
         .to_owned())
     }
 
-    /// A value is written in the next tick, before the process is stepped again.
+    /// Write a value in the next tick, before the process runs again.
     fn write(&mut self, write: Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
         let answer = written::check(&write, memory, data)?;
         let free = self.writes.iter_mut().find(|slot| slot.is_none());
@@ -173,7 +173,8 @@ impl Terminals {
         Ok(answer)
     }
 
-    /// E-move gives Prim ROBOT-INIT during E-PAUSE. On a stopped board each process is executed as often as needed.
+    /// Initialize the link: E-move sends ROBOT-INIT to Prim during E-PAUSE. On a stopped board each process is executed
+    /// as often as needed.
     fn initialize(&mut self, memory: &CommonMemory) -> Result<String, String> {
         let command = memory.subtask.emove.command;
         if !matches!(command, EmoveVerb::None | EmoveVerb::Pause) {
@@ -189,7 +190,7 @@ impl Terminals {
     }
 }
 
-/// What the robot and the grippers do when a board stops.
+/// Effect of a stop of a board on robot and grippers, as text.
 const fn what_stops(board: u8) -> &'static str {
     match board {
         0 => {
@@ -293,7 +294,7 @@ mod tests {
         );
     }
 
-    /// A memory in which these processes have not been stepped.
+    /// A common memory in which these processes have not run.
     fn standing(processes: &[ProcessId]) -> CommonMemory {
         let mut memory = CommonMemory::default();
         processes.iter().for_each(|process| memory.header_mut(*process).republished = true);

@@ -1,5 +1,5 @@
-//! `<=` (IV.2.6): a value for a variable of a process that is not stepped. What can be written is the list of
-//! [`Variable`]; a value is checked against the task data and the sensors before it goes to the controller.
+//! `<=` (IV.2.6): a value for a variable of a process that is stopped. [`Variable`] lists the variables that can be
+//! written; each value is checked against the task data and the sensors before it goes to the controller.
 
 use geometry::units::inches;
 use interfaces::{
@@ -11,15 +11,15 @@ use levels::emove::gripper::Gripper;
 use rcs_core::name::Name16;
 use taskdata::files::TaskData;
 
-/// The value of a variable that holds nothing.
+/// The value of an empty variable.
 const NONE: &str = "NONE";
 /// Grip numbers of the forms (VII.7.1).
 const GRIPS: std::ops::RangeInclusive<i32> = -99..=99;
 
-/// Read `VARIABLE VALUE`, the words behind `write`.
+/// Read `VARIABLE VALUE`, the words after `write`.
 ///
 /// # Errors
-/// What was expected, and what was found.
+/// A message with the expected and the found text.
 pub fn read(words: &[&str]) -> Result<Write, String> {
     let Some((name, value)) = words.split_first() else {
         return Err(format!("write VARIABLE VALUE was expected, such as write {} {NONE}", Variable::Ledger));
@@ -47,7 +47,7 @@ pub fn read(words: &[&str]) -> Result<Write, String> {
 /// Check a value for the next tick. Returns the old and the new value, as text for operator and log.
 ///
 /// # Errors
-/// Why it is refused, and what to do.
+/// A message with the reason of the refusal, and what to do.
 pub fn check(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     stands(write.variable.owner(), memory)?;
     if let Some(object) = &write.object {
@@ -60,10 +60,10 @@ pub fn check(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Resul
     Ok(format!("{} was {}, is {}", write.variable, old_value(write.variable, memory), new_value(write)))
 }
 
-/// A process must not be stepped when its variables or its block are changed.
+/// Check that a process is stopped, so that its variables or its block can be changed.
 ///
 /// # Errors
-/// How it is stopped.
+/// A message that names the request to stop it.
 pub fn stands(process: ProcessId, memory: &CommonMemory) -> Result<(), String> {
     if may_be_written(process, memory) {
         Ok(())
@@ -95,7 +95,7 @@ fn is_in_data(write: &Write, object: &Name16, data: &TaskData<'_>) -> Result<(),
     Ok(())
 }
 
-/// Only what sensors feel has a name.
+/// Check that the sensors feel an object: only then it can have a name.
 fn is_felt(variable: Variable, memory: &CommonMemory) -> Result<(), String> {
     let (hand, felt, process) = match variable {
         Variable::Regrip => {
@@ -117,7 +117,7 @@ fn is_felt(variable: Variable, memory: &CommonMemory) -> Result<(), String> {
     }
 }
 
-/// The fingers must stand as those that hold the object.
+/// Check that the opening of the fingers is that of a grip of the object.
 fn is_so_wide(object: &Name16, grip: i32, memory: &CommonMemory, data: &TaskData<'_>) -> Result<(), String> {
     let gripper = Gripper::attached(memory);
     let size = data.object(object, grip).map_or(0, |(_, sizes)| sizes.grasp_size);

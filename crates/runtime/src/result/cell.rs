@@ -9,18 +9,18 @@ use serde::Serialize;
 
 use crate::{event::Event, workstation::Emergency};
 
-/// A fault of the cell that happened.
+/// A fault of the cell that has occurred.
 #[derive(Clone, Debug, Serialize)]
 pub struct CellFaultResult {
-    /// Which one of its file, from 1.
+    /// Number in its file, from 1.
     pub number: usize,
-    /// In words.
+    /// Description of the fault.
     pub text: String,
-    /// How often it began.
+    /// Number of times that it began.
     pub times: u64,
-    /// The tick in which it began first.
+    /// The tick in which it began for the first time.
     pub first: u64,
-    /// The last tick in which it was present.
+    /// The last tick in which it was active.
     pub last: u64,
 }
 
@@ -41,29 +41,29 @@ impl fmt::Display for CellFaultResult {
     }
 }
 
-/// Two things that have run into each other.
+/// Two objects that have collided.
 #[derive(Clone, Debug, Serialize)]
 pub struct ContactResult {
-    /// What moved.
+    /// The object that moved.
     pub mover: String,
-    /// What it has met.
+    /// The obstacle.
     pub obstacle: String,
-    /// How deep at the most, inches.
+    /// Greatest depth, in.
     pub depth_in: f64,
 }
 
 /// The last loss of hydraulic pressure in an emergency, and where the arm came to rest.
 #[derive(Clone, Debug, Serialize)]
 pub struct EmergencyResult {
-    /// Tick in which the pressure went.
+    /// Tick in which the pressure was lost.
     pub tick: u64,
-    /// Who stopped the robot, or what failed.
+    /// Cause of the stop: a person's action or a failure.
     pub cause: String,
-    /// Where the tool point was, inches.
+    /// Position of the tool point, in.
     pub position_in: [f64; 3],
-    /// The arm has come to rest.
+    /// True if the arm has come to rest.
     pub at_rest: bool,
-    /// The shot pin has stopped the shoulder.
+    /// True if the shot pin has stopped the shoulder.
     pub on_shot_pin: bool,
     /// Contacts of the sagging arm, the deepest first.
     pub touched: Vec<ContactResult>,
@@ -87,7 +87,7 @@ impl From<&Emergency> for EmergencyResult {
     }
 }
 
-/// Where a part ended.
+/// A part at the end of the run.
 #[derive(Clone, Debug, Serialize)]
 pub struct PartResult {
     /// Its name at the end.
@@ -96,11 +96,11 @@ pub struct PartResult {
     pub location: String,
     /// Sector of the unit, 0 elsewhere.
     pub sector: u16,
-    /// The gripper holds it.
+    /// True if the gripper holds it.
     pub held: bool,
-    /// Its middle in world coordinates, inches.
+    /// Position of its middle, world coordinates, in.
     pub position_in: [f64; 3],
-    /// From the centre of its sector, or from its seat in the vise, inches.
+    /// Distance from the centre of its sector, or from its seat in the vise, in.
     pub error_in: Option<f64>,
 }
 
@@ -132,7 +132,7 @@ impl fmt::Display for PartResult {
     }
 }
 
-/// Where the Data System believes that an item is.
+/// Position of an item according to the Data System.
 #[derive(Clone, Debug, Serialize)]
 pub struct ItemResult {
     /// Its name.
@@ -169,7 +169,7 @@ pub struct EventResult {
     pub tick: u64,
     /// Stable short name of its kind, such as `cell.dropped`.
     pub code: &'static str,
-    /// In words.
+    /// Description of the event.
     pub text: String,
 }
 
@@ -179,20 +179,20 @@ impl fmt::Display for EventResult {
     }
 }
 
-/// Events that a run remembers; the log has all. A run of a year must not fill the memory.
+/// Number of events that a run remembers, so that a run of a year does not fill the memory; the log has all of them.
 const REMEMBERED: usize = 1000;
 
 /// Events of a run in the cell and with the neighbours.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Events {
-    /// How many events there were.
+    /// Number of all events.
     pub count: usize,
     /// The first thousand of them.
     pub first: Vec<EventResult>,
 }
 
 impl Events {
-    /// Something has happened in a tick.
+    /// Add an event of a tick.
     pub fn push(&mut self, tick: Tick, event: &Event) {
         self.count += 1;
         if self.first.len() < REMEMBERED {

@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::timing::TickTimes;
 use crate::{egm::EgmPort, robot::Port};
 
-/// What happened on the DEPC link.
+/// Counts of the DEPC link.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct LinkResult {
     /// Data frames sent, repetitions included.
@@ -38,12 +38,12 @@ impl From<&LinkCounters> for LinkResult {
     }
 }
 
-/// Faults that were injected into the line, both directions together.
+/// Number of faults injected into the line, both directions together.
 #[derive(Clone, Debug, Serialize)]
 pub struct FaultsResult {
     /// Faults of all kinds.
     pub total: u64,
-    /// Of each kind that happened.
+    /// Number of faults per kind that occurred.
     pub kinds: BTreeMap<&'static str, u64>,
 }
 
@@ -73,11 +73,11 @@ pub struct PortResult {
     pub received: u64,
     /// Bytes sent.
     pub sent: u64,
-    /// Bytes that the port did not take.
+    /// Bytes that the port refused.
     pub unsent: u64,
-    /// How often the port disappeared.
+    /// Number of times that the port disappeared.
     pub losses: u32,
-    /// By how much the time between two data commands differed from 40 ms.
+    /// Deviation of the time between two data commands from 40 ms.
     pub deviation_us: TickTimes,
 }
 
@@ -91,23 +91,23 @@ impl From<&Port> for PortResult {
 /// Counts and times of the line to a robot with EGM.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct EgmResult {
-    /// Messages received that were new.
+    /// New messages received.
     pub received: u64,
-    /// Messages that were old when they came.
+    /// Messages received too late or twice.
     pub old: u64,
-    /// Datagrams that were no message of a robot.
+    /// Datagrams that were not messages of a robot.
     pub refused: u64,
     /// Targets sent.
     pub sent: u64,
-    /// Points that became a path.
+    /// Points that were added to a path.
     pub points: u64,
-    /// Motions that were ended because no point, or no message, came in time.
+    /// Motions that were stopped because no point, or no message, came in time.
     pub interrupted: u64,
-    /// Targets that were held back at the limits.
+    /// Targets that were limited.
     pub beyond: u64,
     /// Root mean square of the distance from the robot to its target, mm.
     pub error_rms_mm: f64,
-    /// The greatest.
+    /// Greatest distance, mm.
     pub error_max_mm: f64,
     /// Times between two messages of the robot.
     pub cycle_us: TickTimes,

@@ -8,9 +8,9 @@ use serde::Serialize;
 pub struct TickTimes {
     /// Median.
     pub p50: f64,
-    /// 99 of 100 ticks took at most this.
+    /// 99th percentile.
     pub p99: f64,
-    /// The longest.
+    /// Maximum.
     pub max: f64,
 }
 
@@ -25,11 +25,11 @@ impl From<histogram::Summary> for TickTimes {
 pub struct BoardResult {
     /// Its number.
     pub board: u8,
-    /// What runs on it.
+    /// Names of its processes.
     pub processes: String,
-    /// Its process in the operating system.
+    /// Process identifier of the operating system.
     pub pid: u32,
-    /// From its wake-up to its stamp.
+    /// Time from its wake-up to its stamp.
     pub tick_us: TickTimes,
     /// Heap allocations in its ticks.
     pub allocations: u64,

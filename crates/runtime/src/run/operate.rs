@@ -1,4 +1,4 @@
-//! Requests of operators, between two ticks.
+//! Carries out requests of operators, between two ticks.
 
 use std::path::{Component, Path};
 
@@ -39,7 +39,7 @@ impl Run {
             let verdict = self.operator.carry_out(&input, &mut around);
             let verdict = match (self.operator.take_later(), input.refusal()) {
                 (None, _) => verdict,
-                // A log has no text of what was not read.
+                // A log does not contain the text of an unreadable request.
                 (Some(_), Some(why)) => Err(why.to_owned()),
                 (Some(Later::Play(job)), None) => self.play(tick, &job),
                 (Some(Later::Load(block)), None) => {
@@ -54,7 +54,7 @@ impl Run {
         self.operator.end_tick();
     }
 
-    /// Carry out the load that the workstation controller has asked for. The next tick is the first to see it.
+    /// Carry out the load that the workstation controller has requested. The next tick is the first to see it.
     pub(super) fn load_for_workstation(&mut self, tick: Tick) {
         let Some((block, line)) = self.neighbours.load_asked() else { return };
         let asker = Asker::Workstation(line);
@@ -123,8 +123,8 @@ impl Run {
         Ok(format!("the job {name} plays, lines: {lines}"))
     }
 
-    /// Whether a job can be started during a run: it must load no blocks, not hand over, and need nothing that the cell
-    /// does not have.
+    /// Check that a job can be started during a run: it must load no blocks, not hand over, and need nothing that the
+    /// cell does not have.
     fn can_be_played(&self, job: &Job) -> Result<(), String> {
         if job.steps.is_empty() {
             return Err(format!("the job {} has no line", job.name));

@@ -16,22 +16,22 @@ use crate::{
 /// The outcome of a run.
 #[non_exhaustive]
 pub struct RunOutcome {
-    /// How it ended.
+    /// Ending of the run.
     pub ending: Ending,
-    /// The result, for scripts.
+    /// The result for JSON.
     pub result: RunResult,
-    /// All steps of the job, those of the workstation included.
+    /// All steps of the job, including actions of the workstation.
     pub steps: Vec<BegunStep>,
-    /// The log's file and size, or why it ended, as text.
+    /// File and size of the log, or the reason why it ended, as text.
     pub log: String,
     /// The slowest processes, as text.
     pub slowest: String,
-    /// What a person has to do before a job that has failed can go on.
+    /// What a person must do before a failed job can continue.
     pub remedy: Option<&'static str>,
 }
 
 impl RunOutcome {
-    /// The job is over, every part is where it should be, and nothing touched that may not.
+    /// True if the job has finished, every part is at its place, and no contact was a collision.
     #[must_use]
     pub const fn is_finished(&self) -> bool {
         matches!(self.ending, Ending::Finished)
@@ -39,7 +39,7 @@ impl RunOutcome {
 }
 
 impl Run {
-    /// End the run and its log. A run that is not over counts as stopped.
+    /// End the run and its log. A run that has not ended counts as stopped.
     #[must_use]
     pub fn finish(mut self) -> RunOutcome {
         let wall_s = self.started.map_or(0.0, |started| started.elapsed().as_secs_f64());
@@ -47,7 +47,7 @@ impl Run {
         let ending = self.checked(ending);
         let mut result = self.result(&ending, wall_s);
         let log = self.finish_log(&ending, &mut result);
-        // What is shared goes first: a caller may start the next run of the name at once.
+        // Shared memory is removed first: a caller may start the next run of the same name at once.
         drop(self.mirror.take());
         drop(self.live.take());
         RunOutcome {

@@ -29,7 +29,7 @@ use crate::{
     workstation::SimulatedWorkstation,
 };
 
-/// Ticks to wait for the first answer of a robot controller at a port: it may be powered up after the run has begun.
+/// Ticks to wait for the first answer of a robot controller at a port, which may be powered up after the run has begun.
 fn first_patience(config: &RunConfig) -> Option<u16> {
     if config.robot.kind == RobotKind::Sim {
         return None;
@@ -39,7 +39,7 @@ fn first_patience(config: &RunConfig) -> Option<u16> {
     Some(u16::try_from(wait).unwrap_or(u16::MAX).max(patience))
 }
 
-/// Shared memory is optional: if it is not available the run prints a message and goes on.
+/// Open shared memory, which is optional: if it is not available the run prints a message and continues.
 fn publisher(config: &RunConfig, name: &RunName, observer: &mut dyn Observer) -> Option<Publisher> {
     if !config.shared_memory {
         return None;
@@ -53,14 +53,14 @@ fn publisher(config: &RunConfig, name: &RunName, observer: &mut dyn Observer) ->
     publisher.ok()
 }
 
-/// So is the mirror of the status.
+/// Open the mirror of the status, which is optional, too.
 fn mirror(publisher: &Publisher, observer: &mut dyn Observer) -> Option<Mirror> {
     let mirror = Mirror::start(publisher);
     mirror.inspect_err(|error| observer.message(&format!("the status is not mirrored: {error}"))).ok()
 }
 
 impl Run {
-    /// Read, check and start all that the run needs, and wait for boards, neighbours and robot controller.
+    /// Read, check and start everything that the run needs, and wait for boards, neighbours and robot controller.
     ///
     /// # Errors
     /// [`StartError`] if the run cannot begin, with all errors of the data. Nothing has moved then.
@@ -68,7 +68,7 @@ impl Run {
         Self::start(config, None, observer)
     }
 
-    /// Like [`Run::new`], with a robot of the caller instead of that of the configuration.
+    /// Like [`Run::new`], with a robot of the caller instead of the configured one.
     ///
     /// # Errors
     /// As [`Run::new`].
@@ -110,7 +110,7 @@ impl Run {
             let operators = asked.socket().filter(|_| config.operator == OperatorAccess::Network);
             live.start(&config, &job.name, operators, &mut *observer)?;
         }
-        // It begins before this process asks for real time.
+        // The thread starts before this process requests real-time priority.
         let asks = config.outside.contains(&Role::Workstation) || asked.socket().is_some();
         let beside = asks && config.clock == ClockKind::Real && config.inputs.is_none();
         let loader = beside.then(Loader::start).transpose().map_err(StartError::Thread)?;

@@ -1,4 +1,4 @@
-//! What a run sends to its log, its viewers and its operators.
+//! Sends information to the log, the viewers and the operators of a run.
 
 use interfaces::CommonMemory;
 use plant::CellEvent;
@@ -8,7 +8,7 @@ use super::Run;
 use crate::{contacts::Commands, egm::EgmPort, event::Event};
 
 impl Run {
-    /// An event that belongs to no tick of the cell: for the log, and for the program around the run.
+    /// Report an event outside the cell's ticks to the log and the observer.
     pub(crate) fn log_event(&mut self, tick: Tick, event: &Event) {
         self.observer.event(tick, event);
         if let Some(log) = &mut self.log {
@@ -30,7 +30,7 @@ impl Run {
         log.cell(tick, &self.workstation.cell, self.robot.egm().map(EgmPort::frames));
     }
 
-    /// Publish the cell after a tick to other programs. With a robot at a port there is none.
+    /// Publish the cell after a tick to other programs. A run with a robot at a port publishes none.
     pub(super) fn publish_cell(&mut self, tick: Tick) {
         let publisher = self.runner.publisher().filter(|_| !self.robot.is_elsewhere());
         if let Some(publisher) = publisher {
@@ -54,7 +54,7 @@ impl Run {
         }
     }
 
-    /// The job has begun to wait: send it also to the terminal and the log.
+    /// If the job has begun to wait, report it to operators, terminal and log.
     pub(super) fn tell_operators(&mut self, tick: Tick) {
         let Some(event) = self.neighbours.operator_news().map(Event::Waits) else { return };
         self.observer.message(&format!("tick {tick}: {event}"));
@@ -62,9 +62,9 @@ impl Run {
         self.events.push(tick, &event);
     }
 
-    /// What has happened in the cell in a tick, for the log, for the page and for the verdict.
+    /// Collect the events of the cell in a tick, for log, result and verdict.
     pub(super) fn observe(&mut self, tick: Tick, commands: Commands) {
-        // The check decides which contacts are worth a line.
+        // The contact check selects the contacts that are events.
         let events = self.workstation.events(tick).into_iter();
         let events = events.filter(|event| !matches!(event, CellEvent::Contact(_)));
         let events: Vec<_> = events.collect();
@@ -81,7 +81,7 @@ impl Run {
         }
     }
 
-    /// Remarks of neighbours beside their mailboxes are events of the run; Task reads only their statuses.
+    /// Report remarks of neighbours outside their mailboxes as events; Task reads only their statuses.
     pub(super) fn note_neighbours(&mut self, tick: Tick) {
         for event in self.neighbours.events() {
             self.log_event(tick, &event);

@@ -1,4 +1,4 @@
-//! What a step waits for: a look at the picture of the run, at its cell, and at what it answers.
+//! Conditions of a procedure's steps, evaluated on the picture of the run, its cell and its answers.
 
 use geometry::pose::WireFrame;
 use interfaces::{
@@ -14,19 +14,19 @@ use crate::{
     source::Cell,
 };
 
-/// HOME as the manual prints it (IV.3.3 step 11).
+/// HOME as printed in the manual (IV.3.3 step 11).
 pub const HOME: WireFrame =
     WireFrame { tool: [0, -7145, -1483], wrist_to_tool: [0, -2123, -2119], tool_to_finger: [3000, 0, 0] };
-/// How far a value of HOME, or of a frame that is to agree with another, may be off (IV.3.3 steps 11 and 13).
+/// Tolerance of HOME's values, and of two frames that must agree (IV.3.3 steps 11 and 13).
 pub const TOLERANCE: i32 = 4;
-/// A robot that has not moved by more than this, 0.01 in, stands.
+/// A robot that has moved at most this far stands still, 0.01 in.
 const STANDS: i32 = 4;
-/// Ticks that the robot has to stand: 2 s.
+/// Ticks for which the robot must stand still: 2 s.
 const STANDS_FOR: u64 = 50;
-/// A robot that has moved by this, 0.01 in, has moved.
+/// A robot that has moved this far has moved, 0.01 in.
 const MOVED: i32 = 10;
 
-/// The stages of the robot controller's start-up (IV.3.3), in their order.
+/// The stages of the robot controller's start-up (IV.3.3), in order.
 pub const STAGES: [&str; 11] = [
     "control power off",
     "fault",
@@ -41,86 +41,86 @@ pub const STAGES: [&str; 11] = [
     "DEPC",
 ];
 
-/// What can be looked at.
+/// The data for evaluating conditions.
 pub struct Sight<'a> {
     /// The picture of the tick.
     pub picture: &'a Picture,
     /// The cell.
     pub cell: &'a Cell,
-    /// The session with the run; none on a console that looks only.
+    /// The session with the run; `None` on a console without `--operate`.
     pub operating: Option<&'a Operating>,
-    /// How things were when the step began.
+    /// The state at the beginning of the step.
     pub begun: Begun,
 }
 
-/// How things were when a step began, or when it was asked for.
+/// The state when a step began, or when its requests were sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Begun {
     /// The tick.
     pub tick: Tick,
-    /// The tool point by the resolvers, 0.01 in.
+    /// Tool point from the resolvers, 0.01 in.
     pub tool: Option<[i32; 3]>,
-    /// The requests after this one are of the step; none before Enter.
+    /// Number of the last request before those of the step; `None` before Enter.
     pub asked: Option<u32>,
 }
 
-/// Something that is so, or is not, or cannot be seen here.
+/// A condition, which is true, false, or unknown to the console.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
-    /// The robot controller has come to this stage of its start-up, or further.
+    /// The robot controller has reached this stage of its start-up, or a later one.
     Reached(&'static str),
-    /// It is at this stage.
+    /// The robot controller is at this stage.
     At(&'static str),
     /// The actuators have no pressure.
     NoPressure,
     /// All emergency stops are out.
     EStopsOut,
-    /// All six axes have their asterisk.
+    /// All six axes are marked with an asterisk.
     Aligned,
     /// The DEPC link runs.
     LinkRuns,
-    /// The resolvers can be believed.
+    /// The resolvers are valid.
     Resolvers,
     /// The resolvers show HOME to within [`TOLERANCE`].
     AtHome,
-    /// The frame that Prim gets and the one that it gives agree to within [`TOLERANCE`].
+    /// The frame that Prim receives and the frame that it outputs agree to within [`TOLERANCE`].
     FramesAgree,
-    /// The robot has stood since the step began, for two seconds at least.
+    /// The robot has stood still since the step began, for two seconds at least.
     Stands,
     /// The robot has moved since the step began.
     Moved,
     /// The processes have this command.
     Have(&'static [ProcessId], &'static str),
-    /// The process reports this.
+    /// The process reports this status.
     Says(ProcessId, &'static str),
-    /// The processes are stepped.
+    /// The processes are executed.
     Run(&'static [ProcessId]),
     /// The processes are suspended.
     Held(&'static [ProcessId]),
-    /// The velocity knob is at zero, or is not.
+    /// The velocity knob is not at zero (true), or at zero (false).
     KnobUp(bool),
-    /// A coordinate switch is on, or none is.
+    /// A coordinate switch is on (true), or none is (false).
     FrameOn(bool),
     /// The hand of the pedestal is calibrated.
     HandCalibrated,
-    /// The rotary table is calibrated and stands at this angle, 0.1 degree.
+    /// The rotary table is calibrated and at this angle, 0.1 degree.
     TableAt(i32),
-    /// The Data System is told of moves, or is not.
+    /// The Data System has this state of connection.
     DataSystem(Connection),
-    /// The pedestal is a system of its own, and answers.
+    /// The pedestal is a separate system, and answers.
     PedestalAnswers,
     /// The last request to the vision system was answered.
     VisionAnswers,
     /// The job waits for the operator.
     JobWaits,
-    /// The run says of itself that this commands.
+    /// The run's status line names this source of commands.
     Commands(&'static str),
-    /// The run has taken what the step asks for.
+    /// The run has accepted the requests of the step.
     Taken,
 }
 
 impl Sight<'_> {
-    /// Whether a condition holds; none if that cannot be seen here.
+    /// The value of a condition; `None` if the console cannot know it.
     #[must_use]
     pub fn holds(&self, condition: Condition) -> Option<bool> {
         let (memory, external) = (&self.picture.memory, &self.picture.external);
@@ -184,14 +184,14 @@ impl Sight<'_> {
         matches!(self.picture.absence(process), None | Some(Absence::Dormant | Absence::Elsewhere))
     }
 
-    /// `frame-feedback` as IV.3.3 step 11 reads it: by the resolvers, also while the link runs.
+    /// `frame-feedback` as in IV.3.3 step 11: from the resolvers, also while the link runs.
     pub(super) fn frame_feedback(&self) -> WireFrame {
         let status = &self.picture.memory.t3i.status;
         status.resolver_frame.unwrap_or(status.frame_feedback)
     }
 
     /// The present frame that Prim reads, and the frame that Prim writes (IV.3.3 step 13). After ROBOT-INIT, before its
-    /// first point, Prim has not written one: its present pose counts.
+    /// first point, Prim has not written one: its present pose is used.
     pub(super) fn prim_frames(&self) -> (WireFrame, WireFrame) {
         let memory = &self.picture.memory;
         let present = memory.prim.status.present_pose.and_then(|number| memory.changing_pose(number));
@@ -205,12 +205,12 @@ impl Sight<'_> {
         largest(&got, &given) <= TOLERANCE
     }
 
-    /// The tool point by the resolvers, 0.01 in.
+    /// Tool point from the resolvers, 0.01 in.
     pub(super) fn tool(&self) -> Option<[i32; 3]> {
         self.picture.memory.t3i.status.resolver_frame.map(|frame| frame.tool)
     }
 
-    /// How far the tool point is from where it was when the step began, 0.01 in: the largest of X, Y, Z.
+    /// Distance of the tool point from its position when the step began, 0.01 in: the largest of X, Y, Z.
     pub(super) fn way(&self) -> Option<i32> {
         let (now, was) = (self.tool()?, self.begun.tool?);
         now.iter().zip(was).map(|(now, was)| (now - was).abs()).max()
@@ -222,18 +222,18 @@ impl Sight<'_> {
     }
 }
 
-/// Place of a stage in the start-up; none for an unknown one, which is before all others.
+/// Index of a stage in the start-up; `None` for an unknown one, which is before all others.
 fn place(stage: &str) -> Option<usize> {
     STAGES.iter().position(|known| *known == stage)
 }
 
-/// The rows of a frame as the terminal shows it.
+/// The rows of a frame in the form of the terminal.
 #[must_use]
 pub const fn rows(frame: &WireFrame) -> [[i32; 3]; 3] {
     [frame.tool, frame.wrist_to_tool, frame.tool_to_finger]
 }
 
-/// The largest difference of two frames in a value.
+/// The largest difference between the values of two frames.
 #[must_use]
 pub fn largest(frame: &WireFrame, other: &WireFrame) -> i32 {
     let (frame, other) = (rows(frame).concat(), rows(other).concat());

@@ -1,5 +1,5 @@
-//! The steps at the robot controller that several procedures have in common (III.6, IV.3.1, IV.3.3, IV.3.4): what is
-//! done, what it asks for, and its warning. Each procedure gives them its own numbers.
+//! Steps at the robot controller that several procedures share (III.6, IV.3.1, IV.3.3, IV.3.4): text, requests and
+//! warning. Each procedure gives them its own numbers.
 
 use super::{Ask::Line, Ask::ReleaseEStops, Condition, Show, Step, event, state};
 
@@ -32,7 +32,7 @@ pub const MANUAL: Step = Step {
     ..state("", "MANUAL is on: the hand has jumped and stands", &[Condition::Reached("manual")])
 };
 
-/// The six axes.
+/// Alignment of the six axes.
 pub const ALIGN: Step = Step {
     ask: &[Line("panel align")],
     how: "Base, shoulder and elbow to their arrows; the gripper straight down or out; its line \

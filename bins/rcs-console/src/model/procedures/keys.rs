@@ -1,4 +1,4 @@
-//! What the keys do on the screen of the procedures.
+//! The keys of the procedure screen.
 
 use super::{Mark, Sight, Track};
 use crate::{
@@ -6,11 +6,11 @@ use crate::{
     source::Source,
 };
 
-/// Steps of a page.
+/// Steps per page.
 const PAGE: usize = 8;
 
 impl Model {
-    /// A key of the procedures; false if it is none.
+    /// Carry out a key of the procedures. Returns false for other keys.
     pub(in crate::model) fn work_a_procedure(&mut self, key: Key, source: &dyn Source) -> bool {
         if !self.procedures.is_open {
             return self.choose_a_procedure(key);
@@ -45,7 +45,7 @@ impl Model {
         true
     }
 
-    /// A person says that the step is done.
+    /// Mark the step as confirmed by the operator.
     fn say(&mut self, source: &dyn Source) {
         let Some(picture) = &self.picture else { return };
         let cell = source.cell(picture.tick.0);
@@ -62,7 +62,7 @@ impl Model {
         self.note(note);
     }
 
-    /// The step is left out.
+    /// Skip the step.
     pub(in crate::model) fn leave_out(&mut self, reason: String) {
         let tick = self.picture.as_ref().map_or_else(Default::default, |picture| picture.tick);
         let Some(track) = self.procedures.open() else { return };
@@ -75,14 +75,14 @@ impl Model {
         self.note(note);
     }
 
-    /// What a person says stands in the log of the run, if it takes it.
+    /// Write a note about the operator's statement to the log of the run, if the run accepts it.
     fn note(&mut self, text: String) {
         if let Some(operating) = &mut self.operating {
             operating.ask(format!("note {text}"));
         }
     }
 
-    /// Ask the run for what the step under the cursor needs; a warning comes first.
+    /// Send the requests of the step under the cursor; a warning comes first.
     fn do_a_step(&mut self, source: &dyn Source) {
         let Some(picture) = &self.picture else { return };
         let cell = source.cell(picture.tick.0);
@@ -104,7 +104,7 @@ impl Model {
     }
 }
 
-/// What is noted of a step.
+/// Text of a note about a step.
 fn note(track: &Track, what: &str) -> String {
     let step = track.step().map_or(("", ""), |step| (step.id, step.text));
     format!("{} {}: {}: {what}", track.procedure.section, step.0, step.1)

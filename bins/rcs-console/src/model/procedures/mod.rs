@@ -1,9 +1,9 @@
-//! Procedures (IV): checklists that see for themselves whether a step is done.
+//! Procedures (IV): checklists that detect when a step is done.
 //!
-//! A procedure is a table of steps. A step has its number in the manual, a text, a [`Watch`] that says how one
-//! knows that it is done, and requests to the run that do it. A state goes on being watched: a step that is undone
-//! loses its mark, until the step that ends it is done. What the console cannot see, because the robot is at a
-//! port or no device shows it, is for a person to say.
+//! A procedure is a table of steps. A step has its number in the manual, a text, a [`Watch`] with the conditions under
+//! which it is done, and requests to the run that carry it out. The console keeps watching a state: a step whose state
+//! is lost loses its mark, until the step that ends the state is done. The operator confirms what the console cannot
+//! observe, because the robot is at a port or no device shows it.
 
 mod condition;
 mod controller;
@@ -27,53 +27,53 @@ pub use self::{
 pub struct Procedure {
     /// Section of the manual.
     pub section: &'static str,
-    /// What it is for.
+    /// Purpose.
     pub title: &'static str,
-    /// The steps, in their order.
+    /// The steps, in order.
     pub steps: &'static [Step],
 }
 
 /// A step.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// Its number in the section.
+    /// Number in the section.
     pub id: &'static str,
-    /// What is to be done, or to be so.
+    /// What must be done, or must be the case.
     pub text: &'static str,
-    /// What else there is to know; empty for nothing.
+    /// Additional information; empty for none.
     pub how: &'static str,
-    /// How one knows that it is done.
+    /// How the console detects that the step is done.
     pub watch: Watch,
-    /// The number of the step that ends what this one has brought about: when that is asked for or done, the
-    /// mark of this one stays.
+    /// Number of the step that ends the state of this one: from its requests or its completion on, the mark of this
+    /// step stays.
     pub until: &'static str,
-    /// What Enter asks the run for, in this order.
+    /// Requests that Enter sends, in order.
     pub ask: &'static [Ask],
-    /// What is said before Enter asks; empty if nothing can be harmed.
+    /// Warning before Enter sends; empty if no harm is possible.
     pub warning: &'static str,
-    /// What is shown of the cell at this step.
+    /// State of the cell shown with the step.
     pub show: Show,
 }
 
-/// How one knows that a step is done.
+/// How the console detects that a step is done.
 #[derive(Clone, Copy, Debug)]
 pub enum Watch {
-    /// All this is so, and goes on being so.
+    /// All conditions hold, and must continue to hold.
     State(&'static [Condition]),
-    /// All this has been so once since the step began.
+    /// All conditions have held once since the step began.
     Event(&'static [Condition]),
-    /// A person says it.
+    /// The operator confirms it.
     Said,
-    /// A person says it at a real robot; a simulated cell has no such thing.
+    /// The operator confirms it at a real robot; a simulated cell has no such device.
     Real,
 }
 
 /// A request to the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ask {
-    /// This line.
+    /// This request.
     Line(&'static str),
-    /// `release` for each emergency stop that is in.
+    /// `release` for each emergency stop that is pressed.
     ReleaseEStops,
 }
 
@@ -100,17 +100,17 @@ const fn step(id: &'static str, text: &'static str, watch: Watch) -> Step {
     Step { id, text, how: "", watch, until: "", ask: &[], warning: "", show: Show::Nothing }
 }
 
-/// A step that brings about a state.
+/// A step that leads to a state.
 const fn state(id: &'static str, text: &'static str, conditions: &'static [Condition]) -> Step {
     step(id, text, Watch::State(conditions))
 }
 
-/// A step in which something happens.
+/// A step that ends with an event.
 const fn event(id: &'static str, text: &'static str, conditions: &'static [Condition]) -> Step {
     step(id, text, Watch::Event(conditions))
 }
 
-/// A step that a person looks at.
+/// A step that the operator confirms.
 const fn said(id: &'static str, text: &'static str) -> Step {
     step(id, text, Watch::Said)
 }

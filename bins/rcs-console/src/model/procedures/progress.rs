@@ -1,4 +1,4 @@
-//! How far each procedure has come: marks, and what the keys do to them.
+//! Progress of each procedure: the marks of its steps, and the keys that change them.
 
 use rcs_core::tick::Tick;
 
@@ -8,21 +8,21 @@ use super::{
 };
 use crate::source::Cell;
 
-/// How a step stands.
+/// Mark of a step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Mark {
-    /// It is not done, as far as one knows.
+    /// Not done, as far as known.
     #[default]
     Open,
-    /// The console sees it.
+    /// The console detects that it is done.
     Seen,
-    /// It was so: since this tick the console need not see it any more.
+    /// It was done; from this tick on the console no longer checks it.
     Done(Tick),
-    /// A person has said it in this tick.
+    /// The operator confirmed it in this tick.
     Said(Tick),
-    /// A person has left it out, for a reason.
+    /// The operator skipped it, for a reason.
     Skipped(Tick, String),
-    /// A simulated cell has no such thing.
+    /// A simulated cell has no such device.
     NotThere,
 }
 
@@ -40,27 +40,27 @@ impl Mark {
         }
     }
 
-    /// The next step may come.
+    /// True if the next step may begin.
     #[must_use]
     pub fn is_set(&self) -> bool {
         *self != Self::Open
     }
 }
 
-/// How far a procedure has come.
+/// Progress of a procedure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
-    /// What is to be done.
+    /// The procedure.
     pub procedure: &'static Procedure,
-    /// A mark a step.
+    /// One mark per step.
     pub marks: Vec<Mark>,
     /// The step under the cursor.
     pub cursor: usize,
-    /// How things were when the first step that is open began, or was asked for.
+    /// The state when the first open step began, or when its requests were sent.
     pub begun: Begun,
-    /// The step for which `begun` was taken.
+    /// Index of the step to which `begun` belongs.
     current: Option<usize>,
-    /// The next Enter asks for the step under the cursor: its warning has been shown.
+    /// True if the warning has been shown: the next Enter sends the requests of the step under the cursor.
     pub is_warned: bool,
 }
 
@@ -94,13 +94,13 @@ impl Track {
         self.procedure.steps.get(self.cursor)
     }
 
-    /// Put the cursor on another step.
+    /// Move the cursor to another step.
     pub fn move_to(&mut self, cursor: usize) {
         self.cursor = cursor.min(self.procedure.steps.len().saturating_sub(1));
         self.is_warned = false;
     }
 
-    /// Mark the step under the cursor; the cursor goes to the next one that is open.
+    /// Mark the step under the cursor, and move the cursor to the next open one.
     pub fn mark(&mut self, mark: Mark) {
         if let Some(marked) = self.marks.get_mut(self.cursor) {
             *marked = mark;
@@ -108,7 +108,7 @@ impl Track {
         self.go_on();
     }
 
-    /// Take back what a person has said of the step under the cursor.
+    /// Remove the operator's mark from the step under the cursor.
     pub fn take_back(&mut self) {
         if let Some(marked) = self.marks.get_mut(self.cursor) {
             *marked = Mark::Open;
@@ -121,7 +121,7 @@ impl Track {
         }
     }
 
-    /// What Enter asks for at the step under the cursor; `last` is the number of the last request before.
+    /// The requests of the step under the cursor; `last` is the number of the last request before them.
     pub fn ask(&mut self, sight: &Sight<'_>, last: u32) -> Vec<String> {
         let Some(step) = self.step() else { return Vec::new() };
         self.begin(self.cursor, sight);
@@ -135,7 +135,7 @@ impl Track {
         self.begun = Begun { tick: sight.picture.tick, tool: sight.tool(), asked: None };
     }
 
-    /// Look at a picture: what is so gets its mark, what is so no more loses it.
+    /// Update the marks from a picture: steps whose conditions hold get a mark, others lose it.
     fn look(&mut self, sight: &Sight<'_>) {
         let was = self.next();
         if was.is_some() && self.current != was && self.begun.asked.is_none() {
@@ -155,14 +155,14 @@ impl Track {
         if self.current.is_some_and(|at| self.marks.get(at).is_some_and(Mark::is_set)) {
             self.begun.asked = None;
         }
-        // The cursor goes along with what is done while it stands on the step that was to be done.
+        // The cursor moves on if it is on the step that has just been done.
         if was == Some(self.cursor) && self.next() != was {
             self.go_on();
         }
     }
 }
 
-/// The mark of a step after a look.
+/// The mark of a step after an update.
 fn looked(step: &Step, mark: Mark, sight: &Sight<'_>, is_current: bool, is_ended: bool) -> Mark {
     let tick = sight.picture.tick;
     match (step.watch, mark) {
@@ -180,7 +180,7 @@ fn looked(step: &Step, mark: Mark, sight: &Sight<'_>, is_current: bool, is_ended
     }
 }
 
-/// All hold; none if one of them cannot be seen here and no other fails.
+/// True if all conditions hold; `None` if one of them is unknown and no other one fails.
 fn all(conditions: &[super::Condition], sight: &Sight<'_>) -> Option<bool> {
     let seen: Vec<_> = conditions.iter().map(|condition| sight.holds(*condition)).collect();
     match (seen.contains(&Some(false)), seen.contains(&None)) {
@@ -191,7 +191,7 @@ fn all(conditions: &[super::Condition], sight: &Sight<'_>) -> Option<bool> {
 }
 
 impl Step {
-    /// Nothing shows here whether it is done: a person has to say it.
+    /// True if the console cannot detect the step here: the operator must confirm it.
     #[must_use]
     pub fn needs_a_word(&self, sight: &Sight<'_>) -> bool {
         match self.watch {
@@ -218,14 +218,14 @@ fn lines(ask: Ask, cell: &Cell) -> Vec<String> {
 /// The emergency stops in the words of a request, in the order of the cell.
 const ESTOPS: [&str; 5] = ["control-panel", "teach-pendant", "terminals", "joystick-box", "pedestal"];
 
-/// How far all procedures have come.
+/// Progress of all procedures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
-    /// One a procedure.
+    /// One track per procedure.
     pub tracks: Vec<Track>,
     /// The procedure under the cursor of the list.
     pub cursor: usize,
-    /// The procedure under the cursor is open.
+    /// True if the procedure under the cursor is open.
     pub is_open: bool,
 }
 
@@ -242,14 +242,14 @@ impl Progress {
         self.tracks.get_mut(self.cursor).filter(|_| is_open)
     }
 
-    /// Look at a picture of the run. Only in the procedure that is open things happen.
+    /// Update the marks from a picture of the run. Events count only in the open procedure.
     pub fn look(&mut self, sight: &Sight<'_>) {
         if let Some(track) = self.open() {
             track.look(sight);
         }
     }
 
-    /// Begin the procedure that is open once more.
+    /// Restart the open procedure.
     pub fn restart(&mut self) {
         if let Some(track) = self.open() {
             *track = Track::new(track.procedure);

@@ -4,9 +4,9 @@ use interfaces::{ProcessId, data_base::Connection};
 
 use super::{Ask::Line, Condition, Procedure, Show, Step, Watch, controller, event, real, said, state, step};
 
-/// The levels that take commands from each other.
+/// The processes that take commands from each other.
 const LEVELS: &[ProcessId] = &[ProcessId::Task, ProcessId::Subtask, ProcessId::Emove, ProcessId::Prim];
-/// Those of them that have PAUSE whether the link to the robot runs or not.
+/// Those that have PAUSE whether the link to the robot runs or not.
 const PAUSING: &[ProcessId] = &[ProcessId::Task, ProcessId::Subtask, ProcessId::Emove];
 /// The processes of board 2.
 const BOARD_2: &[ProcessId] = &[ProcessId::Emove, ProcessId::Prim];

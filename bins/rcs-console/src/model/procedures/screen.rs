@@ -1,4 +1,4 @@
-//! The procedures as lines: the list, or the steps of the one that is open.
+//! The procedure screen as lines: the list, or the steps of the open procedure.
 
 use super::{ALL, Ask, Progress, Step, Track, condition::Sight, progress::Mark};
 use crate::model::{Section, Text, Tone};
@@ -6,7 +6,7 @@ use crate::model::{Section, Text, Tone};
 /// Columns before the text of a step.
 const INDENT: &str = "              ";
 
-/// The list, or the procedure that is open.
+/// The list, or the open procedure.
 #[must_use]
 pub fn sections(progress: &Progress, sight: &Sight<'_>) -> Vec<Section> {
     match progress.tracks.get(progress.cursor) {
@@ -52,7 +52,7 @@ fn steps(track: &Track, sight: &Sight<'_>) -> Section {
     Section { title, lines, at }
 }
 
-/// What there is to know of the step under the cursor.
+/// Details of the step under the cursor.
 fn details(step: &Step, mark: &Mark, sight: &Sight<'_>) -> Vec<Text> {
     let mut lines: Vec<Text> = step.show.lines(sight);
     let mut say = |tone, text: String| lines.push(Text::new(tone, text));

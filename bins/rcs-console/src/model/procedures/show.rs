@@ -1,11 +1,11 @@
-//! What is shown of the cell at a step.
+//! The state of the cell that is shown with a step.
 
 use interfaces::device::{KNOB_FULL, joystick_frame, single_step};
 
 use super::condition::{HOME, Sight, TOLERANCE, largest, rows};
 use crate::model::{Text, Tone, cell};
 
-/// What is shown of the cell at a step.
+/// The state of the cell that is shown with a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Show {
     /// Nothing.
@@ -16,9 +16,9 @@ pub enum Show {
     Aligned,
     /// `frame-feedback` beside HOME.
     Frame,
-    /// `tp-xyz`, `wr->tp` and `tp->fp`, in and out.
+    /// `tp-xyz`, `wr->tp` and `tp->fp`, input and output.
     Frames,
-    /// Where the hand is, and how far it has moved since the step began.
+    /// Position of the hand, and the distance it has moved since the step began.
     Hand,
     /// The holsters.
     Holsters,
@@ -26,12 +26,12 @@ pub enum Show {
     Box,
     /// Table and hand of the pedestal.
     Pedestal,
-    /// What vision was asked and has answered.
+    /// The last request to vision and its answer.
     Vision,
 }
 
 impl Show {
-    /// The lines.
+    /// The lines of the screen.
     #[must_use]
     pub fn lines(self, sight: &Sight<'_>) -> Vec<Text> {
         match self {
@@ -119,7 +119,7 @@ fn hand(sight: &Sight<'_>) -> Text {
     Text::plain(format!("hand at {x:.2} {y:.2} {z:.2} in{way}{rest}"))
 }
 
-/// Inches of 0.01 in.
+/// Converts 0.01 in to inches.
 fn inches(hundredths: i32) -> f64 {
     f64::from(hundredths) / 100.0
 }

@@ -1,4 +1,4 @@
-//! Stops, and the way back (III.6, IV.3.1, IV.3.3 steps 11 and 12, IV.3.4).
+//! Stops, and the recovery from them (III.6, IV.3.1, IV.3.3 steps 11 and 12, IV.3.4).
 
 use interfaces::ProcessId;
 
@@ -111,7 +111,7 @@ pub const WARNING: Procedure = Procedure {
     ],
 };
 
-/// The three address switches of a joint and its button (IV.3.3 step 11).
+/// Note on the three address switches and the button of a joint (IV.3.3 step 11).
 const SWITCHES: &str = "The switches are read from the left: 4, 2, 1.";
 
 /// IV.3.3 step 11, a to q.

@@ -1,15 +1,15 @@
-//! Tab: what can stand at a place of a line, from the words of the terminals and of the requests, and from the names of
-//! the task data.
+//! Tab completion: the possible words at a position of a line, from the words of the terminals, the requests, and the
+//! names of the task data.
 
 use std::{collections::BTreeSet, path::Path};
 
 use interfaces::operator::Variable;
 use taskdata::load::{BlockNumber, Source, Store, job::TASK_COMMANDS, source::blocks};
 
-/// The names of the task data of a run, and its blocks and jobs.
+/// The names, blocks and jobs of a run's task data.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names {
-    /// Objects, tools among them.
+    /// Objects, including tools.
     pub objects: Vec<String>,
     /// Locations that a command can name.
     pub locations: Vec<String>,
@@ -19,13 +19,12 @@ pub struct Names {
     pub grips: Vec<(String, i32)>,
     /// Blocks.
     pub blocks: Vec<BlockNumber>,
-    /// Jobs of the directory.
+    /// Jobs of the data directory.
     pub jobs: Vec<String>,
 }
 
 impl Names {
-    /// The names in these texts and in the directory that they come from. Of data with errors only the blocks
-    /// are known.
+    /// The names in these texts, and the jobs in their directory. If the data have errors only the blocks are known.
     #[must_use]
     pub fn of(sources: &[Source], directory: &Path) -> Self {
         let numbers = sources.iter().flat_map(|source| blocks(0, source).0).map(|block| block.number);
@@ -67,7 +66,7 @@ fn runtime_jobs(directory: &Path) -> Vec<String> {
     jobs.filter_map(|file| Some(file.file_stem()?.to_string_lossy().into_owned())).collect()
 }
 
-/// What follows the first words of a line. A word of an entry can be `*`, which is any.
+/// The words that can follow the first words of a line. `*` in an entry matches any word.
 static FOLLOWING: [(&[&str], &[&str]); 28] = [
     (&["job"], &["wait", "go", "skip"]),
     (&["db-done"], ON_OFF),
@@ -122,11 +121,11 @@ static FOLLOWING: [(&[&str], &[&str]); 28] = [
     (&["*", "OFFSET"], &["!"]),
     (&["send"], TASK_COMMANDS),
 ];
-/// Processes that the joystick box holds.
+/// Processes that the joystick box can hold.
 const LEVELS: &[&str] = &["TASK", "SUBTASK", "EMOVE", "PRIM"];
 const ESTOPS: &[&str] = &["control-panel", "teach-pendant", "terminals", "joystick-box", "pedestal"];
 const ON_OFF: &[&str] = &["on", "off"];
-/// Requests in words of today.
+/// Requests in today's words.
 const REQUESTS: [&str; 24] = [
     "board",
     "db-done",
@@ -153,10 +152,10 @@ const REQUESTS: [&str; 24] = [
     "vise",
     "write",
 ];
-/// What stands behind one or more numbers.
+/// Words that can follow one or more numbers.
 const BEHIND_NUMBERS: [&str; 7] = ["EDIT", "LINE-LOAD", "LIST", "LOAD", "OFFSET", "OLOAD", "TEACH"];
 
-/// Everything that can stand behind these words.
+/// All words that can follow these words.
 fn candidates(words: &[&str], names: &Names, terminal: &[&str]) -> Vec<String> {
     let owned = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
     let blocks_at = |offset: Option<u32>| {
@@ -195,8 +194,8 @@ fn candidates(words: &[&str], names: &Names, terminal: &[&str]) -> Vec<String> {
     }
 }
 
-/// What can stand in the next field of a command: object, then grip, location and sector of source and
-/// destination, then location and sector of the end (V.4.1).
+/// The candidates for the next field of a command: object, then grip, location and sector of source and destination,
+/// then location and sector of the end (V.4.1).
 fn field(fields: &[&str], names: &Names) -> Vec<String> {
     let null = || "--".to_owned();
     match fields.len() {
@@ -210,7 +209,7 @@ fn field(fields: &[&str], names: &Names) -> Vec<String> {
     }
 }
 
-/// The values of a variable that may be written.
+/// The values of a variable that can be written.
 fn values(names: &Names) -> Vec<String> {
     std::iter::once("NONE".to_owned()).chain(names.objects.iter().cloned()).collect()
 }
@@ -222,7 +221,7 @@ fn grips(object: &str, names: &Names) -> Vec<String> {
     grips.into_iter().collect()
 }
 
-/// What Tab makes of a line, and what the word at its end could become. `terminal` are the words of the terminal.
+/// The completed line, and the candidates for the word at its end. `terminal` are the words of the terminal.
 #[must_use]
 pub fn complete(line: &str, names: &Names, terminal: &[&str]) -> (String, Vec<String>) {
     let (front, begun) = line.rsplit_once(' ').map_or(("", line), |(front, begun)| (front, begun));

@@ -1,4 +1,4 @@
-//! Words about blocks (IV.2.3, IV.2.4, IV.2.7): listed, edited, loaded, and found by what stands in them.
+//! Words for blocks (IV.2.3, IV.2.4, IV.2.7): list, edit, load, and search their text.
 
 use interfaces::{ProcessId, operator::board_bit};
 use levels::ladder::Ladder;
@@ -7,14 +7,15 @@ use taskdata::load::{BlockNumber, commands};
 use super::{library::AREAS, said, teach::Lesson, words::Interpreter};
 
 impl Interpreter<'_> {
-    /// `n EDIT`, which the manual does with a screen editor (IV.2.3).
+    /// `n EDIT`, for which the manual has a screen editor (IV.2.3).
     pub(super) fn edit(&mut self) -> Result<(), String> {
         let number = self.pop("n EDIT")?;
         self.outcome.edits = Some(BlockNumber { offset: self.board.offset, number });
         Ok(())
     }
 
-    /// `n TEACH name` and `n TEACH name pose`: the recorded pose as a form, or as a movetable relative to a named pose.
+    /// `n TEACH name` and `n TEACH name pose`: write the recorded pose as a form, or as a movetable relative to a named
+    /// pose.
     pub(super) fn teach(&mut self, behind: &[&str]) -> Result<usize, String> {
         let number = BlockNumber { offset: self.board.offset, number: self.pop("n TEACH name")? };
         let mut names = behind.iter().map(|name| (*name).to_owned());
@@ -28,7 +29,7 @@ impl Interpreter<'_> {
         let Some((file, lines)) = self.library.block(number) else { return Err(self.missing(number)) };
         self.outcome.listed = Some(number);
         self.say(format!("  {number}, {file}"));
-        // Empty lines are left out: a screen of 24 lines has no room for a block of 16.
+        // Empty lines are skipped: a screen of 24 lines has no room for a block of 16.
         for (at, line) in lines.iter().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
             self.say(format!(" {at:>2} {line}"));
         }
@@ -99,7 +100,7 @@ impl Interpreter<'_> {
         }
     }
 
-    /// LOC: where a word is defined (IV.2.7): an entry of the task data, a decision table, a process.
+    /// LOC: find the definition of a word (IV.2.7): an entry of the task data, a decision table, a process.
     pub(super) fn locate(&mut self, behind: Option<&str>) -> Result<usize, String> {
         let name = behind.ok_or("a name is missing: LOC name")?;
         for (process, info) in ProcessId::ALL.iter().zip(Ladder::processes()) {

@@ -6,8 +6,8 @@
 //!               └──────────────Esc─────────────────────────┘
 //! ```
 //!
-//! Only the lines of the block change in its file; remarks (`%%`) and other blocks stay as they are. A file that has
-//! changed meanwhile is not overwritten.
+//! Only the lines of the block are changed in its file; comments (`%%`) and other blocks stay as they are. A file that
+//! has changed in the meantime is not overwritten.
 
 use std::{
     fs, io,
@@ -21,72 +21,72 @@ use taskdata::load::{
 
 use crate::model::{Key, Section, Text, Tone};
 
-/// Lines about a form that have room above the 16 of a block in the least terminal; the change shows all.
+/// Lines about a form that fit above the 16 lines of a block in the smallest terminal; the diff shows all of them.
 const ABOUT: usize = 2;
 
 /// A message of the checker.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Message {
-    /// The line of the block; none if it is about something else.
+    /// Line of the block; `None` if the message is about another place.
     line: Option<usize>,
-    /// It is an error, no warning.
+    /// True for an error, false for a warning.
     is_error: bool,
     text: String,
 }
 
-/// What is shown.
+/// The view of the editor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// The lines, and what was found in them last.
+    /// The lines, with the messages of the last check.
     Text,
-    /// What writing them would change.
+    /// The changes that F2 would write.
     Diff,
 }
 
-/// What is to be done after a key.
+/// The action after a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wish {
     /// Nothing.
     None,
-    /// The editor is to be closed; nothing is written.
+    /// Close the editor without writing.
     Close,
-    /// The block is to be written and loaded.
+    /// Write and load the block.
     Write,
-    /// Something is to be said.
+    /// Show a message.
     Say(&'static str),
 }
 
-/// A block that is edited.
+/// A block in the editor.
 #[derive(Clone, Debug)]
 pub struct Editor {
     number: BlockNumber,
     /// Its file.
     path: PathBuf,
-    /// The text of the file, as it was when the editor began.
+    /// Text of the file when the editor was opened.
     before: String,
-    /// All texts of the task data, and which of them is the file.
+    /// All texts of the task data, and the index of the file among them.
     sources: Vec<Source>,
     at: usize,
-    /// The lines as they were.
+    /// The lines when the editor was opened.
     old: Vec<String>,
-    /// The lines as they are.
+    /// The present lines.
     lines: Vec<String>,
     row: usize,
     column: usize,
     stage: Stage,
     messages: Vec<Message>,
-    /// What is to be known of what was put in.
+    /// Information about the inserted form.
     about: Vec<String>,
 }
 
-/// Why a block is not edited.
+/// The reason why a block cannot be edited.
 pub type Refused = String;
 
 impl Editor {
-    /// Begin to edit a block of the files under a directory, whose texts are given.
+    /// Open a block of the files under a directory, whose texts are given.
     ///
     /// # Errors
-    /// A sentence.
+    /// A message with the reason.
     pub fn begin(number: BlockNumber, directory: &Path, sources: &[Source]) -> Result<Self, Refused> {
         let holds = |source: &Source| blocks(0, source).0.iter().any(|block| block.number == number);
         let at = sources.iter().rposition(holds).ok_or_else(|| format!("there is no {number}"))?;
@@ -118,15 +118,15 @@ impl Editor {
         })
     }
 
-    /// Put a form into the block: in the place of the one with the same last words, or behind the last line.
+    /// Insert a form: in place of the one with the same last words, or after the last line.
     ///
     /// # Errors
-    /// The block has no room.
+    /// A message if the block has no room.
     pub fn with_form(mut self, form: &[String], about: Vec<String>) -> Result<Self, Refused> {
         let words = |line: &str| line.split_whitespace().rev().take(3).map(str::to_owned).collect::<Vec<_>>();
         let key = |line: &str| {
             let words = words(line);
-            // The name, and the compiling word: a pose has its movetable between them.
+            // Name and compiling word: in a pose, its movetable is between them.
             (
                 words.first().cloned(),
                 ["-pose-", "-mtb-"].into_iter().find(|word| words.iter().any(|is| is == word)),
@@ -161,19 +161,19 @@ impl Editor {
         Ok(self)
     }
 
-    /// The block.
+    /// Number of the block.
     #[must_use]
     pub const fn number(&self) -> BlockNumber {
         self.number
     }
 
-    /// The change is shown, and not the text.
+    /// True if the editor shows the diff instead of the text.
     #[must_use]
     pub fn shows_change(&self) -> bool {
         self.stage == Stage::Diff
     }
 
-    /// A key.
+    /// Carry out a key.
     pub fn key(&mut self, key: Key) -> Wish {
         match (self.stage, key) {
             (Stage::Diff, Key::Enter) => return Wish::Write,
@@ -216,7 +216,7 @@ impl Editor {
         Wish::None
     }
 
-    /// Check all data with the block. Without errors the change is shown.
+    /// Check all data with the block. If there are no errors the diff is shown.
     fn check(&mut self) -> Wish {
         if self.changes().is_empty() {
             return Wish::Say("nothing has changed");
@@ -236,7 +236,7 @@ impl Editor {
                 let is_here = found.file() == name && found.block() == Some(self.number);
                 let line = found.line().filter(|_| is_here).and_then(|line| usize::try_from(line).ok());
                 let place = if is_here { String::new() } else { format!("{}: ", found.place()) };
-                // Warnings about other blocks were there before.
+                // Warnings about other blocks existed before.
                 (is_error || is_here).then(|| Message {
                     line,
                     is_error,
@@ -251,10 +251,10 @@ impl Editor {
         Wish::None
     }
 
-    /// Write the file with the block.
+    /// Write the block into the file.
     ///
     /// # Errors
-    /// A sentence; then the file is as it was.
+    /// A message with the reason; the file is unchanged then.
     pub fn write(&self) -> Result<(), String> {
         let told = |error: io::Error| format!("{}: {error}", self.path.display());
         if fs::read_to_string(&self.path).map_err(told)? != self.before {
@@ -268,14 +268,14 @@ impl Editor {
         fs::rename(&new, &self.path).map_err(told)
     }
 
-    /// Number, old and new text of each line that is not what it was.
+    /// Number, old and new text of each changed line.
     fn changes(&self) -> Vec<(usize, &str, &str)> {
         let pairs = self.old.iter().zip(&self.lines).enumerate();
         let pairs = pairs.map(|(at, (old, new))| (at, old.trim_end(), new.trim_end()));
         pairs.filter(|(_, old, new)| old != new).collect()
     }
 
-    /// The text of the file with the lines as they are.
+    /// The text of the file with the present lines.
     fn text(&self) -> String {
         let source = Source { name: String::new(), text: self.before.as_str().into() };
         let (found, _) = blocks(0, &source);
@@ -297,7 +297,7 @@ impl Editor {
             .map(|line| format!("\n{}", line.trim_end()))
             .collect();
         text.insert_str(end, &more);
-        // From the last to the first: what is replaced moves nothing that is yet to come.
+        // From the last to the first, so that a replacement does not move the lines still to be replaced.
         for (line, old) in self.lines.iter().zip(&block.lines).rev() {
             let start = byte(old.at.start);
             text.replace_range(start..start + byte(old.at.length), line.trim_end());
@@ -305,7 +305,7 @@ impl Editor {
         text
     }
 
-    /// The editor as text, and the keys that it has now.
+    /// The editor as text, and its present keys.
     #[must_use]
     pub fn sections(&self) -> Vec<Section> {
         let title = format!("{}, {}", self.number, self.path.display());
@@ -334,7 +334,7 @@ impl Editor {
         }
     }
 
-    /// The lines, each with what the checker says of it; then what it says of other places.
+    /// The lines with the checker's messages about them, then the messages about other places.
     fn shown(&self) -> Vec<Text> {
         let about = self.about.iter().take(ABOUT);
         let mut shown: Vec<Text> = about.map(|line| Text::new(Tone::Faint, format!("    {line}"))).collect();
@@ -349,14 +349,14 @@ impl Editor {
         shown
     }
 
-    /// What asks the run to load the block.
+    /// The request that loads the block.
     #[must_use]
     pub fn request(&self) -> String {
         format!("load {} {}", self.number.offset, self.number.number)
     }
 }
 
-/// The line with the place of the next character, without colour too.
+/// The line with a mark at the cursor, which is visible without colour.
 fn with_cursor(line: &str, column: usize) -> String {
     let (front, behind) = line.split_at(column.min(line.len()));
     format!("{front}_{behind}")
@@ -367,7 +367,7 @@ fn said(message: &Message) -> Text {
     Text::new(tone, format!("{mark}  {}", message.text))
 }
 
-/// The lines of a block of a text, all 16.
+/// The lines of a block of a text, always 16.
 fn lines_of_block(source: &Source, number: BlockNumber) -> Vec<String> {
     let (found, _) = blocks(0, source);
     let block = found.iter().rfind(|block| block.number == number);
@@ -385,7 +385,7 @@ mod tests {
     const POSES: BlockNumber = BlockNumber { offset: 21_000, number: 610 };
     const COMMANDS: BlockNumber = BlockNumber { offset: 16_000, number: 863 };
 
-    /// A copy of the blocks of the shipped data.
+    /// A copy of the blocks in the shipped data.
     fn data() -> tempfile::TempDir {
         let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
         let to = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The blocks of the task data, as a terminal lists them (IV.2.7).
+//! The blocks of the task data, for listing at a terminal (IV.2.7).
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use taskdata::load::{
 
 use super::complete::Names;
 
-/// The areas of the manual (IV.2.7), and what stands there now.
+/// The areas of the manual (IV.2.7), and their present contents.
 pub static AREAS: [(u32, &str, &str); 11] = [
     (12_000, "Prim", "crates/levels/src/prim"),
     (16_000, "Task", "crates/levels/src/task; blocks of commands: data/commands.blk"),
@@ -24,10 +24,10 @@ pub static AREAS: [(u32, &str, &str); 11] = [
     (27_000, "Graphics", "this program, screen 1"),
 ];
 
-/// Words that are found at most.
+/// Largest number of results of a search.
 const FOUND: usize = 12;
 
-/// Blocks, read when the first is asked for.
+/// Blocks, which are read at the first request.
 #[derive(Default)]
 pub struct Library {
     directory: PathBuf,
@@ -36,32 +36,32 @@ pub struct Library {
 }
 
 impl Library {
-    /// Blocks of a directory.
+    /// The blocks of a directory.
     #[must_use]
     pub fn of(directory: PathBuf) -> Self {
         Self { directory, ..Self::default() }
     }
 
-    /// Blocks that were read elsewhere, such as those of a log.
+    /// Blocks from another source, such as a log.
     #[must_use]
     pub fn with(sources: Vec<Source>) -> Self {
         Self { read: Some(sources), ..Self::default() }
     }
 
-    /// The directory; empty for blocks that were read elsewhere.
+    /// The directory; empty for blocks from another source.
     #[must_use]
     pub fn directory(&self) -> &Path {
         &self.directory
     }
 
-    /// Read again what stands in the directory, when a block is asked for.
+    /// Read the directory again at the next request.
     pub fn forget(&mut self) {
         if !self.directory.as_os_str().is_empty() {
             (self.read, self.names) = (None, None);
         }
     }
 
-    /// The names in the blocks, for Tab.
+    /// The names in the blocks, for completion.
     pub fn names(&mut self) -> &Names {
         let directory = self.directory.clone();
         if self.names.is_none() {
@@ -76,7 +76,7 @@ impl Library {
         self.read.get_or_insert_with(|| read_blocks_under(directory).0)
     }
 
-    /// The lines of a block, from line 0 on, and its file. Of several the newest counts.
+    /// The lines of a block, from line 0, and its file. If there are several, the newest one.
     pub fn block(&mut self, number: BlockNumber) -> Option<(String, Vec<String>)> {
         self.sources().iter().rev().find_map(|source| {
             let (found, _) = blocks(0, source);
@@ -101,7 +101,7 @@ impl Library {
         numbers
     }
 
-    /// Where a word stands: block, line, and the line's text.
+    /// The places of a word: block, line, and text of the line.
     pub fn find(&mut self, word: &str) -> Vec<(BlockNumber, usize, String)> {
         let of_block = |block: taskdata::load::source::Block<'_>| {
             let holds = |text: &str| text.split_whitespace().any(|found| found.trim_matches('"') == word);

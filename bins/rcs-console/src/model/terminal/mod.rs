@@ -1,4 +1,4 @@
-//! The terminal of a board (IV.2): words that run, show and list, and beside them requests in words of today.
+//! The terminal of a board (IV.2): words that execute, show and list, and requests in today's words.
 
 pub mod complete;
 mod disk;
@@ -31,7 +31,7 @@ pub use self::{screen::sections, words::known};
 
 /// The boards of the terminals (IV.2.2).
 pub const BOARDS: [u8; 6] = [0, 2, 4, 6, 8, 12];
-/// What is kept of what was typed.
+/// Number of typed lines that are kept.
 const KEPT: usize = 100;
 
 /// The mode of a terminal (IV.2.6).
@@ -44,25 +44,25 @@ pub enum Mode {
     Show,
 }
 
-/// What a terminal is set to.
+/// The settings of a terminal.
 #[derive(Clone, Debug)]
 pub struct Board {
-    /// The board that it speaks to.
+    /// Its board.
     pub number: u8,
     /// Its mode.
     pub mode: Mode,
-    /// The area whose blocks LIST and LOAD mean.
+    /// Offset of the area for LIST and LOAD.
     pub offset: u32,
-    /// The vocabulary that was entered last.
+    /// The last vocabulary.
     pub vocabulary: &'static str,
-    /// The show word that was entered last.
+    /// The last show word.
     pub shown: Option<&'static ShowWord>,
-    /// The variable that was shown last, if it can be written.
+    /// The last variable shown, if it can be written.
     pub variable: Option<Variable>,
 }
 
 impl Default for Board {
-    /// Board 6: the commands for Task are entered there.
+    /// Board 6, at which commands for Task are entered.
     fn default() -> Self {
         Self {
             number: 6,
@@ -76,20 +76,20 @@ impl Default for Board {
 }
 
 impl Board {
-    /// Speak to another board.
+    /// Select another board.
     pub fn turn_to(&mut self, number: u8) {
         if self.number != number {
             *self = Self { number, offset: self.offset, ..Self::default() };
         }
     }
 
-    /// The processes on it.
+    /// The processes on the board.
     pub fn processes(&self) -> impl Iterator<Item = ProcessId> + use<> {
         let number = self.number;
         ProcessId::ALL.iter().copied().filter(move |process| process.board() == number)
     }
 
-    /// The variables of its processes that a person may write.
+    /// The variables of its processes that can be written.
     fn variables(&self) -> impl Iterator<Item = Variable> + use<> {
         let number = self.number;
         Variable::ALL.iter().copied().filter(move |variable| variable.owner().board() == number)
@@ -109,32 +109,32 @@ impl Board {
     }
 }
 
-/// Something that was typed, and what was said at once.
+/// A typed line, and its immediate output.
 #[derive(Clone, Debug)]
 struct Typed {
     board: u8,
     line: String,
     said: Vec<Text>,
-    /// How many requests had been sent before.
+    /// Number of requests sent before.
     after: u64,
 }
 
-/// A terminal.
+/// A terminal of the console.
 #[derive(Default)]
 pub struct BoardTerminal {
-    /// What it is set to.
+    /// The settings.
     pub board: Board,
     /// The blocks.
     pub library: Library,
-    /// The block that is edited.
+    /// The block in the editor, if any.
     pub editor: Option<Editor>,
-    /// The block that was listed last: F2 edits it.
+    /// The block that was listed last; F2 opens it.
     listed: Option<BlockNumber>,
     typed: Vec<Typed>,
 }
 
 impl BoardTerminal {
-    /// With the blocks of a directory.
+    /// A terminal with the blocks of a directory.
     #[must_use]
     pub fn of(directory: PathBuf) -> Self {
         Self { library: Library::of(directory), ..Self::default() }
@@ -149,11 +149,11 @@ impl BoardTerminal {
 }
 
 impl Model {
-    /// A line was typed at the terminal: words of the board, or a request in words of today.
+    /// Carry out a typed line: words of the board, or a request in today's words.
     pub(super) fn enter(&mut self, line: &str) {
         let terminal = &mut self.terminal;
         let sent = self.operating.as_ref().map_or(0, Operating::count);
-        // As `rcs-run send` has it.
+        // `rcs-run send` also accepts this prefix.
         let line = line.strip_prefix("send ").map_or(line, str::trim_start);
         if !is_of_terminal(line, terminal.board.mode) {
             match &mut self.operating {
@@ -182,7 +182,7 @@ impl Model {
         }
     }
 
-    /// Why a board's blocks cannot be edited now (IV.2.3).
+    /// The reason why a board's blocks cannot be edited now (IV.2.3).
     fn cannot_edit(&self) -> Option<String> {
         let board = self.terminal.board.number;
         if self.operating.is_none() {
@@ -196,7 +196,7 @@ impl Model {
         runs.then(|| format!("board {board} runs: ^C stops it before its blocks are edited (IV.2.3)"))
     }
 
-    /// Open the editor, or say why not.
+    /// Open the editor, or show why it cannot be opened.
     fn begin_edit(&mut self, number: BlockNumber) {
         if let Some(why) = self.cannot_edit() {
             self.answer = Some(why);
@@ -211,7 +211,7 @@ impl Model {
         }
     }
 
-    /// Open the editor with the form of the recorded pose, or say why not.
+    /// Open the editor with the form of the recorded pose, or show why it cannot be opened.
     fn begin_lesson(&mut self, lesson: &Lesson) {
         if let Some(why) = self.cannot_edit() {
             self.answer = Some(why);
@@ -227,7 +227,7 @@ impl Model {
         }
     }
 
-    /// A key of the editor; false if there is none open.
+    /// Carry out a key of the editor. Returns false if no editor is open.
     pub(super) fn edit(&mut self, key: Key) -> bool {
         let Some(editor) = self.terminal.editor.as_mut().filter(|_| key != Key::F1) else { return false };
         match editor.key(key) {
@@ -239,7 +239,7 @@ impl Model {
         true
     }
 
-    /// Write the block, and let the run load it.
+    /// Write the block, and request its load.
     fn write_block(&mut self) {
         if let Some(why) = self.cannot_edit() {
             self.answer = Some(why);
@@ -258,7 +258,7 @@ impl Model {
         }
     }
 
-    /// What stands in front of what is typed.
+    /// The prompt of the terminal.
     #[must_use]
     pub fn terminal_prompt(&self) -> String {
         let board = &self.terminal.board;
@@ -269,7 +269,7 @@ impl Model {
         }
     }
 
-    /// A key of the terminal that no other screen has; false if it is none.
+    /// Carry out a key that only the terminal has. Returns false for other keys.
     pub(super) fn work_the_terminal(&mut self, key: Key) -> bool {
         let board = &mut self.terminal.board;
         let at = BOARDS.iter().position(|number| *number == board.number).unwrap_or_default();
@@ -293,7 +293,7 @@ fn look_only() -> Text {
     Text::new(Tone::Trouble, "!!this console looks only: start it with --operate to work on the run")
 }
 
-/// What has become of a command that a request has given, as the terminal of the original said it (IV.4.2 step 3).
+/// Update the progress of the command that a request has sent, in the words of the original terminal (IV.4.2 step 3).
 pub fn follow(exchange: &mut Exchange, picture: &Picture) {
     let Some(Ok(answer)) = &exchange.answer else { return };
     let number = answer.rsplit_once("command ").and_then(|(_, number)| number.parse::<u32>().ok());

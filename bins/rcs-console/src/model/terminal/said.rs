@@ -1,6 +1,6 @@
-//! Words of the manual that would do nothing here: what they did, and what there is instead (IV.2, IV.5).
+//! Words of the manual that have no effect here: their effect in the manual, and their replacement (IV.2, IV.5).
 
-/// Words, and what is said of them.
+/// The words and their answers.
 static OLD: [(&[&str], &str); 12] = [
     (&[":C", "}R"], "there is no compiler at the terminal: routines are compiled with the program"),
     (
@@ -40,7 +40,7 @@ static OLD: [(&[&str], &str); 12] = [
     ),
 ];
 
-/// Blocks that the manual loads for their effect, at Task's offset and at each board's.
+/// Blocks that the manual loads for their effect, at Task's offset and at that of each board.
 static BLOCKS: [(u32, &str); 5] = [
     (28, "28 LOAD initialized a board: each process does it in its first tick (IV.2.8)"),
     (188, "188 LOAD prepared the network for the HWSC: connecting does it (IV.4.1)"),
@@ -49,13 +49,13 @@ static BLOCKS: [(u32, &str); 5] = [
     (907, "block 907 chose what postprocess writes: the run's options choose it (IV.3.2)"),
 ];
 
-/// What is said of a word; none if it is no old one.
+/// The answer to a word; `None` if it is not such a word.
 #[must_use]
 pub fn of_word(word: &str) -> Option<&'static str> {
     OLD.iter().find(|(words, _)| words.contains(&word)).map(|(_, text)| *text)
 }
 
-/// What is said of loading a block; none if it is a block as any other.
+/// The answer to loading a block; `None` for ordinary blocks.
 #[must_use]
 pub fn of_block(number: u32) -> Option<&'static str> {
     let number = if (642..=643).contains(&number) { 641 } else { number };

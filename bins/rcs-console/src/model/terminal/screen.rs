@@ -1,4 +1,4 @@
-//! The terminal as text: what it is set to, the show word, and what was typed and answered, the newest first.
+//! The terminal as text: settings, show word, and typed lines with their answers, newest first.
 
 use interfaces::operator::BOARDS as RUNNING;
 
@@ -38,7 +38,7 @@ fn title(board: &Board) -> String {
     format!("board {}: {what}; {}; offset {}; {mode}", board.number, board.vocabulary, board.offset)
 }
 
-/// The boards, who commands, and while nothing was entered yet, what can be.
+/// The boards and the source of commands; before the first input also the possible inputs.
 fn about(operating: Option<&Operating>, picture: &Picture, is_used: bool) -> Vec<Text> {
     let operator = &picture.external.operator;
     let state = |board: u8| match (operator.is_stopped(board), operator.is_stopped(0)) {
@@ -74,7 +74,7 @@ fn about(operating: Option<&Operating>, picture: &Picture, is_used: bool) -> Vec
     lines
 }
 
-/// What was typed and what was asked, the newest first; a request stands behind the words that it comes of.
+/// The typed lines and the requests, newest first; a request follows the words that have sent it.
 fn conversation(terminal: &BoardTerminal, operating: Option<&Operating>) -> Vec<Text> {
     let mut all: Vec<((u64, u8), Vec<Text>)> = Vec::new();
     all.extend(terminal.typed.iter().map(|typed| ((typed.after, 1), of_words(typed))));
@@ -82,7 +82,7 @@ fn conversation(terminal: &BoardTerminal, operating: Option<&Operating>) -> Vec<
         let numbered = operating.numbered();
         all.extend(numbered.map(|(ordinal, exchange)| ((ordinal, 0), of_request(exchange))));
     }
-    // Equal keys keep their order: words that asked for nothing.
+    // Entries with equal keys keep their order: words without a request.
     all.sort_by_key(|(key, _)| *key);
     all.into_iter().rev().flat_map(|(_, lines)| lines).collect()
 }

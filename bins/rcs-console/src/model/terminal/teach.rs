@@ -1,5 +1,5 @@
-//! A recorded pose becomes a form in a block (III.3.3, VII.1, VII.2): the editor opens with it, and with what
-//! the arm makes of the pose.
+//! Teaching: a recorded pose becomes a form in a block (III.3.3, VII.1, VII.2). The editor opens with the form, and
+//! with the arm's joints in the pose.
 
 use std::path::Path;
 
@@ -12,31 +12,31 @@ use taskdata::load::{BlockNumber, Source, Store};
 use super::editor::Editor;
 use crate::picture::Picture;
 
-/// The description of the cell in a data directory.
+/// Name of the cell description in a data directory.
 const CELL: &str = "cell.toml";
 
-/// What is to be taught.
+/// The form to teach.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lesson {
-    /// The block that gets the form.
+    /// Number of its block.
     pub number: BlockNumber,
     /// The name of the pose or movetable.
     pub name: String,
-    /// The named pose from which the movetable leads; none for a pose.
+    /// The named pose to which the movetable is relative; `None` for a pose.
     pub relative: Option<String>,
 }
 
-/// The pose that was recorded last.
+/// The last recorded pose.
 fn recorded(picture: &Picture) -> Option<Pose> {
     let number = picture.memory.prim.status.recorded_pose?;
     picture.memory.changing_pose(number).copied()
 }
 
 impl Lesson {
-    /// The editor with the form.
+    /// Open the editor with the form.
     ///
     /// # Errors
-    /// A sentence: nothing was recorded, the robot cannot stand there, or the block has no room.
+    /// A message if no pose was recorded, the robot cannot reach it, or the block has no room.
     pub fn begin(&self, picture: &Picture, directory: &Path, sources: &[Source]) -> Result<Editor, String> {
         let pose = recorded(picture).ok_or(
             "no pose has been recorded: drive the robot with the joystick box, and press its record button (m on \
@@ -50,7 +50,7 @@ impl Lesson {
         let path = directory.join(CELL);
         let cell = CellDescription::load(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         let standing = Standing::of(&pose, &data, &Room::new(&cell))?;
-        // The points stand in the form. What matters most comes first.
+        // The form contains the points, so they are skipped. The most important lines come first.
         let mut about: Vec<String> = standing.to_string().lines().skip(3).map(str::to_owned).collect();
         about.sort_by_key(|line| !(line.starts_with("limits") || line.starts_with("cell")));
         if !standing.is_usable() {

@@ -1,5 +1,6 @@
-//! The words of a board's terminal (IV.2, IV.3): numbers go onto a stack, words take them from it, as in FORTH. What a
-//! word asks of the run becomes a request in words of today ([`operator`]); what it shows is said at once.
+//! The words of a board's terminal (IV.2, IV.3): numbers go on a stack, and words take them from it, as in FORTH. A
+//! word that affects the run becomes a request in today's words ([`operator`]); a word that shows something is answered
+//! at once.
 
 use interfaces::{ProcessId, operator::Variable};
 use levels::ladder::Ladder;
@@ -14,7 +15,7 @@ use crate::{
     picture::Picture,
 };
 
-/// Words that take no name behind them.
+/// Words that are not followed by a name.
 const WORDS: [&str; 17] = [
     "GO",
     "SSGO",
@@ -35,7 +36,8 @@ const WORDS: [&str; 17] = [
     "%",
 ];
 
-/// A word that executes a process once, as PRIM-LEVEL (IV.3.3 step 13; VI.2, VI.5; the others are ours).
+/// Words that execute a process once, such as PRIM-LEVEL (IV.3.3 step 13; VI.2, VI.5; the others are not in the
+/// manual).
 static LEVELS: [(&str, ProcessId, &str); 9] = [
     ("TASK-LEVEL", ProcessId::Task, "TASK"),
     ("SUBTASK-LEVEL", ProcessId::Subtask, "SUBTASK"),
@@ -48,36 +50,36 @@ static LEVELS: [(&str, ProcessId, &str); 9] = [
     ("TG-LEVEL", ProcessId::ToolGrip, "TOOL-GRIP"),
 ];
 
-/// What comes of a line.
+/// The results of a line.
 #[derive(Debug, Default)]
 pub struct Outcome {
     /// Requests to the run.
     pub asks: Vec<String>,
-    /// What is said.
+    /// Text for the screen.
     pub said: Vec<Text>,
-    /// The block that is to be edited.
+    /// The block to edit.
     pub edits: Option<BlockNumber>,
-    /// What is to be taught.
+    /// The form to teach.
     pub teaches: Option<Lesson>,
     /// The block that was listed.
     pub listed: Option<BlockNumber>,
 }
 
-/// What words work on.
+/// Executes the words of a terminal.
 pub struct Interpreter<'a> {
     /// The terminal.
     pub board: &'a mut Board,
     /// The blocks.
     pub library: &'a mut Library,
-    /// What is shown of the run.
+    /// The present picture of the run.
     pub picture: Option<&'a Picture>,
-    /// The picture before.
+    /// The previous picture.
     pub last: Option<&'a Picture>,
     stack: Vec<u32>,
     pub(super) outcome: Outcome,
 }
 
-/// True if a line consists of words of a terminal; else it is a request in words of today.
+/// True if a line consists of words of a terminal; otherwise it is a request in today's words.
 #[must_use]
 pub fn is_of_terminal(line: &str, mode: Mode) -> bool {
     let first = line.split_whitespace().next().unwrap_or_default();
@@ -90,7 +92,7 @@ pub fn is_of_terminal(line: &str, mode: Mode) -> bool {
     is_word || writes || mode == Mode::Show || first.parse::<u32>().is_ok()
 }
 
-/// The words of the terminal of a board that Tab completes.
+/// The words of a board's terminal for completion.
 #[must_use]
 pub fn known(board: u8) -> Vec<&'static str> {
     let levels = LEVELS.iter().filter(|(_, process, _)| process.board() == board).map(|(word, ..)| *word);
@@ -100,7 +102,7 @@ pub fn known(board: u8) -> Vec<&'static str> {
 }
 
 impl<'a> Interpreter<'a> {
-    /// An empty stack.
+    /// An interpreter with an empty stack.
     pub fn new(
         board: &'a mut Board,
         library: &'a mut Library,
@@ -110,7 +112,7 @@ impl<'a> Interpreter<'a> {
         Self { board, library, picture, last, stack: Vec::new(), outcome: Outcome::default() }
     }
 
-    /// Carry a line out. The first word that is wrong ends it.
+    /// Execute a line. It ends at the first wrong word.
     #[must_use]
     pub fn interpret(mut self, line: &str) -> Outcome {
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -132,7 +134,7 @@ impl<'a> Interpreter<'a> {
         self.outcome.said.push(Text::plain(text));
     }
 
-    /// One word; how many words behind it belong to it.
+    /// Execute one word. Returns the number of following words that belong to it.
     fn word(&mut self, word: &str, rest: &[&str]) -> Result<usize, String> {
         let behind = rest.first().copied();
         if let Ok(number) = word.parse() {
@@ -170,7 +172,7 @@ impl<'a> Interpreter<'a> {
         Ok(0)
     }
 
-    /// A word that names something.
+    /// Execute a word that names something.
     fn named(&mut self, word: &str) -> Result<usize, String> {
         if let Some((_, process, name)) = LEVELS.iter().find(|(level, ..)| *level == word) {
             self.on(process.board())?;
@@ -208,7 +210,7 @@ impl<'a> Interpreter<'a> {
         Err("this is not a word of the terminal; :S shows variables, ? lists the words".to_owned())
     }
 
-    /// Show mode: type and value of a variable (IV.2.6).
+    /// Show mode: print type and value of a variable (IV.2.6).
     fn show(&mut self, name: &str) -> Result<usize, String> {
         let picture = self.picture.ok_or("the run has published no tick yet")?;
         let here: Vec<&str> = self.board.buffers();
@@ -253,7 +255,7 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// `<= VALUE`: write the variable that was shown last (IV.2.6).
+    /// `<= VALUE`: write the last variable shown (IV.2.6).
     fn write(&mut self, value: &[&str]) -> Result<usize, String> {
         let known: Vec<&str> = self.board.variables().map(Variable::text).collect();
         let variable = self.board.variable.ok_or_else(|| {
@@ -273,7 +275,7 @@ impl<'a> Interpreter<'a> {
         self.stack.pop().ok_or_else(|| format!("a number is missing: {form}"))
     }
 
-    /// The terminal must speak to this board.
+    /// Check that the terminal is set to this board.
     pub(super) fn on(&self, board: u8) -> Result<(), String> {
         if self.board.number == board {
             return Ok(());
@@ -305,7 +307,7 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// One pass more; passes of the same process are one request.
+    /// Add a pass; passes of the same process become one request.
     fn execute(&mut self, name: &str) {
         let request = format!("execute {name}");
         let passes = self.outcome.asks.last().and_then(|last| last.strip_prefix(&request)).map(|rest| {
@@ -329,7 +331,7 @@ impl<'a> Interpreter<'a> {
     }
 }
 
-/// The variable that can be written and that a name means: its path, or the end of it.
+/// The writable variable with a name: its path, or the end of the path.
 fn variable_named(name: &str) -> Option<Variable> {
     let end = name.replace('-', "_").to_lowercase();
     let is_named = |variable: &Variable| {
