@@ -31,7 +31,7 @@ pub enum Until {
     Next,
     /// At the end of the job
     Job,
-    /// When nothing moves any more: what was interrupted last is a stop, and no command follows it
+    /// At rest: the last interruption is a stop, and no command follows it
     Rest,
 }
 
