@@ -19,7 +19,7 @@ const SERVER: usize = 10;
 /// Offset of the summary status.
 const SUMMARY: usize = 13;
 
-/// What the server is doing.
+/// State of the server.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum ServerStatus {
@@ -65,7 +65,7 @@ pub enum Summary {
 pub struct Status {
     /// command-id# of the answered command.
     pub command_id: u16,
-    /// What the server is doing.
+    /// State of the server.
     pub server: ServerStatus,
     /// Result of the command.
     pub summary: Summary,

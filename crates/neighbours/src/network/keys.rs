@@ -12,7 +12,7 @@
 //! The controller's certificate is for TLS servers and has the DNS name [`CONTROLLER_NAME`], whatever its address is.
 //! A neighbour's certificate is for TLS clients. Its URI names (`rcs2:workstation`) give its roles. If there is a file
 //! `roles`, its fingerprint in that file gives them instead, and certificates that are not in the file are refused,
-//! whatever authority has signed them. The common name is not used.
+//! even if a trusted authority has signed them. The common name is not used.
 
 use std::{
     fmt::Write as _,

@@ -49,7 +49,7 @@ pub enum VisionError {
     Part {
         /// Which part, from 1.
         part: usize,
-        /// What is wrong with it.
+        /// Error of the part.
         source: LayoutError,
     },
     /// A field that cannot be read.

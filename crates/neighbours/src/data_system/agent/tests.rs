@@ -28,7 +28,7 @@ use crate::{
     },
 };
 
-/// What a server writes, one mailgram after the other.
+/// The mailgrams that a server writes, in order.
 type Written = Vec<Vec<u8>>;
 /// Change made to a status before it is sent.
 type Garble = fn(&mut Vec<u8>);
