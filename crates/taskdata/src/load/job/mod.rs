@@ -104,7 +104,7 @@ pub struct JobLine {
     /// Number of the line in the file, from 1.
     pub line: u32,
     /// True if the line ends with `expect error`: its command must end with an error, or the blocks that it loads
-    /// must be refused because they do not fit the cell.
+    /// must not fit the cell.
     pub expects_error: bool,
 }
 
