@@ -1,4 +1,4 @@
-//! Three mistakes of one file of TOML: underlined in the text, in one line, and as JSON for an editor.
+//! Reports three errors of a TOML file: underlined in the text, on one line, and as JSON for an editor.
 
 use std::io::Write as _;
 

@@ -1,10 +1,10 @@
 //! Diagnostics of text files: all problems of a file at once, each with its place, what was expected, what was found,
 //! and the nearest known name.
 //!
-//! A reader adds what it finds to [`Problems`] and reads on. [`Diagnostics::new`] ties the problems to the texts by
-//! [`Places`] and makes a report of them: for a person, with the line underlined; for programs, as a list of
+//! A reader adds each problem to [`Problems`] and continues. [`Diagnostics::new`] finds the places of the problems in
+//! the texts with [`Places`] and makes a report: text with the place underlined, or, for programs, a list of
 //! [`Finding`]. A [`Problem`] names either a piece of text ([`At`]) or an entry of TOML (`gripper.parts.body[0]`),
-//! whose place [`toml::Document`] knows.
+//! whose place [`toml::Document`] finds.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

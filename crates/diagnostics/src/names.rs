@@ -1,8 +1,8 @@
-//! The nearest known name, for messages about a name that is not known.
+//! The nearest known name, for messages about an unknown name.
 
-/// The candidate that differs least from `wanted`, if it is near enough to be a typing error.
+/// The candidate with the least edit distance from `wanted`, if the difference can be a typing error.
 ///
-/// Of several that are equally near the first is taken.
+/// Of several candidates with the same distance the first is returned.
 #[must_use]
 pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (wanted.len() / 3).max(1);

@@ -12,12 +12,12 @@ pub fn amount(count: usize, one: &str) -> String {
     if count == 1 { format!("1 {one}") } else { format!("{count} {one}s") }
 }
 
-/// How many records a file has.
+/// Number of records in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Loaded {
     /// The manual's name of the file.
     pub file: &'static str,
-    /// Records in it.
+    /// Number of records.
     pub records: usize,
 }
 
@@ -25,44 +25,44 @@ pub struct Loaded {
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
     pub(crate) diagnostics: Vec<Diagnostic>,
-    /// Files that were read.
+    /// Number of files that were read.
     pub files: usize,
-    /// Blocks that were loaded.
+    /// Number of blocks that were loaded.
     pub blocks: usize,
-    /// Records in each file; empty if there were errors.
+    /// Number of records in each file; empty if there were errors.
     pub loaded: Vec<Loaded>,
-    /// Findings that an earlier report has already.
+    /// Number of findings left out because an earlier report has them.
     pub(crate) told: usize,
 }
 
 impl Diagnostics {
-    /// A report of what was found in the sources.
+    /// A report of the problems in the sources.
     #[must_use]
     pub fn new(problems: Problems, mut places: Places<'_>, blocks: usize, loaded: Vec<Loaded>) -> Self {
         let files = places.sources().len();
         Self { diagnostics: problems.into_diagnostics(&mut places), files, blocks, loaded, told: 0 }
     }
 
-    /// What was found in one file of lines.
+    /// A report of the problems in one file, whose places are lines and columns.
     #[must_use]
     pub fn of_file(problems: Problems, source: &Source) -> Self {
         Self::new(problems, Places::in_lines(std::slice::from_ref(source)), 0, Vec::new())
     }
 
-    /// A report without a text: for a file that cannot be read, or values that come from no file.
+    /// A report without a text: for a file that cannot be read, or values that do not come from a file.
     #[must_use]
     pub fn without_text(problems: Problems) -> Self {
         Self::new(problems, Places::in_lines(&[]), 0, Vec::new())
     }
 
-    /// The same with the findings of another check of one of the sources.
+    /// This report and the findings of another check of one of its sources.
     #[must_use]
     pub fn with(mut self, other: Self) -> Self {
         self.diagnostics.extend(other.diagnostics);
         self
     }
 
-    /// Everything found, in the order of the text.
+    /// All findings, in the order of the text.
     #[must_use]
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics
@@ -84,7 +84,7 @@ impl Diagnostics {
         self.errors().next().is_some()
     }
 
-    /// The report for a person: with source frames and colour if `graphical`, else the plain text of [`fmt::Display`].
+    /// The report as text: with source frames and colour if `graphical`, else the plain text of [`fmt::Display`].
     #[must_use]
     pub fn render(&self, graphical: bool) -> String {
         if !graphical {
@@ -117,7 +117,7 @@ impl Diagnostics {
         self.render(std::io::stderr().is_terminal())
     }
 
-    /// What was loaded, in one or two lines.
+    /// Numbers of errors, warnings, blocks, files and records, in one or two lines.
     #[must_use]
     pub fn summary(&self) -> String {
         let told = if self.told > 0 { format!(" and {} told above", self.told) } else { String::new() };

@@ -4,17 +4,17 @@ use std::collections::HashMap;
 
 use crate::{Diagnostic, Diagnostics, Severity};
 
-/// Most other lines that are named.
+/// Greatest number of other lines that a help text names.
 const NAMED: usize = 3;
 
 impl Diagnostic {
-    /// The key of equal findings.
+    /// The key that equal findings have in common.
     fn key(&self) -> (bool, &'static str, String) {
         let same = self.problem.same.as_ref().unwrap_or(&self.problem.message);
         (self.problem.severity == Severity::Error, self.problem.code, same.clone())
     }
 
-    /// The file without its directories, and the line.
+    /// Name of the file, without directories, and number of the line, as text for messages.
     fn line_in_words(&self) -> Option<String> {
         let name = self.file().rsplit('/').next()?;
         self.line().map(|line| format!("{name} line {line}"))
@@ -22,7 +22,7 @@ impl Diagnostic {
 }
 
 impl Diagnostics {
-    /// Keep the first of the findings of several reports that are the same; its help names the lines of the others.
+    /// Of equal findings in several reports keep only the first, and name the lines of the others in its help.
     pub fn tell_once(reports: &mut [&mut Self]) {
         let mut lines: HashMap<_, Vec<String>> = HashMap::new();
         for diagnostic in reports.iter().flat_map(|report| &report.diagnostics) {

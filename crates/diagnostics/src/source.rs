@@ -1,18 +1,18 @@
-//! Texts, pieces of them, and blocks whose lines have numbers of their own.
+//! Texts, places in them, and blocks, which number their own lines.
 
 use std::{fmt, sync::Arc};
 
 /// A file with its text.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// Path as it is shown.
+    /// Path of the file, as shown in messages.
     pub name: String,
-    /// Its text.
+    /// Text of the file.
     pub text: Arc<str>,
 }
 
-/// A piece of a source: what a diagnostic underlines. Every word of a load has one, so it is small; [`crate::Places`]
-/// knows its block, line and column.
+/// A piece of a source, which a diagnostic underlines. Every word that is loaded has one, so it is small;
+/// [`crate::Places`] finds its block, line and column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct At {
     /// Position of the source in the list of sources.
@@ -24,7 +24,7 @@ pub struct At {
 }
 
 impl At {
-    /// From the beginning of one piece to the end of another of the same source.
+    /// The piece from the beginning of `self` to the end of `end`, in the same source.
     #[must_use]
     pub fn to(self, end: Self) -> Self {
         let last = end.start.saturating_add(end.length);
@@ -55,15 +55,15 @@ impl fmt::Display for BlockNumber {
 /// The lines of a block in its source.
 #[derive(Clone, Debug)]
 pub struct BlockLines {
-    /// Which block.
+    /// Number of the block.
     pub number: BlockNumber,
     /// First byte of its header.
     pub start: u32,
-    /// Its lines, counted from 0.
+    /// Lines of the block, numbered from 0.
     pub lines: Vec<At>,
 }
 
-/// Each line of a text with the position of its first byte.
+/// Each line of a text, without its line end, with the position of its first byte.
 pub fn lines_of(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut start = 0;
     text.split_inclusive('\n').map(move |line| {

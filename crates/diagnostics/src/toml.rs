@@ -1,10 +1,10 @@
-//! Reads TOML into structures, such as a cell description, and reports everything in it that does not fit at once.
+//! Reads TOML into structures, such as a cell description, and reports all its errors at once.
 //!
-//! The structures derive serde's `Deserialize`, which stops at the first value that does not fit. This deserializer
-//! continues: it reports a value of another kind with its place and replaces it by one that fits, a *stand-in*; it
-//! reports an unknown key and leaves it out. Only the structure knows whether a key is missing, because it may have a
-//! default; then reading starts again with a stand-in for that key. Values read with stand-ins are never used; they
-//! only allow the numbers of all other entries to be checked in the same pass.
+//! The structures derive serde's `Deserialize`, which stops at the first error. This deserializer continues: it reports
+//! a value of another type with its place and replaces it by one of the right type, a *stand-in*; it reports an unknown
+//! key and leaves it out. Only the structure knows whether it needs a missing key, because the key may have a default;
+//! if it does, reading starts again with a stand-in for that key. Values read with stand-ins are never used; they only
+//! allow the numbers of all other entries to be checked in the same pass.
 
 mod reader;
 
@@ -37,7 +37,7 @@ pub fn element(path: &str, index: usize) -> Path {
 /// A kind of file: its name in messages, the codes of its problems, and the range of its numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct FileKind {
-    /// The whole, as a message says it: `the description`.
+    /// Name of the whole file in messages: `the description`.
     pub whole: &'static str,
     /// Code of a syntax error.
     pub syntax: &'static str,
@@ -45,13 +45,13 @@ pub struct FileKind {
     pub key: &'static str,
     /// Code of a key that is missing.
     pub missing: &'static str,
-    /// Code of a value that does not fit.
+    /// Code of a wrong value.
     pub value: &'static str,
-    /// Smallest and largest magnitude of a number that is not 0.
+    /// Smallest and largest absolute value of a number that is not 0.
     pub magnitudes: [f64; 2],
 }
 
-/// A text with its tables.
+/// A text and the tables parsed from it.
 pub struct Document<'a> {
     source: &'a Source,
     root: Spanned<DeTable<'a>>,
@@ -81,9 +81,9 @@ impl StandIns {
 
 /// Result of reading.
 pub struct Reading<T> {
-    /// The structure; `None` if it cannot be made even with stand-ins.
+    /// The structure; `None` if it cannot be built even with stand-ins.
     pub value: Option<T>,
-    /// What did not fit.
+    /// The problems found.
     pub problems: Problems,
     /// The entries that have stand-ins.
     pub stand_ins: StandIns,
@@ -103,8 +103,8 @@ impl<'a> Document<'a> {
         (Self { source, root, kind }, problems)
     }
 
-    /// Read a structure from a text that is TOML, and check its values: `check` gets the structure and the entries
-    /// that have stand-ins, and adds what it finds to the problems.
+    /// Read a structure from TOML, and check its values: `check` gets the structure and the entries that have
+    /// stand-ins, and adds what it finds to the problems.
     ///
     /// # Errors
     /// All problems of the text.
@@ -114,7 +114,7 @@ impl<'a> Document<'a> {
         check: impl FnOnce(&T, &StandIns, &mut Problems),
     ) -> Result<T, Diagnostics> {
         let (document, mut problems) = Document::parse(source, kind);
-        // What stands behind a place that is no TOML may be anything.
+        // After a syntax error the tables are not reliable.
         if !problems.is_empty() {
             return Err(document.report(problems));
         }
@@ -129,8 +129,8 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The bytes of an entry: of its value if that stands on one place, else of its key, else those of the
-    /// nearest table around it.
+    /// The place of an entry: of its value, or of its key if the value is spread over several tables; if the entry does
+    /// not exist, the place of the nearest table that contains it.
     #[must_use]
     pub fn place(&self, path: &str) -> At {
         at(&self.source.text, self.bytes(path))
@@ -197,7 +197,7 @@ impl<'a> Document<'a> {
     }
 }
 
-/// A value that is not spread over tables with headers of their own.
+/// True if a value is not a table or an array of tables, which can be spread over the text.
 fn is_in_one_place(value: &DeValue<'_>) -> bool {
     match value {
         DeValue::Table(_) => false,
@@ -207,7 +207,7 @@ fn is_in_one_place(value: &DeValue<'_>) -> bool {
 }
 
 impl FileKind {
-    /// What is expected of a number of either sign.
+    /// The expected range of a number of either sign, as text for messages.
     fn any_number(&self) -> String {
         let [smallest, largest] = self.magnitudes;
         if smallest == 0.0 {
@@ -216,7 +216,7 @@ impl FileKind {
         format!("0, or a number from {smallest} to {largest} or from -{largest} to -{smallest}")
     }
 
-    /// For numbers of a wrong magnitude, add that they must be more than 0, where their entries need it.
+    /// In problems of numbers out of range, state the positive range only, for those entries that must be `positive`.
     pub fn above_zero(&self, positive: &BTreeSet<Path>, problems: &mut Problems) {
         let [smallest, largest] = self.magnitudes;
         for problem in problems.iter_mut() {
@@ -229,7 +229,7 @@ impl FileKind {
     }
 }
 
-/// Some bytes of a text. Text of several lines is underlined in the first.
+/// The place of a range of bytes in a text. A range of several lines is cut at the end of its first line.
 fn at(text: &str, bytes: Range<usize>) -> At {
     let small = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
     let start = (0..=bytes.start.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);

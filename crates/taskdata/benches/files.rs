@@ -1,9 +1,10 @@
-//! 100,000 records of task data in one file, and in each file: how long a load takes, and how long a look-up
-//! (SPECNOTES.md, Task data).
+//! Times of a load and of look-ups with 100,000 records of task data in one file, and in each file (SPECNOTES.md, Task
+//! data).
 //!
-//! The time of a load is that until the data are ready; giving back the memory comes after it. Look-ups are timed warm (the same
-//! few records again and again), cold (all records in an order that no cache can guess; together they fill several times what
-//! a core has to itself), and with the caches emptied. They allocate nothing: that part of the crate is built without `alloc`.
+//! The time of a load ends when the data are ready, before the memory is freed. Look-ups are timed warm (the same few
+//! records again and again), cold (all records in an order that no cache can predict; together they are several times
+//! as large as the caches of a core), and with the caches emptied. They allocate nothing: that part of the crate is
+//! built without `alloc`.
 
 #![expect(missing_docs, reason = "criterion_group! makes a public function without a doc comment")]
 
@@ -17,12 +18,12 @@ use taskdata::{
     load::{Source, Store},
 };
 
-/// Records in each of the files that grow with the number of parts.
+/// Number of records in each of the files that grow with the number of parts.
 const RECORDS: u32 = 100_000;
-/// Bytes that are written to drive everything out of the caches, and look-ups that are then timed together.
+/// Number of bytes that are written to empty the caches, and number of look-ups that are then timed together.
 const DIRT: usize = 64 << 20;
 const AT_A_TIME: usize = 250;
-/// Lines that a block has, and blocks that an offset has.
+/// Number of lines in a block, and of blocks at an offset.
 const LINES: usize = 16;
 const BLOCKS: usize = 1000;
 
@@ -68,11 +69,11 @@ fn sources() -> Vec<Source> {
     ]
 }
 
-/// For each file, texts that give it 100,000 records, and the others only what these need.
+/// For each file, texts that give it 100,000 records, and the other files only the records that these need.
 fn one_file_each() -> Vec<(&'static str, Vec<Source>)> {
     let pose = |name: &str| format!("3800 -4400 0 6800 -4400 0 6800 -1400 0 -pose- ... {name}");
     let all = || 0..RECORDS;
-    // Two numbers, so many of the first that all pairs together are 100,000.
+    // Pairs of numbers, the first below `first`: 100,000 pairs together.
     let pairs = |first: u32| all().map(move |i| (i % first, i / first));
     let part = |i: u32| format!("-obj- PART{i} 2 300 60 30 350");
     let point = |i: u32| format!("-pt- L{i} P ...");
@@ -140,21 +141,21 @@ fn load(c: &mut Criterion, sources: &[Source]) {
     load.finish();
 }
 
-/// The names of all parts of even or of odd number, each far from the one before.
+/// The names of all parts with even or with odd numbers, each far from the one before.
 fn shuffled(parity: u32) -> Vec<Name16> {
-    // 7919 and 100,000 have no common divisor: every name comes up.
+    // 7919 and 100,000 have no common divisor: every name occurs.
     let numbers = (0..RECORDS).map(|i| i * 7919 % RECORDS).filter(|i| i % 2 == parity);
     numbers.map(|i| Name16::clipped(&format!("PART{i}"))).collect()
 }
 
-/// Time for which this thread had a processor: what others do on the machine disturbs that less.
+/// Processor time of this thread: other work on the computer disturbs it less.
 fn processor_time() -> Duration {
     clock_gettime(ClockId::ThreadCPUTime).try_into().expect("it counts up from zero")
 }
 
-/// Time a look-up by name, which gives some number out of what it finds.
+/// Time a look-up by name, which returns a number from the record found.
 fn look_up(c: &mut Criterion, what: &str, names: &[Name16], find: impl Fn(&Name16) -> u32) {
-    // Each look-up waits for the one before, as in a tick: else the processor works at several at a time.
+    // Each look-up depends on the one before, as in a tick: otherwise the processor overlaps several.
     let nothing = black_box(0);
     let chain = |names: &[Name16], times: u64| {
         let mut position = 0;

@@ -12,7 +12,7 @@ fn main() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
     let (store, report) = match Store::load(&data) {
         Ok(loaded) => loaded,
-        // All mistakes of all files, each with its block and line.
+        // All errors of all files, each with its block and line.
         Err(report) => return eprintln!("{report}"),
     };
     print!("{}", report.summary());

@@ -1,5 +1,5 @@
-//! Parts on their way: what the grips of clevis, turned part and tools do to a part from place to place, and
-//! that the places are those of the cell.
+//! Chains of grips: the positions of clevis, turned part and tools after each transfer agree with the locations in the
+//! cell.
 
 use std::path::Path;
 
@@ -46,7 +46,7 @@ fn seen_from(outer: &Frame, inner: &Frame) -> Frame {
     outer.inverse().compose(inner)
 }
 
-/// Where a part is when it is taken with the tool at `from` and let go with the tool at `to`.
+/// Frame of a part that was gripped with the tool at `from` and released with the tool at `to`.
 fn carried(part: &Frame, from: &Frame, to: &Frame) -> Frame {
     to.compose(&seen_from(from, part))
 }
@@ -78,17 +78,17 @@ fn taught(value: &toml::Value) -> Frame {
     Pose { wrist: point("wrist"), tool: point("tool"), finger: point("finger") }.to_frame().unwrap()
 }
 
-/// Middle of a part whose frame in the tray is on the floor, X down.
+/// Centre of a part whose frame in the tray is on the floor, X down; `height`, in.
 fn lying(floor: &Frame, height: f64) -> Frame {
     floor.shifted(Vector::new(-height / 2.0, 0.0, 0.0))
 }
 
-/// Heights of the clevis as it lies: blank, half-done, finished; its width and its length.
+/// Heights of the lying clevis, in: blank, half finished, finished; its width and its length.
 const CLEVIS: [f64; 3] = [1.73, 1.68, 1.63];
 const CLEVIS_WIDTH: f64 = 2.56;
 const CLEVIS_LENGTH: f64 = 4.00;
 
-/// Where a clevis of the given height is seated, in the frame of the vise.
+/// Position of a seated clevis of the given height, in the frame of the vise, in.
 fn clevis_seat(height: f64) -> [f64; 3] {
     let vise = &cell()["vise"];
     let programs = vise["program"].as_array().unwrap();
@@ -109,7 +109,7 @@ fn the_clevis_blank_is_let_go_before_its_seat() {
     let [x, y, z] = clevis_seat(CLEVIS[0]);
     // 0.04 before the back, 0.05 above the ledge, in the middle of the partly closed jaws.
     assert_at(&seen_from(&vise, &carried(&blank, &pick, &place)), [x - 0.04, y + 0.04, z + 0.05], true);
-    // The seat pushes 0.01 farther than the front face of a seated blank.
+    // The seat position is 0.01 beyond the front face of a seated blank.
     let seat = seen_from(&vise, &grip(&data, "S-LCLEVIS_BH", 1, "PFIXTURE", 0));
     assert!((seat.position.x - (x - CLEVIS[0] / 2.0) - 0.01).abs() < 1e-9, "{seat:?}");
 }
@@ -128,7 +128,7 @@ fn the_half_done_clevis_comes_back_the_other_way_round() {
         &grip(&data, "LCLEVIS_IH", 1, "PFIXTURE", 0),
         &grip(&data, "LCLEVIS_IH", 1, "PEDESTAL", 0),
     );
-    // Its middle is on the axis of the table; the hand of the pedestal has its lowest inch.
+    // Its centre is on the axis of the table; the hand of the pedestal grips its lowest inch.
     assert_at(&seen_from(&pedestal, &brought), [0.0, 0.0, 1.0], true);
     let half_turn = Frame {
         position: Vector::zeros(),
@@ -212,7 +212,7 @@ fn every_gripper_has_its_holster() {
         let gripper = format!("GRIPPER-{number}");
         assert_eq!(data.obj_grips(&name(&gripper)).unwrap().endeff_id, number);
         let rest = at(&data, holster, 0, &gripper).frame;
-        // 3 in above the holster with the gripper on; bare, above the seat.
+        // 3 in above the holster with the gripper attached; without it, above the seat.
         assert_at(&seen_from(&rest, &grip(&data, &gripper, 1, holster, 0)), [-3.0, 0.0, 0.0], true);
         assert_at(&seen_from(&rest, &grip(&data, &gripper, 2, holster, 0)), [-3.0, 0.0, 1.5], true);
     }
@@ -223,11 +223,11 @@ fn forces_of_guarded_moves_have_the_sign_of_what_pushes_back() {
     let store = load();
     let data = store.view();
     for (sensor, source, threshold) in [
-        // Into the drum: the tool is pushed back, along -X.
+        // Into the drum: the force on the tool is along -X.
         ("INS-FX", SensorSource::Fx, -60),
         // Against the strike plate.
         ("ACQ-FX", SensorSource::Fx, -25),
-        // Out of the drum: the tool is held back, along +X.
+        // Out of the drum: the force on the tool is along +X.
         ("REM-FX", SensorSource::Fx, 60),
         // To the right, along -Z: the shoulder pushes along +Z in front of the sensor, a moment about -Y.
         ("REL-MY", SensorSource::My, -150),

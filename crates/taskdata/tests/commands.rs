@@ -1,4 +1,4 @@
-//! Blocks of commands for Task: LINE-LOAD finds what the manual says is there, and mistakes in them are told.
+//! Blocks of commands for Task: LINE-LOAD finds the commands of the manual, and errors in the blocks are reported.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The data directory of the project loads, and its targets are where the manual and the cell put them.
+//! The data directory of the project loads, and its targets agree with the manual and the cell.
 
 use std::path::Path;
 
@@ -97,7 +97,7 @@ fn the_blank_is_picked_tilted_and_stands_upright_in_the_vise() {
     assert_near(&placed, [68.15, -43.81, -3.0], 1e-9);
     assert!((placed.x().z - radians(300).sin()).abs() < 1e-12);
 
-    // The bar in the gripper is the bar in the tray seen from the pick; carried to the vise the two tilts cancel.
+    // The gripper holds the bar as it was in the tray; after the motion to the vise the two tilts cancel.
     let bar = placed.compose(&seen_from(&pick, &sector.frame));
     let in_vise = seen_from(&vise.frame, &bar);
     assert!(in_vise.distance(&Frame::identity()).radians < 1e-12, "{in_vise:?}");

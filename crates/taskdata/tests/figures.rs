@@ -1,4 +1,4 @@
-//! The forms of the manual's figures: typed in as they stand they are read, and the project's data are those figures.
+//! The forms of the manual's figures can be read as they are printed, and the project's data agree with the figures.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -19,7 +19,7 @@ fn figures() -> Source {
     Source { name: "figures.blk".to_owned(), text: FIGURES.into() }
 }
 
-/// The words of each block, one line of text for each line of the block that has any.
+/// The words of each block, one line of text for each line of the block with words.
 fn block_words(sources: &[Source]) -> BTreeMap<BlockNumber, Vec<String>> {
     let mut found = BTreeMap::new();
     for (index, source) in sources.iter().enumerate() {
@@ -134,7 +134,7 @@ fn the_data_are_the_figures_but_for_the_readings_that_are_marked() {
     );
 }
 
-/// What the first remark of each block says of where the block comes from; empty if it says nothing.
+/// The source of each block, from the first remark in it; empty if there is none.
 fn origins(source: &Source) -> Vec<(BlockNumber, String)> {
     let (blocks, _) = blocks(0, source);
     let said = |start: u32| {
@@ -146,7 +146,7 @@ fn origins(source: &Source) -> Vec<(BlockNumber, String)> {
 
 #[test]
 fn every_block_of_the_data_says_where_it_comes_from() {
-    // The figures of each block, by the remark above it.
+    // The figures of each block, according to the remark above it.
     let mut figure_of: BTreeMap<BlockNumber, Vec<&str>> = BTreeMap::new();
     let printed = figures();
     for block in blocks(0, &printed).0 {

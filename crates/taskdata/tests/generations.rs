@@ -1,4 +1,4 @@
-//! Loading blocks into data that are in use: numbers stay, data are new, and it is all or nothing.
+//! Loading blocks into data that are in use: record numbers stay, values are new, and an error changes nothing.
 
 use proptest::prelude::*;
 use rcs_core::name::Name16;
@@ -38,7 +38,7 @@ BLOCK# 1 OFFSET 20000
  -appr obj PART 1 $$$ -ppt 5 40 8 100 mtb IN -ppt 4 5 40 0 stop
 ";
 
-/// Numbers of all names of the base data.
+/// Record numbers of all names of the base data.
 fn numbers(data: &TaskData<'_>) -> Vec<Option<u32>> {
     vec![
         data.pose_named(&name("F-P")).map(|id| id.number()),
@@ -80,7 +80,7 @@ BLOCK# 2 OFFSET 20000
     assert_eq!((at(&old), at(&new)), ((67.75, 40), (65.5, 20)));
     assert_eq!(next.place(next.origins().poses[0]), "more.blk, block 610 (offset 21000), line 0");
     assert_eq!(next.place(next.origins().poses[1]), "base.blk, block 600 (offset 21000), line 1");
-    // The first generation is what it was, and the second is the base of a third.
+    // The first generation has not changed, and the second is the base of a third.
     assert_eq!(at(&base.view()), (67.75, 40));
     let third = with(&next, "BLOCK# 610 OFFSET 21000\n 1 t -75 0 0 -mtb- IN").unwrap();
     assert_eq!(at(&third.view()), (65.25, 20));
@@ -112,7 +112,7 @@ fn an_error_anywhere_leaves_everything_as_it_was() {
         first("BLOCK# 2 OFFSET 20000\n 1 t 0 0 5 -mtb- IN\n 1 t 0 0 6 -mtb- IN\n"),
         "error: more.blk: block 2 (offset 20000), line 1, column 18: a movetable of this name is given twice"
     );
-    // The new movetable is sound; with it an old entry is not.
+    // The new movetable is correct by itself, but an old entry that uses it is not.
     assert_eq!(
         first("BLOCK# 2 OFFSET 20000\n 1 t 4000 0 0 -mtb- IN\n"),
         "error: base.blk: block 1 (offset 20000), line 1, column 9: grip 1 of PART at F: out of reach by 17.26 in"
@@ -128,7 +128,7 @@ fn a_directory_may_name_blocks_that_are_loaded_already() {
     assert!(missing.contains("there is no block 7 (offset 20000)"), "{missing}");
 }
 
-/// Movetables and objects by number, with the values of this generation.
+/// A block with movetables and objects, by number, with the values of this generation.
 fn text(block: u32, movetables: &[(u8, i32)], objects: &[(u8, u8)]) -> String {
     let mut out = String::new();
     let lines = movetables.iter().map(|(n, x)| format!(" 1 t {x} 0 0 -mtb- M{n}\n"));
@@ -153,7 +153,7 @@ fn once<V: std::fmt::Debug + Copy + 'static>(
 }
 
 proptest! {
-    /// Whatever is loaded, every name keeps its number, and what it says is what was said last.
+    /// For any blocks loaded, every name keeps its number and has the values that were loaded last.
     #[test]
     fn names_keep_their_numbers_and_say_what_was_said_last(
         reloads in prop::collection::vec((once(0..30, -200..0), once(0..30, 0_u8..10)), 1..4),

@@ -1,4 +1,4 @@
-//! Sensors of guarded moves and relative moves: what loads, what is looked up, and what is refused.
+//! Sensors of guarded moves, and relative moves: loading, look-ups, and errors.
 
 use rcs_core::name::{Name10, Name16};
 use taskdata::{
@@ -26,7 +26,7 @@ fn load(text: &str) -> Result<Store, String> {
     Store::from_sources(vec![source]).map(|(store, _)| store).map_err(|report| report.to_string())
 }
 
-/// The errors that `lines` cause after the cell, a line each: message and help.
+/// The errors of `lines` after the cell, one line for each: message and help.
 fn said(lines: &str) -> Vec<String> {
     let text = format!("{CELL}BLOCK# 602 OFFSET 21000\n{lines}\n");
     let report = load(&text).expect_err("an error was expected");
@@ -134,7 +134,7 @@ fn a_misspelt_beginning_is_no_sensor() {
     );
 }
 
-/// The warnings that `lines` cause after the cell, a line each: message and help.
+/// The warnings of `lines` after the cell, one line for each: message and help.
 fn warned(lines: &str) -> Vec<String> {
     let text = format!("{CELL}BLOCK# 602 OFFSET 21000\n{lines}\n");
     let source = Source { name: "try.blk".to_owned(), text: text.into() };

@@ -1,4 +1,4 @@
-//! The lines of a job that begin with `**`: what each is read as, and what is said of each mistake.
+//! The lines of a job that begin with `**`: the action of each, and the message for each error.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Look-ups over small data sets that are made for the purpose: order of preference, sectors, and that no input panics.
+//! Look-ups in small data sets made for these tests: order of preference, sectors, and no panic for any input.
 
 use diagnostics::{Severity, Source};
 use geometry::frame::Frame;
@@ -13,7 +13,7 @@ fn source(text: &str) -> Source {
     Source { name: "test.blk".to_owned(), text: text.into() }
 }
 
-/// The text with lines of at most 64 columns, broken between words.
+/// The text, broken between words into lines of at most 64 columns.
 fn folded(text: &str) -> String {
     let mut out = String::new();
     for line in text.lines() {
@@ -54,7 +54,7 @@ fn place(data: &TaskData<'_>, location: &str, sector: i32, object: &str) -> Plac
         .place
 }
 
-/// Two trays taught vertical, a fixture, the three printed arrays, and an object that lies in each.
+/// Two trays taught with a vertical gripper, a fixture, the three printed arrays, and an object assigned to each.
 const CELL: &str = "
 BLOCK# 600 OFFSET 21000
  -6650 -550 1600  -6650 -550 -1400  -6650 -3550 -1400   -pose- ... A-P
@@ -139,7 +139,7 @@ fn a_sector_that_is_not_there_is_named_with_those_that_are() {
     ));
 }
 
-/// All ways of naming tray A in a grip form, the most exact first.
+/// All ways to name tray A in a grip form, the most exact first.
 const PREFERENCE: [&str; 4] = ["lpt A", "arr SECTORS", "own BOTH", "$$$"];
 
 proptest! {
@@ -153,7 +153,7 @@ proptest! {
         let found = data.grip_movetable(&name("BAR"), 2, &place(&data, "A", 1, "BAR"));
         let expected = present.trailing_zeros();
         prop_assert_eq!(found, data.movetable_named(&name(&format!("G{expected}"))));
-        // At the fixture only the wild card holds, and another grip has no entry at all.
+        // At the fixture only the wild card applies, and another grip has no entry.
         let fixture = place(&data, "F", 0, "BAR");
         let wild = if present & 8 != 0 { data.movetable_named(&name("G3")) } else { None };
         prop_assert_eq!(data.grip_movetable(&name("BAR"), 2, &fixture), wild);

@@ -1,7 +1,7 @@
-//! One mistake, one message: the text that a person sees, for the mistakes that are made most.
+//! One mistake gives one message: the texts for the most frequent mistakes.
 //!
-//! Each case changes one piece of sound data, those of the linkbar and the clevis (tests/sound), and compares
-//! everything that the load says.
+//! Each case changes one piece of correct data, those of the linkbar and the clevis (tests/sound), and compares
+//! the whole report of the load.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ fn sources() -> Vec<Source> {
     read_blocks_under(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/sound"))).0
 }
 
-/// What loading says when `from` in a file is `to` instead, without the counts.
+/// The report of a load in which `from` in a file is replaced by `to`, without the counts.
 fn said(file: &str, from: &str, to: &str) -> String {
     let mut sources = sources();
     let source = sources.iter_mut().find(|s| s.name == file).unwrap();

@@ -1,4 +1,4 @@
-//! What is printed is read again as what it was: every form, whatever stands in it.
+//! Every form, with any contents, can be printed and read again without a change.
 
 use diagnostics::{At, Problems, Source};
 use geometry::movetable::{MovetableLine, System};
@@ -27,7 +27,7 @@ fn named<const N: usize>() -> impl Strategy<Value = Named<N>> {
         .prop_map(|text| Named { name: Name::new(&text).unwrap(), at: At::default() })
 }
 
-/// A name of ten characters in the width of all.
+/// A name of at most ten characters, in the width of the longest names.
 fn wide() -> impl Strategy<Value = Named<16>> {
     named::<10>().prop_map(|n| Named { name: Name::clipped(n.name.as_str()), at: n.at })
 }
@@ -220,7 +220,7 @@ fn entry() -> impl Strategy<Value = Entry> {
     ]
 }
 
-/// Everything that an entry says, without where it says it.
+/// The contents of an entry as text, without its places.
 fn said(entry: &Entry) -> String {
     let text = format!("{entry:?}");
     let mut out = String::new();
@@ -280,7 +280,7 @@ proptest! {
         let again = read(&text);
         let (one, other): (Vec<_>, Vec<_>) = (again.iter().map(said).collect(), entries.iter().map(said).collect());
         prop_assert_eq!(one, other, "{}", text);
-        // Printing what was read changes nothing.
+        // Printing the entries that were read gives the same text.
         prop_assert_eq!(print::blocks(&again, 20_000, 990), text);
     }
 }

@@ -1,4 +1,4 @@
-//! The deserializer that continues after an error: it notes what does not fit, and gives a value that fits instead.
+//! The deserializer that continues after an error: it records a wrong value and returns a stand-in of the right type.
 
 use std::{
     cell::RefCell,
@@ -21,11 +21,11 @@ use crate::{Problem, Problems, nearest};
 /// Why a structure could not be built.
 #[derive(Debug)]
 pub(super) enum Stop {
-    /// A key is missing; the caller adds of which table.
+    /// A key is missing; the caller adds the path of its table.
     Field(&'static str),
-    /// A key is missing, by its whole path.
+    /// A key is missing: its whole path.
     Missing(Path),
-    /// Something else.
+    /// Another error, as text.
     Other(String),
 }
 
@@ -51,7 +51,7 @@ impl de::Error for Stop {
     }
 }
 
-/// Notes of one pass through the text.
+/// Results of one pass through the text.
 pub(super) struct Notes<'n> {
     pub(super) text: &'n str,
     pub(super) kind: FileKind,
@@ -61,7 +61,7 @@ pub(super) struct Notes<'n> {
 }
 
 impl Notes<'_> {
-    /// An entry that is not used because it has an error.
+    /// Record an entry that has an error and is not used.
     fn unusable(&self, path: &str, problem: Problem) {
         self.stand_ins.borrow_mut().insert(path.to_owned());
         self.problems.borrow_mut().add(problem);
@@ -75,7 +75,7 @@ pub(super) enum Node<'a> {
     Table(&'a DeTable<'a>),
     /// A value.
     Value(&'a DeValue<'a>),
-    /// There is no entry; a value that fits is given.
+    /// There is no entry: a value of the right type is used.
     StandIn,
 }
 
@@ -106,7 +106,7 @@ impl<'n, 'a> Reader<'n, 'a> {
         self.value()?.as_array().map(|array| &array[..])
     }
 
-    /// Note that something else was expected, unless the entry is a stand-in.
+    /// Record that something else was expected, unless the entry is a stand-in.
     fn unfit(&self, expected: impl Display, known: &[&str]) {
         let found = match self.node {
             Node::Value(value) => said(value),
@@ -118,12 +118,12 @@ impl<'n, 'a> Reader<'n, 'a> {
         self.notes.unusable(&self.path, problem.near(wanted, known));
     }
 
-    /// The table's name in messages.
+    /// Name of the table in messages.
     fn whose(&self) -> &str {
         if self.path.is_empty() { self.notes.kind.whole } else { &self.path }
     }
 
-    /// A whole number of a type, or 1 instead.
+    /// The entry as a whole number of type `T`; 1 if it is not one.
     fn whole<T: TryFrom<i64> + Default>(&self, low: impl Display, high: impl Display) -> T {
         let number = match self.value() {
             Some(DeValue::Integer(number)) => i64::from_str_radix(number.as_str(), number.radix()).ok(),
@@ -169,7 +169,7 @@ impl<'n, 'a> Reader<'n, 'a> {
         Elements { reader: self, array, next: 0, length }
     }
 
-    /// Note the keys of a table that its structure does not have.
+    /// Record the keys of a table that its structure does not have.
     fn unknown(&self, table: &DeTable<'_>, fields: &[&str]) {
         for (key, _) in table.iter().filter(|(key, _)| !fields.contains(&key.get_ref().as_ref())) {
             let name = key.get_ref();
@@ -202,7 +202,7 @@ impl<'n, 'a> Reader<'n, 'a> {
                 continue;
             }
             entries.push((field, Node::StandIn));
-            // A key that is misspelt is not missing too.
+            // A key that is misspelt is not reported as missing as well.
             let misspelt = table.keys().any(|key| {
                 let name = key.get_ref();
                 !fields.contains(&name.as_ref()) && nearest(name, fields.iter().copied()) == Some(*field)
@@ -221,7 +221,7 @@ impl<'n, 'a> Reader<'n, 'a> {
 /// The text of a stand-in.
 const STAND_IN: &str = "?";
 
-/// A value in a message.
+/// A value as text for messages.
 fn said(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => format!("{text:?}"),
@@ -335,7 +335,7 @@ impl<'de> de::Deserializer<'de> for Reader<'_, 'de> {
         visitor.visit_enum(StrDeserializer::new(word.copied().unwrap_or(STAND_IN)))
     }
 
-    /// An entry that is a whole number or a word.
+    /// Read an entry that is a whole number or a text.
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
         match self.value() {
             Some(DeValue::String(text)) => visitor.visit_str(text),
@@ -374,7 +374,7 @@ impl<'a> MapAccess<'a> for Entries<'_, 'a> {
     }
 }
 
-/// The elements of an array, filled up with stand-ins to a length.
+/// The elements of an array, extended with stand-ins to a length.
 struct Elements<'n, 'a> {
     reader: Reader<'n, 'a>,
     array: &'a [Spanned<DeValue<'a>>],

@@ -1,20 +1,20 @@
 //! The controller's side of a Data System in another process.
 //!
 //! It runs on a separate thread, which may wait for the disk and the network. A command goes into the mailbox, and the
-//! status that answers it comes back with the pulse of the same exchange, or of a later one. Updates are kept on the
+//! status that answers it is received with the pulse of the same exchange, or of a later one. Updates are kept on the
 //! disk until they are answered ([`Outbox`]). Updates that an earlier run could not send follow the next STARTUP,
-//! before Task gets its status: so the data base gets all updates in their order.
+//! before Task gets its status, so that the data base gets all updates in their order.
 //!
 //! On the line the agent numbers the commands itself, because updates sent after STARTUP have no number of Task:
 //!
-//! | what is sent                                  | command-id#     | which status answers it                                     |
-//! |-----------------------------------------------|-----------------|-------------------------------------------------------------|
-//! | another command than before                   | the next number | one of this number that is written afterwards               |
-//! | the same again, since it has no answer yet    | the same        | one to any of its sendings: they are one command            |
-//! | the same again, since it is asked for anew    | the next number | one of this number: an answer that comes twice counts once  |
+//! | command sent                             | command-id#     | status that answers it                              |
+//! |------------------------------------------|-----------------|-----------------------------------------------------|
+//! | another command than before              | the next number | one with this number, written afterwards            |
+//! | the same, because it has no answer yet   | the same        | one to any of its repetitions: they are one command |
+//! | the same, because Task commands it again | the next number | one with this number: a repeated answer counts once |
 //!
 //! A server that does not answer within the time limit of the clock counts as silent, and so does one whose answer is
-//! not a valid status. Task gets no answer then, and asks again (V.4.1).
+//! not a valid status. Task then gets no answer, and repeats the command (V.4.1).
 
 use std::{
     fmt, thread,
@@ -142,7 +142,7 @@ impl Agent {
         self.exchange();
     }
 
-    /// Execute a command; `None` if no answer comes. The answer has the number that Task has given to the command.
+    /// Execute a command; `None` if there is no answer. The answer has Task's number of the command.
     pub fn execute(&mut self, bytes: &[u8]) -> Option<Answer> {
         let (command_id, transaction) = match command::decode(bytes) {
             Ok(received) => (received.command_id, received.transaction),
@@ -180,8 +180,8 @@ impl Agent {
         }
     }
 
-    /// Send all kept updates, the oldest first. Returns the last answer, if there were any updates; `None` if no answer
-    /// comes.
+    /// Send all stored updates, the oldest first. Returns the last answer, if there were any updates; `None` if an
+    /// update is not answered.
     #[expect(clippy::option_option, reason = "no answer differs from nothing to tell")]
     fn tell_all(&mut self) -> Option<Option<Answer>> {
         let pending = match self.outbox.pending() {
@@ -194,7 +194,7 @@ impl Agent {
             command::number(&mut bytes, kept.number);
             let answer = self.ask(&bytes)?;
             match answer.status.summary {
-                // It may be taken later.
+                // The Data System may accept it later.
                 Summary::None | Summary::Refused(Refusal::Sequence | Refusal::Store) => {
                     return Some(Some(answer));
                 }
@@ -220,8 +220,8 @@ impl Agent {
         presence
     }
 
-    /// Send a command and wait for its status; `None` if no Data System is connected, or no answer comes, or
-    /// the run is to end before.
+    /// Send a command and wait for its status; `None` if no Data System is connected, if there is no answer, or if the
+    /// run is to end.
     fn ask(&mut self, bytes: &[u8]) -> Option<Answer> {
         if let Err(error) = self.send(bytes) {
             return Some(refused(error.to_string()));
@@ -256,8 +256,8 @@ impl Agent {
         }
     }
 
-    /// Write a command into the mailbox, under the next number; the last one under its own if it has not
-    /// been answered.
+    /// Write a command into the mailbox, with the next number; a repetition of an unanswered command keeps its
+    /// number.
     fn send(&mut self, bytes: &[u8]) -> Result<(), MailboxError> {
         let mut bytes = bytes.to_vec();
         command::identify(&mut bytes, self.command_id);

@@ -1,11 +1,11 @@
 //! The command buffer of Figure IX.2, byte by byte.
 //!
-//! Two kinds: a reconfiguration command has 28 bytes, a DML command 240. The bytes are tagged fields that
-//! hold one another; their lengths are what makes the two kinds differ:
+//! There are two kinds: a reconfiguration command has 28 bytes, a DML command 240. The bytes are nested tagged
+//! fields; their lengths differ between the two kinds:
 //!
 //! ```text
 //!   at   bytes                variable                         28 bytes    240 bytes
-//!    0   A0 82 hh ll          DSCindc, DSClen: what follows    00 18       00 EC
+//!    0   A0 82 hh ll          DSCindc, DSClen: rest            00 18       00 EC
 //!    4   B0 0A                CMDindc: ten bytes
 //!    6     nn nn              command-id#
 //!    8     H_ROBOT .          client
@@ -18,26 +18,26 @@
 //! ```
 //!
 //! The manual gives the values of the 28-byte command and says that DSClen, TRNSlen and TYPEindc are changed
-//! for a DML command: the lengths follow by counting. Of TYPEindc it gives 0x55 only, as what stands there
-//! first; CHOSEN: 0x55 is the first command of a connection (ABORT), 0x56 INITIATE, 0x57 STARTUP, 0x58 DML.
-//! CHOSEN too: trans-id# numbers an update that is to be carried out once, however often it is sent; 0
-//! numbers nothing. Numbers are stored low byte first, lengths of the protocol high byte first, as the values
-//! in the figure show.
+//! for a DML command: the lengths follow by counting. Of TYPEindc it gives only the initial value, 0x55; CHOSEN:
+//! 0x55 is the first command of a connection (ABORT), 0x56 INITIATE, 0x57 STARTUP, 0x58 DML. Also CHOSEN:
+//! trans-id# is the number of an update, which is executed once, however often it is sent; 0 stands for no
+//! number. Numbers are stored low byte first, lengths of the protocol high byte first, as the values in the
+//! figure show.
 
 use std::ops::Range;
 
 use interfaces::{DataBaseCommand, data_base::DataBaseVerb};
 use rcs_core::name::{Name10, Name16};
 
-/// Bytes of a reconfiguration command.
+/// Length of a reconfiguration command, bytes.
 pub const RECONFIGURATION: usize = 28;
-/// Bytes of a DML command.
+/// Length of a DML command, bytes.
 pub const DML: usize = 240;
-/// Where the DML string begins.
+/// Offset of the DML string.
 pub const STRING_AT: usize = 32;
 /// `client` of this controller.
 pub const CLIENT: &[u8; 8] = b"H_ROBOT ";
-/// `STORAGE-POS` and `DEVICE` of what the robot holds.
+/// `STORAGE-POS` and `DEVICE` of an item that the robot holds.
 pub const IN_HAND: &str = "H_ROBOT";
 /// `DEVICE` of every place of the workstation that is not the robot's hand (CHOSEN: the manual names no devices).
 pub const WORKSTATION: &str = "HWS";
@@ -46,7 +46,7 @@ pub const ITEM_TYPE: &str = "PART";
 /// Greatest sector: `SECTOR#` is one character, 0 to 9 and then A to Z (CHOSEN beyond 9).
 pub const MAX_SECTOR: i32 = 35;
 
-/// Fixed bytes of the protocol area: where they stand, and what they are.
+/// Fixed fields of the protocol area: offset and bytes.
 const FIXED: [(usize, &[u8]); 8] = [
     (0, &[0xA0, 0x82]),
     (4, &[0xB0, 0x0A]),
@@ -57,27 +57,27 @@ const FIXED: [(usize, &[u8]); 8] = [
     (24, b"TR"),
     (28, &[0x04, 0x82, 0x00, 0xD0]),
 ];
-/// DSClen.
+/// Offset of DSClen.
 const DSC_LENGTH: usize = 2;
-/// command-id#.
+/// Offset of command-id#.
 const COMMAND_ID: usize = 6;
-/// TRNSlen.
+/// Offset of TRNSlen.
 const TRANSACTION_LENGTH: usize = 18;
-/// TYPEindc.
+/// Offset of TYPEindc.
 const TYPE: usize = 20;
-/// trans-id#.
+/// Offset of trans-id#.
 const TRANSACTION_ID: usize = 26;
 
 /// A piece of the DML string.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Piece {
-    /// Always the same, with blanks behind it up to the width.
+    /// A constant text, padded with blanks to the width.
     Fixed(&'static str, usize),
-    /// A value of the command, with blanks behind it up to the width.
+    /// A value of the command, padded with blanks to the width.
     Value(Value, usize),
 }
 
-/// What a command stuffs into the string (REPORT-ITEM, IX.2).
+/// A value that a command puts into the string (REPORT-ITEM, IX.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Value {
     /// `ITEM-TYPE`.
@@ -126,18 +126,18 @@ const STRING: [Piece; 29] = [
     Piece::Fixed("'", 1),
     Piece::Value(Value::ItemNumber, 16),
 ];
-/// End of the string.
+/// Last byte of the string.
 const END: u8 = b'\'';
 
-/// What a command asks for.
+/// The type of a command (TYPEindc).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Transaction {
     /// End the connection, whatever its state.
     Abort = 0x55,
-    /// Make the client known.
+    /// Register the client.
     Initiate = 0x56,
-    /// Begin to take commands.
+    /// Begin to accept statements.
     Startup = 0x57,
     /// A statement in DML.
     Dml = 0x58,
@@ -166,18 +166,18 @@ impl Transaction {
 /// Why a command cannot be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EncodeError {
-    /// There is nothing to ask.
+    /// The buffer contains no command.
     #[error("no command")]
     Nothing,
     /// A name with an apostrophe would end its field of the string.
     #[error("the name {0} has an apostrophe, which the DML string cannot hold")]
     Apostrophe(Name16),
-    /// A sector above the greatest that one character can give.
+    /// A sector that one character cannot express.
     #[error("a sector from 0 to {MAX_SECTOR} was expected, found {0}")]
     Sector(i32),
 }
 
-/// The bytes of a command, and how many they are. Does not allocate.
+/// Encode a command: its bytes, and how many of them are used. Does not allocate.
 ///
 /// # Errors
 /// [`EncodeError`] if the fields of the buffer cannot hold it.
@@ -201,24 +201,24 @@ pub fn encode(command: &DataBaseCommand) -> Result<([u8; DML], usize), EncodeErr
     Ok((bytes, length))
 }
 
-/// Give a command, of either length, its command-id#.
+/// Set the command-id# of a command of either length.
 pub fn identify(bytes: &mut [u8], command_id: u16) {
     bytes[COMMAND_ID..COMMAND_ID + 2].copy_from_slice(&command_id.to_le_bytes());
 }
 
-/// Give an update the number of its transaction.
+/// Set the trans-id# of an update.
 pub fn number(bytes: &mut [u8; DML], transaction: u16) {
     bytes[TRANSACTION_ID..TRANSACTION_ID + 2].copy_from_slice(&transaction.to_le_bytes());
 }
 
-/// The sixteen bits of a command number that the buffer has room for.
+/// The low 16 bits of a command number, which the buffer holds.
 #[must_use]
 pub fn low_word(number: u32) -> u16 {
     let [low, high, ..] = number.to_le_bytes();
     u16::from_le_bytes([low, high])
 }
 
-/// A length of the protocol: what follows it in a command of so many bytes.
+/// Write a length field at `at`: the number of bytes behind it in a command of `command` bytes.
 fn put_length(bytes: &mut [u8; DML], at: usize, command: usize) {
     let follows = u16::try_from(command - at - 2).unwrap_or(u16::MAX);
     bytes[at..at + 2].copy_from_slice(&follows.to_be_bytes());
@@ -268,9 +268,9 @@ fn widened(name: &Name10) -> Name16 {
 pub struct Received<'a> {
     /// command-id#.
     pub command_id: u16,
-    /// client, without the blanks behind it.
+    /// client, without trailing blanks.
     pub client: &'a str,
-    /// What is asked.
+    /// Type of the command.
     pub transaction: Transaction,
     /// trans-id#.
     pub transaction_id: u16,
@@ -281,23 +281,23 @@ pub struct Received<'a> {
 /// Why bytes are not a command.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DecodeError {
-    /// Neither of the two lengths.
+    /// The size is neither of the two lengths.
     #[error("a command of {RECONFIGURATION} or {DML} bytes was expected, found {0}")]
     Size(usize),
-    /// Other bytes than the protocol has at this place.
+    /// A fixed field or a length has other bytes than expected.
     #[error("bytes {expected:02X?} were expected at {at}, found {found:02X?}")]
     Protocol {
-        /// Where, from 0.
+        /// Offset, from 0.
         at: usize,
-        /// What the protocol has there.
+        /// Bytes of the protocol at this offset.
         expected: Vec<u8>,
-        /// What stands there.
+        /// Bytes found.
         found: Vec<u8>,
     },
-    /// A transaction that does not exist, or not with this length.
+    /// A type that does not exist, or that belongs to the other length.
     #[error("a transaction type that goes with {size} bytes was expected, found {found:02X}")]
     Transaction {
-        /// Bytes of the command.
+        /// Size of the command, bytes.
         size: usize,
         /// TYPEindc.
         found: u8,
@@ -307,7 +307,7 @@ pub enum DecodeError {
     Text(usize),
 }
 
-/// Read the bytes of a command.
+/// Decode the bytes of a command.
 ///
 /// # Errors
 /// [`DecodeError`] with the place of the first wrong byte.
@@ -317,7 +317,7 @@ pub fn decode(bytes: &[u8]) -> Result<Received<'_>, DecodeError> {
         return Err(DecodeError::Size(size));
     }
     for (at, expected) in FIXED {
-        // The client is checked by itself, and only a DML command has the last field.
+        // The client can be any printable text, and only a DML command has the last field.
         if at != 8 && at < size {
             expect(bytes, at, expected)?;
         }

@@ -1,8 +1,8 @@
 //! The Data System of a run: mailboxes at one end, a server on a separate thread at the other.
 //!
-//! The disk must not delay a tick. A run in fast clock waits for the server where an answer is due, so that its ticks
-//! are the same in every run; a run on the 40 ms grid takes the answer when it has come. Neither waits after its own
-//! end, because a server in another process may not answer for a long time.
+//! The disk must not delay a tick. A run in fast clock waits for the server when an answer is due, so that its ticks
+//! are the same in every run; a run on the 40 ms grid takes the answer when it has come. A run that has ended does not
+//! wait for a server in another process, which may not answer for a long time.
 
 use std::{
     sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
@@ -30,7 +30,7 @@ use crate::{
 
 /// Default number of ticks for an answer: 1 s.
 pub const ANSWER_TICKS: u64 = 25;
-/// A run that waits for the server takes it as dead after this time, which is long for a disk. An agent has its own
+/// A run that waits for the server considers it dead after this time, which is long for a disk. An agent has its own
 /// time limit.
 const PATIENCE: Duration = Duration::from_secs(30);
 
@@ -53,7 +53,7 @@ enum Request {
     Items,
 }
 
-/// What it answers.
+/// A response of the server's thread.
 enum Response {
     /// The answer to the command of this number.
     Executed(u16, Answer),
@@ -62,11 +62,11 @@ enum Response {
     Items(rusqlite::Result<Vec<Item>>),
 }
 
-/// Where the items are kept.
+/// The server that keeps the items.
 enum Keeper {
-    /// A server on the thread.
+    /// In this process, on the thread.
     Here(Box<Server>),
-    /// One in another process.
+    /// In another process.
     Elsewhere(Box<Agent>),
 }
 
@@ -80,12 +80,12 @@ impl Keeper {
             (Self::Elsewhere(agent), Request::Execute(id, bytes)) => {
                 agent.execute(&bytes).map_or(Response::Silent(id), |answer| Response::Executed(id, answer))
             }
-            // They are to be asked for where they are kept.
+            // The items are available only in the process that keeps them.
             (Self::Elsewhere(_), Request::Items) => Response::Items(Ok(Vec::new())),
         }
     }
 
-    /// Between requests.
+    /// Work to do while there are no requests.
     fn idle(&mut self) {
         if let Self::Elsewhere(agent) = self {
             agent.idle();
@@ -104,20 +104,20 @@ impl Keeper {
 /// The thread has ended and does not answer.
 struct Dead;
 
-/// Mailboxes, and the server behind them.
+/// The Data System's mailboxes, and the thread of its server.
 #[derive(Debug)]
 pub struct DataSystem {
     pace: Pace,
     answer_ticks: u64,
     receiver: handshake::Receiver,
-    /// When the answer to the command under way may count; `None` if none is under way.
+    /// First tick in which the answer to the command in progress may take effect; `None` if no command is in progress.
     due: Option<Tick>,
     status: DataBaseStatus,
     command_box: Mailbox,
     status_box: Mailbox,
     refusals: Vec<String>,
     remarks: Receiver<Remark>,
-    /// Ends the waiting for a server in another process; `None` if it is in this one.
+    /// Ends the wait for a server in another process; `None` if the server is in this process.
     stop_handle: Option<StopHandle>,
     requests: Option<Sender<Request>>,
     responses: Receiver<Response>,
@@ -125,7 +125,7 @@ pub struct DataSystem {
 }
 
 impl DataSystem {
-    /// A Data System that answers a command after so many ticks, or later.
+    /// A Data System that answers a command after `answer_ticks` ticks, or later.
     #[must_use]
     pub fn new(store: Store, answer_ticks: u64, pace: Pace) -> Self {
         Self::with(Keeper::Here(Box::new(Server::new(store))), answer_ticks, pace)
@@ -156,7 +156,7 @@ impl DataSystem {
                     }
                     Err(RecvTimeoutError::Disconnected) => return,
                 };
-                // Before the answer: a tick that has waited for that has these too.
+                // Before the answer, so that a tick that has waited for the answer has the remarks as well.
                 let told = keeper.remarks().into_iter().all(|remark| tell.send(remark).is_ok());
                 if !told || response.is_some_and(|response| outgoing.send(response).is_err()) {
                     return;
@@ -208,7 +208,7 @@ impl DataSystem {
         self.remarks.try_iter().collect()
     }
 
-    /// Once a tick, after the controller: read what Task wrote in `tick`.
+    /// Call once per tick, after the controller: read the command that Task wrote in `tick`.
     pub fn step(&mut self, tick: Tick, command: &DataBaseCommand) {
         if self.receiver.observe(command.number) == Arrival::New {
             self.send(tick, command);
@@ -249,7 +249,7 @@ impl DataSystem {
                     return;
                 }
                 Ok(Some(Response::Silent(id))) if id == self.asked() => {
-                    // Task counts the ticks, and asks again.
+                    // Task counts the ticks and repeats the command.
                     self.due = None;
                     return;
                 }
@@ -264,7 +264,7 @@ impl DataSystem {
         }
     }
 
-    /// What the thread has answered; `None` if nothing yet.
+    /// The next response of the thread; `None` if there is none yet.
     fn response(&self) -> Result<Option<Response>, Dead> {
         match self.pace {
             Pace::Poll => match self.responses.try_recv() {
@@ -277,12 +277,12 @@ impl DataSystem {
         }
     }
 
-    /// command-id# of the command under way.
+    /// command-id# of the command in progress.
     fn asked(&self) -> u16 {
         command::low_word(self.receiver.echo)
     }
 
-    /// The network has brought a status: Parse-das-status.
+    /// Process an answer: write its status to the mailbox, and read it (Parse-das-status).
     fn take(&mut self, answer: &Answer) {
         let bytes: [u8; STATUS] = answer.status.encode();
         let status = self
@@ -310,14 +310,14 @@ impl DataSystem {
         self.refusals.push(why);
     }
 
-    /// The items that were reported, by name and number; none of a server in another process, which is to be
-    /// asked where it keeps them.
+    /// The reported items, sorted by name and number. Empty if the server is in another process: only that process can
+    /// list them.
     ///
     /// # Errors
-    /// Why the data base cannot list them.
+    /// A text that says why the data base cannot list them.
     pub fn items(&mut self) -> Result<Vec<Item>, String> {
         if self.stop_handle.is_some() {
-            // The agent may be waiting for it.
+            // The thread may be waiting for that process.
             return Ok(Vec::new());
         }
         let gone = || "the Data System has ended".to_owned();
@@ -335,19 +335,19 @@ impl DataSystem {
 impl Drop for DataSystem {
     fn drop(&mut self) {
         if let Some(stop_handle) = &self.stop_handle {
-            // What is not answered yet stands in the outbox.
+            // Updates that are not answered yet stay in the outbox.
             stop_handle.stop();
         }
-        // Without requests to come the thread ends; it closes the data base, and no journal is left behind.
+        // Closing the channel of requests ends the thread, which closes the data base, so that no journal is left.
         self.requests = None;
         let Some(thread) = self.thread.take() else { return };
         let ended = Instant::now();
-        // A disk could keep the thread for ever; the end of a run does not depend on it.
+        // A disk could block the thread for ever; the end of a run must not depend on it.
         while !thread.is_finished() && ended.elapsed() < PATIENCE {
             thread::sleep(Duration::from_millis(1));
         }
         if thread.is_finished() {
-            // It has nothing to return, and a panic in it was reported.
+            // The thread returns nothing, and a panic in it was reported.
             let _ = thread.join();
         }
     }
@@ -388,7 +388,7 @@ mod tests {
             self.command = DataBaseCommand { number: self.command.number + 1, command, ..self.command };
         }
 
-        /// Write a command, and what becomes of it in the end.
+        /// Write a command and step until it is answered; returns the report.
         fn ask(&mut self, command: DataBaseVerb) -> DataBaseReport {
             self.write(command);
             loop {

@@ -1,16 +1,16 @@
-//! The AMRF Data System (IV.4.2, IX.2): where each item is.
+//! The AMRF Data System (IV.4.2, IX.2), which stores the position of each item.
 //!
-//! Task knows a command record and a status record. Between them and the data base stand a mailbox each way:
+//! Task writes a command record and reads a status record. Two mailboxes connect them with the data base:
 //!
 //! ```text
 //!   DataBaseCommand --command::encode--> 28 or 240 bytes --Server--> command::decode, statement::parse --> SQLite
-//!   DataBaseStatus  <--status::decode--     14 bytes     <--Server--  what became of it
+//!   DataBaseStatus  <--status::decode--     14 bytes     <--Server--  result
 //! ```
 //!
-//! [`DataSystem`] is the controller's end: with the server on a thread of its own, or in another process
-//! ([`Agent`]), where updates wait on the controller's disk until they are answered ([`Outbox`]). The server
-//! takes bytes and gives bytes, and is strict: about the bytes, about the statement, and about the order of
-//! a connection.
+//! [`DataSystem`] is the controller's end. The server runs on a separate thread, or in another process
+//! ([`Agent`]); then updates wait on the controller's disk until they are answered ([`Outbox`]). The server
+//! takes the bytes of a command and returns those of a status. It accepts only valid bytes, a valid statement,
+//! and the steps of a connection in their order.
 
 mod agent;
 pub mod command;

@@ -10,7 +10,7 @@ use rusqlite::{Connection, params};
 
 use super::command::{DML, STRING_AT};
 
-/// Marks a file as one of ours: "RCSO".
+/// Application ID in the file of the outbox: "RCSO".
 const APPLICATION_ID: i32 = 0x5243_534F;
 
 const TABLES: &str = "
@@ -31,10 +31,10 @@ pub enum OutboxError {
     Sqlite {
         /// The file.
         file: PathBuf,
-        /// Why.
+        /// Error of SQLite.
         source: rusqlite::Error,
     },
-    /// A data base of another program.
+    /// The file belongs to another program.
     #[error("{}: updates for the Data System were expected, this file belongs to another program", .file.display())]
     Foreign {
         /// The file.
@@ -53,12 +53,12 @@ pub struct Outbox {
 pub struct Kept {
     /// trans-id#.
     pub number: u16,
-    /// The command as it was given.
+    /// Bytes of the command, as passed to [`Outbox::keep`].
     pub command: [u8; DML],
 }
 
 impl Outbox {
-    /// The outbox in a file, which is made if it is not there. No other process can have it at the same time.
+    /// Open the outbox in a file; creates the file if it does not exist. The file is locked against other processes.
     ///
     /// # Errors
     /// [`OutboxError`].
@@ -80,10 +80,10 @@ impl Outbox {
         Ok(Self { connection })
     }
 
-    /// Keep an update; returns its number. An update equal to the last one kept is a repetition of that one.
+    /// Store an update; returns its number. An update equal to the last one stored is a repetition and has its number.
     ///
     /// # Errors
-    /// What SQLite says; then it is not kept.
+    /// Errors of SQLite; the update is then not stored.
     pub fn keep(&mut self, command: &[u8; DML]) -> rusqlite::Result<u16> {
         if let Some(last) = self.pending()?.last()
             && last.command[STRING_AT..] == command[STRING_AT..]
@@ -102,20 +102,20 @@ impl Outbox {
         Ok(number)
     }
 
-    /// All that is kept, the oldest first.
+    /// All stored updates, the oldest first.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// Errors of SQLite.
     pub fn pending(&self) -> rusqlite::Result<Vec<Kept>> {
         let mut rows = self.connection.prepare("SELECT number, command FROM pending ORDER BY position")?;
         let read = |row: &rusqlite::Row<'_>| Ok(Kept { number: row.get(0)?, command: row.get(1)? });
         rows.query_map([], read)?.collect()
     }
 
-    /// An update was answered.
+    /// Delete an update that was answered.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// Errors of SQLite.
     pub fn strike_out(&self, number: u16) -> rusqlite::Result<()> {
         self.connection.execute("DELETE FROM pending WHERE number = ?1", params![number]).map(drop)
     }

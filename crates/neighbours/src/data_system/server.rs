@@ -22,9 +22,9 @@ use super::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 enum Session {
-    /// It is not known.
+    /// The client is not known.
     Closed = 0,
-    /// It is known.
+    /// The client is known.
     Initiated = 1,
     /// Its commands are accepted.
     Started = 2,
@@ -43,9 +43,9 @@ impl Session {
 /// The answer to a command, with the reason for the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// For the client.
+    /// Status for the client.
     pub status: Status,
-    /// For people: why it was refused; empty if it was not.
+    /// Why the command was refused, for the log; empty if it was executed.
     pub why: String,
 }
 
@@ -68,7 +68,7 @@ impl Server {
         &self.store
     }
 
-    /// Execute the command that stands in the data of a mailbox.
+    /// Execute a command: `bytes` is the data of its mailbox.
     pub fn execute(&mut self, bytes: &[u8]) -> Answer {
         let (command_id, outcome) = match command::decode(bytes) {
             Ok(received) => (received.command_id, self.carry_out(&received)),
@@ -86,7 +86,7 @@ impl Server {
         let session = Session::from_code(self.store.session(received.client).map_err(kept)?);
         let session = match (received.transaction, session) {
             (Transaction::Abort, _) => Session::Closed,
-            // A client that asks again has not got the answer.
+            // A client that repeats a step has not received the answer.
             (Transaction::Initiate, Session::Closed | Session::Initiated) => Session::Initiated,
             (Transaction::Startup, Session::Initiated | Session::Started) => Session::Started,
             (Transaction::Dml, Session::Started) => return self.update(received),
@@ -109,7 +109,7 @@ impl Server {
     }
 }
 
-/// An item without a name, or without a position, is none.
+/// The item of an update; the error says which value is empty or wrong.
 fn item(update: &Update<'_>) -> Result<Item, String> {
     let value = |column: Column| {
         let value = update.value(column).unwrap_or_default();

@@ -4,8 +4,8 @@
 //! UPDATE EQUIP_ITEM_ACTION SET ( column, ... ) = ( 'value', ... ) WHERE ITEM_NBR = 'value'
 //! ```
 //!
-//! A parser, not a template: blanks between words do not matter, columns come in any order, and errors name their
-//! place. Blanks behind a value do not belong to it.
+//! The parser ignores blanks between words, takes the columns in any order, and reports the place of an error. It
+//! removes trailing blanks from values.
 
 use std::fmt;
 
@@ -28,7 +28,7 @@ impl Column {
     const ALL: [Self; 5] =
         [Self::ItemType, Self::ItemName, Self::Device, Self::StoragePosition, Self::Sector];
 
-    /// As the statement writes it.
+    /// The name of the column in a statement.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -57,26 +57,26 @@ impl<'a> Update<'a> {
     }
 }
 
-/// Why a text is not such a statement.
+/// Why a text is not an UPDATE of EQUIP_ITEM_ACTION.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{expected} expected at character {}, found {found}", .at + 1)]
 pub struct StatementError {
-    /// Where, from 0.
+    /// Place of the error in the text, bytes from 0.
     pub at: usize,
-    /// What could stand there.
+    /// What was expected there.
     pub expected: String,
-    /// What stands there.
+    /// What was found there.
     pub found: Found,
 }
 
-/// What was found instead.
+/// The text, or the number of values, found in place of the expected one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Found {
     /// The text ends.
     End,
-    /// A word or a sign.
+    /// A word or a punctuation mark.
     Word(String),
-    /// A number of items.
+    /// A number of values.
     Count(usize),
 }
 
@@ -90,7 +90,7 @@ impl fmt::Display for Found {
     }
 }
 
-/// Read a statement.
+/// Parse a statement.
 ///
 /// # Errors
 /// [`StatementError`] for the first error.
@@ -130,7 +130,7 @@ struct Scanner<'a> {
 }
 
 impl<'a> Scanner<'a> {
-    /// What is left, behind blanks.
+    /// Skip blanks, and return the rest of the text.
     fn rest(&mut self) -> &'a str {
         let rest = self.text[self.at..].trim_start_matches(' ');
         self.at = self.text.len() - rest.len();
@@ -192,7 +192,7 @@ impl<'a> Scanner<'a> {
         Ok(rest[..end].trim_end_matches(' '))
     }
 
-    /// Things in parentheses, with commas between them.
+    /// Parse a list in parentheses, separated by commas.
     fn list<T>(
         &mut self,
         mut thing: impl FnMut(&mut Self) -> Result<T, StatementError>,

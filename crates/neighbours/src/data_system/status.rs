@@ -1,25 +1,25 @@
 //! The status of the Data System.
 //!
 //! Task extracts from it the server status and the summary status (IX.2); the manual does not give its bytes. CHOSEN,
-//! in the manner of the command:
+//! in the format of the command:
 //!
 //! ```text
-//!   A1 82 00 0A   what follows, high byte first
-//!   B0 02 nn nn   command-id# that is answered, low byte first
+//!   A1 82 00 0A   number of bytes that follow, high byte first
+//!   B0 02 nn nn   command-id# of the answered command, low byte first
 //!   51 01 ss      server status: 00 idle, 01 busy, 02 ready
 //!   52 01 ss      summary status of that command: 00 none, 01 done, 80 to 84 refused, all in hexadecimal
 //! ```
 
 use std::fmt;
 
-/// Bytes of a status.
+/// Length of a status, bytes.
 pub const STATUS: usize = 14;
-/// Where the server status stands.
+/// Offset of the server status.
 const SERVER: usize = 10;
-/// Where the summary status stands.
+/// Offset of the summary status.
 const SUMMARY: usize = 13;
 
-/// What the server is doing.
+/// State of the server.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum ServerStatus {
@@ -28,7 +28,7 @@ pub enum ServerStatus {
     Idle = 0,
     /// It executes a command.
     Busy = 1,
-    /// It has answered the last one.
+    /// It has answered the last command.
     Ready = 2,
 }
 
@@ -36,25 +36,25 @@ pub enum ServerStatus {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Refusal {
-    /// The bytes are no command.
+    /// The bytes are not a command.
     Protocol = 0x80,
-    /// The connection is not in the state for it.
+    /// The command is not allowed in this state of the connection.
     Sequence = 0x81,
     /// The string is not a statement that this server supports.
     Statement = 0x82,
     /// The statement names no item or no place.
     Value = 0x83,
-    /// The data base could not keep it.
+    /// The data base could not store the item.
     Store = 0x84,
 }
 
-/// Result of the command that is answered.
+/// Result of the answered command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Summary {
-    /// Nothing yet.
+    /// No result yet.
     #[default]
     None,
-    /// It is done.
+    /// It was executed.
     Done,
     /// It was refused.
     Refused(Refusal),
@@ -63,9 +63,9 @@ pub enum Summary {
 /// A status.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Status {
-    /// command-id# that is answered.
+    /// command-id# of the answered command.
     pub command_id: u16,
-    /// What the server is doing.
+    /// State of the server.
     pub server: ServerStatus,
     /// Result of the command.
     pub summary: Summary,
@@ -74,17 +74,17 @@ pub struct Status {
 /// Why bytes are not a status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StatusError {
-    /// More or less bytes.
+    /// Wrong number of bytes.
     #[error("a status of {STATUS} bytes was expected, found {0}")]
     Size(usize),
-    /// Another byte than the protocol has at this place.
+    /// A fixed byte has another value.
     #[error("byte {expected:02X} was expected at {at}, found {found:02X}")]
     Protocol {
-        /// Where, from 0.
+        /// Offset, from 0.
         at: usize,
-        /// What the protocol has there.
+        /// Byte of the protocol at this offset.
         expected: u8,
-        /// What stands there.
+        /// Byte found.
         found: u8,
     },
     /// A server status that does not exist.
@@ -112,7 +112,7 @@ impl fmt::Display for Refusal {
 }
 
 impl Status {
-    /// The bytes.
+    /// Encode the status.
     #[must_use]
     pub fn encode(&self) -> [u8; STATUS] {
         let [low, high] = self.command_id.to_le_bytes();
@@ -124,7 +124,7 @@ impl Status {
         [0xA1, 0x82, 0, 0x0A, 0xB0, 2, low, high, 0x51, 1, self.server as u8, 0x52, 1, summary]
     }
 
-    /// Read the bytes: Parse-das-status.
+    /// Decode a status (Parse-das-status).
     ///
     /// # Errors
     /// [`StatusError`] with the first wrong byte.

@@ -1,8 +1,8 @@
 //! The data base: items, devices, storage positions, and where every item has been, in one SQLite file.
 //!
-//! An item with a number is found by it, whatever it is called: a blank that has been machined keeps its number and
-//! changes its name. Items without a number are told apart by name. A report of a known position changes nothing, so
-//! that one that is sent twice counts once.
+//! The number identifies an item: a blank that has been machined keeps its number and changes its name. Items without a
+//! number are identified by name. A report of a known position changes nothing, so that a report that is sent twice
+//! counts once.
 //!
 //! ```sql
 //! SELECT * FROM whereabouts WHERE number = '17';   -- where it is
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, OptionalExtension as _, Row, TransactionBehavior, params};
 
-/// Marks a file as one of ours: "RCS2".
+/// Application ID in the file of the data base: "RCS2".
 const APPLICATION_ID: i32 = 0x5243_5332;
 /// Version of the tables.
 const VERSION: i32 = 2;
@@ -76,7 +76,7 @@ const TABLES: &str = "
         ORDER BY report.id;
 ";
 
-/// An item as the data base knows it.
+/// An item in the data base.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
     /// `ITEM_NBR`; empty if it has none.
@@ -89,20 +89,20 @@ pub struct Item {
     pub device: String,
     /// `STORAGE_POS`.
     pub position: String,
-    /// Number of the sector there; 0 for none.
+    /// Number of the sector at the storage position; 0 for none.
     pub sector: u8,
 }
 
 /// A place where an item has been.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Visit {
-    /// When it was reported, in UTC.
+    /// Time of the report, UTC, in the format of ISO 8601.
     pub at: String,
     /// The client that reported it.
     pub client: String,
     /// `STORAGE_POS`.
     pub position: String,
-    /// Number of the sector there; 0 for none.
+    /// Number of the sector at the storage position; 0 for none.
     pub sector: u8,
 }
 
@@ -123,21 +123,21 @@ pub enum StoreError {
     Sqlite {
         /// The file.
         file: PathBuf,
-        /// Why.
+        /// Error of SQLite.
         source: rusqlite::Error,
     },
-    /// A data base of another program.
+    /// The file belongs to another program.
     #[error("{}: a data base of items was expected, this one belongs to another program", .file.display())]
     Foreign {
         /// The file.
         file: PathBuf,
     },
-    /// Tables of another version.
+    /// The tables have another version.
     #[error("{}: tables of version {VERSION} were expected, found version {found}", .file.display())]
     Version {
         /// The file.
         file: PathBuf,
-        /// Its version.
+        /// Version of the tables in the file.
         found: i32,
     },
 }
@@ -149,7 +149,7 @@ pub struct Store {
 }
 
 impl Store {
-    /// A data base that ends with the program.
+    /// A data base in memory, which is lost at the end of the program.
     ///
     /// # Errors
     /// [`StoreError::Sqlite`].
@@ -160,10 +160,10 @@ impl Store {
         Self::with_tables(connection, &file)
     }
 
-    /// The data base in a file, which is made if it is not there.
+    /// Open the data base in a file; creates the file if it does not exist.
     ///
     /// # Errors
-    /// [`StoreError`] if it cannot be opened, or is something else.
+    /// [`StoreError`] if the file cannot be opened or is not a data base of items.
     pub fn open(file: &Path) -> Result<Self, StoreError> {
         let connection =
             Connection::open(file).map_err(|source| StoreError::Sqlite { file: file.to_owned(), source })?;
@@ -198,7 +198,7 @@ impl Store {
             let transaction =
                 connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(failed)?;
             if number(&transaction, "application_id")? == APPLICATION_ID {
-                // Another process that found it empty was faster.
+                // Another process has created the tables in the meantime.
                 transaction.commit().map_err(failed)?;
                 return Self::with_tables(connection, file);
             }
@@ -209,16 +209,16 @@ impl Store {
             transaction.commit().map_err(failed)?;
         }
         connection.pragma_update(None, "foreign_keys", true).map_err(failed)?;
-        // With a journal ahead of the file no reader delays a report; what was answered survives a power cut.
+        // With a write-ahead journal no reader delays a report; answered reports survive a power cut.
         connection.pragma_update(None, "journal_mode", "wal").map_err(failed)?;
         connection.pragma_update(None, "synchronous", "full").map_err(failed)?;
         Ok(Self { connection })
     }
 
-    /// State of a client's connection; 0 if it is not known.
+    /// State of a client's connection; 0 if the client is not known.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// Errors of SQLite.
     pub fn session(&self, client: &str) -> rusqlite::Result<u8> {
         let mut rows = self.connection.prepare("SELECT session FROM client WHERE name = ?1")?;
         Ok(rows.query_row(params![client], |row| row.get(0)).optional()?.unwrap_or(0))
@@ -227,7 +227,7 @@ impl Store {
     /// Set the state of a client's connection.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// Errors of SQLite.
     pub fn set_session(&self, client: &str, session: u8) -> rusqlite::Result<()> {
         self.connection
             .execute(
@@ -238,13 +238,13 @@ impl Store {
             .map(drop)
     }
 
-    /// Store the position of an item that a client reports. True if it is new.
+    /// Store the position of an item that a client reports. Returns true if the position is new.
     ///
-    /// A statement with a number other than 0 counts once: repeated under the same number it changes nothing, also
-    /// after reports of other clients.
+    /// A statement with a number other than 0 counts once: repeated with the same number it changes nothing, even after
+    /// reports of other clients.
     ///
     /// # Errors
-    /// What SQLite says; nothing has changed then.
+    /// Errors of SQLite; the data base is then unchanged.
     pub fn report(&mut self, client: &str, said: Said<'_>, item: &Item) -> rusqlite::Result<bool> {
         let transaction = self.connection.transaction()?;
         if said.number != 0 {
@@ -308,10 +308,10 @@ impl Store {
         Ok(true)
     }
 
-    /// Where the item of a number has been, the first place first.
+    /// The places where the item with a number has been, the oldest first.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// Errors of SQLite.
     pub fn history(&self, number: &str) -> rusqlite::Result<Vec<Visit>> {
         let read = |row: &Row<'_>| {
             Ok(Visit { at: row.get(0)?, client: row.get(1)?, position: row.get(2)?, sector: row.get(3)? })
@@ -321,10 +321,10 @@ impl Store {
         rows.query_map(params![number], read)?.collect()
     }
 
-    /// All items, by name and number.
+    /// All items, sorted by name and number.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// Errors of SQLite.
     pub fn items(&self) -> rusqlite::Result<Vec<Item>> {
         let read = |row: &Row<'_>| {
             Ok(Item {

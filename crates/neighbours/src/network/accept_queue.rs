@@ -12,7 +12,7 @@ use std::{
 
 use super::{shared::locked, socket::Socket};
 
-/// Connections without a hello, at most.
+/// Greatest number of connections without a hello.
 pub(super) const SLOTS: usize = 8;
 /// Minimum time in a slot: enough for TLS and a hello, and the penalty for a wrong one.
 pub(super) const SAFE: Duration = Duration::from_secs(1);
@@ -36,7 +36,7 @@ struct Waiting {
     socket: Socket,
 }
 
-/// A slot; it is released when this is dropped, unless another connection has it.
+/// A slot, released on drop, unless another connection has it by then.
 pub(super) struct Slot<'a> {
     queue: &'a AcceptQueue,
     ticket: u64,

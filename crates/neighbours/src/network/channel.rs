@@ -83,8 +83,8 @@ impl Channel {
     /// Pass received bytes to a session; false if the other side has closed the connection.
     ///
     /// # Errors
-    /// What the system says; [`io::ErrorKind::InvalidData`] for TLS, after the other side was sent the alert;
-    /// [`io::ErrorKind::UnexpectedEof`] if TLS was cut off.
+    /// Errors of the system; [`io::ErrorKind::InvalidData`] for errors of TLS, after the alert was sent to the other
+    /// side; [`io::ErrorKind::UnexpectedEof`] if the connection ended without the end of TLS.
     pub fn receive(&mut self, session: &mut Session, now: Instant) -> io::Result<bool> {
         self.receive_bytes(|bytes| session.receive(bytes, now))
     }
@@ -105,7 +105,7 @@ impl Channel {
         let cut = || io::Error::new(io::ErrorKind::UnexpectedEof, "the connection was cut");
         let more = or_later(tls.read_tls(&mut &self.socket).map(|count| count > 0))?;
         if let Err(error) = tls.process_new_packets() {
-            // The alert may find the other side gone.
+            // The other side may have closed already and not get the alert.
             let _ = self.flush();
             return Err(io::Error::new(io::ErrorKind::InvalidData, error));
         }
@@ -120,8 +120,8 @@ impl Channel {
         if more { Ok(true) } else { Err(cut()) }
     }
 
-    /// Wait until something can be read (true), or what is pending can be written, or `wake` is readable, or
-    /// until a time.
+    /// Wait until bytes can be read (returns true), pending bytes can be written, `wake` is readable, or the time
+    /// `until` has come.
     pub fn wait(&self, wake: Option<BorrowedFd<'_>>, until: Option<Instant>) -> io::Result<bool> {
         let write = if self.is_flushed() { PollFlags::empty() } else { PollFlags::OUT };
         let socket = self.socket.as_fd();
@@ -130,7 +130,7 @@ impl Channel {
             PollFd::from_borrowed_fd(wake.unwrap_or(socket), PollFlags::IN),
         ];
         let count = if wake.is_some() { 2 } else { 1 };
-        // Rounded up: a wait that ends in front of the time would be followed by many short ones.
+        // Rounded up: a wait that ends before the time would be followed by many short ones.
         let left =
             until.map(|until| until.saturating_duration_since(Instant::now()) + Duration::from_millis(1));
         let left = left.and_then(|left| Timespec::try_from(left).ok());
@@ -141,8 +141,8 @@ impl Channel {
         }
     }
 
-    /// Send what is left, with a TLS close_notify behind it, and close this direction; it may take until a
-    /// time.
+    /// Send the remaining bytes, then a TLS close_notify, and close this direction; takes at most until the time
+    /// `until`.
     pub fn finish(&mut self, session: &mut Session, until: Instant) {
         let mut sent = self.send(session);
         if let Some(tls) = &mut self.tls {
@@ -155,8 +155,8 @@ impl Channel {
         self.socket.finish();
     }
 
-    /// Read on after [`Channel::finish`] until the other side has closed, or until a time: if a socket is closed with
-    /// unread bytes, the system may discard the bytes it has sent.
+    /// Continue to read after [`Channel::finish`] until the other side has closed, or until a time: if a socket is
+    /// closed with unread bytes, the system may discard the bytes it has sent.
     pub fn drain(&self, until: Instant) {
         let mut buffer = [0; CHUNK];
         while Instant::now() < until {
@@ -174,7 +174,7 @@ impl Channel {
     }
 }
 
-/// No bytes have come yet: this is not an error.
+/// Convert the result of a read: that no bytes have been received yet is not an error.
 fn or_later(read: io::Result<bool>) -> io::Result<bool> {
     use io::ErrorKind::{Interrupted, WouldBlock};
     match read {

@@ -2,18 +2,18 @@
 
 use std::time::Duration;
 
-/// Which clock the controller has.
+/// The clock of the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]
 pub enum ClockKind {
-    /// A tick every 40 ms: it waits for no neighbour.
+    /// A tick every 40 ms, which does not wait for neighbours.
     Real = 0,
-    /// Ticks without waiting for time: each waits for all connected neighbours.
+    /// Ticks as fast as possible; each waits for all connected neighbours.
     Fast = 1,
 }
 
 /// How long the controller waits for the answer to a pulse: 10 s on the 40 ms grid, where the robot goes on
-/// meanwhile; 60 s in fast clock, since the machine may be busy.
+/// meanwhile; 60 s in fast clock, because the computer may be busy.
 #[must_use]
 pub const fn answer_limit(clock: ClockKind) -> Duration {
     match clock {

@@ -37,7 +37,7 @@ pub struct Endpoint {
     /// Number of the last session that the tick has seen.
     session: u32,
     events: (Sender<NetEvent>, Receiver<NetEvent>),
-    /// The run is to end: no neighbour is waited for any longer.
+    /// Set when the run is to end: the tick then no longer waits for a neighbour.
     interrupted: Arc<AtomicBool>,
 }
 
@@ -68,7 +68,7 @@ impl Endpoint {
         })
     }
 
-    /// The same, without waiting for the neighbour once the run is `interrupted`: an exchange then takes what has come
+    /// Do not wait for the neighbour once `interrupted` is set: an exchange then takes the mailboxes that have arrived
     /// so far.
     #[must_use]
     pub fn until(mut self, interrupted: Arc<AtomicBool>) -> Self {
@@ -76,7 +76,7 @@ impl Endpoint {
         self
     }
 
-    /// The run is to end.
+    /// True if the run is to end.
     #[must_use]
     pub fn is_interrupted(&self) -> bool {
         self.interrupted.load(Ordering::Relaxed)
@@ -88,7 +88,7 @@ impl Endpoint {
         EndpointHandle { shared: Arc::clone(&self.shared), events: self.events.0.clone() }
     }
 
-    /// A handle that ends the endpoint from another thread.
+    /// A handle that stops the endpoint from another thread.
     #[must_use]
     pub fn stop_handle(&self) -> StopHandle {
         StopHandle { shared: Arc::clone(&self.shared) }
@@ -100,13 +100,13 @@ impl Endpoint {
         self.shared.clock
     }
 
-    /// Which neighbour it is for.
+    /// The neighbour of this endpoint.
     #[must_use]
     pub fn role(&self) -> Role {
         self.shared.role
     }
 
-    /// A mailbox to the neighbour, to be written.
+    /// A mailbox to the neighbour, for writing.
     ///
     /// # Panics
     /// If the neighbour has no such mailbox.
@@ -130,8 +130,8 @@ impl Endpoint {
         self.events.1.try_recv().ok()
     }
 
-    /// Once a tick: pass the written mailboxes to the network, and take those that have come. In fast clock this waits
-    /// for a connected neighbour.
+    /// Call once per tick: pass the written mailboxes to the network, and take those that have arrived. In fast clock
+    /// this waits for a connected neighbour.
     pub fn exchange(&mut self, tick: u64) -> Presence {
         let session = self.shared.session.load(Ordering::Acquire);
         let waits = self.shared.clock == ClockKind::Fast && session != 0;
@@ -159,17 +159,17 @@ impl Endpoint {
             // A session that has begun meanwhile counts from the next tick on.
             self.incoming.iter_mut().for_each(Mailbox::initialize);
         }
-        // A neighbour that has answered was connected, even if it has disconnected since: so a run ends in
-        // the same tick every time. Whether one would have answered that is waited for no longer is not
-        // known, and need not be.
+        // A neighbour that has answered the pulse counts as connected, even if it has disconnected since, so
+        // that a run ends in the same tick every time. After an interruption, when the tick has not waited for
+        // the answer, the session decides.
         let asked = waits && !self.is_interrupted();
         let connected = answered || (!asked && session != 0 && now == session);
         let connected = connected && !self.shared.is_over();
         Presence { connected, new, was_connected: self.shared.sessions.load(Ordering::Acquire) != 0 }
     }
 
-    /// Until the neighbour has answered the pulse or has disconnected, or the endpoint was stopped, or the
-    /// run is to end; true if it has answered. The session ends if it does not answer in time.
+    /// Wait until the neighbour has answered the pulse or has disconnected, the endpoint was stopped, or the run is to
+    /// end; returns true if it has answered. A neighbour that does not answer in time loses its session.
     fn wait(&self, tick: u64, session: u32) -> bool {
         let mut answered = locked(&self.shared.answered);
         while *answered < tick
@@ -177,7 +177,7 @@ impl Endpoint {
             && !self.shared.is_over()
             && !self.is_interrupted()
         {
-            // A signal wakes no thread here.
+            // A signal does not wake this thread: check for an interruption at intervals.
             let look = self.shared.changed.wait_timeout(answered, LOOK);
             (answered, _) = look.unwrap_or_else(PoisonError::into_inner);
         }
@@ -201,22 +201,21 @@ fn with(shared: &Mutex<Mailbox>, waits: bool, look: impl FnOnce(&mut Mailbox)) {
 impl Drop for Endpoint {
     fn drop(&mut self) {
         self.shared.end();
-        // Until the neighbour knows why.
+        // Wait until the session has sent the disconnect reason.
         let connected = |_: &mut u64| self.shared.session.load(Ordering::Acquire) != 0;
         let answered = locked(&self.shared.answered);
         drop(self.shared.changed.wait_timeout_while(answered, FAREWELL, connected));
     }
 }
 
-/// Ends an endpoint while a thread may be waiting at it: its neighbour counts as disconnected, and no other
-/// is admitted.
+/// Stops an endpoint, even while a thread waits in it: its neighbour counts as disconnected, and no other is admitted.
 #[derive(Clone)]
 pub struct StopHandle {
     shared: Arc<Shared>,
 }
 
 impl StopHandle {
-    /// End it.
+    /// Stop the endpoint.
     pub fn stop(&self) {
         self.shared.end();
     }

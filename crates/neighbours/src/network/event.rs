@@ -1,4 +1,4 @@
-//! What happens on the network: neighbours connect, disconnect, or are refused.
+//! Events of the network: neighbours connect, disconnect, or are refused.
 
 use std::{fmt, time::Duration};
 
@@ -9,7 +9,7 @@ use super::Role;
 pub enum Disconnect {
     /// The neighbour has closed the connection.
     Closed,
-    /// The connection broke, and how.
+    /// The connection broke, with the error.
     Lost(String),
     /// The controller has closed the connection: no pulse was answered for this time.
     Silent(Duration),
@@ -18,7 +18,7 @@ pub enum Disconnect {
 }
 
 impl Disconnect {
-    /// The controller has ended the session, and not the neighbour or the line.
+    /// True if the controller has ended the session, not the neighbour or the line.
     #[must_use]
     pub const fn is_by_controller(&self) -> bool {
         matches!(self, Self::Silent(_) | Self::Violation(_))
@@ -35,15 +35,15 @@ impl fmt::Display for Disconnect {
     }
 }
 
-/// What happened on the network.
+/// An event of the network.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NetEvent {
     /// A neighbour has connected.
     Connected(Role),
-    /// A neighbour has disconnected, and why.
+    /// A neighbour has disconnected, with the reason.
     Disconnected(Role, Disconnect),
-    /// A connection was refused, and why.
+    /// A connection was refused, with the reason.
     Refused(String),
 }
 

@@ -7,16 +7,16 @@
 //! ```
 //!
 //! All numbers are low byte first. The address is that of Table IX.1; `length` counts from its own first
-//! byte to the last of the data. Three addresses are no mailboxes:
+//! byte to the last of the data. Three addresses are not those of mailboxes:
 //!
-//! * 0, the **pulse**: its data are the number of a tick, 64 bits. The controller sends it behind the
-//!   mailgrams of every tick, the neighbour sends it back behind its own;
+//! * 0, the **pulse**: its data are the number of a tick, 64 bits. The controller sends it after the
+//!   mailgrams of every tick, and the neighbour sends it back after its own;
 //! * 1, the **disconnect reason**: its data are a text. The controller closes the connection after it;
 //! * 2, the **welcome**, without data: the neighbour is admitted.
 
 use crate::mailbox::{HEAD, MAX_SIZE, Mailbox, Place};
 
-/// Bytes in front of a mailbox.
+/// Number of bytes before the mailbox in a frame.
 pub const ADDRESS: usize = 4;
 /// The address of a pulse.
 pub const PULSE: u32 = 0;
@@ -24,10 +24,10 @@ pub const PULSE: u32 = 0;
 pub const DISCONNECT: u32 = 1;
 /// The address of a welcome.
 pub const WELCOME: u32 = 2;
-/// Bytes of a frame at most.
+/// Greatest length of a frame, bytes.
 pub const MAX_FRAME: usize = ADDRESS + MAX_SIZE;
 
-/// A frame among the bytes that were received.
+/// A frame in received bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
     bytes: &'a [u8],
@@ -37,7 +37,7 @@ impl<'a> Frame<'a> {
     /// The first frame of `bytes`; `None` as long as it is not complete.
     ///
     /// # Errors
-    /// [`FrameError::Length`], after which no frame can be found any more.
+    /// [`FrameError::Length`]; after it no further frame can be found.
     pub fn first(bytes: &'a [u8]) -> Result<Option<Self>, FrameError> {
         let Some(&[a, b, c, d, low, high]) = bytes.first_chunk() else { return Ok(None) };
         let (address, found) = (u32::from_le_bytes([a, b, c, d]), u16::from_le_bytes([low, high]));
@@ -54,7 +54,7 @@ impl<'a> Frame<'a> {
         self.bytes
     }
 
-    /// Which mailbox it is, or which other frame.
+    /// Address of the mailbox, or number of another kind of frame.
     #[must_use]
     pub fn address(&self) -> u32 {
         u32::from_le_bytes([self.bytes[0], self.bytes[1], self.bytes[2], self.bytes[3]])

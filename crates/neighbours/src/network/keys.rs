@@ -1,18 +1,18 @@
-//! Authentication between machines: keys and certificates, and which certificate is which neighbour.
+//! Authentication between machines: keys and certificates, and the roles of each certificate.
 //!
 //! TLS 1.3, with certificates on both sides, without tickets and early data. A directory holds
 //!
-//! | file | what is in it |
+//! | file | contents |
 //! |---|---|
 //! | `ca.pem` | certificates of the trusted authorities |
-//! | `controller.pem`, `controller.key` | certificate, with those of intermediate authorities behind it, and private key |
-//! | `workstation.pem`, `workstation.key`, ... | the same of a neighbour |
-//! | `roles` | at the controller, if it is there: a role and a SHA-256 fingerprint a line |
+//! | `controller.pem`, `controller.key` | certificate, followed by those of intermediate authorities; private key |
+//! | `workstation.pem`, `workstation.key`, ... | the same for a neighbour |
+//! | `roles` | optional, at the controller: a role and a SHA-256 fingerprint on each line |
 //!
-//! The controller's certificate has the DNS name [`CONTROLLER_NAME`], at every address, and is for TLS servers. That of
-//! a neighbour is for TLS clients, and is bound to the roles of its URI names (`rcs2:workstation`), or to those of its
-//! fingerprint in `roles`: with that file no other certificate is admitted, whatever authority has signed it. The
-//! common name has no meaning.
+//! The controller's certificate is for TLS servers and has the DNS name [`CONTROLLER_NAME`], whatever its address is.
+//! A neighbour's certificate is for TLS clients. Its URI names (`rcs2:workstation`) give its roles. If there is a file
+//! `roles`, its fingerprint in that file gives them instead, and certificates that are not in the file are refused,
+//! even if a trusted authority has signed them. The common name is not used.
 
 use std::{
     fmt::Write as _,
@@ -38,13 +38,13 @@ use super::{Address, Role};
 
 /// The DNS name in the certificate of a controller.
 pub const CONTROLLER_NAME: &str = "controller.rcs2.internal";
-/// Certificates of the authorities.
+/// File with the certificates of the trusted authorities.
 pub const AUTHORITY: &str = "ca.pem";
-/// Front of the files of a controller.
+/// Name, without extension, of the files of a controller.
 pub const CONTROLLER: &str = "controller";
-/// Which fingerprint may have which role.
+/// File with the roles of fingerprints.
 pub const ROLES: &str = "roles";
-/// Bytes that a file may have.
+/// Greatest size of a file, bytes.
 const LARGEST: u64 = 1 << 20;
 
 /// SHA-256 of a certificate.
@@ -56,9 +56,9 @@ pub enum KeysError {
     /// A file cannot be read.
     #[error("{} cannot be read: {source}", .file.display())]
     Read {
-        /// Which.
+        /// Path of the file.
         file: PathBuf,
-        /// Why.
+        /// Error of the system.
         source: io::Error,
     },
     /// A private key that other users can read.
@@ -67,17 +67,17 @@ pub enum KeysError {
     /// A file lacks the expected PEM entry.
     #[error("{what} in PEM was expected in {}", .file.display())]
     Pem {
-        /// Which.
+        /// Path of the file.
         file: PathBuf,
-        /// What it should have.
+        /// The expected entry.
         what: &'static str,
     },
-    /// A line of the roles.
+    /// A line of the file of roles has the wrong form.
     #[error("{}:{line}: a role and a SHA-256 fingerprint of 64 hexadecimal digits were expected, found {found:?}", .file.display())]
     Roles {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// Its line, from 1.
+        /// Number of the line, from 1.
         line: usize,
         /// The line.
         found: String,
@@ -85,15 +85,15 @@ pub enum KeysError {
     /// Certificate and private key do not match, or an authority is not valid.
     #[error("the keys in {} cannot be used: {source}", .directory.display())]
     Tls {
-        /// Where.
+        /// Directory of the keys.
         directory: PathBuf,
-        /// Why.
+        /// Error of the TLS library.
         source: Box<rustls::Error>,
     },
-    /// An address on a network without keys: any computer could command the robot.
+    /// No keys for an address on a network: any computer could command the robot.
     #[error("{0}: TLS with keys on both sides was expected; name their directory with --keys")]
     Missing(Address),
-    /// Keys for a socket in the file system, which is for one user anyway.
+    /// Keys for a socket in the file system, which admits only processes of the same user anyway.
     #[error("{0}: keys are for an address that begins with tcp: or zenoh:")]
     Needless(Address),
 }
@@ -128,7 +128,7 @@ pub struct NeighbourKeys {
     config: Arc<ClientConfig>,
 }
 
-/// What a directory holds for one of its owners.
+/// The files in a directory of one owner: the controller, or a neighbour.
 struct Files {
     directory: PathBuf,
     provider: Arc<CryptoProvider>,
@@ -154,7 +154,7 @@ impl Files {
 }
 
 impl ControllerKeys {
-    /// Those of a directory.
+    /// Load the controller's keys from a directory.
     ///
     /// # Errors
     /// [`KeysError`].
@@ -173,7 +173,7 @@ impl ControllerKeys {
             .with_client_cert_verifier(verifier.map_err(&tls)?)
             .with_single_cert(files.chain, files.key)
             .map_err(&tls)?;
-        // Each connection proves itself anew.
+        // No tickets: each connection is authenticated anew.
         config.send_tls13_tickets = 0;
         Ok(Self { config: Arc::new(config), roles: roles(directory.join(ROLES))? })
     }
@@ -207,7 +207,7 @@ impl ControllerKeys {
 }
 
 impl NeighbourKeys {
-    /// Those of a role in a directory.
+    /// Load the keys of a role from a directory.
     ///
     /// # Errors
     /// [`KeysError`].
@@ -257,7 +257,7 @@ fn private_key(file: PathBuf) -> Result<PrivateKeyDer<'static>, KeysError> {
     }
 }
 
-/// The file of roles; `None` if there is none.
+/// Read the file of roles; `None` if it does not exist.
 fn roles(file: PathBuf) -> Result<Option<Vec<(Role, Fingerprint)>>, KeysError> {
     let text = match files::read_text(&file) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -272,7 +272,7 @@ fn roles(file: PathBuf) -> Result<Option<Vec<(Role, Fingerprint)>>, KeysError> {
     bindings.collect::<Result<_, _>>().map(Some)
 }
 
-/// `workstation 3A:5B:...`: with colons, as openssl prints them, or without.
+/// Parse a line such as `workstation 3A:5B:...`: with colons, as openssl prints fingerprints, or without.
 fn binding(line: &str) -> Option<(Role, Fingerprint)> {
     let (role, digits) = line.split_once(char::is_whitespace)?;
     let digits: Vec<char> = digits.trim().chars().filter(|digit| *digit != ':').collect();
@@ -296,7 +296,7 @@ fn fingerprint(certificate: &CertificateDer<'_>) -> Fingerprint {
 
 fn hex(bytes: &[u8]) -> String {
     bytes.iter().fold(String::new(), |mut text, byte| {
-        // A text takes whatever is written.
+        // Writing to a `String` does not fail.
         let _ = write!(text, "{byte:02X}");
         text
     })

@@ -1,6 +1,6 @@
-//! Where the controller accepts connections: a thread waits at a socket, another serves each connection.
+//! The controller accepts connections: one thread waits at a socket, and another one serves each connection.
 //!
-//! At a socket in the file system processes of the same user are admitted; at a TCP port, neighbours with a certificate
+//! A socket in the file system admits processes of the same user; a TCP port admits neighbours with a certificate
 //! ([`keys`](super::keys)). All others are refused with a reason, and the controller gets an event.
 
 use std::{
@@ -35,10 +35,10 @@ pub enum ListenError {
     Address {
         /// The address.
         address: Address,
-        /// Why.
+        /// Error of the system.
         source: io::Error,
     },
-    /// Another run has it.
+    /// Another run listens at the address.
     #[error("{0}: another run waits for its neighbours there")]
     InUse(Address),
     /// The keys do not fit the address.
@@ -62,7 +62,7 @@ enum Accepting {
 
 /// Accepts connections until it is dropped.
 pub struct Listener {
-    /// Where neighbours can connect: with the port that the system has chosen, for port 0.
+    /// Address at which neighbours can connect; for port 0, with the port that the system has chosen.
     address: Address,
     _line: Line,
 }
@@ -86,7 +86,7 @@ struct ListeningSocket {
     thread: Option<JoinHandle<()>>,
 }
 
-/// The file of a Unix socket. Another program may have put its own at the same path since.
+/// The file of a Unix socket, with its identity: another program may have replaced the file since.
 struct SocketFile {
     path: PathBuf,
     /// Device and inode.
@@ -102,14 +102,14 @@ impl SocketFile {
     /// Remove the file, if it is still this one.
     fn remove(&self) {
         if Self::at(&self.path).is_ok_and(|found| found.identity == self.identity) {
-            // It may have been removed just now.
+            // It may have been removed in the meantime.
             let _ = fs::remove_file(&self.path);
         }
     }
 }
 
 impl Listener {
-    /// Accept connections for some endpoints at an address.
+    /// Accept connections for endpoints at an address.
     ///
     /// # Errors
     /// [`ListenError`].
@@ -121,7 +121,7 @@ impl Listener {
         Self::with_operators(address, keys, endpoints, None)
     }
 
-    /// The same, for operators as well.
+    /// As [`Listener::start`], and for operators as well.
     ///
     /// # Errors
     /// [`ListenError`].
@@ -133,7 +133,7 @@ impl Listener {
     ) -> Result<Self, ListenError> {
         KeysError::check(address, keys.is_some())?;
         let handles: Vec<_> = endpoints.into_iter().map(Endpoint::handle).collect();
-        // Operators alone: they need the real clock.
+        // Without endpoints there are only operators, which need the real clock.
         let clock = handles.first().map_or(ClockKind::Real, |handle| handle.clock());
         let server = Arc::new(Server::new(handles, operators, keys, clock));
         let failed = |source| ListenError::Address { address: address.clone(), source };
@@ -160,7 +160,7 @@ impl Listener {
         Ok(Self { address: bound, _line: Line::Socket { _socket } })
     }
 
-    /// Where neighbours can connect.
+    /// Address at which neighbours can connect.
     #[must_use]
     pub const fn address(&self) -> &Address {
         &self.address
@@ -183,13 +183,13 @@ impl ListeningSocket {
 impl Drop for ListeningSocket {
     fn drop(&mut self) {
         self.over.store(true, Ordering::Release);
-        // Wakes the thread that waits for a connection, whatever stands at the address by now.
+        // Wakes the thread that waits for a connection, even if another program uses the address by now.
         let woken = match &*self.socket {
             Accepting::Unix(listener) => shutdown(listener, Shutdown::Both),
             Accepting::Tcp(listener) => shutdown(listener, Shutdown::Both),
         };
         if let Some(thread) = self.thread.take().filter(|_| woken.is_ok()) {
-            // It has nothing to return, and a panic in it was reported.
+            // The thread returns nothing, and a panic in it was reported.
             let _ = thread.join();
         }
         if let Some(file) = &self.file {
@@ -198,7 +198,7 @@ impl Drop for ListeningSocket {
     }
 }
 
-/// A socket that a killed run has left is taken over.
+/// Bind a socket in the file system; one that a killed run has left there is replaced.
 fn unix(path: &Path, address: &Address) -> Result<UnixListener, ListenError> {
     let failed = |source| ListenError::Address { address: address.clone(), source };
     let listener = match UnixListener::bind(path) {
@@ -227,7 +227,7 @@ fn accept(socket: &Accepting, over: &AtomicBool, server: &Arc<Server>) {
         match accepted {
             _ if over.load(Ordering::Acquire) => return,
             Ok(socket) => server.enter(socket),
-            // Out of file descriptors, perhaps: it must not become a busy loop.
+            // Possibly out of file descriptors: pause, to avoid a busy loop.
             Err(_) => thread::sleep(Duration::from_millis(100)),
         }
     }
@@ -288,8 +288,7 @@ mod tests {
         Peer::connect_within(answer_limit(ClockKind::Fast) / 2, &address, Role::Workstation, None).unwrap();
     }
 
-    /// All get the same answer, but the run is told of no more than it can take, and accepts others again
-    /// soon.
+    /// All attempts are refused, the run gets a limited number of events, and another client is admitted soon.
     #[test]
     fn a_client_that_tries_again_and_again_fills_no_log_and_locks_no_other_out() {
         let place = tempfile::tempdir().unwrap();
@@ -306,7 +305,8 @@ mod tests {
         let events = std::iter::from_fn(|| endpoint.event());
         let told =
             u32::try_from(events.filter(|event| matches!(event, NetEvent::Refused(_))).count()).unwrap();
-        // A slot once in a penalty, and a word about the crowd; time goes on behind the loop as well.
+        // In each interval of `SAFE`: an event for each slot, and one for the full queue. Time passes after the
+        // loop as well.
         let most = (started.elapsed().as_secs_f64() / SAFE.as_secs_f64()).ceil() as u32 + 1;
         assert!(told <= most * (SLOTS as u32 + 1), "{told} of {tried} in {most} s");
     }

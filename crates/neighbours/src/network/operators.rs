@@ -81,7 +81,7 @@ impl Carrier {
 impl Drop for Carrier {
     fn drop(&mut self) {
         if let Some(thread) = self.thread.take() {
-            // It has nothing to return, and a panic in it was reported.
+            // The thread returns nothing, and a panic in it was reported.
             let _ = thread.join();
         }
     }

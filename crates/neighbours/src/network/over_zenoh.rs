@@ -1,16 +1,16 @@
 //! Connections between machines through a [Zenoh](https://zenoh.io) network, peer to peer, without a server.
 //!
-//! Zenoh carries the bytes of a socket pair: at one end of it a [`Server`] or a [`Peer`](super::Peer) speaks TLS, as
-//! over TCP; at the other a thread publishes what comes. So authentication does not depend on the Zenoh network:
-//! routers carry bytes that they cannot read. A client that may publish under the keys of a connection can only cut it;
-//! Zenoh's own access control keeps other clients out.
+//! Zenoh carries the bytes of a socket pair: at one end a [`Server`] or a [`Peer`](super::Peer) uses TLS, as over TCP;
+//! at the other end a thread publishes the bytes. So authentication does not depend on the Zenoh network: routers carry
+//! bytes that they cannot decrypt. A client that may publish under the keys of a connection can only break it; Zenoh's
+//! own access control keeps other clients out.
 //!
-//! | key | what is under it | from |
+//! | key | contents | from |
 //! |---|---|---|
 //! | `rcs2/t3/open` | a queryable: ID, 32 hexadecimal digits; the reply is the same ID | controller |
-//! | `rcs2/t3/ID/up`, `rcs2/t3/ID/down` | bytes to and from the controller, in their order; none: the end | neighbour, controller |
+//! | `rcs2/t3/ID/up`, `rcs2/t3/ID/down` | bytes to and from the controller; no bytes: the end | neighbour, controller |
 //! | `rcs2/t3/ID/neighbour`, `rcs2/t3/ID/controller` | liveliness tokens of a connection | both |
-//! | `rcs2/t3/run` | liveliness token of the run: a second run of the name is refused | controller |
+//! | `rcs2/t3/run` | liveliness token of the run: a second run with this name is refused | controller |
 
 use std::{
     fmt::Write as _,
@@ -37,29 +37,29 @@ use zenoh::{
 
 use super::{server::Server, socket::Socket, zenoh_address::ZenohAddress};
 
-/// Between two attempts to find the controller.
+/// Time between two attempts to find the controller.
 const PAUSE: Duration = Duration::from_millis(50);
-/// How long a query may take.
+/// Time limit of a query.
 const QUERY_TIME: Duration = Duration::from_secs(10);
-/// Queries that wait, at most.
+/// Greatest number of queries that wait for an answer.
 const WAITING: usize = 64;
-/// A liveliness token may end before the last bytes have come: this is the time to wait for them.
+/// Time to wait for the last bytes after the end of a liveliness token, which can overtake them.
 const GRACE: Duration = Duration::from_millis(500);
-/// How long the end waits until the last bytes are published.
+/// Longest time that the end of a connection waits until its last bytes are published.
 const FAREWELL: Duration = Duration::from_secs(2);
-/// Bytes of an ID.
+/// Length of an ID, bytes.
 const ID: usize = 16;
-/// Bytes that are published at once.
+/// Greatest number of bytes that are published at once.
 const CHUNK: usize = 16 * 1024;
 
-/// Which side of a connection.
+/// A side of a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Controller,
     Neighbour,
 }
 
-/// Zenoh has one kind of error for everything.
+/// Convert an error of Zenoh, which has only one kind.
 fn failed(error: zenoh::Error) -> io::Error {
     io::Error::other(error.to_string())
 }
@@ -75,8 +75,8 @@ fn configuration(address: &ZenohAddress, side: Side) -> Result<Config, zenoh::Er
     };
     config.insert_json5(ours, &format!("[\"{endpoint}\"]"))?;
     let usual = Config::default();
-    // There is nothing to scout for. The controller may start later, or again: a second, as Zenoh would
-    // wait, is long.
+    // Scouting is not needed. The controller may start later, or restart: Zenoh's default retry period of
+    // one second is too long.
     let retry = "{ period_init_ms: 100, period_max_ms: 1000, period_increase_factor: 2 }";
     let better = [
         (theirs, "[]"),
@@ -96,14 +96,14 @@ fn open(address: &ZenohAddress, side: Side) -> io::Result<Session> {
     configuration(address, side).and_then(|config| zenoh::open(config).wait()).map_err(failed)
 }
 
-/// One end of a connection: the thread that publishes, until the socket ends.
+/// One end of a connection: a thread that publishes the bytes of a socket until it is closed.
 struct Carrier {
     thread: JoinHandle<()>,
     _token: LivelinessToken,
 }
 
 impl Carrier {
-    /// Carry the bytes of a socket pair under the keys `front/ID/...`; the socket for the session.
+    /// Carry the bytes of a socket pair under the keys `front/ID/...`; returns the socket for the session.
     fn start(session: &Session, front: &str, id: &str, side: Side) -> io::Result<(Self, UnixStream)> {
         let (ours, theirs) = UnixStream::pair()?;
         let (publish, subscribe, own, other) = match side {
@@ -139,7 +139,7 @@ impl Carrier {
             let (mut ours, mut buffer) = (ours, [0; CHUNK]);
             loop {
                 let count = ours.read(&mut buffer).unwrap_or(0);
-                // None: the end. A network that does not take it is noticed by the silence behind it.
+                // No bytes mark the end. If they cannot be published, the other side times out.
                 if publisher.put(&buffer[..count]).wait().is_err() || count == 0 {
                     break;
                 }
@@ -157,14 +157,14 @@ impl Carrier {
     }
 }
 
-/// Bytes have come from the network: in a thread of Zenoh's, which must not wait for the session.
+/// Write bytes from the network to the socket. A thread of Zenoh calls this, so that it must not wait for the session.
 fn deliver(socket: &UnixStream, bytes: &[u8]) {
     let taken = match bytes {
         [] => Err(rustix::io::Errno::PIPE),
         bytes => send(socket, bytes, SendFlags::DONTWAIT | SendFlags::NOSIGNAL),
     };
     if taken != Ok(bytes.len()) {
-        // The end, or more than a session that reads leaves unread. What was taken before can still be read.
+        // The end, or the session does not read and the buffer is full. Bytes written before can still be read.
         let _ = socket.shutdown(Shutdown::Write);
     }
 }
@@ -194,7 +194,7 @@ impl Acceptor {
         let (queries, asked) = sync_channel(WAITING);
         let ends = queries.clone();
         let hear = move |query: Query| {
-            // One that finds no room is not answered, and asks again.
+            // If the queue is full, the query is not answered, and the neighbour asks again.
             let _ = queries.try_send(Some(query));
         };
         session
@@ -211,18 +211,18 @@ impl Acceptor {
 
 impl Drop for Acceptor {
     fn drop(&mut self) {
-        // If the thread is gone already, there is nothing to end.
+        // This fails only if the thread has ended already.
         let _ = self.ends.send(None);
         if let Some(thread) = self.thread.take() {
-            // It has nothing to return, and a panic in it was reported.
+            // The thread returns nothing, and a panic in it was reported.
             let _ = thread.join();
         }
-        // A network that cannot be reached needs no farewell.
+        // If the network cannot be reached, the session need not be closed.
         let _ = self.session.close().wait();
     }
 }
 
-/// Answer queries until the end.
+/// Answer queries until the acceptor is dropped.
 fn accept(session: &Session, front: &str, asked: &Receiver<Option<Query>>, server: &Arc<Server>) {
     let mut carriers: Vec<Carrier> = Vec::new();
     loop {
@@ -234,7 +234,7 @@ fn accept(session: &Session, front: &str, asked: &Receiver<Option<Query>>, serve
                 if let Some(Ok((carrier, socket))) = started {
                     carriers.push(carrier);
                     server.enter(Socket::Unix(socket));
-                    // A neighbour that does not get the answer sends nothing, and its session ends by that.
+                    // A neighbour that does not get the answer sends nothing, and its session times out.
                     let _ = query.reply(query.key_expr(), said).wait();
                 }
             }
@@ -257,7 +257,7 @@ pub(super) struct Tunnel {
 }
 
 impl Tunnel {
-    /// Connect to the controller at an address; while none answers, try again until a time. Returns the tunnel, and the
+    /// Connect to the controller at an address, with retries until `until` if none answers. Returns the tunnel and the
     /// socket whose bytes it carries.
     pub fn open(address: &ZenohAddress, until: Instant) -> io::Result<(Self, UnixStream)> {
         let session = open(address, Side::Neighbour)?;
@@ -267,7 +267,7 @@ impl Tunnel {
             .fill(&mut random)
             .map_err(|_| io::Error::other("the system has no random bytes"))?;
         let id = random.iter().fold(String::new(), |mut id, byte| {
-            // A text takes whatever is written.
+            // Writing to a `String` does not fail.
             let _ = write!(id, "{byte:02x}");
             id
         });
@@ -294,7 +294,7 @@ impl Drop for Tunnel {
         if let Some(carrier) = self.carrier.take() {
             carrier.finish(Instant::now() + FAREWELL);
         }
-        // A network that cannot be reached needs no farewell.
+        // If the network cannot be reached, the session need not be closed.
         let _ = self.session.close().wait();
     }
 }
@@ -317,7 +317,7 @@ mod tests {
         assert!(configuration(&missing, Side::Neighbour).is_err());
     }
 
-    /// An ID becomes a part of keys: nothing else may.
+    /// An ID becomes a part of Zenoh keys, so that wildcards and slashes are refused.
     #[test]
     fn an_id_is_32_hexadecimal_digits() {
         assert!(is_id("0123456789abcdef0123456789abcdef"));

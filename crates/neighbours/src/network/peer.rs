@@ -30,28 +30,28 @@ const FAREWELL: Duration = Duration::from_secs(1);
 /// Why a connection cannot be made, or ends.
 #[derive(Debug, thiserror::Error)]
 pub enum PeerError {
-    /// No controller is there, or the line broke.
+    /// No controller listens at the address, or the connection broke.
     #[error("{address}: {source}")]
     Line {
-        /// Where.
+        /// Address of the controller.
         address: Address,
-        /// Why.
+        /// Error of the system.
         source: io::Error,
     },
     /// TLS refuses the other side, or the other side refuses the certificate.
     #[error("{address}: TLS: {source}")]
     Tls {
-        /// Where.
+        /// Address of the controller.
         address: Address,
-        /// Why.
+        /// Error of the TLS library.
         source: Box<rustls::Error>,
     },
     /// The other side is not a controller, or breaks the protocol.
     #[error("{address}: {source}")]
     Session {
-        /// Where.
+        /// Address of the controller.
         address: Address,
-        /// How.
+        /// Error of the session.
         source: SessionError,
     },
     /// Nothing was received for this time.
@@ -99,12 +99,12 @@ impl PeerError {
     }
 }
 
-/// What the controller sends.
+/// A message from the controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Received {
-    /// A mailgram has come: the mailbox holds it.
+    /// A mailgram has been received and stored in its mailbox.
     Mailgram(Place),
-    /// A tick is over, and all its mailboxes have come. Answer it by [`Peer::pulse`].
+    /// The pulse of a tick, all of whose mailboxes have been received. Answer it with [`Peer::pulse`].
     Pulse(u64),
 }
 
@@ -216,16 +216,16 @@ impl Peer {
         mailbox.unwrap_or_else(|| panic!("{place} does not go to {}", self.role))
     }
 
-    /// The two ends of an operator's session, admitted as [`Role::Operator`]: a stream on which to talk to the run, and
-    /// what carries it, which is to be dropped after the stream.
+    /// The stream of an operator's session, admitted as [`Role::Operator`], and the carrier of its bytes. Drop the
+    /// carrier after the stream.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the system.
     pub fn into_stream(mut self) -> io::Result<(UnixStream, Carrier)> {
         let (ours, theirs) = UnixStream::pair()?;
         let thread = thread::Builder::new().name("operator".into()).spawn(move || {
             let unread = self.session.take_unread();
-            // The client sees the end of its stream, whatever the reason.
+            // The client sees only the end of its stream, not the reason.
             let _ = carry(&mut self.channel, &theirs, unread, None);
         })?;
         Ok((ours, Carrier::of(thread)))
@@ -259,7 +259,7 @@ impl Peer {
         self.flush()
     }
 
-    /// Send what stands in a mailbox.
+    /// Send the contents of a mailbox.
     ///
     /// # Errors
     /// [`PeerError`] if the connection ends.

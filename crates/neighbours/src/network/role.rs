@@ -1,4 +1,4 @@
-//! The roles of those that connect, and the mailboxes of each.
+//! The roles of clients that connect, and the mailboxes of each.
 
 use std::{fmt, str::FromStr};
 
@@ -8,7 +8,7 @@ use crate::mailbox::{
     PEDESTAL_TABLE_STATUS, Place, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE,
 };
 
-/// What connects: a neighbour of the controller, or an operator. The hello contains the number.
+/// Role of a client: a neighbour of the controller, or an operator. The hello contains the number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u16)]
 pub enum Role {
@@ -20,7 +20,8 @@ pub enum Role {
     Pedestal = 3,
     /// The vision system.
     Vision = 4,
-    /// An operator: no neighbour, without mailboxes. Its connection carries the lines of a session (crate `operator`).
+    /// An operator, which is not a neighbour and has no mailboxes. Its connection carries the lines of a session (crate
+    /// `operator`).
     Operator = 5,
 }
 
@@ -29,7 +30,7 @@ impl Role {
     pub const ALL: [Self; 5] =
         [Self::Workstation, Self::DataSystem, Self::Pedestal, Self::Vision, Self::Operator];
 
-    /// The word on the command line.
+    /// The word for the role on the command line.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -62,7 +63,7 @@ impl Role {
             Self::Workstation => &[HWSC_STATUS, CELL_STATUS],
             Self::DataSystem => &[DATA_SYSTEM_COMMAND],
             Self::Pedestal => &[PEDESTAL_COMMAND, PEDESTAL_SENSORS],
-            // The picture first: a neighbour that reads the request has it.
+            // The picture first: a neighbour that reads the request then has the picture.
             Self::Vision => &[VISION_PICTURE, VISION_REQUEST],
             Self::Operator => &[],
         }

@@ -18,17 +18,17 @@ use super::{
     socket::Socket,
 };
 
-/// Why a connection is refused for which there is no slot in the accept queue.
+/// Reason for refusing a connection when the accept queue has no free slot.
 const CROWDED: &str = "too many connect at once";
 
-/// What the threads work with.
+/// State that the threads of all connections share.
 pub(super) struct Server {
     handles: Vec<EndpointHandle>,
     operators: Option<Operators>,
     keys: Option<ControllerKeys>,
     clock: ClockKind,
     queue: AcceptQueue,
-    /// When "too many connect" was reported last.
+    /// Time of the last report of "too many connect".
     crowded: Mutex<Option<Instant>>,
 }
 
@@ -48,7 +48,7 @@ impl Server {
         Self { handles, operators, keys, clock, queue: AcceptQueue::default(), crowded: Mutex::default() }
     }
 
-    /// Serve a connection, if there is a slot for it in the accept queue; else it is closed.
+    /// Serve a connection in a new thread if the accept queue has a free slot; otherwise close it.
     pub fn enter(self: &Arc<Self>, socket: Socket) {
         if let Ok(Some(ticket)) = self.queue.enter(&socket) {
             let server = Arc::clone(self);
@@ -70,7 +70,7 @@ impl Server {
         }
     }
 
-    /// A connection, from the hello to its end.
+    /// Serve a connection from the hello to its end.
     fn serve(&self, socket: Socket, ticket: u64) {
         let slot = self.queue.slot(ticket);
         let mut connection = match self.open(socket) {
@@ -89,14 +89,14 @@ impl Server {
                 drop(slot);
                 operators.tell(NetEvent::Connected(Role::Operator));
                 let why = connection.carry(&run);
-                // The run sees the end of the session at once, whatever the network does.
+                // The run sees the end of the session at once, even if the network is slow.
                 drop(run);
                 connection.finish();
                 operators.tell(NetEvent::Disconnected(Role::Operator, why));
                 connection.channel.drain(Instant::now() + SAFE);
             }
             Err(why) => {
-                // It closes by its reason, if it is not closed already.
+                // Send the reason, unless the session is closed already.
                 connection.session.close(&why);
                 connection.finish();
                 self.refused(why);
@@ -113,7 +113,7 @@ impl Server {
         Ok(Connection { channel, session: Session::controller(self.clock, Instant::now()) })
     }
 
-    /// Open a session for a client that asks for one, if it is permitted.
+    /// Admit a client in the role that its hello names; the error is the reason for refusing it.
     fn admit(&self, role: Role, channel: &Channel) -> Result<Admitted<'_>, String> {
         if let Some(keys) = &self.keys {
             let certificate = channel.certificate().ok_or("the neighbour has no certificate")?;
@@ -134,12 +134,12 @@ impl Server {
 /// An admitted client.
 enum Admitted<'a> {
     Neighbour(Link),
-    /// With the stream on which the run listens to the operator.
+    /// An operator, with the stream that connects it to the run.
     Operator(&'a Operators, UnixStream),
 }
 
 impl Connection {
-    /// Until the other side is admitted; else why it is not.
+    /// Receive until the other side is admitted; the error is the reason for refusing it.
     fn greet<'a>(&mut self, server: &'a Server) -> Result<Admitted<'a>, String> {
         self.channel.check_user().map_err(said)?;
         loop {
@@ -158,7 +158,7 @@ impl Connection {
         }
     }
 
-    /// Carry an operator's lines between its connection and the run, until one of them ends; why it did.
+    /// Carry an operator's lines between its connection and the run until one of them ends; returns why it has ended.
     fn carry(&mut self, run: &UnixStream) -> Disconnect {
         let unread = self.session.take_unread();
         let sent = self.channel.send(&mut self.session);
@@ -166,7 +166,7 @@ impl Connection {
         sent.map_err(lost).map_or_else(|why| why, |()| carry(&mut self.channel, run, unread, Some(SILENCE)))
     }
 
-    /// Until the session ends; why it did.
+    /// Run the session until it ends; returns why it has ended.
     fn run(&mut self, link: &mut Link) -> Disconnect {
         loop {
             match self.turn(link) {
@@ -187,7 +187,7 @@ impl Connection {
     fn turn(&mut self, link: &mut Link) -> Result<(), Disconnect> {
         let lost = |error: io::Error| Disconnect::Lost(error.to_string());
         let now = Instant::now();
-        // A neighbour that does not read gets the latest values when it does, not all of them.
+        // A neighbour that reads slowly gets the latest values only.
         if self.channel.is_flushed() {
             link.collect(|outgoing| match outgoing {
                 Outgoing::Mailbox(mailbox) => self.session.send(mailbox),
@@ -222,7 +222,7 @@ fn said(error: impl fmt::Display) -> String {
     error.to_string()
 }
 
-/// Why a connection ends before its hello.
+/// As text: why a connection has ended before its hello.
 fn refusal(error: io::Error) -> String {
     if error.kind() == io::ErrorKind::InvalidData {
         format!("TLS: {error}")
@@ -231,7 +231,7 @@ fn refusal(error: io::Error) -> String {
     }
 }
 
-/// Why a session has ended by itself.
+/// The disconnect reason for an error of the session.
 fn ended(error: SessionError) -> Disconnect {
     match error {
         SessionError::Silent(limit) => Disconnect::Silent(limit),

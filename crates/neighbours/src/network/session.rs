@@ -1,5 +1,5 @@
-//! One connection between controller and neighbour, without I/O: bytes and time go in, bytes and events come
-//! out.
+//! The protocol of a connection between controller and neighbour, without I/O: its inputs are bytes and time, its
+//! outputs bytes and events.
 //!
 //! ```text
 //!   controller                                          neighbour
@@ -34,9 +34,9 @@ use super::{
 };
 use crate::mailbox::{Mailbox, Place};
 
-/// Bytes of a hello.
+/// Length of a hello, bytes.
 pub const HELLO: usize = 8;
-/// What both hellos begin with.
+/// First bytes of both hellos.
 const MARK: [u8; 4] = *b"RCS2";
 /// Version of the protocol.
 pub const VERSION: u16 = 3;
@@ -51,19 +51,19 @@ pub enum Event<'a> {
     Hello(Role),
     /// At the neighbour: it is admitted.
     Welcome(ClockKind),
-    /// A mailbox has come, head and data.
+    /// A mailbox has been received: its head and data.
     Mailgram(Place, &'a [u8]),
     /// The pulse of a tick, or the answer to it.
     Pulse(u64),
 }
 
-/// Why a session cannot go on.
+/// Why a session cannot continue.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SessionError {
     /// The other side does not speak this protocol.
     #[error("a hello was expected, found {0:02X?}")]
     Mark([u8; 4]),
-    /// It speaks another version.
+    /// The other side has another version of the protocol.
     #[error("version {VERSION} of the protocol was expected, found {0}")]
     Version(u16),
     /// No neighbour has this number.
@@ -81,18 +81,18 @@ pub enum SessionError {
     /// The neighbour has answered a pulse that was never sent.
     #[error("an answer to a pulse up to {sent} was expected, found one to {found}")]
     Early {
-        /// The last one that was sent.
+        /// Number of the last pulse that was sent.
         sent: u64,
         /// The number of the answer.
         found: u64,
     },
-    /// Hello or welcome have not come in time.
+    /// No hello or welcome was received in time.
     #[error("no hello within {} s", .0.as_secs())]
     NoHello(Duration),
     /// Nothing was received for this time.
     #[error("no answer for {} s", .0.as_secs())]
     Silent(Duration),
-    /// The controller has closed the connection, and said why.
+    /// The controller has closed the connection, with this reason.
     #[error("{0}")]
     Reason(String),
 }
@@ -275,7 +275,7 @@ impl Session {
         }
     }
 
-    /// The next frame of the other side, which has so many mailboxes.
+    /// The next frame of the other side, which writes the `expected` mailboxes.
     fn frame(&mut self, expected: &'static [Place], now: Instant) -> Result<Option<Step>, SessionError> {
         let Some(frame) = Frame::first(&self.input[self.read..])? else { return Ok(None) };
         let (start, end) = (self.read + frame::ADDRESS, self.read + frame.bytes().len());
@@ -314,15 +314,15 @@ impl Session {
         }
     }
 
-    /// Send what stands in a mailbox.
+    /// Send the contents of a mailbox.
     pub fn send(&mut self, mailbox: &Mailbox) {
         if self.state == State::Open {
             frame::put_mailbox(&mut self.output, mailbox);
         }
     }
 
-    /// Send the pulse of a tick: the controller behind the mailgrams of the tick, the neighbour as its answer to all up
-    /// to this one. A neighbour that has answered the last one has the full time limit for this one.
+    /// Send the pulse of a tick: at the controller, after the mailgrams of the tick; at the neighbour, as the answer to
+    /// all pulses up to this one. A neighbour that has answered the last pulse has the full time limit for this one.
     pub fn pulse(&mut self, tick: u64, now: Instant) {
         if self.state != State::Open {
             return;
@@ -334,7 +334,7 @@ impl Session {
         self.pulses.sent = tick;
     }
 
-    /// Close the session; a neighbour is told the reason.
+    /// Close the session; the controller sends the reason to the neighbour.
     pub fn close(&mut self, reason: &dyn fmt::Display) {
         if self.state != State::Closed && matches!(self.side, Side::Controller { .. }) {
             frame::put(&mut self.output, DISCONNECT, reason.to_string().as_bytes());
@@ -366,7 +366,7 @@ impl Session {
             (State::Open, Side::Controller { clock, .. }) if self.pulses.answered < self.pulses.sent => {
                 Some((self.pulses.due, answer_limit(clock), SessionError::Silent))
             }
-            // In fast clock the time of the controller may stand still.
+            // In fast clock the controller may send nothing for any time.
             (State::Open, Side::Neighbour { clock: ClockKind::Real, .. }) => {
                 Some((self.heard, NEIGHBOUR_LIMIT, SessionError::Silent))
             }

@@ -1,7 +1,6 @@
-//! The mailboxes of one neighbour, between the tick and the threads of the network; and the side of the
-//! network.
+//! The mailboxes of one neighbour, which the tick and the threads of the network share, and the network's side of them.
 //!
-//! [`EndpointHandle`] puts in what arrives, [`Link`] takes out what is new. The tick's side is an
+//! [`EndpointHandle`] stores mailboxes that arrive, [`Link`] collects those to send. The tick's side is an
 //! [`Endpoint`](super::Endpoint).
 
 use std::{
@@ -19,7 +18,7 @@ use rustix::event::{EventfdFlags, eventfd};
 use super::{ClockKind, Disconnect, NetEvent, Role};
 use crate::mailbox::{Mailbox, MailboxError, Place};
 
-/// Disconnect reason of a run that has ended.
+/// Disconnect reason when the run has ended.
 pub const OVER: &str = "the run is over";
 
 /// State that both sides share.
@@ -32,17 +31,17 @@ pub(super) struct Shared {
     pub incoming: Vec<Mutex<Mailbox>>,
     /// Number of the session; 0 while there is none.
     pub session: AtomicU32,
-    /// Sessions so far.
+    /// Number of sessions so far.
     pub sessions: AtomicU32,
-    /// The last tick that was run.
+    /// The latest tick whose mailboxes were written.
     pub pulse: AtomicU64,
-    /// The last pulse that was answered. Behind a lock, since a tick may wait for it.
+    /// The last pulse that the neighbour has answered. In a mutex, because a tick may wait for a change of it.
     pub answered: Mutex<u64>,
-    /// `answered`, `session` or `over` have changed.
+    /// Notified when `answered`, `session` or `over` changes.
     pub changed: Condvar,
-    /// No more sessions: the run is over.
+    /// The run is over: no other session begins.
     pub over: AtomicBool,
-    /// Wakes the thread of the session.
+    /// Event descriptor that wakes the thread of the session.
     wake: OwnedFd,
 }
 
@@ -76,13 +75,13 @@ impl Shared {
 
     /// Wake the thread of the session, if there is one. Does not block or allocate.
     pub fn wake(&self) {
-        // The counter is full only if the thread is awake anyway.
+        // The write fails only if the counter is full, and then the thread wakes anyway.
         let _ = rustix::io::write(&self.wake, &1_u64.to_ne_bytes());
     }
 
     /// End the session, and accept no other.
     pub fn end(&self) {
-        // The tick that waits looks at the flag behind this lock.
+        // A tick that waits checks the flag under this lock.
         let answered = locked(&self.answered);
         self.over.store(true, Ordering::Release);
         self.changed.notify_all();
@@ -95,7 +94,7 @@ impl Shared {
     }
 }
 
-/// The side of the network.
+/// The network's side of the mailboxes.
 #[derive(Clone)]
 pub struct EndpointHandle {
     pub(super) shared: Arc<Shared>,
@@ -120,7 +119,7 @@ pub enum AttachError {
 }
 
 impl EndpointHandle {
-    /// Which neighbour it is for.
+    /// The neighbour of the endpoint.
     #[must_use]
     pub fn role(&self) -> Role {
         self.shared.role
@@ -132,13 +131,13 @@ impl EndpointHandle {
         self.shared.clock
     }
 
-    /// The neighbour is connected.
+    /// True if the neighbour is connected.
     #[must_use]
     pub fn is_connected(&self) -> bool {
         self.shared.session.load(Ordering::Acquire) != 0
     }
 
-    /// The neighbour has been connected at some time.
+    /// True if the neighbour has been connected at some time.
     #[must_use]
     pub fn was_connected(&self) -> bool {
         self.shared.sessions.load(Ordering::Acquire) != 0
@@ -146,7 +145,7 @@ impl EndpointHandle {
 
     /// Tell the controller what happened.
     pub(super) fn tell(&self, event: NetEvent) {
-        // A run that is over does not listen.
+        // This fails only after the run has ended, when nothing reads events.
         let _ = self.events.send(event);
     }
 
@@ -166,7 +165,8 @@ impl EndpointHandle {
             locked(mailbox).initialize();
         }
         *answered = 0;
-        // In front of the session: the tick that finds one waits for the answer to its own pulse.
+        // Read before the session is stored: a tick that sees the session waits for the answer to its own pulse,
+        // which must still be sent.
         let pulse = self.shared.pulse.load(Ordering::Acquire);
         let number = self.shared.sessions.fetch_add(1, Ordering::AcqRel).wrapping_add(1).max(1);
         self.shared.session.store(number, Ordering::Release);
@@ -174,34 +174,34 @@ impl EndpointHandle {
         drop(answered);
         self.tell(NetEvent::Connected(self.shared.role));
         let sent = initialized(self.shared.role.from_controller());
-        // What stands in the mailboxes goes out at once.
+        // Send the present contents of the mailboxes at once.
         self.shared.wake();
         Ok(Link { handle: self.clone(), sent, pulse })
     }
 
     /// End the session.
     pub(crate) fn detach(&self, why: Disconnect) {
-        // In front of the change: a tick that finds no session finds the reason, too.
+        // Before the change, so that a tick that sees no session also finds the reason.
         self.tell(NetEvent::Disconnected(self.shared.role, why));
         let _answered = locked(&self.shared.answered);
         self.shared.session.store(0, Ordering::Release);
         self.shared.changed.notify_all();
     }
 
-    /// A mailbox has come from the neighbour.
+    /// Store a mailbox that has come from the neighbour; `used` is the used part of its bytes.
     ///
     /// # Errors
     /// [`MailboxError`] if the mailbox cannot hold it.
     ///
     /// # Panics
-    /// If the neighbour has no such mailbox: its session takes no other.
+    /// If the neighbour does not write this mailbox: its session refuses such mailgrams.
     pub(crate) fn deliver(&self, place: Place, used: &[u8]) -> Result<(), MailboxError> {
         let at = self.shared.role.to_controller().iter().position(|own| *own == place);
         locked(&self.shared.incoming[at.expect("a session takes its neighbour's mailboxes only")])
             .receive(used)
     }
 
-    /// The neighbour has answered all pulses up to one.
+    /// Record that the neighbour has answered all pulses up to that of `tick`.
     pub(super) fn answer(&self, tick: u64) {
         let mut answered = locked(&self.shared.answered);
         *answered = tick.max(*answered);
@@ -209,7 +209,7 @@ impl EndpointHandle {
     }
 }
 
-/// Something to send for the tick.
+/// What the session sends to the neighbour.
 pub(super) enum Outgoing<'a> {
     /// A mailbox that has changed.
     Mailbox(&'a Mailbox),
@@ -217,7 +217,7 @@ pub(super) enum Outgoing<'a> {
     Pulse(u64),
 }
 
-/// The state of a session: which mailboxes were sent already.
+/// State of a session: the mailboxes and the pulse that were sent last.
 pub(super) struct Link {
     pub handle: EndpointHandle,
     sent: Vec<Mailbox>,
@@ -225,12 +225,12 @@ pub(super) struct Link {
 }
 
 impl Link {
-    /// Readable when there is something to send, or the run is over.
+    /// Descriptor that is readable when there is something to send or the run is over.
     pub fn wake(&self) -> BorrowedFd<'_> {
         self.handle.shared.wake.as_fd()
     }
 
-    /// The run is over.
+    /// True if the run is over.
     pub fn is_over(&self) -> bool {
         self.handle.shared.is_over()
     }
@@ -238,9 +238,9 @@ impl Link {
     /// Send what is new: mailboxes, then the pulse.
     pub fn collect(&mut self, mut send: impl FnMut(Outgoing<'_>)) {
         let shared = &self.handle.shared;
-        // A number that is left there wakes the thread once more, for nothing.
+        // If this fails, the thread only wakes once more than necessary.
         let _ = rustix::io::read(&shared.wake, &mut [0; 8]);
-        // The tick first: what it wrote stands in the mailboxes already.
+        // The pulse first: the mailboxes, read after it, hold all that its tick has written.
         let tick = shared.pulse.load(Ordering::Acquire);
         for (mailbox, sent) in shared.outgoing.iter().zip(&mut self.sent) {
             let mailbox = locked(mailbox);

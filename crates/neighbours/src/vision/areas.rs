@@ -12,13 +12,13 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]
 pub enum Ready {
-    /// The area is not to be touched (CHOSEN: the manual gives no number).
+    /// The area must not be used (CHOSEN: the manual gives no number).
     NotReady = 1,
-    /// It may be read, or written (IX.4).
+    /// The area may be read or written (IX.4).
     Ready = 2,
 }
 
-/// A ready word by its number.
+/// Codec of a ready word.
 #[derive(Clone, Copy, Debug)]
 struct ReadyWord;
 
@@ -39,7 +39,7 @@ impl Codec<'_, Ready> for ReadyWord {
     }
 }
 
-/// The byte-count of a request or response area: the 12 bytes behind it.
+/// Codec of the byte-count of a request or response area: always 12, the number of bytes behind it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ByteCount;
 
@@ -111,7 +111,7 @@ impl Areas {
         },
     };
 
-    /// The bytes.
+    /// Encode the areas.
     ///
     /// # Errors
     /// [`RangeError`] if two bytes cannot hold a value.
@@ -119,10 +119,10 @@ impl Areas {
         AreasLayout::check(self).map(|()| AreasLayout::encode(self))
     }
 
-    /// Read the bytes. E-move checks the values.
+    /// Decode the areas. E-move checks the values.
     ///
     /// # Errors
-    /// [`VisionError`] for the first thing that cannot be read.
+    /// [`VisionError`] for the first field that cannot be read.
     pub fn decode(bytes: &[u8]) -> Result<Self, VisionError> {
         Ok(AreasLayout::decode(bytes)?)
     }

@@ -11,8 +11,8 @@
 //!                             Port --picture---> F8400 --> vision, for the simulated cell only
 //! ```
 //!
-//! Both ready words are vision's: `vision-ready-input` is 2 while the response area is at rest and may be read,
-//! `vision-ready-output` is 2 while a request may be written. The controller sets them once, by initialization (blocks
+//! Vision writes both ready words: `vision-ready-input` is 2 while the response area does not change and may be read,
+//! `vision-ready-output` is 2 while a request may be written. The controller sets them only by initialization (blocks
 //! 984-986): input "ready", because the response area is empty, and output "not ready", because no vision system is
 //! connected yet. Vision establishes communications when it writes its mailbox the first time.
 //!
@@ -39,17 +39,17 @@ pub enum VisionError {
     /// More parts than the mailbox holds.
     #[error("at most {most} parts were expected in a picture, found {found}")]
     Parts {
-        /// As many as it holds.
+        /// Number of parts that the mailbox holds.
         most: usize,
-        /// Their count.
+        /// Number of parts in the picture.
         found: usize,
     },
-    /// A part of a picture.
+    /// Wrong size or field of a part.
     #[error("part {part}: {source}")]
     Part {
         /// Which part, from 1.
         part: usize,
-        /// What is wrong with it.
+        /// Error of the part.
         source: LayoutError,
     },
     /// A field that cannot be read.

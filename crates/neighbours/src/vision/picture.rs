@@ -1,6 +1,5 @@
-//! The picture of the camera in the simulated cell: an extension for a vision system without a camera. A real one does
-//! not read it. All numbers are exactly those of the cell, so that the answer does not depend on the process that
-//! computes it.
+//! The picture of the camera in the simulated cell: an extension for a vision system without a camera. A real vision
+//! system does not read it. All numbers are exactly those of the cell, so that every process computes the same answer.
 
 use super::VisionError;
 use crate::{
@@ -55,7 +54,7 @@ pub struct Head {
 #[derive(Clone, Copy, Debug)]
 struct Number;
 
-/// Three of them.
+/// Three finite 64-bit floating-point numbers.
 #[derive(Clone, Copy, Debug)]
 struct Vector;
 
@@ -140,7 +139,7 @@ pub struct Part {
     pub edges: [([f64; 3], f64); 2],
     /// Share of the light that it reflects.
     pub reflectance: f64,
-    /// Which points are seen: bit n for the nth.
+    /// The points that are seen: bit n for the nth.
     pub seen: u128,
 }
 
@@ -159,7 +158,7 @@ impl Picture {
         excess
     }
 
-    /// The bytes; not more parts than [`MAX_PARTS`] ([`Picture::crop`]).
+    /// Encode the picture, with at most [`MAX_PARTS`] parts: call [`Picture::crop`] first.
     #[must_use]
     pub fn encode(&self) -> Vec<u8> {
         let parts = &self.parts[..self.parts.len().min(MAX_PARTS)];
@@ -171,7 +170,7 @@ impl Picture {
         bytes
     }
 
-    /// Read the bytes.
+    /// Decode a picture.
     ///
     /// # Errors
     /// [`VisionError`] for the first wrong field.

@@ -1,15 +1,15 @@
 //! READ-VISION-DATA and WRITE-VISION-REQUEST (IV.4.4, IX.4): the handshake with vision, once a tick.
 //!
-//! | what comes                                      | what becomes of it                                                        |
-//! |-------------------------------------------------|---------------------------------------------------------------------------|
-//! | E-move has a new request                        | written if `vision-ready-output` is 2, else as soon as it is              |
-//! | none is connected, or a new vision system is    | "not ready" until it writes; the request is written again if it is unanswered |
-//! | a response while `vision-ready-input` is 2      | E-move reads it if it echoes the present request                          |
-//! | a response to another request                   | not read: E-move would take it for the present one's                      |
-//! | a response while `vision-ready-input` is 1      | not read                                                                  |
-//! | what is no response                             | not read; the ready words stay as they were                               |
+//! | event                                          | effect                                                        |
+//! |------------------------------------------------|---------------------------------------------------------------|
+//! | E-move has a new request                       | written if `vision-ready-output` is 2, else as soon as it is  |
+//! | vision is not connected, or has connected anew | "not ready" until it writes; an open request is written again |
+//! | a response while `vision-ready-input` is 2     | E-move reads it if it echoes the present request              |
+//! | a response to another request                  | not read: it would pass for the answer to the present request |
+//! | a response while `vision-ready-input` is 1     | not read                                                      |
+//! | data that are not a response                   | not read; the ready words keep their values                   |
 //!
-//! If a response is not read, E-move keeps the earlier one: at worst it waits until vision counts as silent. The
+//! If a response is not read, E-move keeps the earlier one, and waits at most until its time limit for vision. The
 //! mailbox is read every cycle (IX), and invalid data are reported once.
 
 use std::fmt;
@@ -29,30 +29,30 @@ use crate::{
 pub enum Remark {
     /// Vision has connected or disconnected.
     Network(NetEvent),
-    /// Its mailbox cannot be read.
+    /// The mailbox that vision has written cannot be decoded.
     Refused(VisionError),
     /// It has answered another request than the present one.
     Stranger {
-        /// The one that it has answered.
+        /// Number of the answered request.
         echo: u16,
-        /// The present one; 0 if there is none.
+        /// Number of the present request; 0 if there is none.
         expected: u16,
     },
     /// It has written an answer while `vision-ready-input` is not ready.
     Unread {
-        /// The request that it answers.
+        /// Number of the answered request.
         echo: u16,
     },
     /// A request cannot be written yet.
     Waits {
-        /// Its number.
+        /// Number of the request.
         number: u16,
-        /// Vision is connected, and not ready.
+        /// True if vision is connected but not ready.
         connected: bool,
     },
-    /// More parts are in the picture than its mailbox holds.
+    /// The picture has more parts than its mailbox holds: number of parts left out.
     Cropped(usize),
-    /// A mailbox does not hold what is to be written.
+    /// A mailbox cannot hold the data.
     Mailbox(MailboxError),
 }
 
@@ -108,19 +108,19 @@ impl fmt::Display for Remark {
 /// E-move's end of the interface to a vision system in another process.
 pub struct Port {
     endpoint: Endpoint,
-    /// Seed of the run, and fingerprint of what in its cell description vision depends on.
+    /// Seed of the run, and fingerprint of the entries of its cell description on which vision depends.
     run: (u64, u64),
     /// E-move's present request; number 0 for none.
     wanted: VisionRequest,
-    /// It stands in the mailbox.
+    /// The present request was written to the mailbox.
     written: bool,
     /// `vision-ready-output`.
     output: Ready,
-    /// What E-move reads.
+    /// The response that E-move reads.
     response: VisionResponse,
     /// The last content of the response area.
     found: VisionResponse,
-    /// Why the mailbox cannot be read, as reported last.
+    /// The error of reading the mailbox that was reported last.
     refused: Option<VisionError>,
     /// The waiting request was reported.
     waits: bool,
@@ -128,7 +128,8 @@ pub struct Port {
 }
 
 impl Port {
-    /// Works with an endpoint, in a run with a seed and a fingerprint of what its vision depends on.
+    /// A port with an endpoint, the seed of the run, and the fingerprint of the entries of its cell description on
+    /// which vision depends.
     #[must_use]
     pub const fn new(endpoint: Endpoint, seed: u64, cell: u64) -> Self {
         Self {
@@ -152,7 +153,7 @@ impl Port {
         }
     }
 
-    /// What E-move reads.
+    /// The response that E-move reads.
     #[must_use]
     pub const fn response(&self) -> &VisionResponse {
         &self.response
@@ -163,8 +164,8 @@ impl Port {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Once a tick, after E-move and the cell: `wanted` is what E-move asks for, `picture` the picture of the camera of
-    /// the simulated cell in the tick in which the request is written.
+    /// Call once per tick, after E-move and the cell: `wanted` is E-move's request. `picture` returns the parts in the
+    /// picture of the simulated camera; it is called in the tick in which the request is written.
     pub fn step(&mut self, tick: u64, wanted: &VisionRequest, picture: impl FnOnce() -> Vec<Part>) {
         if wanted.number != self.wanted.number {
             (self.wanted, self.written, self.waits) = (*wanted, false, false);
@@ -181,7 +182,7 @@ impl Port {
         if presence.connected {
             self.read();
         } else {
-            // The next vision system finds no request that was meant for the one before.
+            // The next vision system must not find a request to the previous one.
             self.endpoint.outgoing(VISION_PICTURE).initialize();
             self.endpoint.outgoing(VISION_REQUEST).initialize();
         }
@@ -192,13 +193,13 @@ impl Port {
         }
     }
 
-    /// There is a request that was not written, and not answered by one that has disconnected since.
+    /// True if there is a request that was not written, and that no vision system has answered before it disconnected.
     fn is_open(&self) -> bool {
         let answered = self.response.echo == self.wanted.number && is_final(&self.response);
         self.wanted.number != 0 && self.wanted.picture != Kind::None && !self.written && !answered
     }
 
-    /// Initialize the ready words and the response area as blocks 984-986 do. The response that E-move has read stays.
+    /// Initialize the ready words and the response area as blocks 984-986 do. Keep the response that E-move has read.
     fn initialize(&mut self) {
         self.output = Areas::INITIALIZED.output;
         self.found = Areas::INITIALIZED.response;
@@ -240,7 +241,7 @@ impl Port {
     fn take(&mut self, areas: &Areas) {
         let expected = if self.written { command_number(self.wanted.number) } else { 0 };
         let echo = command_number(areas.response.echo);
-        // What stands there from before is nothing new.
+        // A response that was there before is not new.
         let news = areas.response != self.found && is_final(&areas.response);
         self.found = areas.response;
         if echo != expected || echo == 0 {
@@ -255,7 +256,7 @@ impl Port {
     }
 }
 
-/// True if vision has done with a request.
+/// True if vision has finished a request.
 fn is_final(response: &VisionResponse) -> bool {
     !matches!(response.status, VisionStatus::Idle | VisionStatus::Busy)
 }
@@ -268,7 +269,7 @@ mod tests {
         network::{ClockKind, Disconnect, Role, endpoint::tests::TestSession},
     };
 
-    /// A port, and the other end of its line.
+    /// A port, and the session at its other end.
     struct Bench {
         port: Port,
         session: Option<TestSession>,
@@ -284,7 +285,7 @@ mod tests {
             Self { port, session: None, response_box, tick: 0, wanted: VisionRequest::default() }
         }
 
-        /// One at which vision has established communications.
+        /// A bench whose vision system has established communications.
         fn connected() -> Self {
             let mut bench = Self::new();
             bench.come();
@@ -418,7 +419,7 @@ mod tests {
         assert_eq!(*bench.port.response(), VisionResponse::default());
         bench.say(&answer(4));
         bench.step();
-        // The answer to the last one stands there still when the next one is asked.
+        // The answer to the last request is still in the mailbox when the next request is made.
         bench.ask(5);
         bench.step();
         assert_eq!(bench.port.response().echo, 4);

@@ -24,13 +24,13 @@ crate::layout! {
         "of the system's parameters: 0 first, another for each picture that is taken again";
 }
 
-/// The bytes of a request. Its number is that of the mailbox.
+/// Encode a request. Its number is reduced to the range of the mailbox, 1 to 65535.
 #[must_use]
 pub fn encode(request: &VisionRequest) -> [u8; RequestLayout::BYTES] {
     RequestLayout::encode(request)
 }
 
-/// Read the bytes of a request.
+/// Decode a request.
 ///
 /// # Errors
 /// [`VisionError`] for the first wrong field.

@@ -18,8 +18,8 @@ use super::{
 
 /// The task data of a run: a view of the files and their indexes, as cheap to copy as a few pointers.
 ///
-/// It is built outside the tick (by `load::Store`), and nothing in it changes: blocks that are loaded while
-/// the robot runs make a new generation (docs/design/ownership.md "Reload").
+/// `load::Store` builds it outside the tick, and it does not change: blocks that are loaded while the robot runs
+/// make a new generation (docs/design/ownership.md "Reload").
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TaskData<'a> {
     /// POSE.
@@ -32,7 +32,7 @@ pub struct TaskData<'a> {
     pub arrays: &'a [Array],
     /// OWNER-ASCII-NAMES.
     pub owners: &'a [Owner],
-    /// Members of the owners, those of one owner together and in their order.
+    /// Members of the owners, grouped by owner, in the order of the forms.
     pub members: &'a [Member],
     /// TRAJ.
     pub trajectories: &'a [Traj],
@@ -66,7 +66,7 @@ pub struct TaskData<'a> {
     pub indexes: Indexes<'a>,
 }
 
-/// The index of each file, with its key, and its answer where it has one.
+/// The indexes of all files, each with its key, and its answer if it has one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Indexes<'a> {
     /// POSE by name.
@@ -114,7 +114,7 @@ impl<'a> TaskData<'a> {
         id.of(self.poses)
     }
 
-    /// The pose of a name.
+    /// The pose with a name.
     #[must_use]
     pub fn pose_named<const N: usize>(&self, name: &Name<N>) -> Option<PoseId> {
         self.indexes.poses.find(name_key(name)).map(PoseId::new)
@@ -126,7 +126,7 @@ impl<'a> TaskData<'a> {
         id.of(self.movetables).map(|record| &record.movetable)
     }
 
-    /// The movetable of a name; `...` is [`MovtabId::NULL`].
+    /// The movetable with a name; `...` is [`MovtabId::NULL`].
     #[must_use]
     pub fn movetable_named<const N: usize>(&self, name: &Name<N>) -> Option<MovtabId> {
         if name.as_str() == NULL_NAME {
@@ -147,7 +147,7 @@ impl<'a> TaskData<'a> {
         id.of(self.locpts)
     }
 
-    /// The location point of a name.
+    /// The location point with a name.
     #[must_use]
     pub fn locpt_named<const N: usize>(&self, name: &Name<N>) -> Option<LocptId> {
         self.indexes.locpts.find(name_key(name)).map(LocptId::new)
@@ -159,7 +159,7 @@ impl<'a> TaskData<'a> {
         id.of(self.arrays)
     }
 
-    /// The array of a name.
+    /// The array with a name.
     #[must_use]
     pub fn array_named<const N: usize>(&self, name: &Name<N>) -> Option<ArrayId> {
         self.indexes.arrays.find(name_key(name)).map(ArrayId::new)
@@ -171,7 +171,7 @@ impl<'a> TaskData<'a> {
         id.of(self.owners)
     }
 
-    /// The owner of a name.
+    /// The owner with a name.
     #[must_use]
     pub fn owner_named<const N: usize>(&self, name: &Name<N>) -> Option<OwnerId> {
         self.indexes.owners.find(name_key(name)).map(OwnerId::new)
@@ -183,7 +183,7 @@ impl<'a> TaskData<'a> {
         self.owner(id).and_then(|owner| run(self.members, owner.first, owner.count)).unwrap_or_default()
     }
 
-    /// The trajectory of a name.
+    /// The trajectory with a name.
     #[must_use]
     pub fn trajectory_named<const N: usize>(&self, name: &Name<N>) -> Option<TrajId> {
         self.indexes.trajectory_names.find(name_key(name)).map(TrajId::new)
@@ -201,7 +201,7 @@ impl<'a> TaskData<'a> {
         id.of(self.paths).and_then(|path| run(self.path_points, path.first, path.count)).unwrap_or_default()
     }
 
-    /// The object of a name (VII.7.1).
+    /// The object with a name (VII.7.1).
     #[must_use]
     pub fn object_named<const N: usize>(&self, name: &Name<N>) -> Option<ObjectId> {
         self.indexes.objects.find(name_key(name)).map(ObjectId::new)
@@ -238,21 +238,21 @@ impl<'a> TaskData<'a> {
         self.indexes.obj_grips.find(name_key(object)).map(ObjGripsId::new)
     }
 
-    /// How the Active Pedestal takes an object (VII.7.4).
+    /// The parameters with which the Active Pedestal grips an object (VII.7.4), with their record number.
     #[must_use]
     pub fn ped_para<const N: usize>(&self, object: &Name<N>) -> FoundPedPara<'a> {
         let id = PedParaId::new(self.indexes.ped_paras.find(name_key(object))?);
         Some((id, id.of(self.ped_paras)?))
     }
 
-    /// The sensor of a name (extension).
+    /// The sensor with a name (extension).
     #[must_use]
     pub fn sensor<const N: usize>(&self, name: &Name<N>) -> Option<&'a SensorPara> {
         SensorId::new(self.indexes.sensors.find(name_key(name))?).of(self.sensors)
     }
 }
 
-/// The name of the null movetable, and of no pose in an array location form (VII.2, VII.4).
+/// The name of the null movetable, and, in an array location form, for no pose (VII.2, VII.4).
 pub const NULL_NAME: &str = "...";
 
 /// `count` items from position `first`.

@@ -1,16 +1,17 @@
-//! Indexes: every look-up that is not by record number reads one pilot and one slot, however many records there are.
+//! Indexes: every look-up that is not by record number reads one pilot and one slot, for any number of records.
 //!
-//! A key is three integers: most often a name, and a grip and a location packed side by side. The name of the object is
-//! part of the key of all that belongs to it, so nothing has to be looked up first. The index is a perfect hash table,
-//! made once by the loader: a hash puts the key into one of many small buckets, the *pilot* of the bucket, one byte, is
-//! mixed into the hash, and the result is the slot. The loader has chosen the pilots so that no two keys share a slot,
-//! so there is nothing to search: the pilots of 100,000 keys (33 kB) stay in the processor's cache, and the rest needs
-//! one read of half a cache line. A slot holds the record number and, where look-ups need only one field of the record
-//! (the movetable of a grip, the path of an approach), also that field, so that the record itself need not be read.
+//! A key is three integers: usually a name, and a grip and a location packed into one integer. Keys of records that
+//! belong to an object contain the object's name, so that the object need not be looked up first. The index is a
+//! perfect hash table, which the loader builds once: a hash selects one of many small buckets, the *pilot* of the
+//! bucket, one byte, is mixed into the hash, and the result selects the slot. The loader chooses the pilots so that no
+//! two keys share a slot, and a look-up needs no search: the pilots of 100,000 keys (33 kB) stay in the processor's
+//! cache, and the slot is one read of half a cache line. A slot contains the record number and, where look-ups need
+//! only one field of the record (the movetable of a grip, the path of an approach), also that field, so that the record
+//! itself need not be read.
 //!
-//! An entry valid at a location is looked up at several in turn: the location point, the array on it, the owners, the
-//! wild card. Such entries of one name and grip are together in one slot of a [`PlaceIndex`]: one cache line shows
-//! which of the locations have an entry.
+//! An entry that is valid at a location is looked up at several in turn: the location point, the array on it, the
+//! owners, the wild card. All such entries of one name and grip are in one slot of a [`PlaceIndex`]: one cache line
+//! shows which of the locations have an entry.
 
 use rcs_core::name::Name;
 
@@ -23,8 +24,8 @@ use super::{
 /// The key of a look-up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key {
-    /// A name, or one or two references. Not one integer of 128 bits: that would be aligned to 16 bytes, and
-    /// a [`Slot`] would be as long as two.
+    /// A name, or one or two references. Two integers, because one of 128 bits would be aligned to 16 bytes and
+    /// double the size of a [`Slot`].
     pub(crate) main: [u64; 2],
     /// Grip, location or direction; 0 if there is none.
     pub(crate) rest: u64,
@@ -36,23 +37,24 @@ pub struct Key {
 pub struct Slot {
     /// The key.
     pub(crate) key: Key,
-    /// Record number of the first record that has it; 0 for a slot without a key.
+    /// Number of the first record with the key; 0 for a slot without a key.
     pub(crate) number: u32,
-    /// The field of the record that look-ups need; 0 if they use the record. For a key of several records: the position
-    /// from 1 in [`Index::numbers`].
+    /// The field of the record that look-ups need; 0 if they use the record. For a key of several records: the
+    /// position, from 1, in [`Index::numbers`].
     pub(crate) answer: u32,
 }
 
 const _: () = assert!(size_of::<Slot>() == 32);
 
-/// Keys in slots, and the record numbers of keys that several records have. Built by the loader.
+/// Keys in slots, and the record numbers of keys that several records share. The loader builds it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Index<'a> {
     /// The pilot of each bucket.
     pub(crate) pilots: &'a [u8],
     /// The slots, some of them empty.
     pub(crate) slots: &'a [Slot],
-    /// For each key that several records have: how many, then their numbers in the order in which they were entered.
+    /// For each key that several records share: their count, then their numbers, in the order in which they were
+    /// entered.
     pub(crate) numbers: &'a [u32],
     /// Seed of the hash.
     pub(crate) seed: u64,
@@ -66,12 +68,12 @@ fn product(a: u64, b: u64) -> (u64, u64) {
     (low(product >> 64), low(product))
 }
 
-/// The lower half.
+/// The lower 64 bits.
 fn low(value: u128) -> u64 {
     u64::try_from(value & u128::from(u64::MAX)).unwrap_or(0)
 }
 
-/// A number below `end`, from a number of all 64 bits.
+/// Scale a number from the range of 64 bits to the range below `end`.
 fn scaled(value: u64, end: usize) -> usize {
     usize::try_from(product(value, u64::try_from(end).unwrap_or(0)).0).unwrap_or(0)
 }
@@ -89,10 +91,10 @@ pub(crate) fn bucket_of(hash: u64, buckets: usize) -> usize {
     scaled(hash, buckets)
 }
 
-/// The slot of a hash whose bucket has the pilot.
+/// The slot of a hash in a bucket with this pilot.
 pub(crate) fn slot_of(hash: u64, pilot: u8, slots: usize) -> usize {
     let turned = hash ^ u64::from(pilot).wrapping_mul(0xA076_1D64_78BD_642F);
-    // The hashes of a bucket agree in their upper bits; the product brings the lower ones up.
+    // The hashes of a bucket have equal upper bits; the product moves the lower bits up.
     scaled(turned.wrapping_mul(0xE703_7ED1_A0B4_28DB), slots)
 }
 
@@ -108,20 +110,20 @@ impl<'a> Index<'a> {
         slot_at(self.pilots, self.slots, self.seed, key).filter(|slot| slot.key == key && slot.number > 0)
     }
 
-    /// The record number of a key; of the first, if several records have it.
+    /// The record number of a key; that of the first, if several records share it.
     #[must_use]
     pub fn find(&self, key: Key) -> Option<u32> {
         self.slot(key).map(|slot| slot.number)
     }
 
-    /// The answer for a key, in an index that has answers: see [`super::data::Indexes`].
+    /// The answer for a key, in an index with answers ([`super::data::Indexes`]).
     #[must_use]
     pub fn answer(&self, key: Key) -> Option<u32> {
         self.slot(key).map(|slot| slot.answer)
     }
 
-    /// The record numbers of all records with a key, in the order in which they were entered; for an index
-    /// without answers.
+    /// The numbers of all records with a key, in the order in which they were entered; only for an index without
+    /// answers.
     #[must_use]
     pub fn all(&self, key: Key) -> &'a [u32] {
         match self.slot(key) {
@@ -144,9 +146,9 @@ impl<'a> Index<'a> {
     }
 }
 
-/// Entries that a [`Group`] has room for.
+/// Greatest number of entries in a [`Group`].
 pub(crate) const ENTRIES: usize = 3;
-/// Instead of the number of entries: they do not fit, and are in [`PlaceIndex::crowded`].
+/// Count of a group whose entries do not fit: they are in [`PlaceIndex::crowded`].
 pub(crate) const CROWDED: u32 = u32::MAX;
 
 /// An entry that is valid at a location.
@@ -160,15 +162,15 @@ pub struct EntryAt {
     pub(crate) answer: u32,
 }
 
-/// The entries of a key at all its locations: a cache line.
+/// The entries of a key at all its locations, in one cache line.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub struct Group {
     /// The key without a location.
     pub(crate) key: Key,
-    /// The entries, in no order.
+    /// The entries, in no particular order.
     pub(crate) entries: [EntryAt; ENTRIES],
-    /// How many there are, or [`CROWDED`]. 0 for a group without a key.
+    /// Number of entries, or [`CROWDED`]; 0 for a group without a key.
     pub(crate) count: u32,
 }
 
@@ -187,14 +189,14 @@ impl Group {
     }
 }
 
-/// A reference in 32 bits, never 0; `None` for no reference, or a record number above those of a file.
+/// A reference packed into 32 bits, never 0; `None` for no reference, or a record number above those of a file.
 pub(crate) fn packed(at: Reference) -> Option<u32> {
     let kind = u32::from(at.kind.code());
     let known = kind > 0 && kind < 16 && at.number < 1 << 28 && (at.number > 0 || at.kind == RefType::Any);
     known.then_some((kind << 28) | at.number)
 }
 
-/// Entries valid at locations, by a key without the location. Built by the loader.
+/// Entries that are valid at locations, by a key without the location. The loader builds it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlaceIndex<'a> {
     /// The pilot of each bucket.
@@ -203,13 +205,13 @@ pub struct PlaceIndex<'a> {
     pub(crate) groups: &'a [Group],
     /// Seed of the hash.
     pub(crate) seed: u64,
-    /// The entries of keys with more of them than a group has room for, by key and location.
+    /// The entries of keys that have too many for a group, by key and location.
     pub(crate) crowded: Index<'a>,
 }
 
 impl<'a> PlaceIndex<'a> {
-    /// The entry for the first location that has one: of the `exact` ones in turn, of the `owners`, of the
-    /// wild card. The key may name any location.
+    /// The entry for the first location that has one: the `exact` ones in turn, the `owners`, the wild card. The
+    /// location in the key is ignored.
     pub(crate) fn first(
         &self,
         key: Key,
@@ -230,7 +232,7 @@ impl<'a> PlaceIndex<'a> {
                 return Some(*entry);
             }
         }
-        // Most entries name a location point or the wild card: then it is no matter who owns the point.
+        // Most entries name a location point or the wild card: then the owners of the point need not be read.
         if group.names(RefType::Owner)
             && let Some(entry) = owners.find_map(|at| group.entry(at))
         {
@@ -246,7 +248,7 @@ impl Index<'_> {
     }
 }
 
-/// The bits of [`Key::rest`] that are a location, in the keys of a [`PlaceIndex`].
+/// The bits of [`Key::rest`] that contain the location, in the keys of a [`PlaceIndex`].
 const PLACE_BITS: u64 = (1 << 40) - 1;
 
 impl Key {
@@ -268,15 +270,15 @@ impl Key {
     }
 }
 
-/// The record numbers of a key that several records have, from its position in [`Index::numbers`].
+/// The record numbers of a key that several records share, at a position in [`Index::numbers`].
 pub(crate) fn run_at(numbers: &[u32], position: u32) -> Option<&[u32]> {
     let position = usize::try_from(position).ok()?;
     let count = *numbers.get(position.checked_sub(1)?)?;
     numbers.get(position..)?.get(..usize::try_from(count).ok()?)
 }
 
-/// A name in 128 bits. The same text has the same bits in every width, so that a 16-character field of a
-/// command finds a 10-character name.
+/// A name packed into 128 bits. The bits of a text do not depend on the width of the name, so that a 16-character
+/// field of a command finds a 10-character name.
 fn name_bits<const N: usize>(name: &Name<N>) -> [u64; 2] {
     let mut bytes = [[0_u8; 8]; 2];
     for (slot, byte) in bytes.as_flattened_mut().iter_mut().zip(name.bytes()) {
@@ -285,12 +287,12 @@ fn name_bits<const N: usize>(name: &Name<N>) -> [u64; 2] {
     bytes.map(u64::from_be_bytes)
 }
 
-/// A reference in 40 bits.
+/// A reference packed into 40 bits.
 fn reference_bits(reference: Reference) -> u64 {
     (u64::from(reference.kind.code()) << 32) | u64::from(reference.number)
 }
 
-/// A grip number in 8 bits, of those that the forms allow.
+/// A grip number packed into 8 bits; `None` beyond -128 to 127.
 fn grip_bits(grip: i32) -> Option<u64> {
     Some(u64::from(i8::try_from(grip).ok()?.cast_unsigned()))
 }
@@ -301,13 +303,13 @@ pub fn name_key<const N: usize>(name: &Name<N>) -> Key {
     Key { main: name_bits(name), rest: 0 }
 }
 
-/// The key of a reference: members by type and number.
+/// The key of a reference, for members.
 #[must_use]
 pub fn reference_key(reference: Reference) -> Key {
     Key { main: [0, reference_bits(reference)], rest: 0 }
 }
 
-/// The key of a start and an end.
+/// The key of a start and an end, for trajectories.
 #[must_use]
 pub fn pair_key(start: Reference, end: Reference) -> Key {
     Key { main: [0, reference_bits(start)], rest: reference_bits(end) }
@@ -331,13 +333,13 @@ pub fn grip_at_key<const N: usize>(object: &Name<N>, grip: i32, at: Reference) -
     Some(Key { main: name_bits(object), rest: (grip_bits(grip)? << 40) | reference_bits(at) })
 }
 
-/// The key of a name at a location: views by object, relative moves by their own names.
+/// The key of a name at a location: the object's name for views, the name of a relative move.
 #[must_use]
 pub fn name_at_key<const N: usize>(name: &Name<N>, at: Reference) -> Key {
     Key { main: name_bits(name), rest: reference_bits(at) }
 }
 
-/// The key of an approach to an object, or to the view of one, or of a depart from it; `None` as with [`grip_key`].
+/// The key of an approach to an object or to its view, or of a depart from it; `None` as with [`grip_key`].
 #[must_use]
 pub fn approach_key<const N: usize>(
     direction: Direction,
@@ -351,7 +353,7 @@ pub fn approach_key<const N: usize>(
     Some(Key { rest: (from << 48) | key.rest, ..key })
 }
 
-/// The key of an approach to a location as such, or of a depart from it. It has no name of an object.
+/// The key of an approach to a location itself, or of a depart from it. It contains no name.
 #[must_use]
 pub fn plain_key(direction: Direction, at: Reference) -> Key {
     Key { main: [0; 2], rest: (u64::from(direction.code()) << 56) | reference_bits(at) }

@@ -42,9 +42,9 @@ pub struct Location {
     pub name: Name10,
     /// Place for the look-up of grips and trajectories.
     pub place: Place,
-    /// Sector from 1, if it is one.
+    /// Number of the sector, from 1; `None` if the location is not a sector.
     pub sector: Option<i32>,
-    /// Its frame. World, inches.
+    /// Frame of the location. World, inches.
     pub frame: Frame,
 }
 
@@ -79,7 +79,7 @@ pub enum LookupError {
     NoSectors {
         /// The location.
         location: Name16,
-        /// The sector asked for.
+        /// The sector that was requested.
         sector: i32,
     },
     /// The array has no such sector.
@@ -88,12 +88,12 @@ pub enum LookupError {
         location: Name16,
         /// The array.
         array: Name10,
-        /// The sector asked for, if one was.
+        /// The sector that was requested; `None` if none was.
         sector: Option<i32>,
         /// The last sector; the first is 1.
         last: i32,
     },
-    /// The owner only groups locations (UNIT).
+    /// The owner, such as UNIT, only groups locations.
     OwnerOnly {
         /// The owner.
         location: Name16,
@@ -142,7 +142,7 @@ impl fmt::Display for LookupError {
 
 impl core::error::Error for LookupError {}
 
-/// A name of any width in the width of an error.
+/// Convert a name of any width to the width of the errors.
 fn wide<const N: usize>(name: &Name<N>) -> Name16 {
     Name16::clipped(name.as_str())
 }
@@ -175,8 +175,8 @@ impl<'a> TaskData<'a> {
         Ok(Location { name: locpt.name, place, sector: None, frame: locpt.frame })
     }
 
-    /// The member that is assigned to the object: a sector of an array at the owner's location point, or a
-    /// location point.
+    /// The location at an owner's member to which the object is assigned: a sector of an array at the owner's location
+    /// point, or a location point.
     fn at_owner<const N: usize, const M: usize>(
         &self,
         owner: OwnerId,
@@ -215,14 +215,14 @@ impl<'a> TaskData<'a> {
         (first.kind == RefType::LocationPoint).then_some(LocptId::new(first.number))
     }
 
-    /// The array of an owner that has just one.
+    /// The array of an owner that has exactly one.
     fn only_array(&self, owner: OwnerId) -> Option<Reference> {
         let mut arrays = self.members_of(owner).iter().map(|m| m.member).filter(|m| m.kind == RefType::Array);
         let only = arrays.next()?;
         arrays.next().is_none().then_some(only)
     }
 
-    /// The member of an owner that an object location form assigns to an object (VII.7.3).
+    /// The member of an owner to which an object location form assigns an object (VII.7.3).
     fn assigned_member<const M: usize>(
         &self,
         owner: OwnerId,
@@ -235,7 +235,8 @@ impl<'a> TaskData<'a> {
             .ok_or(LookupError::NotAssigned { object: wide(object), location })
     }
 
-    /// What the object location forms assign to an object, in their order (VII.7.3).
+    /// The arrays and location points to which an object is assigned, in the order of the object location forms
+    /// (VII.7.3).
     pub fn object_locations(&self, object: ObjectId) -> impl Iterator<Item = Reference> + use<'a> {
         let file = self.obj_locs;
         self.indexes
@@ -272,8 +273,8 @@ impl<'a> TaskData<'a> {
         })
     }
 
-    /// The frame of a sector: the base, the offset of the first sector, then the column step and the row step
-    /// as often as needed. `None` if the array has no such sector.
+    /// The frame of a sector: the base with the offset of the first sector, then one column step for each column and
+    /// one row step for each row before it. `None` if the array has no such sector.
     #[must_use]
     pub fn sector_frame(&self, array: &Array, base: &Frame, sector: i32) -> Option<Frame> {
         if sector < 1 || sector > array.sectors() {
@@ -324,17 +325,17 @@ impl<'a> TaskData<'a> {
         Self::exact(place).into_iter().filter(|r| r.number != 0).chain(self.owners(place))
     }
 
-    /// The location point of a place, and the array on it; of number 0 if there is none.
+    /// The location point of a place, and the array on it, with number 0 if there is none.
     pub(super) const fn exact(place: &Place) -> [Reference; 2] {
         [Reference::location_point(place.locpt), Reference::array(place.array)]
     }
 
-    /// The owners of a place: of its location point, of the pose of that, or of a static array.
+    /// The owners of a place: of its location point, of the pose of the location point, or of a static array.
     pub(super) fn owners(&self, place: &Place) -> impl Iterator<Item = Reference> + Clone + use<'a> {
         let (data, place) = (*self, *place);
-        // An array on a tray does not bring in the other trays that are divided in the same way.
+        // The owners of an array on a tray are left out: they include other trays that are divided in the same way.
         let array = if place.locpt.is_null() { place.array } else { ArrayId::NULL };
-        // The location point is read only if the other owners do not do.
+        // The record of the location point is read only if the other owners have no entry.
         (0..3)
             .map(move |step| match step {
                 0 => Reference::location_point(place.locpt),

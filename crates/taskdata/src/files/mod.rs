@@ -2,7 +2,7 @@
 //!
 //! A file is a slice of records; a record number counts from 1, and 0 is the null pointer of the manual's `…-^`
 //! variables. The files have perfect hash tables ([`index::Index`], [`index::PlaceIndex`]), so that a look-up by name,
-//! or by object, grip and location, reads one or two cache lines, however many records there are.
+//! or by object, grip and location, reads one or two cache lines, for any number of records.
 //!
 //! * [`ids`], [`records`], [`index`]: numbers, records, indexes;
 //! * [`data`]: [`TaskData`], by number and by name;

@@ -1,8 +1,8 @@
 //! Grips, views, approaches, departs and trajectories at a place (VII.6, VII.7).
 //!
-//! One rule holds for all: the entry for the exact location point wins, then the one for the array on it, then the one
-//! for an owner, then the wild card `$$$` (VII.7.5). A trajectory needs an entry for both of its ends and has no wild
-//! card; it is used only in its direction, from start to end.
+//! One rule applies to all: the entry for the exact location point has priority, then the one for the array on it, then
+//! the one for an owner, then the wild card `$$$` (VII.7.5). A trajectory needs an entry for both of its ends and has
+//! no wild card; it is used only in its direction, from start to end.
 
 use geometry::frame::Frame;
 use rcs_core::name::{Name, Name16};
@@ -17,7 +17,7 @@ use super::{
 };
 
 impl<'a> TaskData<'a> {
-    /// The entry for the first of the aliases of a place, then `$$$`, that has one.
+    /// The entry for the first alias of a place that has one, or for `$$$`.
     fn at_place(&self, index: &PlaceIndex<'a>, key: Key, place: &Place) -> Option<EntryAt> {
         index.first(key, Self::exact(place), self.owners(place))
     }
@@ -104,13 +104,13 @@ impl<'a> TaskData<'a> {
         self.appr_dept(Direction::Depart, RefType::View, object, grip, place)
     }
 
-    /// The approach to a location as such (VII.7.7, types `lpt`, `arr`, `own`).
+    /// The approach to a location itself (VII.7.7, types `lpt`, `arr`, `own`).
     #[must_use]
     pub fn approach_location(&self, place: &Place) -> Option<PathId> {
         self.plain(Direction::Approach, place)
     }
 
-    /// The depart from a location as such.
+    /// The depart from a location itself.
     #[must_use]
     pub fn depart_location(&self, place: &Place) -> Option<PathId> {
         self.plain(Direction::Depart, place)
@@ -141,14 +141,14 @@ impl<'a> TaskData<'a> {
         RelativeMoveId::new(entry.number).of(self.relative_moves)
     }
 
-    /// The intermediate trajectory from one place to another (VII.6): exact names first, then through the owner of the
-    /// end, of the start, of both.
+    /// The path of the intermediate trajectory from one place to another (VII.6): entries for the exact names have
+    /// priority, then those for the owner of the end, of the start, of both.
     #[must_use]
     pub fn trajectory(&self, from: &Place, to: &Place) -> Option<PathId> {
         self.between(from, to, |key| self.indexes.trajectories.answer(key)).map(PathId::new)
     }
 
-    /// The record number of that trajectory.
+    /// The record number of the intermediate trajectory from one place to another.
     #[must_use]
     pub fn trajectory_id(&self, from: &Place, to: &Place) -> Option<TrajId> {
         self.between(from, to, |key| self.indexes.trajectories.find(key)).map(TrajId::new)
@@ -172,7 +172,7 @@ impl<'a> TaskData<'a> {
         }
     }
 
-    /// Name of an object for a message; empty if there is none.
+    /// Name of an object for messages; empty if there is none.
     #[must_use]
     pub fn object_name(&self, id: ObjectId) -> Name16 {
         self.object_record(id).map_or(Name16::EMPTY, |record| record.name)

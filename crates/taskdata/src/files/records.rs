@@ -20,7 +20,7 @@ pub struct PoseRecord {
     pub pose: Pose,
     /// Movetable that corrects the pose, null for `...`.
     pub movetable: MovtabId,
-    /// Effective frame: the points made square (X kept), the movetable applied. World, inches.
+    /// Effective frame: from the points, made square (X kept), with the movetable applied. World, inches.
     pub frame: Frame,
 }
 
@@ -29,7 +29,7 @@ pub struct PoseRecord {
 pub struct MovtabRecord {
     /// Name of the movetable.
     pub name: Name10,
-    /// Its lines.
+    /// Lines of the movetable.
     pub movetable: Movetable,
 }
 
@@ -152,7 +152,7 @@ pub struct PathPoint {
 pub struct Path {
     /// Position from 0 of its first point.
     pub first: u32,
-    /// Number of points; an empty path goes nowhere on its way.
+    /// Number of points; an empty path has no intermediate points.
     pub count: u32,
 }
 
@@ -191,12 +191,12 @@ pub struct ObjGrips {
     pub tray_grip: i32,
 }
 
-/// The object location form (VII.7.3): where at an owner the object lies.
+/// The object location form (VII.7.3): the array or location point at an owner to which an object is assigned.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ObjLoc {
     /// The object.
     pub object: ObjectId,
-    /// Array or location point assigned to it.
+    /// Array or location point to which it is assigned.
     pub assigned: Reference,
 }
 
@@ -245,7 +245,7 @@ pub struct VisionPara {
     pub at: Reference,
     /// `vu-offset`: movetable from the location to the place where the first picture is taken.
     pub movetable: MovtabId,
-    /// `mov-ref`: to what the movetable is applied, location point, array or object.
+    /// `mov-ref`: type of the frame to which the movetable is applied: location point, array or object.
     pub offset_from: RefType,
     /// Expected range from image plane to object, mm.
     pub range: i32,
@@ -267,19 +267,20 @@ pub enum Direction {
 /// An approach or depart trajectory (VII.7.7).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ApprDept {
-    /// Which of the two.
+    /// Approach or depart.
     pub direction: Direction,
     /// Object, view of an object, or a plain location point, array, owner or `$$$`.
     pub subject: Reference,
     /// Grip number; 0 for a plain location.
     pub grip: i32,
-    /// Where it applies: location point, array, owner or `$$$`; the subject again for a plain location.
+    /// Where it applies: location point, array, owner or `$$$`; the same as the subject for a plain location.
     pub at: Reference,
     /// Its points.
     pub path: PathId,
 }
 
-/// What a guarded move watches (III.3.4, III.3.6, III.3.8). The words are ours: the manual has no form for sensors.
+/// The signal that a guarded move watches (III.3.4, III.3.6, III.3.8). The manual has no form for sensors; the words
+/// are of this project.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SensorSource {
     /// Force along the tool's X.
@@ -312,12 +313,12 @@ impl SensorSource {
 pub struct SensorPara {
     /// Name of the sensor.
     pub name: Name10,
-    /// What is watched.
+    /// The signal that is watched.
     pub source: SensorSource,
-    /// Which holster, 1 right, 2 left, 3 centre; which beam, 1 to 8, 0 for any; 0 for forces.
+    /// Holster: 1 right, 2 left, 3 centre. Beam: 1 to 8, 0 for any. Forces: 0.
     pub which: i32,
-    /// Forces only: the condition holds at this value or beyond it, away from 0; lb or in lb on the tool,
-    /// sign included.
+    /// Forces only: the condition is true at this value and beyond it, away from 0; signed, lb or in lb on the
+    /// tool.
     pub threshold: i32,
 }
 

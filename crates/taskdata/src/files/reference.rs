@@ -4,8 +4,8 @@ use rcs_core::Plain;
 
 use super::ids::{ArrayId, LocptId, ObjectId, OwnerId, PoseId};
 
-/// What a name in a form refers to: the words of the "type" columns (VII.4 to VII.7). The manual passes them as
-/// integers (`locpt-type`, `pose-type`) and gives no values; these codes are ASSUMED.
+/// The kind of record to which a name in a form refers: the words of the "type" columns (VII.4 to VII.7). The manual
+/// passes them as integers (`locpt-type`, `pose-type`) without giving values; these codes are ASSUMED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum RefType {
     /// Nothing.
@@ -37,10 +37,10 @@ pub enum RefType {
     Any,
 }
 
-/// A type and a name of a form, resolved: the record `number` of the file that `kind` means.
+/// A resolved type and name of a form: the record `number` of the file of `kind`.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Reference {
-    /// Which file.
+    /// The kind, which gives the file.
     pub kind: RefType,
     /// Record number in it; 0 for [`RefType::Any`] and [`RefType::None`].
     pub number: u32,

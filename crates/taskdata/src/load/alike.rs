@@ -1,4 +1,4 @@
-//! Objects that differ only in their vision ids: probably one of them was copied and not finished.
+//! Finds objects that differ only in their vision ids: one of them is probably an unfinished copy of the other.
 
 use std::collections::HashMap;
 
@@ -21,7 +21,7 @@ const fn bits(reference: Reference) -> (u8, u32) {
 /// Each object that equals an earlier one except for its vision ids, after that one.
 #[must_use]
 pub fn alike(data: &TaskData<'_>) -> Vec<[ObjectId; 2]> {
-    // Only what the camera looks for can differ in its ids; the others are not described at all.
+    // Only objects with views have vision ids; the others need not be compared.
     let mut ids: HashMap<ObjectId, Vec<i32>> = HashMap::new();
     for view in data.visions {
         ids.entry(view.object).or_default().push(view.id);

@@ -1,8 +1,8 @@
-//! The entries of a load, form by form, in the order in which they were entered.
+//! The entries of a load, by form, in the order in which they were entered.
 //!
-//! The order decides the record numbers: each entry becomes the record whose number is its position here. So in the
-//! next generation of the data newer entries take the positions of those that they replace, and the others are appended
-//! (docs/design/ownership.md "Reload"): existing records keep their numbers.
+//! The position of an entry gives its record number. So in the next generation of the data newer entries take the
+//! positions of those that they replace, and the others are appended (docs/design/ownership.md "Reload"): existing
+//! records keep their numbers.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -60,11 +60,12 @@ impl Collected {
         }
     }
 
-    /// These entries with `newer` ones in the places of those with the same key, and the rest of the newer ones behind
-    /// them. Nothing is removed, except locations of an object: newer object location entries replace all earlier ones
-    /// of the object, because an object that has moved to other trays is no longer in the old ones.
+    /// These entries, those with the key of a `newer` one replaced by it, and the other newer ones appended. Nothing is
+    /// removed, except locations of an object: newer object location entries replace all earlier ones of the object,
+    /// because an object that has moved to other trays is no longer in the old ones.
     ///
-    /// A key that `newer` holds twice replaces an entry once; the second stays, so that linking finds the duplicate.
+    /// If `newer` has a key twice, the first replaces the entry, and the second is appended, so that linking finds the
+    /// duplicate.
     pub fn with(&self, newer: Self) -> Self {
         let mut all = self.clone();
         replace(&mut all.files, newer.files, |e| e.file);
@@ -97,7 +98,7 @@ const fn typed(typed: &Typed) -> (u8, rcs_core::name::Name16) {
     (typed.kind.code(), typed.name.name)
 }
 
-/// Put each newer entry into the place of the one with its key, or at the end.
+/// Put each newer entry in the place of the entry with the same key, or at the end.
 fn replace<T, K: Eq + Hash>(entries: &mut Vec<T>, newer: Vec<T>, key: impl Fn(&T) -> K) {
     if newer.is_empty() {
         return;

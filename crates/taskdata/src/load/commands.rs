@@ -29,25 +29,25 @@ struct Lines {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Commands(BTreeMap<u32, Lines>);
 
-/// Why there is no command in lines of a block.
+/// Why LINE-LOAD finds no command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LineLoadError {
     /// There is no such block.
     NoBlock {
-        /// Its number.
+        /// Number of the block.
         number: u32,
-        /// The blocks that there are.
+        /// Numbers of the existing blocks.
         known: Vec<u32>,
     },
     /// The block does not have these lines.
     Lines(usize, usize),
-    /// They contain no command, or more than one.
+    /// The lines contain no command, or more than one.
     Count {
-        /// The block.
+        /// Number of the block.
         number: u32,
-        /// The lines.
+        /// First and last line.
         lines: (usize, usize),
-        /// How many commands they hold.
+        /// Number of commands in them.
         found: usize,
     },
     /// The line is not a command.
@@ -78,7 +78,7 @@ impl fmt::Display for LineLoadError {
 impl std::error::Error for LineLoadError {}
 
 impl Commands {
-    /// Take a block; the second of a number is a mistake.
+    /// Add a block; a second block with the same number is an error.
     pub(super) fn add(&mut self, block: &Block<'_>, problems: &mut Problems) {
         match self.0.entry(block.number.number) {
             Entry::Occupied(first) => {
@@ -97,7 +97,7 @@ impl Commands {
         self.0.keys().map(|number| BlockNumber { offset: OFFSET, number: *number })
     }
 
-    /// These blocks, and newer ones in their place.
+    /// These blocks and newer ones, which replace those with the same numbers.
     pub(super) fn with(&self, newer: Self) -> Self {
         let mut all = self.0.clone();
         all.extend(newer.0);

@@ -2,8 +2,8 @@
 //! 9 and 10).
 //!
 //! The boot loads blocks 905 and 906 at offset 21000 (system data) and block 0 at offset 20000 (objects); these name
-//! further blocks with `n load` or `offset n OLOAD`, and so on. An area without such a root has no directory, and all its
-//! blocks are loaded in the order in which they stand. Those at offset 16000 hold commands ([`commands`]).
+//! further blocks with `n load` or `offset n OLOAD`, and so on. An area without such a root has no directory, and all
+//! its blocks are loaded in their order in the files. Blocks at offset 16000 contain commands ([`commands`]).
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -28,7 +28,7 @@ const ROOTS: [BlockNumber; 3] = [
     BlockNumber { offset: 20_000, number: 0 },
 ];
 
-/// Blocks that one processor reads at a time.
+/// Number of blocks that one processor reads at a time.
 const BLOCKS_AT_A_TIME: usize = 256;
 
 /// Content of the loaded blocks.
@@ -46,7 +46,7 @@ pub(super) struct Read {
     pub commands: Commands,
 }
 
-/// Read the blocks that are to be loaded of all sources from position `first` on; `known` are those that were loaded before.
+/// Read the blocks to load from all sources from position `first` on; `known` are the blocks loaded before.
 pub(super) fn read(
     sources: &[Source],
     first: usize,
@@ -62,7 +62,7 @@ pub(super) fn read(
         for (at, fault) in faults {
             note(fault, at, problems);
         }
-        // A reload may have nothing in it.
+        // The file of a reload may be empty.
         if found.is_empty() && first == 0 {
             let at = At { source: u32::try_from(first + source).unwrap_or(u32::MAX), ..At::default() };
             let help = "a block begins with a header like `BLOCK# 619 OFFSET 21000`; give the file another name if it holds none";
@@ -156,7 +156,7 @@ fn contents(blocks: &[Block<'_>]) -> impl Iterator<Item = Content> + use<> {
         let open = problems.has_errors();
         let mut parsed = parse(&words, block.number, block.header, &mut problems);
         if open {
-            // What the comment hides is no entry; that is told already.
+            // Words in the open comment make no entries; the comment is reported already.
             let hidden = block.lines.iter().flat_map(|line| line.text.split_whitespace());
             parsed.broken.extend(hidden.map(str::to_owned));
         }
@@ -169,7 +169,7 @@ fn contents(blocks: &[Block<'_>]) -> impl Iterator<Item = Content> + use<> {
 }
 
 struct Loader<'b, 'p> {
-    /// The blocks; those that were loaded are empty.
+    /// The blocks; the contents of loaded blocks have been taken out.
     all: FxHashMap<BlockNumber, Content>,
     known: &'b BTreeSet<BlockNumber>,
     read: Read,
@@ -181,8 +181,8 @@ impl Loader<'_, '_> {
         let roots: Vec<BlockNumber> = ROOTS.into_iter().filter(|root| self.all.contains_key(root)).collect();
         let directed: BTreeSet<u32> = roots.iter().map(|root| root.offset).collect();
         let undirected = order.iter().copied().filter(|block| !directed.contains(&block.offset));
-        // A stack of blocks still to be loaded, the next on top: a block is read where it is named, as FORTH does, but without
-        // recursion, and a directory that names itself ends.
+        // A stack of blocks to load, the next one on top: a block is read where it is named, as in FORTH, but without
+        // recursion, and a directory that names itself causes no endless loop.
         let mut open: Vec<(BlockNumber, Option<At>)> =
             roots.into_iter().chain(undirected).map(|b| (b, None)).collect();
         open.reverse();
@@ -192,7 +192,7 @@ impl Loader<'_, '_> {
         }
     }
 
-    /// Load a block, unless it was; gives the blocks that it names.
+    /// Load a block, unless it is loaded already; returns the lines that name further blocks.
     fn load(&mut self, number: BlockNumber, named: Option<At>) -> Vec<LoadLine> {
         let Some(block) = self.all.get_mut(&number) else {
             let line = named.filter(|_| !self.known.contains(&number));

@@ -11,11 +11,11 @@ use crate::files::{Direction, RefType, SensorSource, TrajPara};
 pub struct Named<const N: usize> {
     /// The name.
     pub name: Name<N>,
-    /// Where.
+    /// Place of the name.
     pub at: At,
 }
 
-/// The type and name of something, from the "type" and "name" columns of a form.
+/// A type and a name, from the "type" and "name" columns of a form.
 #[derive(Clone, Copy, Debug)]
 pub struct Typed {
     /// The type.
@@ -31,16 +31,16 @@ pub struct PointEntry {
     pub para: TrajPara,
     /// The point; `None` for `stop`.
     pub target: Option<Typed>,
-    /// The whole line.
+    /// Place of the whole line.
     pub at: At,
 }
 
 /// `-pose-` (VII.1).
 #[derive(Clone, Debug)]
 pub struct PoseEntry {
-    /// Wrist, tool and finger point.
+    /// Wrist, tool and finger point: X, Y, Z, 0.01 in.
     pub points: [[i32; 3]; 3],
-    /// The nine numbers.
+    /// Place of the nine numbers.
     pub at: At,
     /// Movetable.
     pub movetable: Named<10>,
@@ -73,7 +73,7 @@ pub struct PointAt {
 pub struct ArrayEntry {
     /// Name.
     pub name: Named<10>,
-    /// 1 or 2.
+    /// Number of dimensions, 1 or 2.
     pub dimensions: i32,
     /// Elements in the first dimension.
     pub columns: i32,
@@ -116,13 +116,13 @@ pub struct ObjectEntry {
     pub name: Named<16>,
     /// Grip number.
     pub grip: i32,
-    /// Name and grip number, to underline.
+    /// Place of name and grip number, to underline.
     pub at: At,
     /// Approach, grasp, force and depart, as in the form.
     pub values: [i32; 4],
 }
 
-/// A record that is filled in Show mode, `:S … <= … :R >FILE` (VII.7.2, VII.7.4).
+/// A record entered in Show mode, `:S … <= … :R >FILE` (VII.7.2, VII.7.4).
 #[derive(Clone, Debug)]
 pub struct ShowEntry<const N: usize> {
     /// The object.
@@ -166,7 +166,7 @@ pub struct ViewEntry {
     pub place: Typed,
     /// Offset of the view.
     pub movetable: Named<10>,
-    /// To what it is applied.
+    /// Type of the frame to which the movetable is applied.
     pub offset_from: RefType,
     /// Expected range, mm.
     pub range: i32,
@@ -177,17 +177,17 @@ pub struct ViewEntry {
 /// `-appr` or `-dept` (VII.7.7).
 #[derive(Clone, Debug)]
 pub struct ApprDeptEntry {
-    /// Which of the two.
+    /// Approach or depart.
     pub direction: Direction,
     /// Object, view of an object, or location.
     pub subject: Typed,
     /// Grip number, 0 for a location.
     pub grip: i32,
-    /// Where; `None` for a location, which is its own place.
+    /// Location of the object; `None` if the subject is itself a location.
     pub place: Option<Typed>,
     /// Points.
     pub points: Vec<PointEntry>,
-    /// The compiling word.
+    /// Place from the compiling word to the location.
     pub at: At,
 }
 
@@ -196,11 +196,11 @@ pub struct ApprDeptEntry {
 pub struct SensorEntry {
     /// Name.
     pub name: Named<10>,
-    /// What is watched.
+    /// The signal that is watched.
     pub source: SensorSource,
-    /// Which holster or beam.
+    /// Number of the holster or beam.
     pub which: i32,
-    /// Threshold of a force or moment.
+    /// Threshold of a force or moment, lb or in lb.
     pub threshold: i32,
 }
 
@@ -209,26 +209,26 @@ pub struct SensorEntry {
 pub struct RelativeEntry {
     /// Name that a command looks for.
     pub name: Named<10>,
-    /// Where it applies.
+    /// Location at which it applies.
     pub place: Typed,
     /// Parameters.
     pub para: TrajPara,
-    /// Where it leads.
+    /// Movetable that gives the goal.
     pub movetable: Named<10>,
     /// Sensor of a guarded move.
     pub sensor: Option<Named<10>>,
-    /// The whole entry.
+    /// Place of the whole entry.
     pub at: At,
 }
 
-/// `-file-` (extension): how many records a file may have.
+/// `-file-` (extension): the greatest number of records in a file.
 #[derive(Clone, Debug)]
 pub struct FileEntry {
     /// The file, one of [`super::store::FILE_NAMES`].
     pub file: &'static str,
-    /// Records that it may have.
+    /// Greatest number of records.
     pub records: usize,
-    /// The declaration.
+    /// Place of the declaration.
     pub at: At,
 }
 
@@ -276,6 +276,6 @@ pub enum Entry {
 pub struct LoadLine {
     /// The block.
     pub block: BlockNumber,
-    /// Where it is named.
+    /// Place of the line.
     pub at: At,
 }

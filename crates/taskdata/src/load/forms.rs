@@ -1,6 +1,6 @@
 //! The forms of chapter VII, one function each, in the order of the chapter.
 //!
-//! The ranges are ASSUMED where the manual gives none (SPECNOTES); they are wide enough for every figure.
+//! Ranges that the manual does not give are ASSUMED (SPECNOTES); they are wide enough for every figure.
 
 use std::ops::RangeInclusive;
 
@@ -19,23 +19,23 @@ use super::{
     store::{FILE_NAMES, FILE_RECORDS},
 };
 
-/// A coordinate or a translation: twice the reach of the arm, 0.01 in.
+/// Range of a coordinate or a translation, 0.01 in: twice the reach of the arm.
 const COORDINATE: RangeInclusive<i32> = -20_000..=20_000;
-/// A rotation, 0.01 degree.
+/// Range of a rotation, 0.01 degree.
 const ANGLE: RangeInclusive<i32> = -18_000..=18_000;
-/// A grip number.
+/// Range of a grip number.
 pub(super) const GRIP: RangeInclusive<i32> = -99..=99;
-/// An opening of a gripper: the parts gripper opens to 5.00 in.
+/// Range of the opening of a gripper, 0.01 in: the parts gripper opens to 5.00 in.
 pub(super) const OPENING: RangeInclusive<i32> = 0..=500;
-/// A grasp force, lb.
+/// Range of a grasp force, lb.
 pub(super) const FORCE: RangeInclusive<i32> = 0..=200;
-/// Elements of a dimension of an array.
+/// Range of the number of elements in a dimension of an array.
 const ELEMENTS: RangeInclusive<i32> = 1..=100;
-/// `vel-max`: 140 counts are the 14 in/s of the link (A 2.3).
+/// Range of `vel-max`: 140 counts are the 14 in/s of the link (A 2.3).
 const VELOCITY: RangeInclusive<i32> = 1..=140;
-/// `acc-fac` and `smooth-acc`.
+/// Range of `acc-fac` and `smooth-acc`.
 const FACTOR: RangeInclusive<i32> = 1..=1000;
-/// `brk-dst`, 0.01 in.
+/// Range of `brk-dst`, 0.01 in.
 const BREAK_DISTANCE: RangeInclusive<i32> = 0..=5000;
 
 /// Types of the locations at which an entry can apply.
@@ -49,7 +49,7 @@ const SUBJECTS: &[RefType] =
     &[RefType::Object, RefType::View, RefType::LocationPoint, RefType::Array, RefType::Owner, RefType::Any];
 
 /// `-file- name records`: the declaration of a file (VII, blocks 100-199). The manual describes the purpose of
-/// declarations but prints none; the form is of this project.
+/// declarations but prints none; this form is an extension.
 pub fn file(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let word = p.peek();
     let Some((word, file)) = word.and_then(|w| Some((w, *FILE_NAMES.iter().find(|f| **f == w.text)?))) else {
@@ -154,7 +154,7 @@ fn movetable_line(p: &mut Parser<'_, '_>) -> Result<MovetableLine, Skip> {
     for (value, name) in values.iter_mut().zip(names) {
         *value = p.integer(name, range.clone())?;
     }
-    // The columns that a rotation does not use hold zeros.
+    // The columns that a rotation does not use contain zeros.
     for _ in names.len()..values.len() {
         if p.peek().is_some_and(|w| is_integer(w.text)) {
             p.integer(format_args!("unused column of {system}"), 0..=0)?;
@@ -172,12 +172,12 @@ pub fn point_at(p: &mut Parser<'_, '_>, what: &str) -> Result<PointAt, Skip> {
     })
 }
 
-/// `-arr-` (VII.4): the second dimension is left out if there is none (Figure VII.5, TL-SECTORS).
+/// `-arr-` (VII.4): an array of one dimension leaves out the fields of the second (Figure VII.5, TL-SECTORS).
 pub fn array(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let name = p.name("name of the array")?;
     let word = p.peek();
     let dimensions = p.integer("number of dimensions", 1..=2)?;
-    // With another number it is not known what the rest should be.
+    // With a wrong number of dimensions the meaning of the rest is not known.
     if word.is_some_and(|word| word.text.parse() != Ok(dimensions)) {
         return Err(Skip);
     }

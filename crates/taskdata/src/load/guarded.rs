@@ -1,7 +1,7 @@
 //! Forms that the manual does not have: sensors of guarded moves, and the relative moves of holsters and tool drum.
 //!
-//! The manual keeps both in code (V.1.1, V.3.1); here they are data like everything else that depends on the cell. The
-//! forms are written in the manual's manner:
+//! In the manual both are code (V.1.1, V.3.1); here they are data, like everything that depends on the cell. The forms
+//! have the style of the manual:
 //!
 //! ```text
 //! ( -sen-  "sensor"   source  which  threshold )
@@ -28,7 +28,7 @@ use super::{
 pub enum Beginning {
     /// From the pose of the command's location.
     Location,
-    /// From where another relative move of the same command ended.
+    /// From the end of another relative move of the same command.
     After(&'static str),
 }
 
@@ -39,7 +39,7 @@ pub struct KnownMove {
     pub name: &'static str,
     /// Its start.
     pub from: Beginning,
-    /// A sensor guards it (GO-UNTIL, GO-WHILE).
+    /// True if a sensor guards it (GO-UNTIL, GO-WHILE).
     pub guarded: bool,
 }
 
@@ -68,15 +68,15 @@ pub const RELATIVE_MOVES: &[KnownMove] = &[
     known("REM-OUT", Beginning::Location, true),
 ];
 
-/// The relative move of a name that a command looks for.
+/// The relative move with a name, if a command looks for it.
 #[must_use]
 pub fn relative_move_named(name: &str) -> Option<&'static KnownMove> {
     RELATIVE_MOVES.iter().find(|known| known.name == name)
 }
 
-/// A threshold, lb or in lb: well above the force of the tool gripper.
+/// Range of a threshold, lb or in lb: well above the force of the tool gripper.
 const THRESHOLD: RangeInclusive<i32> = -1000..=1000;
-/// The holsters right, left and centre.
+/// Numbers of the holsters: right, left and centre.
 const HOLSTER: RangeInclusive<i32> = 1..=3;
 /// One of the eight beams, or 0 for any (III.3.4).
 const BEAM: RangeInclusive<i32> = 0..=8;

@@ -1,17 +1,17 @@
 //! Building of the indexes of the files; [`crate::files::index`] describes the search.
 //!
-//! The keys are put into buckets of three or so. The buckets get their pilots the fullest first, while most slots are
-//! free: the first pilot out of 256 that sends all keys of the bucket into free slots. If none does, which for 100,000
-//! keys happens less than once in a million times, the build starts again with another seed.
+//! The keys are put into buckets of about three. Each bucket gets a pilot, the fullest bucket first, while most slots
+//! are free: the first of 256 pilots that maps all keys of the bucket to free slots. If there is none, which for
+//! 100,000 keys happens less than once in a million times, the build starts again with another seed.
 
 use crate::files::{
     Index,
     index::{CROWDED, ENTRIES, EntryAt, Group, Key, PlaceIndex, Slot, bucket_of, hash_of, run_at, slot_of},
 };
 
-/// Keys in a bucket, on average.
+/// Average number of keys in a bucket.
 const KEYS_A_BUCKET: usize = 3;
-/// Keys that a bucket has at the most; more are spread anew.
+/// Greatest number of keys in a bucket; with more, the build starts again with another seed.
 const FULLEST: usize = 32;
 
 /// A key of a record. Records may share a key.
@@ -26,10 +26,10 @@ pub(super) struct Pair {
 
 /// The slots of a table.
 trait Cells: Default {
-    /// So many empty slots.
+    /// A table of `slots` empty slots.
     fn empty(slots: usize) -> Self;
 
-    /// The key by which a pair finds its slot.
+    /// The key that determines the slot of a pair.
     fn key(pair: &Pair) -> Key {
         pair.key
     }
@@ -38,7 +38,7 @@ trait Cells: Default {
     fn put<'p>(&mut self, slot: usize, pairs: impl Iterator<Item = &'p Pair> + Clone);
 }
 
-/// Cells that are found by the pilot of the bucket of a key.
+/// Cells, each found with the pilot of the bucket of its key.
 #[derive(Clone, Debug, Default)]
 struct Table<C> {
     pilots: Vec<u8>,
@@ -50,7 +50,7 @@ struct Table<C> {
 #[derive(Clone, Copy, Debug, Default)]
 struct Spread {
     hash: u64,
-    /// Position from 0 of its pair.
+    /// Position of its pair, from 0.
     pair: u32,
 }
 
@@ -60,12 +60,12 @@ impl<C: Cells> Table<C> {
         if pairs.is_empty() {
             return Self::default();
         }
-        // A quarter of the slots stays free: fewer would cost time here, more would cost cache.
+        // One fifth of the slots stays free: fewer would cost time here, more would cost cache.
         let slots = pairs.len() + pairs.len() / 4 + 1;
         (0..).find_map(|seed| Self::placed(pairs, slots, seed)).unwrap_or_default()
     }
 
-    /// The table with this seed; `None` if a bucket finds no pilot.
+    /// The table with this seed; `None` if there is no pilot for a bucket.
     fn placed(pairs: &[Pair], slots: usize, seed: u64) -> Option<Self> {
         let buckets = pairs.len() / KEYS_A_BUCKET + 1;
         let hashes: Vec<u64> = pairs.iter().map(|pair| hash_of(C::key(pair), seed)).collect();
@@ -75,14 +75,14 @@ impl<C: Cells> Table<C> {
         for &bucket in &fullest_first(&begins) {
             let range = begins.get(long(bucket)..)?;
             let keys = spread.get_mut(long(*range.first()?)..long(*range.get(1)?))?;
-            // Equal keys come together, in the order of their records.
+            // Equal keys become neighbours, in the order of their records.
             keys.sort_by_key(|key| key.hash);
             *table.pilots.get_mut(long(bucket))? = table.place(pairs, keys, &mut taken)?;
         }
         Some(table)
     }
 
-    /// Put the keys of a bucket into slots; gives its pilot. Equal keys stand together.
+    /// Put the keys of a bucket, in which equal keys are neighbours, into slots; returns its pilot.
     fn place(&mut self, pairs: &[Pair], keys: &[Spread], taken: &mut Taken) -> Option<u8> {
         let mut places = [Place::default(); FULLEST];
         let mut count = 0;
@@ -94,7 +94,7 @@ impl<C: Cells> Table<C> {
         for (run, &Place { slot, .. }) in keys.chunk_by(|a, b| a.hash == b.hash).zip(&places) {
             let run = run.iter().filter_map(|spread| pairs.get(long(spread.pair)));
             let key = C::key(run.clone().next()?);
-            // Two keys with one hash go their own ways with another seed.
+            // Two different keys with the same hash: another seed separates them.
             if !run.clone().all(|pair| C::key(pair) == key) {
                 return None;
             }
@@ -130,7 +130,7 @@ impl Cells for Numbered {
     }
 }
 
-/// An index, owned.
+/// An index that owns its tables.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnedIndex(Table<Numbered>);
 
@@ -140,18 +140,18 @@ impl OwnedIndex {
         Self(Table::new(pairs))
     }
 
-    /// For looking up.
+    /// The index for look-ups.
     pub fn view(&self) -> Index<'_> {
         let Table { pilots, seed, cells } = &self.0;
         Index { pilots, slots: &cells.slots, numbers: &cells.numbers, seed: *seed, keys: cells.keys }
     }
 
-    /// All keys, in no order.
+    /// All keys, in no particular order.
     pub fn keys(&self) -> impl Iterator<Item = Key> + '_ {
         self.0.cells.slots.iter().filter(|slot| slot.number > 0).map(|slot| slot.key)
     }
 
-    /// The record numbers of each key that several records have.
+    /// For each key that several records share, the record numbers.
     pub fn shared(&self) -> impl Iterator<Item = &[u32]> {
         let mut position = 1;
         std::iter::from_fn(move || {
@@ -166,7 +166,7 @@ impl OwnedIndex {
 #[derive(Clone, Debug, Default)]
 struct Grouped {
     groups: Vec<Group>,
-    /// Pairs of keys that have no room in a group.
+    /// Pairs of the keys that have too many locations for a group.
     crowded: Vec<Pair>,
 }
 
@@ -183,7 +183,7 @@ impl Cells for Grouped {
         let (Some(first), Some(group)) = (pairs.clone().next(), self.groups.get_mut(slot)) else { return };
         let mut entries = [EntryAt::default(); ENTRIES];
         let mut free = entries.iter_mut();
-        // Two records for one location are an error; the other index finds it.
+        // Two records for one location are an error, which the index of `crowded` keys finds.
         let mut known = [0; ENTRIES];
         let fits = pairs.clone().zip(0..).all(|(pair, i)| {
             let at = pair.key.place().filter(|at| !known.contains(at));
@@ -203,7 +203,7 @@ impl Cells for Grouped {
     }
 }
 
-/// An index by key and location, owned.
+/// An index by key and location that owns its tables.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnedPlaceIndex {
     table: Table<Grouped>,
@@ -218,19 +218,19 @@ impl OwnedPlaceIndex {
         Self { table, crowded }
     }
 
-    /// For looking up.
+    /// The index for look-ups.
     pub fn view(&self) -> PlaceIndex<'_> {
         let Table { pilots, seed, cells } = &self.table;
         PlaceIndex { pilots, groups: &cells.groups, seed: *seed, crowded: self.crowded.view() }
     }
 
-    /// The record numbers of each key that several records have at one location.
+    /// For each key that several records share at one location, the record numbers.
     pub fn shared(&self) -> impl Iterator<Item = &[u32]> {
         self.crowded.shared()
     }
 }
 
-/// A hash and the slot to which a pilot sends it.
+/// A hash and the slot to which a pilot maps it.
 #[derive(Clone, Copy, Default)]
 struct Place {
     hash: u64,
@@ -252,7 +252,8 @@ impl Taken {
         self.bits.get(slot / 64).is_some_and(|word| word & (1 << (slot % 64)) == 0)
     }
 
-    /// The first pilot that sends each hash into a free slot of its own; these slots are then taken, and put behind the hashes.
+    /// The first pilot that maps each hash to a free slot of its own. Marks these slots as occupied and stores them in
+    /// `hashes`.
     fn pilot(&mut self, hashes: &mut [Place]) -> Option<u8> {
         let mut fits = |pilot: &u8| {
             (0..hashes.len()).all(|count| {
@@ -272,7 +273,7 @@ impl Taken {
     }
 }
 
-/// The keys bucket after bucket, and where each bucket begins, the end of the last included.
+/// The keys, sorted by bucket, and the position where each bucket begins, followed by the end of the last one.
 fn spread(hashes: &[u64], buckets: usize) -> (Vec<Spread>, Vec<u32>) {
     let mut begins = vec![0_u32; buckets + 1];
     for &hash in hashes {
@@ -294,7 +295,7 @@ fn spread(hashes: &[u64], buckets: usize) -> (Vec<Spread>, Vec<u32>) {
     (spread, begins)
 }
 
-/// The buckets, the fullest first; `begins` says where each begins.
+/// The buckets, the fullest first; `begins`: the position where each begins.
 fn fullest_first(begins: &[u32]) -> Vec<u32> {
     let emptiness = |range: &[u32]| match *range {
         [begin, end] => FULLEST.saturating_sub(long(end.saturating_sub(begin))),
@@ -319,7 +320,7 @@ fn fullest_first(begins: &[u32]) -> Vec<u32> {
     order
 }
 
-/// Replace each count by the sum of all up to it.
+/// Replace each count by the sum of all counts up to it.
 fn add_up(counts: &mut [u32]) {
     let mut sum = 0;
     for count in counts {

@@ -1,9 +1,8 @@
 //! Words of a block, without comments.
 //!
-//! `%` at the beginning of a word makes the rest of the line a comment (IV.3.2). A word that begins with `(` makes a
-//! comment of all up to the next `)`, over lines if need be; such comments do not nest
-//! (VIII.9; SPECNOTES.md, Task data). Words are
-//! separated by blanks, so `(` within a word, as in `A(B`, is part of a name.
+//! `%` at the beginning of a word makes the rest of the line a comment (IV.3.2). A word that begins with `(` begins a
+//! comment that ends with the next `)`, possibly on a later line; such comments do not nest (VIII.9; SPECNOTES.md, Task
+//! data). Words are separated by blanks, so `(` within a word, as in `A(B`, is part of a name.
 
 use diagnostics::{At, Problems};
 
@@ -14,13 +13,13 @@ use super::source::{Block, SourceLine};
 pub struct Word<'a> {
     /// The text, without blanks.
     pub text: &'a str,
-    /// Where.
+    /// Place of the word.
     pub at: At,
     /// True if it is the first word of its line.
     pub first: bool,
 }
 
-/// Blanks separate words. A tab does too: it is an error in a block by itself, and its words none.
+/// True for a separator of words. A tab separates words as well; the tab itself is reported as an error of the block.
 const fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t')
 }
@@ -29,7 +28,7 @@ fn short(value: usize) -> u32 {
     u32::try_from(value).unwrap_or(u32::MAX)
 }
 
-/// A piece of a line.
+/// The place of a piece of a line.
 fn piece(line: &SourceLine<'_>, from: usize, length: usize) -> At {
     At { start: line.at.start.saturating_add(short(from)), length: short(length), ..line.at }
 }
@@ -43,7 +42,7 @@ pub fn words_of_line<'a>(line: &SourceLine<'a>) -> Vec<Word<'a>> {
     words
 }
 
-/// Words for which room is made at once in each line.
+/// Number of words per line for which space is reserved.
 const WORDS_A_LINE: usize = 8;
 
 /// The words of a block. A comment that is not closed in its block is an error.
@@ -64,12 +63,12 @@ pub fn words<'a>(block: &Block<'a>, problems: &mut Problems) -> Vec<Word<'a>> {
     words
 }
 
-/// Add the words of a line; `open` is where a comment in parentheses began that is not closed yet.
+/// Add the words of a line; `open` is the beginning of a comment in parentheses that is not closed yet.
 fn scan<'a>(line: &SourceLine<'a>, open: &mut Option<At>, words: &mut Vec<Word<'a>>) {
     let bytes = line.text.as_bytes();
     let mut first = true;
     let mut position = 0;
-    // The position of the next byte that is meant; lines are short, so the bytes are looked at one by one.
+    // The position of the next byte with a property; lines are short, so the bytes are tested one by one.
     let next = |from: usize, meant: fn(u8) -> bool| {
         bytes.get(from..).and_then(|rest| rest.iter().position(|b| meant(*b))).map(|ahead| from + ahead)
     };
@@ -90,7 +89,7 @@ fn scan<'a>(line: &SourceLine<'a>, open: &mut Option<At>, words: &mut Vec<Word<'
             }
             Some(_) => {
                 position = next(begin, is_blank).unwrap_or(bytes.len());
-                // Blanks are characters of their own, so a word begins and ends between characters.
+                // A blank is a character of one byte, so a word begins and ends at the boundary of a character.
                 let text = line.text.get(begin..position).unwrap_or_default();
                 words.push(Word { text, at: piece(line, begin, text.len()), first });
                 first = false;

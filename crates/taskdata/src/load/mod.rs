@@ -1,17 +1,17 @@
 //! Reading, checking and linking task data (feature `load`).
 //!
-//! The stages are one module each, and every stage goes on after an error, so that one load shows all that is wrong:
+//! Each stage is a module, and every stage continues after an error, so that one load reports all errors:
 //!
 //! 1. [`source`]: files into blocks; [`lex`]: blocks into words;
 //! 2. [`parse`], [`forms`] and [`guarded`]: words into [`entries`];
-//! 3. [`directory`]: which blocks are loaded at all (Figure VIII.12);
+//! 3. [`directory`]: selects the blocks to load (Figure VIII.12);
 //! 4. `link`: names into record numbers, duplicates, unknown names;
-//! 5. `check`: errors that a command would meet; the robot can reach every target;
-//! 6. [`store`]: the files; [`origins`]: where each record was entered; [`Diagnostics`]: everything that was found, with
-//!    its place.
+//! 5. `check`: finds errors that would stop a command, and checks that the robot can reach every target;
+//! 6. [`store`]: the files; [`origins`]: where each record was entered; [`Diagnostics`]: all findings, with their
+//!    places.
 //!
-//! [`mod@print`] writes entries as forms again. [`job`] reads the job files, which stand beside the blocks, and
-//! [`commands`] the blocks with commands for Task.
+//! [`mod@print`] writes entries as forms. [`job`] reads the job files, which are stored with the blocks, and
+//! [`commands`] reads the blocks with commands for Task.
 
 pub mod alike;
 mod check;
@@ -48,15 +48,15 @@ impl Store {
     /// Load all files `*.blk` under a data directory.
     ///
     /// # Errors
-    /// The report, if it holds an error; every error of the data is in it.
+    /// The report, if it has an error; it has every error of the data.
     pub fn load(directory: &Path) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         Self::load_part(directory).map_err(|(_, report)| report)
     }
 
-    /// The same, but data with errors give their readable part, for checks of jobs.
+    /// As [`Store::load`], but if there are errors, also return the readable part of the data, for checks of jobs.
     ///
     /// # Errors
-    /// That part, and the report.
+    /// The readable part, and the report.
     pub fn load_part(directory: &Path) -> Result<(Self, Diagnostics), (Box<Part>, Box<Diagnostics>)> {
         let (sources, unreadable) = source::read_blocks_under(directory);
         let mut problems = Problems::default();
@@ -67,31 +67,30 @@ impl Store {
     /// Load texts that were read elsewhere, such as the attachments of a log.
     ///
     /// # Errors
-    /// The report, if it holds an error; every error of the data is in it.
+    /// The report, if it has an error; it has every error of the data.
     pub fn from_sources(sources: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         Self::default().with_blocks(sources)
     }
 
-    /// The next generation of the data: these data with more blocks loaded, while these stay as they are
+    /// The next generation of the data: these data with more blocks loaded; `self` does not change
     /// (docs/design/ownership.md "Reload").
     ///
-    /// An entry that says again what an entry of these data says (a pose of the same name, the same grip of
-    /// the same object at the same location …) replaces it and keeps its record number; other entries are
-    /// appended. Nothing is removed, but for the locations of an object, which its newer object location
-    /// entries replace together. Numbers of paths, their points and their parameters, which have no
-    /// name, are given anew, and so are those of object locations.
+    /// An entry with the key of an existing entry (a pose of the same name, the same grip of the same object at
+    /// the same location …) replaces it and keeps its record number; other entries are appended. Nothing is
+    /// removed, except the locations of an object, which its newer object location entries replace together.
+    /// Paths, their points and their parameters, which have no names, and object locations are numbered anew.
     ///
     /// All blocks of the texts are loaded, as by `load` at a terminal, unless the texts have a root directory
-    /// block; a directory may also name blocks that these data have. The whole of the new generation is
-    /// checked, not only the new part.
+    /// block; a directory may also name blocks that these data have. The whole new generation is checked, not
+    /// only the new part.
     ///
     /// # Errors
-    /// The report, if it holds an error; then there is no new generation.
+    /// The report, if it has an error; then there is no new generation.
     pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         self.loaded_with(texts, Problems::default()).map_err(|(_, report)| report)
     }
 
-    /// The next generation; errors are those of files that could not be read.
+    /// The next generation; `problems` has the errors of files that could not be read.
     fn loaded_with(
         &self,
         texts: Vec<Source>,
@@ -104,16 +103,16 @@ impl Store {
         linked.reported(self.sources.len())
     }
 
-    /// The same as [`Store::with_blocks`], but the targets are not tried against the arm.
+    /// As [`Store::with_blocks`], but without the check that the arm can reach the targets.
     ///
     /// # Errors
-    /// The report, if it holds an error; then there is no new generation.
+    /// The report, if it has an error; then there is no new generation.
     pub fn with_blocks_untried(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let linked = self.linked(texts, Problems::default());
         linked.reported(self.sources.len()).map_err(|(_, report)| report)
     }
 
-    /// Read, link and check all but the reach.
+    /// Read, link and check everything except the reach.
     fn linked(&self, texts: Vec<Source>, mut problems: Problems) -> Linked {
         let incomplete = problems.has_errors();
         let first = self.sources.len();
@@ -130,7 +129,7 @@ impl Store {
         let count = read.blocks.len();
         let blocks = self.blocks.union(&read.blocks).copied().collect();
         let store = Self { files, indexes, sources, entries, blocks, origins, commands };
-        // Records that name nothing are no use in checks of several entries; the names come first.
+        // Checks of several entries need records with known names, so errors of names are reported first.
         let whole = !problems.has_errors();
         check::check(&store.view(), &store.origins, whole, &mut problems);
         if whole {
@@ -140,17 +139,17 @@ impl Store {
     }
 }
 
-/// Result of the texts of a load.
+/// Result of loading texts.
 struct Linked {
     store: Store,
     problems: Problems,
-    /// Blocks that were read.
+    /// Number of blocks that were read.
     blocks: usize,
     unread: HashSet<String>,
 }
 
 impl Linked {
-    /// The store and its report, or what there is of it if the report holds an error; `before` texts were there before.
+    /// The store and its report, or, if the report has an error, the readable part; `before`: number of earlier texts.
     fn reported(self, before: usize) -> Result<(Store, Diagnostics), (Box<Part>, Box<Diagnostics>)> {
         let Self { store, problems, blocks, unread } = self;
         let failed = problems.has_errors();
@@ -170,7 +169,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// True if a name that is not known, with the nearest one that is, is probably misspelt. Any other name may be in
+    /// True if an unknown name is probably a misspelt form of `near`, the nearest known one. Any other name may be in
     /// an entry that could not be read.
     fn is_slip(&self, name: &str, near: Option<&str>) -> bool {
         near.is_some() && !self.unread.iter().any(|word| word.starts_with(name))

@@ -1,6 +1,6 @@
-//! Blocks that no directory loads, and directory lines that lead to no such block. The effects of one wrong or
-//! forgotten number are reported in one message: if only such a block defines a name, the entry that uses the name is
-//! not wrong.
+//! Blocks that no directory loads (orphans), and directory lines that name no existing block. All effects of one wrong
+//! or missing number are reported in one message: if only an orphan defines a name, an entry that uses the name is not
+//! reported as wrong.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -8,7 +8,7 @@ use diagnostics::{At, BlockNumber, Problems, Severity, amount, distance};
 
 use super::{entries::LoadLine, parse::Parsed, print, source::LAST_BLOCK};
 
-/// Greatest edit distance of a number from the one that was probably meant.
+/// Greatest edit distance at which a number is taken for a misspelt form of another.
 const SLIP: usize = 2;
 
 /// A block that is not loaded.
@@ -16,34 +16,34 @@ const SLIP: usize = 2;
 struct Orphan {
     number: BlockNumber,
     header: At,
-    /// The header of the loaded block of this number.
+    /// The header of the loaded block with the same number.
     first: Option<At>,
     loads: Vec<LoadLine>,
-    /// Names that are used and defined in it, or in a block that only it loads.
+    /// Names that are used elsewhere and defined in it, or in a block that only it loads.
     needed: Vec<String>,
-    /// Reported with another problem.
+    /// True if it was reported with another problem.
     told: bool,
 }
 
-/// Block numbers of a load without block, and blocks without a number.
+/// Orphans, and directory lines without a block.
 #[derive(Debug, Default)]
 pub(super) struct Orphans {
     list: Vec<Orphan>,
-    /// Words of the orphans' entries, with the position in `list` of the first that has each.
+    /// Words of the orphans' entries, with the position in `list` of the first orphan that has the word.
     words: HashMap<String, usize>,
-    /// Lines that name a block which is not there.
+    /// Lines that name a block that does not exist.
     pub(super) missing: Vec<LoadLine>,
-    /// Lines that name a block which is loaded already.
+    /// Lines that name a block that is loaded already.
     pub(super) again: Vec<LoadLine>,
-    /// Loaded directory blocks, and what they name.
+    /// Loaded directory blocks, and the blocks that they name.
     pub(super) directories: BTreeMap<BlockNumber, Vec<BlockNumber>>,
-    /// A file could not be read: any name and any block may stand in it. A name that is not known is reported only if a
-    /// known one is so near that it is probably misspelt.
+    /// A file could not be read, which may contain any name and any block. An unknown name is then reported only if it
+    /// is probably a misspelt form of a known one.
     pub(super) incomplete: bool,
 }
 
 impl Orphans {
-    /// Note a block that is not loaded; `first` is the header of the block that has its number.
+    /// Add a block that is not loaded; `first` is the header of the loaded block with the same number.
     pub(super) fn add(&mut self, number: BlockNumber, header: At, parsed: Parsed, first: Option<At>) {
         let position = self.list.len();
         let printed = parsed.entries.iter().flat_map(print::form);
@@ -57,8 +57,8 @@ impl Orphans {
         self.list.push(orphan);
     }
 
-    /// True if a block is missing though all files were read: names that are not known may stand there, and are
-    /// asked for once it is back.
+    /// True if a block is missing although all files were read: unknown names may be in it, and are reported when the
+    /// block exists again.
     pub(super) fn lack_blocks(&self) -> bool {
         !self.incomplete && !self.missing.is_empty()
     }
@@ -68,7 +68,7 @@ impl Orphans {
         self.words.keys()
     }
 
-    /// True if a block that is not loaded has a name that is asked for.
+    /// True if an orphan has a name that is looked up.
     pub(super) fn have(&mut self, name: &str) -> bool {
         let orphan = self.words.get(name).and_then(|&position| self.list.get_mut(position));
         if let Some(orphan) = orphan {
@@ -80,7 +80,7 @@ impl Orphans {
         false
     }
 
-    /// Report all, after every name was looked up.
+    /// Report all orphans and lines, after every name was looked up.
     pub(super) fn report(mut self, problems: &mut Problems) {
         let below = self.gather();
         for line in std::mem::take(&mut self.missing) {
@@ -117,8 +117,8 @@ impl Orphans {
         }
     }
 
-    /// Blocks that another orphan names are reported with it. The numbers of those that stand for others, and for how
-    /// many.
+    /// Mark orphans that another orphan names as reported with it. Returns the numbers of the naming orphans, and how
+    /// many others each one stands for.
     fn gather(&mut self) -> BTreeMap<BlockNumber, usize> {
         let named: HashSet<BlockNumber> =
             self.list.iter().flat_map(|orphan| &orphan.loads).map(|line| line.block).collect();
@@ -149,12 +149,12 @@ impl Orphans {
         below
     }
 
-    /// A line names a block that is not there.
+    /// Report a line that names a block that does not exist.
     fn missing(&mut self, line: LoadLine, problems: &mut Problems) {
         if self.incomplete {
             return;
         }
-        // A block whose header cannot be read, or whose number is refused, may be the one: its header is told already.
+        // It may be a block whose header cannot be read or whose number is not allowed, which is reported already.
         let unreadable = |o: &Orphan| {
             o.number.offset == BlockNumber::UNREADABLE
                 || o.number.offset == line.block.offset && o.number.number > LAST_BLOCK
@@ -184,7 +184,7 @@ impl Orphans {
         }
     }
 
-    /// A line names a block that is loaded already.
+    /// Report a line that names a block that is loaded already.
     fn again(&mut self, line: LoadLine, problems: &mut Problems) {
         let message = format!("{} is loaded already", line.block);
         match self.meant(line.block).filter(|orphan| orphan.first.is_none()) {
@@ -202,7 +202,7 @@ impl Orphans {
         }
     }
 
-    /// The orphan that a number may be meant for.
+    /// The orphan whose number is probably meant by a wrong number.
     fn meant(&mut self, number: BlockNumber) -> Option<&mut Orphan> {
         let wanted = number.number.to_string();
         let slip = |orphan: &Orphan| distance(&wanted, &orphan.number.number.to_string());
@@ -213,8 +213,8 @@ impl Orphans {
         near.min_by_key(|orphan| slip(orphan))
     }
 
-    /// The loaded directory block in which an orphan would stand: one of those that name directories if it is one, the last
-    /// before it, else the one that names the nearest number.
+    /// The loaded directory block that should name an orphan: the last one before it, else the one that names the
+    /// nearest number. For an orphan that is itself a directory, one that names directories.
     fn directory_of(&self, orphan: &Orphan) -> Option<BlockNumber> {
         let is_directory = |block: &BlockNumber| self.directories.contains_key(block);
         let fits = |(directory, named): &(&BlockNumber, &Vec<BlockNumber>)| {

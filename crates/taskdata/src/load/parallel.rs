@@ -1,4 +1,4 @@
-//! Work on all processors whose results come in order, so that the report of a load does not depend on the number of
+//! Work on all processors with results in a fixed order, so that the report of a load does not depend on the number of
 //! processors.
 
 use std::{
@@ -9,8 +9,8 @@ use std::{
     thread, vec,
 };
 
-/// The results of `work` on `0..count`, in this order. Each processor takes the next piece when it has done one; work of one
-/// piece is done by the caller alone.
+/// The results of `work` on `0..count`, in this order. Each processor takes the next piece when it has finished one;
+/// a single piece runs in the thread of the caller.
 ///
 /// # Panics
 /// If `work` does.
@@ -45,7 +45,7 @@ pub(super) fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Ve
     done.into_iter().map(|(_, result)| result).collect()
 }
 
-/// The same for `count` items in pieces of at most `size`: `work` is given the positions of a piece.
+/// As [`map`], for `count` items in pieces of at most `size`: `work` gets the range of positions of a piece.
 pub(super) fn map_pieces<T: Send>(
     count: usize,
     size: usize,
@@ -57,7 +57,7 @@ pub(super) fn map_pieces<T: Send>(
     })
 }
 
-/// Items that one processor is given at a time by [`map_each`].
+/// Number of items that one processor takes at a time in [`map_each`].
 const ITEMS_AT_A_TIME: usize = 2048;
 
 /// The results of `work` on all items, in their order.

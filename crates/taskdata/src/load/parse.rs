@@ -2,7 +2,7 @@
 //!
 //! A form is read as in FORTH, word by word, without regard to columns: a compiling word takes the words after it
 //! (`-pt-`, `-obj-` …), or the numbers before it (`-pose-`, `-mtb-`). After an error the rest of the entry is skipped
-//! up to the next compiling word or the next line that begins with a number, so that one mistake gives one message.
+//! up to the next compiling word or the next line that begins with a number, so that one error gives one message.
 
 use diagnostics::{At, BlockNumber, Problems, nearest};
 
@@ -14,14 +14,14 @@ use super::{
     show,
 };
 
-/// What a block holds.
+/// Contents of a block.
 #[derive(Debug, Default)]
 pub struct Parsed {
     /// Entries in their order.
     pub entries: Vec<Entry>,
-    /// Blocks that it loads.
+    /// Lines that name blocks to load.
     pub loads: Vec<LoadLine>,
-    /// Names that stand in entries that could not be read: a use of one of them is not a second error.
+    /// Names in entries that could not be read: a use of one of them is not a second error.
     pub broken: Vec<String>,
 }
 
@@ -51,12 +51,12 @@ pub fn parse(words: &[Word<'_>], block: BlockNumber, header: At, problems: &mut 
 }
 
 impl<'a> Parser<'a, '_> {
-    /// One entry, one load line, or a word that makes nothing.
+    /// Read one entry, one load line, or a word without effect.
     fn entry(&mut self, word: Word<'a>, parsed: &mut Parsed) -> Result<Option<Entry>, Skip> {
         if is_integer(word.text) {
             return self.numbers_first(parsed);
         }
-        // A heading that was not put into parentheses, as in Figure VIII.10.
+        // A heading without parentheses, as in Figure VIII.10.
         if word.text.starts_with('"') {
             self.next += 1;
             return Ok(None);

@@ -67,11 +67,11 @@ pub const BEGINNINGS: &[&str] = &[
     "==",
 ];
 
-/// The entry cannot be read further; the problem is already noted.
+/// The rest of the entry cannot be read; the problem is reported already.
 #[derive(Clone, Copy, Debug)]
 pub struct Skip;
 
-/// A reader of the words of one block.
+/// Reads the words of one block.
 pub struct Parser<'a, 'p> {
     pub(super) words: &'p [Word<'a>],
     pub(super) next: usize,
@@ -86,7 +86,7 @@ pub struct Parser<'a, 'p> {
 /// True if a word is one of [`COMPILING_WORDS`].
 #[must_use]
 pub fn is_compiling_word(text: &str) -> bool {
-    // Most names differ from all of them in the first character.
+    // The first character excludes most names.
     text.starts_with(['-', ':', '>', '<', '=', 'F', 'E', 'l', 'L', 'O']) && COMPILING_WORDS.contains(&text)
 }
 
@@ -128,12 +128,12 @@ impl<'a> Parser<'a, '_> {
         self.problems.push(Severity::Error, code, at, message.into(), help);
     }
 
-    /// Note that something else was expected here.
+    /// Report that something else was expected here.
     pub fn expected(&mut self, what: &str) -> Skip {
         let start = self.words.get(self.start).map_or(self.end, |w| w.at);
         let (at, found) = match self.peek() {
             Some(word) if !self.is_next_entry(word) => (word.at, format!("{} found", word.text)),
-            // What is missing is missing in the entry before.
+            // The missing part belongs to the entry before.
             _ => (start.to(self.last_at()), "the entry ends before it".to_owned()),
         };
         self.problems.error("form.expected", at, format!("{what} was expected, {found}"));
@@ -141,18 +141,18 @@ impl<'a> Parser<'a, '_> {
         Skip
     }
 
-    /// True if a word that was not expected begins another entry, and is not the first of its own.
+    /// True if an unexpected word begins another entry, and is not the first of the present one.
     fn is_next_entry(&self, word: Word<'_>) -> bool {
         let begins = word.first && (is_compiling_word(word.text) || is_integer(word.text));
         self.next > self.start && (begins || BEGINNINGS.contains(&word.text))
     }
 
-    /// Note the nearest word, of the sort `what`, to the one that was just reported.
+    /// Add to the last report the nearest known word; `what` is its kind.
     pub fn nearest(&mut self, what: &str, word: &str) {
         self.problems.nearest(what, word);
     }
 
-    /// A whole number in a range. One that is out of range is noted, and the entry is read on.
+    /// A whole number in a range. A number out of range is reported, and reading continues.
     pub fn integer(&mut self, what: impl Display, range: RangeInclusive<i32>) -> Result<i32, Skip> {
         let Some(word) = self.peek().filter(|w| is_integer(w.text)) else {
             return Err(self.expected(&what.to_string()));
@@ -170,7 +170,7 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// A name. One that is too long is noted, and the entry is read on.
+    /// A name. A name that is too long is reported, and reading continues.
     pub fn name<const N: usize>(&mut self, what: impl Display) -> Result<Named<N>, Skip> {
         self.name_within(what, N)
     }
@@ -187,7 +187,7 @@ impl<'a> Parser<'a, '_> {
             read => read,
         };
         let name = read.unwrap_or_else(|error| {
-            // Its character is noted as one that no block has.
+            // The wrong character is reported already, as an error of the block.
             if !word.text.is_ascii() {
                 self.flawed = true;
                 return Name::clipped("?");
@@ -219,7 +219,7 @@ impl<'a> Parser<'a, '_> {
         Ok(found)
     }
 
-    /// A type and a name; the name is missing after `$$$`.
+    /// A type and a name; after `$$$` there is no name.
     pub fn typed(&mut self, what: &str, allowed: &[RefType]) -> Result<Typed, Skip> {
         let (kind, at) = self.kind(format_args!("type of {what}"), allowed)?;
         if kind == RefType::Any {
@@ -229,7 +229,7 @@ impl<'a> Parser<'a, '_> {
         Ok(Typed { kind, name: self.name_within(what, most)? })
     }
 
-    /// The last word that was taken.
+    /// Place of the last word that was taken.
     #[must_use]
     pub fn last_at(&self) -> At {
         self.next.checked_sub(1).and_then(|i| self.words.get(i)).map_or(self.end, |w| w.at)

@@ -1,4 +1,4 @@
-//! Entries as forms: the text that gives the entry.
+//! Prints entries as forms: the text from which the entry can be read again.
 //!
 //! The form is the manual's, with one line for each part that has a compiling word of its own (`-ppt`, `-m-`, `----`).
 //! A form with more lines than a block has is printed without line breaks between its parts, which always fits if the
@@ -16,7 +16,7 @@ use super::{
 use crate::files::{RefType, TrajPara};
 use geometry::movetable::{MovetableLine, System};
 
-/// Blanks before the first word of a line; without them a form might be taken for a listing with line numbers.
+/// Blanks before the first word of a line; without them a form could be read as a listing with line numbers.
 const INDENT: &str = "  ";
 
 /// The lines of a form, none of more than 64 columns.
@@ -27,9 +27,9 @@ pub fn form(entry: &Entry) -> Vec<String> {
     if lines.len() <= BLOCK_LINES { lines } else { filled(&parts.concat()) }
 }
 
-/// Blocks that hold the forms of all entries, from block `first` at `offset` on; after block 999 the next is
-/// 0 at the next offset. An entry whose form has more lines than a block has stands in a block of its own,
-/// which cannot be loaded.
+/// Blocks with the forms of all entries, from block `first` at `offset` on; after block 999 the next is 0 at the
+/// next offset. An entry whose form has more lines than a block is put into a block of its own, which cannot be
+/// loaded.
 #[must_use]
 pub fn blocks<'e>(entries: impl IntoIterator<Item = &'e Entry>, offset: u32, first: u32) -> String {
     let (mut offset, mut number) = (offset, first);
@@ -52,7 +52,7 @@ pub fn blocks<'e>(entries: impl IntoIterator<Item = &'e Entry>, offset: u32, fir
     text
 }
 
-/// Words in as few lines as they fit into.
+/// Lines filled with as many words as fit.
 fn filled(words: &[String]) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in words {
@@ -67,7 +67,7 @@ fn filled(words: &[String]) -> Vec<String> {
     lines
 }
 
-/// The words of an entry, those of each line together.
+/// The words of an entry, grouped by line.
 fn parts(entry: &Entry) -> Vec<Vec<String>> {
     match entry {
         Entry::File(e) => vec![file(e)],
@@ -96,7 +96,7 @@ fn parts(entry: &Entry) -> Vec<Vec<String>> {
     }
 }
 
-/// Words of anything that can be shown.
+/// A list of words from values that implement `Display`.
 macro_rules! words {
     ($($word:expr),+ $(,)?) => { vec![$($word.to_string()),+] };
 }

@@ -1,20 +1,20 @@
 //! Text files with blocks in them: the "disk" (IV.2.7).
 //!
-//! A file holds blocks one after the other, each under a header `BLOCK# 619 OFFSET 21000`, each of at most 16 lines of
-//! 64 columns. There are two extensions of the manual's disk. A line that begins with `%%` is a remark on the file: it
-//! is not a line of a block and may have any length, so that data can be explained without changing their block. And a
-//! block that was copied from a listing is read without its line numbers 0 to 15.
+//! A file contains blocks, each with a header `BLOCK# 619 OFFSET 21000` and at most 16 lines of 64 columns. There are
+//! two extensions of the manual's disk. A line that begins with `%%` is a remark on the file: it is not a line of a
+//! block and may have any length, so that data can be explained without changing their block. And the line numbers 0 to
+//! 15 of a block that was copied from a listing are left out.
 
 use std::{collections::BTreeSet, fs, io, os::unix::fs::MetadataExt as _, path::Path};
 
 use diagnostics::{At, BlockLines, BlockNumber, Places, Source, lines_of};
 use os_io::files;
 
-/// Lines of a block.
+/// Greatest number of lines in a block.
 pub const BLOCK_LINES: usize = 16;
 /// The greatest number of a block; the next block is 0 of the next offset (IV.2.7).
 pub const LAST_BLOCK: u32 = 999;
-/// Columns of a line.
+/// Greatest number of columns in a line.
 pub const BLOCK_COLUMNS: usize = 64;
 /// Begins a remark on the file.
 const REMARK: &str = "%%";
@@ -26,41 +26,41 @@ const HEADER: &str = "BLOCK#";
 pub struct SourceLine<'a> {
     /// The text.
     pub text: &'a str,
-    /// Where it stands.
+    /// Place of the line.
     pub at: At,
 }
 
 /// A block.
 #[derive(Clone, Debug)]
 pub struct Block<'a> {
-    /// Its number.
+    /// Number and offset of the block.
     pub number: BlockNumber,
-    /// The header.
+    /// Place of the header.
     pub header: At,
     /// Its lines.
     pub lines: Vec<SourceLine<'a>>,
 }
 
-/// A fault of the blocks of a source.
+/// An error in the blocks of a source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockFault {
     /// A header without two numbers.
     Header,
-    /// A block of a number that no block has; the number.
+    /// A block with a number above [`LAST_BLOCK`]: the number.
     Number(u32),
     /// Text before the first header.
     NoHeader,
-    /// A seventeenth line.
+    /// More than 16 lines.
     TooManyLines,
-    /// A line of more than 64 columns; how many it has.
+    /// A line of more than 64 columns: the number of columns.
     TooWide(usize),
     /// A character that is not ASCII.
     NotAscii,
-    /// The first tab of a file; how many lines have one.
+    /// The first tab of a file: the number of lines with a tab.
     Tab(usize),
 }
 
-/// Read one file, which must be a regular one.
+/// Read one regular file; `shown` is its path in messages.
 ///
 /// # Errors
 /// See [`files::read_text`].
@@ -68,19 +68,19 @@ pub fn read(path: &Path, shown: &str) -> io::Result<Source> {
     Ok(Source { name: shown.to_owned(), text: files::read_text(path)?.into() })
 }
 
-/// A path that cannot be read, and why.
+/// A path that cannot be read, and the error.
 pub type Unreadable = (String, io::Error);
 
-/// All files `*.blk` under a directory, in the order of their paths, which are shown relative to the
-/// directory, and what of them cannot be read.
+/// All files `*.blk` under a directory, sorted by path, with paths relative to the directory, and the paths that
+/// cannot be read.
 #[must_use]
 pub fn read_blocks_under(directory: &Path) -> (Vec<Source>, Vec<Unreadable>) {
     let (mut paths, mut unreadable) = (Vec::new(), Vec::new());
     let mut open = vec![directory.to_path_buf()];
-    // A symbolic link can lead back: each directory is read once.
+    // A symbolic link can form a cycle: each directory is read once.
     let mut seen = BTreeSet::new();
     while let Some(folder) = open.pop() {
-        // What the program carries has no links.
+        // Directories built into the program have no metadata, and no links.
         let identity = fs::metadata(&folder).map(|found| (found.dev(), found.ino()));
         if identity.is_ok_and(|identity| !seen.insert(identity)) {
             continue;
@@ -95,7 +95,7 @@ pub fn read_blocks_under(directory: &Path) -> (Vec<Source>, Vec<Unreadable>) {
                     }
                 }
             }
-            // What cannot be listed is named by its folder.
+            // A directory that cannot be listed is reported by its path.
             Err(error) => unreadable.push((folder.display().to_string(), error)),
         }
     }
@@ -115,7 +115,7 @@ fn short(value: usize) -> u32 {
     u32::try_from(value).unwrap_or(u32::MAX)
 }
 
-/// True for a line that is a header, or probably was meant as one.
+/// True for a line that is a header, or is probably meant as one.
 fn is_header(line: &str) -> bool {
     let start = line.trim_start().as_bytes().get(..HEADER.len());
     start.is_some_and(|start| start.eq_ignore_ascii_case(HEADER.as_bytes()))
@@ -135,7 +135,7 @@ fn header_number(line: &str) -> Option<BlockNumber> {
     Some(BlockNumber { offset: offset.parse().ok()?, number: number.parse().ok()? })
 }
 
-/// The blocks of a source, and what is wrong with them. Blocks with a fault are kept as far as they can be read.
+/// The blocks of a source, and their errors. Blocks with errors are kept as far as they can be read.
 #[must_use]
 pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockFault)>) {
     let mut found: Vec<Block<'_>> = Vec::new();
@@ -144,7 +144,7 @@ pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockF
     for (start, text) in lines_of(&source.text) {
         let at = At { source: short(index), start: short(start), length: short(text.len()) };
         let printable = |b: u8| (b' '..=b'~').contains(&b);
-        // Without a branch for each byte this is much quicker than to look for the first.
+        // Without a branch for each byte this is much faster than a search for the first one.
         let plain = text.bytes().fold(true, |all, b| all & printable(b));
         if !plain
             && !text.starts_with(REMARK)
@@ -198,7 +198,7 @@ pub fn places_in_blocks(sources: &[Source]) -> Places<'_> {
     })
 }
 
-/// Drop empty lines after the block and the line numbers of a listing, and check the size.
+/// Remove empty lines at the end of a block and the line numbers of a listing, and check its size.
 fn settle(block: &mut Block<'_>, faults: &mut Vec<(At, BlockFault)>) {
     while block.lines.last().is_some_and(|line| line.text.trim().is_empty()) {
         block.lines.pop();
@@ -212,7 +212,7 @@ fn settle(block: &mut Block<'_>, faults: &mut Vec<(At, BlockFault)>) {
         }
     }
     if let Some(line) = block.lines.iter().skip(BLOCK_LINES).find(|line| !line.text.trim().is_empty()) {
-        // The lines are kept: what they say is checked all the same.
+        // The lines are kept, so that their contents are checked as well.
         faults.push((line.at, BlockFault::TooManyLines));
     }
     for line in &block.lines {
@@ -229,11 +229,11 @@ fn settle(block: &mut Block<'_>, faults: &mut Vec<(At, BlockFault)>) {
     }
 }
 
-/// Width of ` 4 ` in front of a line.
+/// Width of a line number with its blanks, ` 4 `.
 const LISTING_WIDTH: usize = 3;
 
-/// True if every line begins with its own number in two columns, as in the listings of the manual. No form
-/// can look so: the numbers of a movetable's lines begin at 1.
+/// True if every line begins with its own number in two columns, as in the listings of the manual. A form cannot
+/// look like this: the numbers of a movetable's lines begin at 1.
 fn is_listing(lines: &[SourceLine<'_>]) -> bool {
     if lines.first().is_none_or(|line| !line.text.starts_with(" 0")) {
         return false;

@@ -1,4 +1,4 @@
-//! The files of a load, owned; [`TaskData`] is a view of them.
+//! The store, which owns the loaded files; [`TaskData`] is a view of them.
 
 use std::collections::BTreeSet;
 
@@ -18,11 +18,11 @@ use super::{
     source::places_in_blocks,
 };
 
-/// Records that a file can hold (SPECNOTES.md, Task data); one more is the manual's FILE FULL.
+/// Greatest number of records in a file (SPECNOTES.md, Task data); with more, the error is the manual's FILE FULL.
 pub const FILE_RECORDS: usize = 100_000;
 
-/// The files, by the names that a declaration may give. Those of the object location form and of the
-/// approach/depart form are ours, as the manual names none, and so are the last two.
+/// Names of the files, for declarations. The manual has no names for the files of the object location form and of
+/// the approach/depart form, and not the last two files: these four names are of this project.
 pub const FILE_NAMES: [&str; 18] = [
     "POSE",
     "MOVTAB",
@@ -44,7 +44,7 @@ pub const FILE_NAMES: [&str; 18] = [
     "REL-MOVES",
 ];
 
-/// The records of all files. See [`TaskData`] for what each is.
+/// The records of all files, described at [`TaskData`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct Files {
     pub poses: Vec<PoseRecord>,
@@ -70,7 +70,7 @@ pub(super) struct Files {
 }
 
 impl Files {
-    /// Records of each file, in the order of [`FILE_NAMES`].
+    /// Number of records in each file, in the order of [`FILE_NAMES`].
     pub const fn records(&self) -> [usize; FILE_NAMES.len()] {
         [
             self.poses.len(),
@@ -95,7 +95,7 @@ impl Files {
     }
 }
 
-/// The indexes of all files. See [`Indexes`] for their keys.
+/// The indexes of all files; their keys are described at [`Indexes`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnedIndexes {
     pub poses: OwnedIndex,
@@ -118,7 +118,7 @@ pub(super) struct OwnedIndexes {
     pub relative_moves: OwnedPlaceIndex,
 }
 
-/// Loaded task data: the files, their indexes and the text that they came from.
+/// Loaded task data: the files, their indexes and their source texts.
 #[derive(Clone, Debug, Default)]
 pub struct Store {
     pub(super) files: Files,
@@ -182,14 +182,14 @@ impl Store {
         }
     }
 
-    /// The files of blocks that were read, to be kept with a log: those of the first load, then those of each
+    /// The files of blocks that were read, for a log: those of the first load, then those of each
     /// [`Store::with_blocks`] in turn.
     #[must_use]
     pub fn sources(&self) -> &[Source] {
         &self.sources
     }
 
-    /// Where each record was entered.
+    /// The place where each record was entered.
     #[must_use]
     pub const fn origins(&self) -> &Origins {
         &self.origins
@@ -201,13 +201,13 @@ impl Store {
         places_in_blocks(&self.sources)
     }
 
-    /// A place of the text: file, block and line; "?" if the text is not known.
+    /// A place in the texts as words: file, block and line; "?" if the text is not known.
     #[must_use]
     pub fn place(&self, at: At) -> String {
         self.places().words(at)
     }
 
-    /// How many records each file has, by the manual's names.
+    /// Number of records in each file, with the manual's names.
     #[must_use]
     pub fn loaded(&self) -> Vec<Loaded> {
         let files = FILE_NAMES.iter().zip(self.files.records());

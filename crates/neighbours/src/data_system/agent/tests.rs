@@ -1,8 +1,7 @@
-//! An agent and a Data System that does as a test wants, without a network between them.
+//! An agent and a simulated Data System, without a network between them.
 //!
-//! In fast clock an exchange is over when the server has answered its pulse: what it wrote before is there
-//! then. With a patience of nothing an agent looks once, and the clock of the machine has no part in what
-//! happens.
+//! In fast clock an exchange ends when the server has answered its pulse, and all that the server wrote before has
+//! arrived. With a time limit of zero an agent checks once, so that the results do not depend on the computer's clock.
 
 use std::{
     path::Path,
@@ -29,7 +28,7 @@ use crate::{
     },
 };
 
-/// What a server writes, one mailgram after the other.
+/// The mailgrams that a server writes, in order.
 type Written = Vec<Vec<u8>>;
 /// Change made to a status before it is sent.
 type Garble = fn(&mut Vec<u8>);
@@ -149,7 +148,7 @@ fn a_late_answer_to_the_first_sending_counts_and_counts_once() {
     server.join().unwrap();
 }
 
-/// The update that is told after STARTUP was taken for done when STARTUP was answered twice.
+/// An update after STARTUP was taken as done if STARTUP was answered twice.
 #[test]
 fn an_answer_that_comes_twice_is_no_answer_to_what_follows() {
     let place = tempfile::tempdir().unwrap();
@@ -184,8 +183,7 @@ fn answers_to_other_commands_and_half_answers_count_for_nothing() {
         let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
         let server = serve(&handle, move |_, bytes| vec![status(id(bytes).wrapping_add(offset), summary)]);
         for number in 1..5 {
-            // The second half: another command each time, so that the number that was answered before its
-            // time comes up.
+            // In the second half each command is another one, so that the number answered too early is used.
             let position = if number < 3 { "UNIT_1" } else { "UNIT_2" };
             assert_eq!(agent.execute(&update(number, position)), None);
         }
@@ -257,7 +255,7 @@ fn another_server_is_heard_though_it_counts_its_mailgrams_from_the_beginning() {
     let place = tempfile::tempdir().unwrap();
     let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
     for number in 1..4 {
-        // Its statuses have the same mailgram numbers as those of the server before.
+        // Its statuses have the same mailgram numbers as those of the previous server.
         let server = serve(&handle, |_, bytes| done(bytes));
         is_done(agent.execute(&update(number, "UNIT_1")), number.try_into().unwrap());
         handle.detach(Disconnect::Lost("it was killed".to_owned()));
@@ -284,7 +282,7 @@ fn whoever_waits_for_a_silent_server_stops_when_the_endpoint_is_stopped() {
     }
 }
 
-/// Its patience is for ever: without the end of the run nothing would end it.
+/// The agent has no time limit: only the end of the run ends its wait.
 #[test]
 fn a_run_that_is_interrupted_waits_for_no_silent_server() {
     for (clock, pace) in [(ClockKind::Fast, Pace::Wait), (ClockKind::Real, Pace::Poll)] {

@@ -13,7 +13,7 @@ use crate::{
     },
 };
 
-/// What was sent to a neighbour.
+/// A message that was sent to a neighbour.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Sent {
     Mailbox(Box<Mailbox>),
@@ -48,7 +48,7 @@ impl TestSession {
         self.link.handle.detach(why);
     }
 
-    /// What is sent next.
+    /// The next message that is sent.
     pub fn next(&mut self) -> Sent {
         loop {
             if let Some(sent) = self.unread.pop_front() {
@@ -60,7 +60,7 @@ impl TestSession {
             if !self.link.handle.is_connected() {
                 return Sent::Over;
             }
-            // A test may end the session by its handle, which wakes no thread.
+            // A test may end the session through its handle, which wakes no thread.
             let look = Timespec { tv_sec: 0, tv_nsec: 10_000_000 };
             poll(&mut [PollFd::new(&self.link.wake(), PollFlags::IN)], Some(&look)).unwrap();
             let unread = &mut self.unread;
@@ -105,7 +105,7 @@ fn lost() -> Disconnect {
 fn in_fast_clock_the_tick_waits_for_what_answers_it() {
     let (mut endpoint, mut session) = connected(Role::Workstation, ClockKind::Fast);
     let neighbour = thread::spawn(move || {
-        // Answers each pulse by a command that says its number.
+        // Answers each pulse with a command that contains its number.
         for tick in 1..=100_u64 {
             assert_eq!(session.pulse(), tick);
             session.deliver(&written(HWSC_COMMAND, &tick.to_le_bytes()));
@@ -193,7 +193,7 @@ fn a_tick_that_waits_goes_on_when_the_neighbour_disconnects() {
     assert!(!endpoint.exchange(2).connected);
 }
 
-/// Whether the neighbour would have answered is not known then.
+/// After an interruption it is not known whether the neighbour would have answered: it counts as connected.
 #[test]
 fn a_tick_that_waits_goes_on_when_the_run_is_to_end() {
     let interrupted = Arc::new(AtomicBool::new(false));
@@ -211,7 +211,7 @@ fn a_tick_that_waits_goes_on_when_the_run_is_to_end() {
     silent.join().unwrap().end(lost());
 }
 
-/// A run whose workstation controller has been connected at some time is over when it is not.
+/// A run ends when its workstation controller, once connected, is no longer connected.
 #[test]
 fn a_neighbour_that_connects_and_disconnects_between_two_ticks_was_connected() {
     let mut endpoint = Endpoint::new(Role::Workstation, ClockKind::Fast).unwrap();

@@ -32,7 +32,7 @@ fn events(session: &mut Session, now: Instant) -> Vec<Seen> {
     }
 }
 
-/// What one side has to send goes to the other, in pieces of so many bytes; what the other sees.
+/// Passes the output of one side to the other in pieces of `pieces` bytes; returns the events of the other.
 fn carry(from: &mut Session, to: &mut Session, pieces: usize, now: Instant) -> Vec<Seen> {
     let bytes = std::mem::take(from.output());
     let seen = bytes.chunks(pieces).flat_map(|piece| {
@@ -175,13 +175,13 @@ fn a_neighbour_that_answers_no_pulse_is_silent_and_one_that_was_not_asked_is_not
         controller.receive(&bytes, now);
         assert_eq!(events(controller, now), [Seen::Pulse(tick)]);
     };
-    // It is a tick behind.
+    // The neighbour is one tick late.
     answer(&mut controller, 7, now + limit - TICK);
     assert_eq!(controller.deadline(), Some(now + limit * 2 - TICK));
     answer(&mut controller, 8, now + limit);
     assert_eq!(controller.deadline(), None);
     controller.pulse(9, now + limit * 5);
-    // An answer that was given before answers nothing.
+    // A repeated answer has no effect.
     answer(&mut controller, 8, now + limit * 5 + TICK);
     assert_eq!(controller.check_time(now + limit * 6 - TICK), Ok(()));
     assert_eq!(controller.check_time(now + limit * 6), Err(SessionError::Silent(limit)));
@@ -214,7 +214,7 @@ fn a_neighbour_takes_a_controller_for_dead_on_the_grid_only() {
     }
 }
 
-/// What a controller sends.
+/// Something that a controller sends.
 #[derive(Clone, Debug)]
 enum Action {
     Mailbox(Place, Vec<u8>),
@@ -255,7 +255,7 @@ proptest! {
         prop_assert_eq!(carry(&mut controller, &mut neighbour, pieces, now), expected);
     }
 
-    /// Whatever comes, there is at most one error, nothing behind it, and the input does not grow beyond a
+    /// For any bytes there is at most one error, no event follows it, and the input does not grow beyond a
     /// frame.
     #[test]
     fn no_bytes_panic_or_fill_the_memory(
@@ -277,7 +277,7 @@ proptest! {
         prop_assert!(errors == 0 || errors == 1 && is_last, "{:?}", seen);
     }
 
-    /// The same of a neighbour, whose controller may be another program.
+    /// The same at a neighbour, because another program may listen in place of the controller.
     #[test]
     fn no_bytes_panic_at_a_neighbour(bytes in prop::collection::vec(any::<u8>(), 0..300), front in 0_usize..3) {
         let now = Instant::now();

@@ -14,9 +14,9 @@ pub(super) fn from_vertical(frame: &Frame) -> f64 {
     axis.x.hypot(axis.y).atan2(axis.z.abs()).to_degrees()
 }
 
-/// True if the gripper axis is so near to vertical that there is a warning.
+/// True if the gripper axis is close enough to vertical for a warning.
 pub(super) fn is_vertical(frame: &Frame) -> bool {
-    // Most frames are far from it: then no angle has to be worked out.
+    // Most frames are far from vertical; for them the angle is not calculated.
     frame.x().z.abs() > 0.99 && from_vertical(frame) < VERTICAL
 }
 
@@ -27,7 +27,7 @@ pub(super) struct Fault {
     pub help: String,
 }
 
-/// Try a frame: the joint that is beyond its limit and by how much, or how far out of reach it is.
+/// Try a frame: the error says which joint is beyond its limit and by how much, or how far out of reach the frame is.
 pub(super) fn fault(frame: &Frame) -> Option<Fault> {
     let joints = match T3.inverse(frame, &HOME_JOINTS) {
         Ok(joints) => T3.within_limits(&joints),

@@ -1,11 +1,11 @@
-//! Checks of linked data: errors that a command would meet during its motion are found before the first tick.
+//! Checks of linked data: they find errors that would stop a command during its motion before the first tick.
 //!
 //! * [`trays`]: sectors within their trays;
 //! * [`sizes`]: openings in order, tray grips, flips;
 //! * [`routes`]: trajectories that no command can reach;
 //! * [`guarded`]: sensors and speeds of relative moves;
-//! * [`reach`]: every target that a command can send the robot to, against the arm. This takes time in proportion to all
-//!   targets, so it runs on all processors, and can be left out.
+//! * [`reach`]: the arm can reach every target of a command. The time is proportional to the number of targets, so the
+//!   check runs on all processors, and can be left out.
 
 mod arm;
 mod guarded;
@@ -26,7 +26,7 @@ use super::origins::Origins;
 
 pub(super) use reach::check as reach;
 
-/// All checks except that of the reach; if names are missing, only the checks of single objects.
+/// All checks except that of the reach; if not `whole`, because names are missing, only the checks of single objects.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, whole: bool, problems: &mut Problems) {
     let mut findings = Findings::default();
     if whole {
@@ -41,7 +41,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, whole: bool, problem
     findings.report(problems);
 }
 
-/// The problem of an entry at the first place where it is wrong, and the number of further places.
+/// The problem of an entry at the first location where it is wrong, and the number of further locations.
 #[derive(Debug)]
 struct Finding {
     severity: Severity,
@@ -49,12 +49,12 @@ struct Finding {
     at: At,
     message: String,
     help: String,
-    /// How many more; `None` if the entry is wrong by itself and not at places.
+    /// Number of further locations; `None` if the error of the entry does not depend on a location.
     more: Option<usize>,
 }
 
-/// Findings in the order in which they were made. An entry with the wild card can be wrong at every sector:
-/// it is listed once.
+/// Findings, in the order in which they were made. An entry with the wild card can be wrong at every sector: it is
+/// listed once.
 #[derive(Debug, Default)]
 struct Findings {
     list: Vec<Finding>,
@@ -80,12 +80,12 @@ impl Findings {
         }
     }
 
-    /// An error of an entry by itself, reported once.
+    /// An error of an entry that does not depend on a location, reported once.
     fn error_once(&mut self, code: &'static str, at: At, message: String, help: String) {
         self.add(Finding { severity: Severity::Error, code, at, message, help, more: None });
     }
 
-    /// Add findings that were made elsewhere after these.
+    /// Append findings that were made elsewhere.
     fn merge(&mut self, later: Self) {
         for finding in later.list {
             self.add(finding);
@@ -104,7 +104,7 @@ impl Findings {
     }
 }
 
-/// The origin of a record at a position.
+/// The place where the record at a position was entered.
 fn origin(list: &[At], position: usize) -> At {
     list.get(position).copied().unwrap_or_default()
 }
@@ -117,19 +117,19 @@ fn shown(location: &Location) -> String {
     }
 }
 
-/// The location point that a reference means.
+/// The location of a reference to a location point.
 fn at_point(data: &TaskData<'_>, at: Reference) -> Option<Location> {
     let id = LocptId::new(at.number);
     let point = data.locpt(id).filter(|_| at.kind == RefType::LocationPoint)?;
     Some(Location { name: point.name, place: data.place_of(id), sector: None, frame: point.frame })
 }
 
-/// The owners that have a member.
+/// The owners of a member.
 fn owners_of<'a>(data: &TaskData<'a>, member: Reference) -> impl Iterator<Item = OwnerId> + use<'a> {
     data.indexes.members.all(reference_key(member)).iter().map(|&number| OwnerId::new(number))
 }
 
-/// All sectors of an array at an owner; none if the owner's first member is no location point.
+/// All sectors of an array at an owner; none if the owner's first member is not a location point.
 fn sectors(data: &TaskData<'_>, owner: OwnerId, array_id: ArrayId) -> Vec<Location> {
     let corner = data.members_of(owner).first().and_then(|m| at_point(data, m.member));
     let (Some(array), Some(corner)) = (data.array(array_id), corner) else { return Vec::new() };
@@ -178,8 +178,8 @@ fn locations_of_member(data: &TaskData<'_>, owner: OwnerId, member: Reference) -
     }
 }
 
-/// The locations at which an object can be and an entry applies: the sectors and location points that are
-/// assigned to it, or what the entry names.
+/// The locations at which an object can be and an entry applies: the sectors and location points to which the
+/// object is assigned, or, if there are none, the locations that the entry names.
 fn locations_of(data: &TaskData<'_>, object: ObjectId, at: Reference) -> Vec<Location> {
     let mut found = Vec::new();
     for assigned in data.object_locations(object) {
@@ -194,7 +194,7 @@ fn locations_of(data: &TaskData<'_>, object: ObjectId, at: Reference) -> Vec<Loc
         .retain(|location| at.kind == RefType::Any || data.aliases(&location.place).any(|alias| alias == at));
     if found.is_empty() && at.kind != RefType::Array {
         let mut named = locations(data, at);
-        // At an owner of arrays an object that is assigned to none of them is at the location point.
+        // At an owner of arrays an object that is not assigned to any of them is at the location point.
         named.retain(|location| location.sector.is_none());
         found = named;
     }

@@ -1,14 +1,14 @@
 //! Checks that the arm reaches every target of a command: reach, joint limits, angle from vertical.
 //!
-//! Targets are location points, what lies in their sectors gripped in each way, views, and the points of the
-//! approaches, departs, trajectories and relative moves there. A base pose is not a target itself: if a target derived
-//! from it cannot be reached, the error names the base pose instead of the target, because the mistake is in the pose.
+//! Targets are location points, objects in their sectors with each of their grips, views, and the points of the
+//! approaches, departs, trajectories and relative moves there. A base pose is not itself a target: if a target derived
+//! from it cannot be reached, and neither can the pose, the error names the pose, because the mistake is in the pose.
 //!
 //! There is a warning if the gripper axis is within 2 degrees of vertical: the Euler angles of the link are singular
-//! there (VIII introduction). The corners of trays are taught vertical but the robot does not move there (VIII.3); they
-//! are left out.
+//! there (VIII introduction). The corners of trays are taught with a vertical gripper, but the robot does not move to
+//! them (VIII.3), so they are not checked.
 //!
-//! The wild card `$$$` is tried at the locations that are assigned to the object (VII.7.3).
+//! The wild card `$$$` is tried at the locations to which the object is assigned (VII.7.3).
 
 use std::collections::{HashMap, HashSet};
 
@@ -31,10 +31,10 @@ use super::{
     at_point, locations, locations_of, origin, shown,
 };
 
-/// Entries that one processor tries at a time.
+/// Number of entries that one processor tries at a time.
 const ENTRIES_AT_A_TIME: usize = 512;
 
-/// Try all targets; the data must be linked without error.
+/// Try all targets; the data must have been linked without error.
 pub(crate) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Problems) {
     let mut findings = Findings::default();
     let reach = Reach::new(data, origins, &mut findings);
@@ -50,7 +50,7 @@ pub(crate) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Probl
     findings.report(problems);
 }
 
-/// Try entries `0..count` on all processors; the findings come in the order of the entries.
+/// Try entries `0..count` on all processors; the findings are in the order of the entries.
 fn spread(count: usize, entry: impl Fn(usize, &mut Findings) + Sync) -> Findings {
     let mut findings = Findings::default();
     for piece in parallel::map_pieces(count, ENTRIES_AT_A_TIME, |range| {
@@ -63,7 +63,7 @@ fn spread(count: usize, entry: impl Fn(usize, &mut Findings) + Sync) -> Findings
     findings
 }
 
-/// The text for a target, made only if it has a problem.
+/// Makes the text for a target; called only if the target has a problem.
 type What<'a> = &'a dyn Fn() -> String;
 
 struct Reach<'a> {
@@ -71,7 +71,7 @@ struct Reach<'a> {
     origins: &'a Origins,
     /// Location points out of reach: targets derived from them are not reported again.
     bad_points: HashSet<LocptId>,
-    /// Trajectories that begin with a movetable, by their start: their points depend on the start.
+    /// Trajectories that begin with a movetable, by their start, on which their points depend.
     relative_starts: HashMap<(u8, u32), Vec<TrajId>>,
 }
 
@@ -97,8 +97,8 @@ impl<'a> Reach<'a> {
         of_arrays.filter_map(|members| members.first()).map(|m| LocptId::new(m.member.number)).collect()
     }
 
-    /// Location points at which an object is gripped or looked at: the robot moves to the object, which may be tilted,
-    /// and not to the point.
+    /// Location points at which an object is gripped or viewed: the robot moves to the object, which may be tilted, and
+    /// not to the point.
     fn bases(&self) -> HashSet<LocptId> {
         let grips = self.data.grip_locs.iter().map(|entry| entry.at);
         let named = grips.chain(self.data.visions.iter().map(|entry| entry.at));
@@ -128,7 +128,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Try a target that is derived from a pose; true if it is reached. There is a warning near the vertical.
+    /// Try a target that is derived from a pose; true if it can be reached. Warns near the vertical.
     fn target(&self, what: What<'_>, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
         let reached = self.reached(what, frame, at, base, findings);
         if reached {
@@ -137,7 +137,7 @@ impl<'a> Reach<'a> {
         reached
     }
 
-    /// Try a frame that is derived from a pose; true if it is reached.
+    /// Try a frame that is derived from a pose; true if it can be reached.
     fn reached(&self, what: What<'_>, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
         let Some(found) = fault(frame) else { return true };
         match self.data.pose(base).and_then(|pose| Some((pose.name, fault(&pose.frame)?))) {
@@ -158,8 +158,8 @@ impl<'a> Reach<'a> {
             .unwrap_or(PoseId::NULL)
     }
 
-    /// Points of a trajectory, from the location points at which it can begin; from what is gripped there see
-    /// [`Reach::departures`].
+    /// Try the points of a trajectory from the location points at which it can begin. [`Reach::departures`] tries them
+    /// from the objects that are gripped there.
     fn trajectory(&self, i: usize, findings: &mut Findings) {
         let Some(record) = self.data.trajectories.get(i) else { return };
         let what = || format!("trajectory {}", record.name);
@@ -168,7 +168,7 @@ impl<'a> Reach<'a> {
         match points.next() {
             Some(start) => {
                 self.follow(record.path, &start.frame, &what, false, findings);
-                // From the others only points that are relative to the start can be elsewhere.
+                // From the other starts only points that are relative to the start are different.
                 if self.relative_starts.contains_key(&(record.start.kind.code(), record.start.number)) {
                     points.for_each(|start| self.follow(record.path, &start.frame, &what, false, findings));
                 }
@@ -181,7 +181,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Try the points of a path; `fixed` if all its movetables refer to `reference`, else each to the point before it.
+    /// Try the points of a path. All its movetables refer to `reference` if `fixed`, else each to the point before it.
     fn follow(&self, path: PathId, reference: &Frame, what: What<'_>, fixed: bool, findings: &mut Findings) {
         let data = self.data;
         let first = path.of(data.paths).map_or(0, |p| usize::try_from(p.first).unwrap_or(0));
@@ -193,7 +193,7 @@ impl<'a> Reach<'a> {
             let at = origin(&self.origins.path_points, first + i);
             let what = || format!("{}, {}", what(), self.point_name(point));
             match point.target {
-                // Where the reference is vertical and warned of, its points need no warning of their own.
+                // There is already a warning for a vertical reference; its points need no warning of their own.
                 Target::Movetable(_) if upright() => {
                     if let Some(fault) = fault(&frame) {
                         findings.error(fault.code, at, format!("{}: {}", what(), fault.message), fault.help);
@@ -205,7 +205,7 @@ impl<'a> Reach<'a> {
                 Target::Pose(id) => {
                     self.target(&what, &frame, at, id, findings);
                 }
-                // Its reach was tried with the location points; here it is driven to even if it is a corner.
+                // Its reach is checked with the location points; here the robot moves to it even if it is a corner.
                 Target::LocationPoint(_) => vertical(&what, &frame, at, findings),
                 Target::Stop => {}
             }
@@ -228,14 +228,14 @@ impl<'a> Reach<'a> {
         locations.into_iter().filter(|location| !self.bad_points.contains(&location.place.locpt))
     }
 
-    /// A grip wherever it is valid, with its approach and depart.
+    /// Try a grip at all locations where it is valid, with its approach and depart.
     fn grip(&self, i: usize, findings: &mut Findings) {
         let data = self.data;
         let Some(record) = data.grip_locs.get(i) else { return };
         let at = origin(&self.origins.grip_locs, i);
         let object = data.object_name(record.object);
         for location in self.good(locations_of(data, record.object, record.at)) {
-            // A more exact entry may hold at this location.
+            // At this location a more exact entry may apply.
             if data.grip_loc(&object, record.grip, &location.place).and_then(|id| id.index()) != Some(i) {
                 continue;
             }
@@ -260,7 +260,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Trajectories that begin relative to what is departed from.
+    /// Try trajectories that begin relative to the object that the robot departs from.
     fn departures(&self, location: &Location, frame: &Frame, what: What<'_>, findings: &mut Findings) {
         if self.relative_starts.is_empty() {
             return;
@@ -275,15 +275,15 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// A view wherever it is valid, with its approach and depart. A view that refers to the object has no
-    /// frame before the object is found.
+    /// Try a view at all locations where it is valid, with its approach and depart. A view that refers to the object
+    /// has no frame before the object is found.
     fn view(&self, i: usize, findings: &mut Findings) {
         let data = self.data;
         let Some(record) = data.visions.get(i).filter(|r| r.offset_from != RefType::Object) else { return };
         let at = origin(&self.origins.visions, i);
         let object = data.object_name(record.object);
         for location in self.good(locations_of(data, record.object, record.at)) {
-            // A more exact entry may hold at this location.
+            // At this location a more exact entry may apply.
             if data.view(&object, &location.place).and_then(|(id, _)| id.index()) != Some(i) {
                 continue;
             }
@@ -307,7 +307,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// An approach or depart of a location as such. The wild card is tried at all location points.
+    /// Try an approach to, or a depart from, a location itself. The wild card is tried at all location points.
     fn plain(&self, i: usize, findings: &mut Findings) {
         let data = self.data;
         let Some(record) = data.appr_depts.get(i) else { return };
@@ -325,7 +325,7 @@ impl<'a> Reach<'a> {
                 Direction::Approach => ("approach", data.approach_location(&location.place)),
                 Direction::Depart => ("depart", data.depart_location(&location.place)),
             };
-            // A corner that is not driven to has no approach of its own either.
+            // A corner that the robot cannot reach is not a target, and its approach is not checked either.
             if path == Some(record.path) && fault(&location.frame).is_none() {
                 let what = || format!("{word} of {}", shown(&location));
                 self.follow(record.path, &location.frame, &what, true, findings);
@@ -333,7 +333,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Where a relative move leads at each location where it is valid.
+    /// Try the goal of a relative move at each location where it is valid.
     fn relative(&self, i: usize, findings: &mut Findings) {
         let data = self.data;
         let Some(record) = data.relative_moves.get(i) else { return };
@@ -348,7 +348,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// From where a relative move leads: the location, or the ends of those before it.
+    /// The frame at which a relative move begins: the location, or the end of the moves before it.
     fn beginning(&self, record: &RelativeMove, location: &Location) -> Frame {
         let mut before: Vec<MovtabId> = Vec::new();
         let mut name = record.name;

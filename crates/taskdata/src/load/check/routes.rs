@@ -1,11 +1,12 @@
-//! Trajectories that no command can reach: another entry is always found before them, or both ends are one location (VII.6).
+//! Finds trajectories that no command can use: another entry is always found first, or both ends are one location
+//! (VII.6).
 
 use crate::files::{ArrayId, LocptId, OwnerId, Place, RefType, Reference, TaskData, TrajId};
 use interfaces::subtask::LocationKind;
 
 use super::{Findings, Origins, at_point, origin, owners_of};
 
-/// Most places of an end that are tried; an owner with more counts as reachable.
+/// Greatest number of places of an end that are tried; an end with more counts as reachable.
 const TRIED: usize = 64;
 
 /// Report each trajectory that no look-up finds.
@@ -49,12 +50,12 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
     }
 }
 
-/// True if no trajectory is flown between the two (docs/design/motion.md "Same location").
+/// True if a motion between the two uses no trajectory (docs/design/motion.md "Same location").
 fn same_location(a: &Place, b: &Place) -> bool {
     a.locpt == b.locpt && (!a.locpt.is_null() || a.array == b.array)
 }
 
-/// The places that a name at an end means, up to [`TRIED`].
+/// The places to which the name of an end refers, at most about [`TRIED`].
 fn places(data: &TaskData<'_>, end: Reference) -> Vec<Place> {
     match end.kind {
         RefType::LocationPoint => at_point(data, end).map(|l| l.place).into_iter().collect(),
@@ -66,7 +67,7 @@ fn places(data: &TaskData<'_>, end: Reference) -> Vec<Place> {
                 match member.member.kind {
                     RefType::LocationPoint => found.extend(at_point(data, member.member).map(|l| l.place)),
                     RefType::Array => found.extend(at_array(data, member.member)),
-                    // A pose stands for the location points at it.
+                    // A pose means the location points at it.
                     RefType::Pose => {
                         let points = data.locpts.iter().enumerate();
                         let at_pose = points.filter(|(_, p)| p.pose.number() == member.member.number);
@@ -81,7 +82,7 @@ fn places(data: &TaskData<'_>, end: Reference) -> Vec<Place> {
     }
 }
 
-/// An array at the corners of its owners, or at its own pose.
+/// The places of an array: at the corners of its owners, and at its own pose.
 fn at_array(data: &TaskData<'_>, array: Reference) -> Vec<Place> {
     let id = ArrayId::new(array.number);
     let corners = owners_of(data, array)

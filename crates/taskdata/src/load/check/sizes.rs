@@ -12,7 +12,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
         let sizes = [("approach", record.appr_size), ("depart", record.depart_size)];
         in_order(&what, record.grasp_size, sizes, origin(&origins.end_effs, i), findings);
     }
-    // An object that is not known is told by its name.
+    // An unknown object is reported by its name.
     for (i, record) in data.ped_paras.iter().enumerate().filter(|(_, record)| !record.object.is_null()) {
         let what = format!("the pedestal with {}", data.object_name(record.object));
         let sizes = [("approach", record.appr), ("release", record.release_size)];
@@ -25,7 +25,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
     }
 }
 
-/// Note the tray grips that no object form has.
+/// Report the tray grips that no object form has.
 pub(super) fn tray_grips(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
     for (i, record) in data.obj_grips.iter().enumerate() {
         let object = data.object_name(record.object);
@@ -40,7 +40,7 @@ pub(super) fn tray_grips(data: &TaskData<'_>, origins: &Origins, findings: &mut 
     }
 }
 
-/// Fingers open farther before and after than they close.
+/// Report an opening before or after a grasp that is smaller than the grasp size.
 fn in_order(what: &str, grasp: i32, sizes: [(&str, i32); 2], at: super::At, findings: &mut Findings) {
     let narrow: Vec<String> = sizes
         .into_iter()

@@ -1,26 +1,26 @@
-//! Actions of a job besides commands: of the workstation, and of a person at the joystick box.
+//! Actions of a job other than commands: of the workstation, and of an operator at the joystick box.
 
 use rcs_core::name::Name16;
 
 use crate::files::Location;
 
-/// How far a vise is to open or close (VIII.2).
+/// Opening of a vise (VIII.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViseOpening {
-    /// Far enough to put a blank in, near enough to hold it upright.
+    /// Wide enough to insert a blank, narrow enough to keep it upright.
     Partial,
-    /// On the part.
+    /// Closed on the part.
     Close,
-    /// Wide enough to take the part out, or to let it drop onto the ledge.
+    /// Wide enough to remove the part, or to let it drop onto the ledge.
     Open,
 }
 
-/// Where a part lies in its sector.
+/// Position of a part in its sector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Offset {
-    /// From the centre of the sector along world X, 0.01 in.
+    /// Distance from the centre of the sector along world X, 0.01 in.
     pub x: i32,
-    /// From the centre of the sector along world Y, 0.01 in.
+    /// Distance from the centre of the sector along world Y, 0.01 in.
     pub y: i32,
     /// Angle about world Z, 0.01 degree.
     pub angle: i32,
@@ -89,18 +89,18 @@ pub enum Joystick {
     Frame(JoystickFrame),
     /// Deflect the stick, then release it.
     Stick {
-        /// -1000 to 1000.
+        /// Deflection in X, -1000 to 1000.
         x: i16,
-        /// -1000 to 1000.
+        /// Deflection in Y, -1000 to 1000.
         y: i16,
-        /// How long.
+        /// Duration, ticks.
         ticks: u32,
     },
     /// Hold a button down.
     Press {
-        /// Which.
+        /// The button.
         button: JoystickButton,
-        /// How long.
+        /// Duration, ticks.
         ticks: u32,
     },
     /// Turn the velocity knob: 0 to 1000.
@@ -111,13 +111,13 @@ pub enum Joystick {
     Resume,
     /// Suspend a process.
     Hold(Stepped),
-    /// Let a process run on.
+    /// Let a suspended process continue.
     Free(Stepped),
     /// Step a suspended process.
     Step {
-        /// Which.
+        /// The process.
         process: Stepped,
-        /// How often.
+        /// Number of steps.
         count: u32,
     },
 }
@@ -148,7 +148,7 @@ pub enum Panel {
     Hydraulics(bool),
     /// MANUAL on or off.
     Manual(bool),
-    /// Align all axes to their arrows, or one of 1 to 6.
+    /// Align all axes to their arrows, or only the given axis, 1 to 6.
     Align(Option<u8>),
     /// AUTO.
     Auto,
@@ -167,29 +167,29 @@ pub enum Panel {
 /// Actions at the panel of the rotary table's controller (IV.1 step 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TablePanel {
-    /// The power on or off.
+    /// Switch the power on or off.
     Power(bool),
-    /// The mode switch to MANUAL, or to PROG.
+    /// Set the mode switch to MANUAL (true) or to PROG.
     Manual(bool),
-    /// RUN+ or RUN- is held down.
+    /// Hold RUN+ or RUN- down.
     Run {
-        /// Toward the + limit.
+        /// True: toward the + limit.
         plus: bool,
-        /// How long.
+        /// Duration, ticks.
         ticks: u32,
     },
-    /// STEP+ or STEP- is pressed.
+    /// Press STEP+ or STEP-.
     Step {
-        /// Toward the + limit.
+        /// True: toward the + limit.
         plus: bool,
-        /// How often.
+        /// Number of steps.
         count: u32,
     },
     /// RESET.
     Reset,
 }
 
-/// An action besides the commands to the robot.
+/// An action other than a command to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Workstation {
     /// A part is delivered into a sector of a tray.
@@ -203,11 +203,11 @@ pub enum Workstation {
     },
     /// A vise moves its jaws.
     Vise {
-        /// How far.
+        /// Opening of the jaws.
         opening: ViseOpening,
         /// The vise.
         location: Location,
-        /// The program from now on; `None` keeps the last one.
+        /// Program of the vise from now on; `None` keeps the last one.
         program: Option<Name16>,
     },
     /// A part is machined in a vise or a nest.
@@ -219,28 +219,28 @@ pub enum Workstation {
         /// The vise or the nest.
         location: Location,
     },
-    /// The tool drum.
+    /// An action of the tool drum.
     Drum(Drum),
-    /// The joystick box.
+    /// An action at the joystick box.
     Joystick(Joystick),
     /// An emergency stop is pressed.
     Press(EStop),
     /// An emergency stop is pulled out again.
     Release(EStop),
-    /// The robot controller's panel.
+    /// An action at the robot controller's panel.
     Panel(Panel),
-    /// The panel of the rotary table's controller.
+    /// An action at the panel of the rotary table's controller.
     Table(TablePanel),
     /// Blocks are loaded into the running system.
     Load {
-        /// Which of the job's reloads, from 1.
+        /// Number of the reload in the job, from 1.
         number: u32,
     },
     /// Wait.
     Wait {
-        /// How long.
+        /// Duration, ticks.
         ticks: u32,
     },
-    /// The workstation controller commands until it disconnects (IV.4.1).
+    /// Hand the command over to the workstation controller until it disconnects (IV.4.1).
     HandOver,
 }

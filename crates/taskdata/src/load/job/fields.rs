@@ -35,7 +35,7 @@ impl<'a, 'w> Fields<'a, 'w> {
         Some(word)
     }
 
-    /// Where the next word is, or the last one if there is no next.
+    /// Place of the next word, or of the last word if none is left.
     pub(super) fn at(&self) -> At {
         self.words.get(self.next).or_else(|| self.words.last()).map_or_else(At::default, |w| w.at)
     }

@@ -4,35 +4,35 @@
 //! of V.4.2 without the serial number (SPECNOTES.md, contradiction 25): object, source grip, location and sector,
 //! destination grip, location and sector, end-at location and sector; `--` is a null field. A serial number may follow:
 //! `#17` (an extension), and `expect error` for a command that has to fail (an extension). The manual has no other
-//! lines: vise, trays and machine belong to the HWSC, not to the robot. Lines that begin with `**` are their actions:
+//! lines: vise, trays and machine belong to the HWSC, not to the robot. Lines that begin with `**` are such actions:
 //!
 //! ```text
-//! ** tray UNIT_1 4 LINKBAR1_BH            a part is delivered into a sector, somewhere (a seed decides)
+//! ** tray UNIT_1 4 LINKBAR1_BH            a part is delivered into a sector, at a random position (seed of the run)
 //! ** tray UNIT_1 4 LINKBAR1_BH 50 -20 1500   or at an x, y (0.01 in) and an angle (0.01 degree) from its centre
-//! ** vise partial|close|open PFIXTURE [CLEVIS]  the jaws of a vise move, by a program from here on
+//! ** vise partial|close|open PFIXTURE [CLEVIS]  the jaws of a vise move, from here on with a program
 //! ** machine LINKBAR1_BH LINKBAR1 PFIXTURE  the blank in a vise or a nest becomes the finished part
 //! ** drum grip|release                     the tool drum closes or opens its fingers
 //! ** drum tool ENDMILL-1                   a tool is put into the drum
 //! ** joystick frame WORLD|TOOL|TOOL-ORIGIN|WRIST-ORIGIN|OFF
-//! ** joystick stick 1000 -500 25           X, Y (-1000 to 1000) for so many ticks
-//! ** joystick up|down|roll+|roll-|open|close 25   a button, for so many ticks
+//! ** joystick stick 1000 -500 25           X, Y (-1000 to 1000) for 25 ticks
+//! ** joystick up|down|roll+|roll-|open|close 25   a button, for 25 ticks
 //! ** joystick velocity 500                 the knob (0 to 1000)
 //! ** joystick record, ** joystick resume   the record button, and the carriage return after it
-//! ** joystick hold|free EMOVE              a process is suspended, or runs on
-//! ** joystick step EMOVE [3]               a suspended process runs once, or so often
+//! ** joystick hold|free EMOVE              a process is suspended, or continues
+//! ** joystick step EMOVE [3]               a suspended process runs once, or 3 times
 //! ** estop joystick-box                    an emergency stop is pressed: control-panel, teach-pendant, terminals,
 //!                                          joystick-box, pedestal
 //! ** release joystick-box                  it is pulled out again
 //! ** panel fault-reset                     a key of the robot controller: power on|off, fault-reset, hydraulics
 //!                                          enable|disable, manual on|off, align [AXIS], auto, cycle-start,
 //!                                          interrupt, cancel, enter, hold on|off
-//! ** wait 50                               so many ticks
-//! ** load more.blk                         blocks are loaded, which count from the next command on
-//! ** after 50 joystick hold PRIM           any of these, so many ticks after the next command was sent
+//! ** wait 50                               the job waits for 50 ticks
+//! ** load more.blk                         blocks are loaded, which take effect with the next command
+//! ** after 50 joystick hold PRIM           any of these, 50 ticks after the next command was sent
 //! ```
 //!
-//! Commands are checked against the task data, and so is the path from each to the next: a job that cannot run is
-//! refused before the first tick.
+//! Commands, and the path from each to the next, are checked against the task data: a job that cannot run is refused
+//! before the first tick.
 
 mod action;
 mod fields;
@@ -81,13 +81,13 @@ pub const TASK_COMMANDS: &[&str] = &[
 /// A step of a job.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// A command to Task, its number still 0.
+    /// A command to Task, with number 0.
     Command(HwsCommand),
     /// An action of the workstation.
     Workstation(Workstation),
     /// An action while the robot executes the next command.
     After {
-        /// Ticks from the one in which that command is sent.
+        /// Delay from the tick in which that command is sent, ticks.
         ticks: u32,
         /// The action.
         action: Workstation,
@@ -101,10 +101,10 @@ pub struct JobLine {
     pub step: Step,
     /// The line as written, without its comment.
     pub text: String,
-    /// SourceLine of the file from 1.
+    /// Number of the line in the file, from 1.
     pub line: u32,
-    /// The line ends with `expect error`: its command has to end with an error, or the blocks that it loads do
-    /// not fit the cell.
+    /// True if the line ends with `expect error`: its command must end with an error, or the blocks that it loads
+    /// must not fit the cell.
     pub expects_error: bool,
 }
 
@@ -113,9 +113,9 @@ pub struct JobLine {
 pub struct Job {
     /// Name of the job: the file's name without its extension.
     pub name: String,
-    /// Its steps in order.
+    /// The steps, in order.
     pub steps: Vec<JobLine>,
-    /// The reloads of the lines `** load`, in their order.
+    /// The reloads of the lines `** load`, in order.
     pub reloads: Vec<Reload>,
     source: Source,
 }
@@ -124,7 +124,7 @@ impl Job {
     /// Read a job file and check it against the task data.
     ///
     /// # Errors
-    /// The report, if it holds an error; every error of the job is in it.
+    /// The report, if it has an error; it has every error of the job.
     pub fn load(path: &Path, store: &Store) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         match read(path, &path.display().to_string()) {
             Ok(source) => Self::from_source(source, store).and_then(Self::with_a_line),
@@ -136,7 +136,7 @@ impl Job {
         }
     }
 
-    /// Check a job against task data with errors: its lines by themselves, and names that look misspelt.
+    /// Check a job against task data that have errors: each line by itself, and names that are probably misspelt.
     #[must_use]
     pub fn check_part(path: &Path, part: &Part) -> Diagnostics {
         let mut problems = Problems::default();
@@ -156,7 +156,7 @@ impl Job {
         Diagnostics::of_file(problems, &source)
     }
 
-    /// The job and its report, unless it has no line.
+    /// The job and its report; a job without lines is an error.
     fn with_a_line((job, report): (Self, Diagnostics)) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         if !job.steps.is_empty() {
             return Ok((job, report));
@@ -170,7 +170,7 @@ impl Job {
     /// Check a job that was read elsewhere, such as the attachment of a log.
     ///
     /// # Errors
-    /// The report, if it holds an error.
+    /// The report, if it has an error.
     pub fn from_source(source: Source, store: &Store) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let mut problems = Problems::default();
         let reloads = reload::reloads(&source, store, &mut problems);

@@ -1,6 +1,6 @@
 //! Preconditions of a command: the fields that its verb uses, the grips of its object, the data for a regrip on the
-//! Active Pedestal, a tool in the gripper (V.4.1, V.3.1 FIX-GRIP). Task and Subtask refuse the command for the same
-//! reasons, but only when the job has reached it.
+//! Active Pedestal, a tool in the gripper (V.4.1, V.3.1 FIX-GRIP). Task and Subtask would refuse the command for the
+//! same reasons, but only when the job reaches it.
 
 use diagnostics::{At, Problems};
 use rcs_core::name::{Name10, Name16};
@@ -10,9 +10,9 @@ use crate::files::{ArrayId, Direction, LocptId, OwnerId, RefType, Reference, Tas
 
 /// Location at which the Active Pedestal grips an object (V.3.1 FIX-GRIP).
 const PEDESTAL: &str = "PEDESTAL";
-/// Where the robot is near the tool drum (V.4.1 ACQUIRE-TOOL).
+/// Location near the tool drum (V.4.1 ACQUIRE-TOOL).
 const NEAR_DRUM: &str = "TOOL-SAFE";
-/// Where tools are passed to the drum.
+/// Location where tools are passed to the drum.
 const DRUM: &str = "TOOL-TRNS";
 /// `endeff-id#` of the tool gripper (VII.7.2).
 const TOOL_GRIPPER: i32 = 3;
@@ -25,7 +25,7 @@ pub(super) struct Endpoint {
     pub(super) grip: Option<Number>,
 }
 
-/// The fields of a command that are checked together. Unknown names are reported already.
+/// The fields of a command that are checked together. Unknown names have been reported before.
 #[derive(Clone, Copy)]
 pub(super) struct Command<'v> {
     pub(super) verb: &'v str,
@@ -36,13 +36,13 @@ pub(super) struct Command<'v> {
     pub(super) end_at: Endpoint,
 }
 
-/// The held object between two commands, if there was no error.
+/// The object that the robot holds between two commands, if there was no error.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum Held {
     #[default]
     Nothing,
     Object(Name16),
-    /// The operator, or a command that failed, decides.
+    /// Not known, after actions of the operator or a failed command.
     Unknown,
 }
 
@@ -59,7 +59,7 @@ impl Command<'_> {
         self.is(&["TRANSFER", "REFIXTURE"]) || self.verb == "MOVE" && self.object.given()
     }
 
-    /// The places that the verb uses with a grip.
+    /// The locations at which the verb uses a grip.
     fn gripped(&self) -> Vec<&Endpoint> {
         match self.verb {
             "POSITION" if self.source.name.given() => vec![&self.source],
@@ -82,7 +82,7 @@ impl Command<'_> {
         match self.verb {
             "TRANSFER" | "POSITION" | "RELEASE-TOOL" => Held::Nothing,
             "ACQUIRE" | "REFIXTURE" | "ACQUIRE-TOOL" | "REMOVE-TOOL" => object,
-            // That it was not held is noted.
+            // That it was not held is reported.
             "INSERT-TOOL" if self.object.given() && held == Held::Nothing => object,
             "MOVE" if self.object.given() => object,
             _ => held,
@@ -101,7 +101,7 @@ impl Needs<'_, '_> {
         self.problems.error_help("job.needs", at, message, help);
     }
 
-    /// Object and locations.
+    /// Check that the object and the locations that the verb needs are given.
     fn fields(&mut self) {
         let command = self.command;
         let verb = command.verb;
@@ -127,7 +127,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// A tray has sectors; its location point is only the corner from which they are counted (VIII.3).
+    /// Check that a location in a tray has a sector: the location point of a tray is only its corner (VIII.3).
     fn sectors(&mut self) {
         let command = self.command;
         let places = match command.verb {
@@ -149,7 +149,7 @@ impl Needs<'_, '_> {
                 assigned.filter(|assigned| members.iter().any(|member| member.member == *assigned)).last();
             let array = here.and_then(|here| self.data.array(ArrayId::new(here.number)));
             let help = match (here.map(|here| here.kind), array) {
-                // The form assigns the object to the location point itself.
+                // The object location form assigns the object to the location point itself.
                 (Some(RefType::LocationPoint), _) => continue,
                 (_, Some(array)) => {
                     format!("{name} has sectors 1 to {} for {}", array.sectors(), command.object.name)
@@ -160,7 +160,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// +0 is not a grip.
+    /// Check that a grip is given: +0 is not a grip.
     fn grips(&mut self) {
         let command = self.command;
         let null = |place: &&Endpoint| command.object.given() && place.name.given() && place.grip.is_some();
@@ -173,7 +173,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// Different grips need a regrip on the Active Pedestal.
+    /// Check the data for a regrip on the Active Pedestal, which different grips need.
     fn regrip(&mut self) {
         let command = self.command;
         let (Some(from), Some(to)) = (command.source.grip, command.destination.grip) else { return };
@@ -188,7 +188,7 @@ impl Needs<'_, '_> {
             return;
         }
         let (object, data) = (command.object.name, self.data);
-        // A grip that no object form has is noted already, and so is +0.
+        // A grip that no object form has is reported already, and so is +0.
         if [from, to].iter().any(|grip| data.object(&object, grip.value).is_none()) {
             return;
         }
@@ -225,7 +225,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// A tool command handles a tool, and all but the first of a chain handle the one that is held.
+    /// Check that a tool command handles a tool, and that the gripper holds this tool, or nothing before ACQUIRE-TOOL.
     fn tool(&mut self, held: Held) {
         let command = self.command;
         if !command.is_for_tools() {
@@ -265,7 +265,7 @@ impl Needs<'_, '_> {
         self.error(command.at, message, format!("{before} comes before it"));
     }
 
-    /// The relative moves at the drum that the verb makes (V.2.1).
+    /// Check that the relative moves at the drum that the verb makes exist (V.2.1).
     fn moves(&mut self) {
         let command = self.command;
         let names: &[&str] = match command.verb {
@@ -286,7 +286,7 @@ impl Needs<'_, '_> {
     }
 }
 
-/// The grips that an object has, as help.
+/// Help text: the grips of an object.
 pub(super) fn grips_of(data: &TaskData<'_>, object: &Name16) -> String {
     let id = data.object_named(object);
     let grips: Vec<String> =
@@ -298,7 +298,7 @@ pub(super) fn grips_of(data: &TaskData<'_>, object: &Name16) -> String {
     }
 }
 
-/// The places at which a grip of an object has a movetable, as help.
+/// Help text: the locations at which a grip of an object has a movetable.
 pub(super) fn places_of(data: &TaskData<'_>, object: &Name16, grip: i32) -> String {
     let id = data.object_named(object);
     let entries = data.grip_locs.iter().filter(|entry| Some(entry.object) == id && entry.grip == grip);
@@ -310,7 +310,7 @@ pub(super) fn places_of(data: &TaskData<'_>, object: &Name16, grip: i32) -> Stri
     }
 }
 
-/// The places at which an object, or its view, can be approached with a grip, as help.
+/// Help text: the locations at which an object, or its view, can be approached with a grip.
 pub(super) fn approaches_of(data: &TaskData<'_>, kind: RefType, object: &Name16, grip: i32) -> String {
     let id = data.object_named(object).map(|id| id.number());
     let of_it = data.appr_depts.iter().filter(|entry| {
@@ -326,7 +326,7 @@ pub(super) fn approaches_of(data: &TaskData<'_>, kind: RefType, object: &Name16,
     }
 }
 
-/// What an object is assigned to, as help.
+/// Help text: the arrays and location points to which an object is assigned.
 pub(super) fn assigned_to(data: &TaskData<'_>, object: &Name16) -> String {
     let id = data.object_named(object);
     let assigned = id.into_iter().flat_map(|id| data.object_locations(id));

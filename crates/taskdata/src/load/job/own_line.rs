@@ -1,7 +1,7 @@
-//! A line that is not in a job: another process or an operator sends it during the run.
+//! A line that does not come from a job: another process or an operator sends it during the run.
 //!
-//! It is read from its words and the task data alone; the run reads `load OFFSET BLOCK` before. It opens no file,
-//! because that could take any time, and would reveal to the connected system which files exist.
+//! Its meaning depends only on its words and the task data; the run itself handles `load OFFSET BLOCK` earlier. Reading
+//! it opens no file, because that could take any time, and would reveal to the connected system which files exist.
 
 use std::fmt;
 
@@ -17,17 +17,17 @@ use super::{
 /// Why a line is refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OwnLineError {
-    /// It is empty.
+    /// The line is empty.
     Nothing,
-    /// A job names files, whose blocks are read and checked before its first tick.
+    /// `load FILE` is possible only in a job, whose blocks are read and checked before its first tick.
     Load,
-    /// The ticks of a job are those of its player.
+    /// `wait` is possible only in a job: it counts the ticks of the job.
     Wait,
-    /// `after` counts ticks of a job, too.
+    /// `after` is possible only in a job: it counts the ticks of the job.
     After,
-    /// The workstation controller commands already.
+    /// `workstation` is possible only in a job, which hands the command over.
     HandOver,
-    /// It is not a line, or has names that the task data do not have.
+    /// It cannot be read, or has unknown names; the message.
     Unreadable(String),
 }
 
@@ -54,8 +54,8 @@ impl std::error::Error for OwnLineError {}
 /// The name of such a line in messages.
 const SOURCE: &str = "the line";
 
-/// Read a command as in a job, with or without `==` before it. PAUSE, STARTUP and SHUTDOWN need no fields. Position and
-/// held object of the robot are not known here.
+/// Read a command as in a job, with or without `==` before it. PAUSE, STARTUP and SHUTDOWN need no fields. The position
+/// of the robot and the object that it holds are not known here, and not checked.
 ///
 /// # Errors
 /// [`OwnLineError`].
@@ -76,7 +76,7 @@ pub fn own_command(text: &str, store: &Store) -> Result<JobLine, OwnLineError> {
     }
 }
 
-/// True if a line begins as a command to Task does.
+/// True if a line begins like a command to Task.
 #[must_use]
 pub fn is_command(text: &str) -> bool {
     let text = text.trim_start();
@@ -96,7 +96,7 @@ fn unreadable(text: &str, problems: Problems) -> OwnLineError {
     OwnLineError::Unreadable(errors.join("; "))
 }
 
-/// Read a line as in a job, without its asterisks.
+/// Read a line as in a job, without the `**` before it.
 ///
 /// # Errors
 /// [`OwnLineError`].

@@ -17,14 +17,14 @@ use super::{
 /// Reads the lines of a job in their order.
 pub(super) struct Reader<'s, 'p> {
     data: TaskData<'s>,
-    /// The data have errors: a missing name may be in a part that could not be read.
+    /// The readable part, if the data have errors: a missing name may be in the rest.
     part: Option<&'s Part>,
-    /// The task data after each line that loads blocks, in their order.
+    /// The task data after each line that loads blocks, in the order of the lines.
     reloads: std::vec::IntoIter<TaskData<'s>>,
     loaded: u32,
     pub(super) problems: &'p mut Problems,
     pub(super) walk: Walk,
-    /// What the robot holds.
+    /// The object that the robot holds.
     held: Held,
     /// The last line with `after` that no command has followed yet.
     pub(super) after: Option<At>,
@@ -36,7 +36,7 @@ impl<'s, 'p> Reader<'s, 'p> {
         Self { data, part: None, reloads: reloads.into_iter(), loaded: 0, problems, walk, held, after: None }
     }
 
-    /// Report only certain errors: `part` is the readable part of the data.
+    /// Report only errors that the missing data cannot explain; `part` is the readable part of the data.
     pub(super) fn among(self, part: &'s Part) -> Self {
         Self { part: Some(part), ..self }
     }
@@ -47,8 +47,8 @@ impl<'s, 'p> Reader<'s, 'p> {
         self.held = Held::Unknown;
     }
 
-    /// A line loads something: from here on names are looked up in what it loads. The number of the reload,
-    /// from 1; `None` if it could not be loaded, which was noted.
+    /// A line loads blocks: from here on names are looked up in the new task data. Returns the number of the reload,
+    /// from 1; `None` if the blocks could not be loaded, which is reported already.
     pub(super) fn reload(&mut self) -> Option<u32> {
         self.data = self.reloads.next()?;
         self.loaded += 1;
@@ -57,7 +57,7 @@ impl<'s, 'p> Reader<'s, 'p> {
 }
 
 impl Reader<'_, '_> {
-    /// After the last line.
+    /// Report errors that are known only after the last line.
     pub(super) fn end(&mut self) {
         if let Some(at) = self.after {
             self.problems.error_help(
@@ -69,7 +69,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The step of line `number`; `None` if it has none, or if it cannot be read, which is noted.
+    /// The step of line `number`; `None` if it has none, or if it cannot be read, which is reported.
     pub(super) fn line(&mut self, number: u32, line: &SourceLine<'_>) -> Option<JobLine> {
         let words = words_of_line(line);
         let first = words.first()?;
@@ -101,8 +101,8 @@ impl Reader<'_, '_> {
         Some(JobLine { step, text: text.trim().to_owned(), line: number, expects_error })
     }
 
-    /// True if the line of a command, or one that loads blocks, ends with `expect error`; `None` if something
-    /// else is expected, which is noted.
+    /// True if the line of a command, or one that loads blocks, ends with `expect error`; `None` if another word
+    /// follows `expect`, which is reported.
     fn expects_error(&mut self, fields: &mut Fields<'_, '_>) -> Option<bool> {
         if fields.take_if("expect").is_none() {
             return Some(false);
@@ -115,7 +115,7 @@ impl Reader<'_, '_> {
         None
     }
 
-    /// `None` if a word is left, which is noted.
+    /// `None` if a word is left, which is reported.
     pub(super) fn end_of_line(&mut self, fields: &mut Fields<'_, '_>) -> Option<()> {
         let Some(extra) = fields.take() else { return Some(()) };
         self.problems.error("job.fields", extra.at, format!("the line should end before {}", extra.text));
@@ -158,7 +158,7 @@ impl Reader<'_, '_> {
         self.number(fields, what, NINE_FIELDS)
     }
 
-    /// A whole number; `help` says what the line should look like.
+    /// A whole number; `help` is the correct form of the line.
     pub(super) fn number(&mut self, fields: &mut Fields<'_, '_>, what: &str, help: &str) -> Option<Number> {
         let at = fields.at();
         let Some(word) = fields.take() else {
@@ -208,7 +208,7 @@ impl Reader<'_, '_> {
                 destination: place(destination, destination_sector, Some(destination_grip)),
                 end_at: place(end_at, end_at_sector, None),
             };
-            // A command that has to fail may lack what it needs, and leave anything behind.
+            // A command that must fail may lack fields or data, and the object held after it is not known.
             let fails = fields.words.get(fields.next).is_some_and(|word| word.text == "expect");
             self.held =
                 if fails { Held::Unknown } else { command.check(&self.data, self.held, self.problems) };
@@ -235,8 +235,8 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// The serial number of the object, if the line has one behind its nine fields: `#17`. What stands there
-    /// instead is noted.
+    /// The serial number of the object, if the line has one after its nine fields: `#17`. Another word there is
+    /// reported.
     fn serial(&mut self, fields: &mut Fields<'_, '_>) -> Name16 {
         let word = fields.words.get(fields.next).filter(|word| word.text != "expect");
         let Some(word) = word.and_then(|_| fields.take()) else { return Name16::EMPTY };
@@ -255,7 +255,7 @@ impl Reader<'_, '_> {
     /// A location of a command, with the object that is handled there.
     fn visit(&mut self, field: Field, sector: Number, object: Option<Name16>, grip: Number) -> Option<Visit> {
         let location = self.place(field, sector, object, Some(grip))?;
-        // A grip that is not known is noted already.
+        // A grip that is not known is reported already.
         let known = |name: &Name16| {
             let movetable = || self.data.grip_movetable(name, grip.value, &location.place);
             grip.value != 0 && self.data.object(name, grip.value).is_some() && movetable().is_some()
@@ -271,7 +271,7 @@ impl Reader<'_, '_> {
         self.problems.error_help("name.unknown", at, format!("no {what} is named {name}"), help);
     }
 
-    /// True if the object is known; else it is noted.
+    /// True if the object is known; otherwise it is reported.
     pub(super) fn object(&mut self, field: Field) -> bool {
         if self.data.object_named(&field.name).is_some() {
             return true;
@@ -353,7 +353,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Help if a command does not have the right fields.
+/// Help text if a command does not have the right fields.
 const NINE_FIELDS: &str = "a command has nine fields: object, grip, location, sector, grip, location, sector, end-at, sector; -- is null";
 
 /// Greatest number in a job line.

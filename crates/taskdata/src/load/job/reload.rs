@@ -1,6 +1,6 @@
 //! Lines `** load FILE`: blocks that are loaded during the run, so that later lines use other task data.
 //!
-//! They are built and checked before the first tick, as everything of a job is: a block with a mistake in it refuses the job.
+//! Like the rest of the job, they are checked before the first tick: a job with an error in such a block is refused.
 
 use std::path::Path;
 
@@ -11,17 +11,17 @@ use super::{
     source_lines,
 };
 
-/// A reload: the blocks, and the task data with them.
+/// A reload: the blocks, and the task data that include them.
 #[derive(Clone, Debug)]
 pub struct Reload {
     /// The blocks.
     pub source: Source,
-    /// The task data from then on.
+    /// The task data after the reload.
     pub store: Store,
 }
 
-/// The reloads of a job in the order of their lines, each upon the one before. File names are relative to the job's directory.
-/// A file that cannot be loaded is noted at its line, and changes nothing.
+/// The reloads of a job in the order of their lines, each based on the one before. File names are relative to the job's
+/// directory. A file that cannot be loaded is reported at its line, and changes nothing.
 pub(super) fn reloads(job: &Source, store: &Store, problems: &mut Problems) -> Vec<Reload> {
     let directory = Path::new(&job.name).parent().unwrap_or(Path::new(""));
     let mut loaded: Vec<Reload> = Vec::new();
@@ -58,7 +58,7 @@ pub(super) fn reloads(job: &Source, store: &Store, problems: &mut Problems) -> V
     loaded
 }
 
-/// Where the file stands among the words of a line that loads one.
+/// Position of the file name among the words of a line that loads a file.
 fn file_of(words: &[&str]) -> Option<usize> {
     match words {
         ["**", "load", ..] => Some(2),

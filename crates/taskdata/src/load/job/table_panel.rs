@@ -27,7 +27,7 @@ const RUN_FORM: &str = "** table run+|run- TICKS";
 const TABLE_STEP_FORM: &str = "** table step+|step-, or with a COUNT behind it: a step is 0.01 degree";
 
 impl Reader<'_, '_> {
-    /// The words behind `table`.
+    /// Read the words after `table`.
     pub(super) fn table(&mut self, fields: &mut Fields<'_, '_>) -> Option<TablePanel> {
         Some(match self.choice(fields, "key of the rotary table's controller", TABLE_VERBS)? {
             TableVerb::Power => {

@@ -1,7 +1,7 @@
 //! The path of the robot through a job: from each location to the next there must be a trajectory and an approach.
 //!
-//! The position of the robot before the first command is not known here. A command whose way leads over the Active
-//! Pedestal or to the tool drum is not followed; the walk begins again at its end.
+//! The position of the robot before the first command is not known here. The path of a command that uses the Active
+//! Pedestal or the tool drum is not checked; the check continues at its end.
 
 use diagnostics::{At, Problems};
 use rcs_core::name::Name16;
@@ -13,7 +13,7 @@ use super::needs::approaches_of;
 /// A location that a command leads to.
 pub(super) struct Visit {
     pub location: Location,
-    /// The object that is handled there, and with which grip.
+    /// The object that is handled there, and its grip number.
     pub object: Option<(Name16, i32)>,
     pub at: At,
 }
@@ -25,20 +25,20 @@ pub(super) struct Visits {
     pub end_at: Option<Visit>,
 }
 
-/// Where the robot is between two commands.
+/// The location of the robot between two commands.
 #[derive(Default)]
 pub(super) struct Walk {
-    /// The location, and with which grip of which object the robot went there.
+    /// The location, with object and grip number of the motion to it; `None` if it is not known.
     last: Option<(Location, Option<(Name16, i32)>)>,
 }
 
 impl Walk {
-    /// Something other than a command moves the robot.
+    /// Something other than a command moves the robot: its location is then unknown.
     pub(super) fn forget(&mut self) {
         self.last = None;
     }
 
-    /// Follow a command (V.4.1).
+    /// Check the path of a command (V.4.1).
     pub(super) fn command(
         &mut self,
         data: &TaskData<'_>,
@@ -67,7 +67,7 @@ impl Walk {
                 }
             }
             "ACQUIRE" => self.go(data, problems, source),
-            // An object where it is, or a location (SPECNOTES.md, contradiction 24).
+            // POSITION goes to an object at its location, or to a location (SPECNOTES.md, contradiction 24).
             "POSITION" => self.go(data, problems, source.or(destination)),
             "PAUSE" => {}
             _ => self.last = None,
@@ -114,7 +114,7 @@ impl Walk {
     }
 }
 
-/// An object that vision has to find needs a way to the place from which it is looked for.
+/// Check the path to the place of the camera, if vision has to locate the object.
 fn view(data: &TaskData<'_>, problems: &mut Problems, visit: &Visit, verb: &str) {
     let Some((object, _)) = visit.object.filter(|_| matches!(verb, "TRANSFER" | "MOVE" | "ACQUIRE")) else {
         return;
@@ -136,7 +136,7 @@ fn view(data: &TaskData<'_>, problems: &mut Problems, visit: &Visit, verb: &str)
     }
 }
 
-/// Sectors of one tray are one location: the way between them needs no trajectory
+/// True if both are one location, such as sectors of one tray: a motion between them needs no trajectory
 /// (docs/design/motion.md "Same location").
 fn same(one: &Location, other: &Location) -> bool {
     one.name == other.name

@@ -10,7 +10,7 @@ use super::{
     read::{MOST, Reader},
 };
 
-/// The first words of a line, and of a line of the joystick box, with the function that reads the rest.
+/// The first word of a line after `**`, which selects how the rest is read.
 #[derive(Clone, Copy)]
 enum Verb {
     Tray,
@@ -146,11 +146,11 @@ const ALIGN_FORM: &str = "** panel align, or with an AXIS from 1 to 6 behind it"
 const WAIT_FORM: &str = "** wait TICKS; a tick is 40 ms";
 const AFTER_FORM: &str = "** after TICKS, then another line's words behind its **";
 
-/// Full deflection of the stick, and full turn of the knob.
+/// Full deflection of the stick, and full scale of the knob.
 const FULL: i32 = 1000;
 
 impl Reader<'_, '_> {
-    /// The words behind `**`.
+    /// Read the words after `**`.
     pub(super) fn workstation(&mut self, fields: &mut Fields<'_, '_>) -> Option<Step> {
         let at = fields.at();
         match self.choice(fields, "step of the workstation", VERBS)? {
@@ -171,8 +171,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A line that is not in a job. Some lines are possible only in a job: they use its ticks, its files, its next
-    /// command.
+    /// Read a line that is not in a job. Lines that use the job's ticks, its files or its next command are not
+    /// possible then.
     pub(super) fn own_line(&mut self, fields: &mut Fields<'_, '_>) -> Option<Workstation> {
         let of_job = |verb: &Verb| matches!(verb, Verb::Wait | Verb::Load | Verb::After | Verb::HandOver);
         let is_own = |(_, verb): &(&str, Verb)| !of_job(verb);
@@ -317,7 +317,7 @@ impl Reader<'_, '_> {
         self.choice(fields, "process that the joystick box can hold", PROCESSES)
     }
 
-    /// One word of several.
+    /// Read one of several words.
     pub(super) fn choice<T: Copy>(
         &mut self,
         fields: &mut Fields<'_, '_>,
@@ -351,7 +351,7 @@ impl Reader<'_, '_> {
         u32::try_from(number.value).ok()
     }
 
-    /// A number from `low` to 1000.
+    /// Read a number from `low` to 1000.
     fn within(&mut self, fields: &mut Fields<'_, '_>, what: &str, low: i32, form: &str) -> Option<i16> {
         let number = self.number(fields, what, form)?;
         if !(low..=FULL).contains(&number.value) {

@@ -1,4 +1,4 @@
-//! Look-ups of declared names, without reports of unknown ones: these can be made on all processors at once. Entries
+//! Look-ups of declared names, without reports of unknown ones, so that they can run on all processors at once. Entries
 //! with an unknown name are linked again one by one, with reports.
 
 use geometry::frame::Frame;
@@ -23,12 +23,12 @@ pub(super) fn named<const N: usize>(index: &OwnedIndex, name: &Named<N>) -> Opti
     index.view().find(name_key(&name.name))
 }
 
-/// True for the name of the null movetable; the bytes are compared, since there are many names.
+/// True for the name of the null movetable. Compares bytes, which is faster, because there are many names.
 fn is_null(name: &Named<10>) -> bool {
     name.name.bytes().strip_prefix(NULL_NAME.as_bytes()).is_some_and(|rest| rest.starts_with(&[0]))
 }
 
-/// The files and indexes that are made already.
+/// The files and indexes that are built already.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'l> {
     pub(super) files: &'l Files,
@@ -98,7 +98,7 @@ impl Known<'_> {
         self.has_grip(&entry.object, entry.grip).then_some(record)
     }
 
-    /// What is approached or departed, and where.
+    /// The subject that is approached or departed from, and its location.
     pub(super) fn subject(&self, entry: &ApprDeptEntry) -> Option<(Reference, Reference)> {
         let subject = self.reference(&entry.subject)?;
         let at = entry.place.as_ref().map_or(Some(subject), |place| self.reference(place))?;

@@ -1,7 +1,7 @@
 //! From entries to records: names become record numbers.
 //!
-//! All names are declared before any is looked up, so the order of blocks does not matter. One index a file finds both the
-//! names and the duplicates, which share a key.
+//! All names are declared before any is looked up, so the order of blocks does not matter. The index of a file finds
+//! both the names and the duplicates, which share a key.
 
 mod guarded;
 mod known;
@@ -33,10 +33,11 @@ use super::{
 
 use known::Known;
 
-/// Unknown names for which the nearest known one is looked for; in data where everything is unknown that would take hours.
+/// Greatest number of unknown names for which the nearest known one is searched: the search would take hours if all
+/// names were unknown.
 const NEAREST_FOR: usize = 200;
 
-/// What links the entries of a load.
+/// Links the entries of a load.
 pub(super) struct Linker<'a> {
     broken: &'a HashSet<String>,
     orphans: &'a mut Orphans,
@@ -44,16 +45,16 @@ pub(super) struct Linker<'a> {
     files: Files,
     indexes: OwnedIndexes,
     origins: Origins,
-    /// Parameters that have a record already.
+    /// Parameters that already have a record.
     paras: FxHashMap<[i32; 4], TrajParaId>,
     /// Number of unknown names.
     unknown: usize,
-    /// Each of them, with what it should be: where it was first asked for, and how often.
+    /// For each unknown name and its expected kind: the place of its first use, and the number of uses.
     asked: BTreeMap<(String, String), (At, usize)>,
 }
 
-/// Make files and indexes of entries; problems are noted. `broken` are names in entries that could not be read, `orphans` have
-/// those in blocks that are not loaded. The last of the answer are the names that are not known.
+/// Make files and indexes from entries; reports problems. `broken` are the names in entries that could not be read;
+/// `orphans` has those in blocks that are not loaded. The last element of the result is the list of unknown names.
 pub(super) fn link(
     entries: &Collected,
     broken: &HashSet<String>,
@@ -81,7 +82,7 @@ pub(super) fn link(
     (linker.files, linker.indexes, linker.origins, unknown)
 }
 
-/// The keys of a file in the order of its records, and where these stand.
+/// The keys of a file in the order of its records, and the places of the records.
 struct Keyed {
     /// The kind of entry that must be unique, with its article.
     what: &'static str,
@@ -90,18 +91,18 @@ struct Keyed {
 }
 
 impl Keyed {
-    /// Keys of a file that will have about so many records.
+    /// No keys yet, with space for about `records` records.
     fn with_capacity(what: &'static str, records: usize) -> Self {
         Self { what, keys: Vec::with_capacity(records), ats: Vec::with_capacity(records) }
     }
 
-    /// The key of the next record, with what look-ups ask of it; 0 if they take the record.
+    /// Add the key of the next record; `answer` is the field that look-ups need, 0 if they use the record.
     fn push(&mut self, key: Key, answer: u32, at: At) {
         self.keys.push(Pair { key, number: number(self.keys.len()) + 1, answer });
         self.ats.push(at);
     }
 
-    /// Keys of records that are looked up for themselves.
+    /// Keys of records whose look-ups use the record.
     fn new(what: &'static str, records: impl ExactSizeIterator<Item = (Key, At)>) -> Self {
         let mut keyed = Self::with_capacity(what, records.len());
         records.for_each(|(key, at)| keyed.push(key, 0, at));
@@ -117,7 +118,7 @@ impl Keyed {
     }
 }
 
-/// The key of a grip, whose number the form has checked.
+/// The key of a grip; the form has checked its number, so that there is one.
 fn sure(key: Option<Key>) -> Key {
     key.unwrap_or_default()
 }
@@ -127,7 +128,7 @@ fn number(position: usize) -> u32 {
 }
 
 impl Linker<'_> {
-    /// Indexes of lists, made side by side, with where the records stand. Two records with one key are an error.
+    /// Indexes of lists, built in parallel, with the places of the records. Two records with one key are an error.
     fn indexed<const N: usize>(&mut self, lists: [Keyed; N]) -> [(OwnedIndex, Vec<At>); N] {
         let make = |i: usize| lists.get(i).map_or_else(OwnedIndex::default, |l| OwnedIndex::new(&l.keys));
         let mut made = parallel::map(N, make).into_iter();
@@ -138,7 +139,7 @@ impl Linker<'_> {
         })
     }
 
-    /// The same for what is valid at locations.
+    /// As [`Linker::indexed`], for entries that are valid at locations.
     fn indexed_at<const N: usize>(&mut self, lists: [Keyed; N]) -> [(OwnedPlaceIndex, Vec<At>); N] {
         let make =
             |i: usize| lists.get(i).map_or_else(OwnedPlaceIndex::default, |l| OwnedPlaceIndex::new(&l.keys));
@@ -150,7 +151,7 @@ impl Linker<'_> {
         })
     }
 
-    /// Note each record whose key an earlier one has; `shared` are the numbers of those that have one key.
+    /// Report each record that has the key of an earlier one; `shared`: for each such key, the record numbers.
     fn twice<'n>(&mut self, what: &str, ats: &[At], shared: impl Iterator<Item = &'n [u32]>) {
         let at = |n: &u32| {
             let position = usize::try_from(n.saturating_sub(1)).ok();
@@ -163,7 +164,7 @@ impl Linker<'_> {
         }
     }
 
-    /// Declare all names, and what belongs to an object by its name alone, so that forms can be looked up in any order.
+    /// Declare all names, and the records that only need the name of an object, so that forms can be in any order.
     fn declare(&mut self, all: &Collected) {
         for null in all.movetables.iter().filter(|e| e.name.name.as_str() == NULL_NAME) {
             self.problems.error("name.null", null.name.at, "... is the null movetable and cannot be defined");
@@ -203,7 +204,7 @@ impl Linker<'_> {
         (indexes.ped_paras, origins.ped_paras) = ped_paras;
     }
 
-    /// The record number of a name, or a note that nothing has it.
+    /// The record number of a name; reports an unknown name.
     fn find<const N: usize>(
         &mut self,
         what: &str,
@@ -216,7 +217,7 @@ impl Linker<'_> {
         }
         let wanted = name.name.as_str();
         self.unknown += 1;
-        // Its definition may be in an entry that could not be read, which is noted there; also if it is misspelt.
+        // Its definition, perhaps misspelt, may be in an entry that could not be read, which is reported already.
         if self.has_elsewhere(wanted) {
             return None;
         }
@@ -245,7 +246,7 @@ impl Linker<'_> {
         None
     }
 
-    /// Report for each unknown name how many more entries use it; returns all these names.
+    /// Add to the report of each unknown name the number of other entries that use it; returns all these names.
     fn count_unknown(&mut self) -> Vec<String> {
         let mut names = Vec::new();
         for ((_, name), (at, times)) in std::mem::take(&mut self.asked) {
@@ -259,7 +260,7 @@ impl Linker<'_> {
         names
     }
 
-    /// True if a name stands in an entry that could not be read, or that is not loaded: that is reported there.
+    /// True if a name is in an entry that could not be read or is not loaded, which is reported already.
     fn has_elsewhere(&mut self, name: &str) -> bool {
         let longer = |broken: &String| broken.len() > name.len() && broken.starts_with(name);
         self.broken.contains(name)
@@ -300,7 +301,7 @@ impl Linker<'_> {
         })
     }
 
-    /// What can be looked up on all processors.
+    /// Files and indexes, for look-ups on all processors.
     const fn known(&self) -> Known<'_> {
         Known { files: &self.files, indexes: &self.indexes }
     }
@@ -310,7 +311,7 @@ impl Linker<'_> {
         self.known().moved(frame, by)
     }
 
-    /// Indexes by what records refer to.
+    /// Build the indexes whose keys are references to other records.
     fn index_pairs(&mut self) {
         let by_member =
             |m: &Member| Pair { key: reference_key(m.member), number: m.owner.number(), answer: 0 };
@@ -359,14 +360,14 @@ impl Linker<'_> {
     }
 }
 
-/// The names in an index, in their order.
+/// The names in an index, sorted.
 fn names_of(index: &OwnedIndex) -> Vec<String> {
     let mut known: Vec<String> = index.keys().map(key_text).collect();
     known.sort_unstable();
     known
 }
 
-/// The name that a key was made of.
+/// The name from which a key was made.
 fn key_text(key: Key) -> String {
     key.main
         .map(u64::to_be_bytes)

@@ -1,4 +1,4 @@
-//! Everything that belongs to objects (VII.7).
+//! Links the forms of objects (VII.7).
 
 use crate::files::{
     ApprDept, EndEffPara, GripLoc, ObjGrips, ObjLoc, ObjectId, PedPara, RefType, Reference, VisionPara,
@@ -75,7 +75,7 @@ impl Linker<'_> {
         Some(ObjLoc { object: object?, assigned: assigned? })
     }
 
-    /// Grips at locations.
+    /// Link the grips at locations.
     fn grips(&mut self, all: &Collected) -> Keyed {
         let mut keyed = Keyed::with_capacity("this grip of this object at this location", all.grips.len());
         let known = self.known();
@@ -123,7 +123,7 @@ impl Linker<'_> {
         keyed
     }
 
-    /// A grip must stand in the object form, which has its openings and its force (VII.7.1).
+    /// Report a grip without an object form, which gives its openings and its force (VII.7.1).
     fn known_grip(&mut self, object: ObjectId, grip: i32, name: Named<16>) {
         if !self.known().has_grip(&name, grip) && !self.has_elsewhere(name.name.as_str()) {
             let grips: Vec<String> = self
@@ -162,7 +162,7 @@ impl Linker<'_> {
         keyed
     }
 
-    /// What is approached or departed, and where.
+    /// The subject that is approached or departed from, and its location.
     fn subject(&mut self, entry: &ApprDeptEntry) -> Option<(Reference, Reference)> {
         let subject = self.reference(entry.subject);
         let at = entry.place.map_or(subject, |place| self.reference(place));
