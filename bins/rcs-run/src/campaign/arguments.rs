@@ -21,8 +21,8 @@ pub struct CampaignArguments {
     pub seed: u64,
     /// Interruptions, separated by commas: pause, pause-twice, refused, replaced, answer-lost, answer-late,
     /// answer-damaged, hold, nudge, away, estop, held or held:PROCESS, restart or restart:PROCESS, fault or fault:FILE,
-    /// none or all; with --judge rest also cut, lost or lost:PROCESS; hold+35:pause is hold, and pause 35 ticks after it
-    /// [with --random: all]
+    /// none or all; with --judge rest also cut, lost or lost:PROCESS; hold+35:pause is hold, and pause 35 ticks after
+    /// it [with --random: all]
     #[arg(
         long,
         value_name = "KIND",

@@ -9,7 +9,7 @@ use super::{branch::Branch, trial::Verdict};
 const STILL: u64 = 300;
 /// Ticks within which everything must come to rest: five minutes, the time limit of a command.
 const LIMIT: u64 = 7500;
-/// Motion per tick below which a joint is at rest, radians: a fiftieth of the limit of
+/// Motion per tick below which a joint is at rest, radians: about a fortieth of the limit of
 /// [`plant::t3::T3Controller::at_rest`].
 const ANGLE: f64 = 2e-6;
 /// Motion per tick below which a finger is at rest, in.

@@ -18,6 +18,7 @@ use crate::{
     fingers::{Fingers, Sizes, calibration, flow},
     image::{Image, rebase, rebase_echoes},
     search::{World, Wrong},
+    told::{Told, choices},
 };
 
 /// Longer than the time limit of the hand's commands.
@@ -31,13 +32,6 @@ const SIZES: Sizes = Sizes { open: 450, part: 256, force: 50 };
 /// The angle of PRE-GRIP, and where FLIP leads from anywhere, 0.1 degree.
 const RECEIVE: i32 = -1200;
 const TURNED: i32 = -2200;
-
-/// What Subtask does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Told {
-    Nothing,
-    Command(PedestalVerb),
-}
 
 /// What the rotary table does with its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,7 +167,7 @@ impl World for Pair {
         let mut events = Vec::new();
         let mishaps = [Mishap::None, Mishap::RestartPedestal, Mishap::RestartHand];
         for mishap in mishaps.into_iter().take(if self.mishaps > 0 { 3 } else { 1 }) {
-            for told in self.commands() {
+            for told in choices(self.commands, &self.command, &self.pedestal_out.status) {
                 for &table in table {
                     for (fingers, arrive) in self.fingers.next(self.hand_out.valves.bits) {
                         if mishap != Mishap::None && told != Told::Nothing {
@@ -290,15 +284,6 @@ impl World for Pair {
 }
 
 impl Pair {
-    /// Any command can come when the last one has ended, and another one than it before.
-    fn commands(&self) -> Vec<Told> {
-        let status = &self.pedestal_out.status;
-        let ended = status.echo == self.command.number && status.report != PedestalReport::Executing;
-        let may = |verb: &&PedestalVerb| ended || **verb != self.command.command;
-        let told = self.commands.iter().filter(may).map(|verb| Told::Command(*verb));
-        core::iter::once(Told::Nothing).chain(told).collect()
-    }
-
     /// The hand has read its last command, and the pedestal its echo.
     fn is_settled(&self) -> bool {
         let number = self.pedestal_out.hand.number;

@@ -21,6 +21,7 @@ mod image;
 mod pedestal;
 mod search;
 mod task;
+mod told;
 
 use interfaces::{emove::EmoveVerb, pedestal::PedestalVerb};
 use search::{Found, World, search};

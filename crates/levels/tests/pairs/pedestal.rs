@@ -16,6 +16,7 @@ use rcs_core::tick::Tick;
 use crate::{
     image::{Image, rebase, rebase_echoes},
     search::{World, Wrong},
+    told::{Told, choices},
 };
 
 /// Longer than the time limit of the table's commands.
@@ -29,13 +30,6 @@ const WIDE: i32 = 256;
 const GOALS: [i32; 4] = [-2000, -12_000, -22_000, -32_000];
 /// Where a table stands that has stopped elsewhere, steps.
 const ELSEWHERE: i32 = -15_000;
-
-/// What Subtask does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Told {
-    Nothing,
-    Command(PedestalVerb),
-}
 
 /// What the hand does with its command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -266,7 +260,7 @@ impl World for Pair {
         let mut events = Vec::new();
         let mishaps = [Mishap::None, Mishap::RestartPedestal, Mishap::RestartTable, Mishap::Slip];
         for mishap in mishaps.into_iter().take(if self.mishaps > 0 { 4 } else { 1 }) {
-            for told in self.commands() {
+            for told in choices(self.commands, &self.command, &self.pedestal_out.status) {
                 for hand in &hand {
                     let mishaps = u8::from(*hand == HandDoes::Silent) + u8::from(mishap != Mishap::None);
                     if mishaps > self.mishaps || (mishaps > 0 && told != Told::Nothing) {
@@ -408,15 +402,6 @@ impl World for Pair {
 }
 
 impl Pair {
-    /// Any command can come when the last one has ended, and another one than it before.
-    fn commands(&self) -> Vec<Told> {
-        let status = &self.pedestal_out.status;
-        let ended = status.echo == self.command.number && status.report != PedestalReport::Executing;
-        let may = |verb: &&PedestalVerb| ended || **verb != self.command.command;
-        let told = self.commands.iter().filter(may).map(|verb| Told::Command(*verb));
-        core::iter::once(Told::Nothing).chain(told).collect()
-    }
-
     /// The table has read its last command, and the pedestal its echo.
     fn is_settled(&self) -> bool {
         let number = self.pedestal_out.table.number;
