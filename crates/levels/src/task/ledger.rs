@@ -58,9 +58,14 @@ pub fn resumed(command: &HwsCommand, ledger: Option<&Ledger>) -> Resumed {
     }
 }
 
-/// Has the command of a plan placed its object already?
+/// Has the command of a plan placed its object already? It cannot have before its order to place it, even if the same
+/// object was placed there by an earlier command.
 #[must_use]
-pub fn placed(plan: &Plan, below: &SubtaskStatus) -> Placed {
+pub fn placed(plan: &Plan, below: &SubtaskStatus, ledger: Option<&Ledger>) -> Placed {
+    let placing = matches!(
+        ledger.map(|ledger| ledger.last),
+        Some(SubtaskVerb::PlaceObj | SubtaskVerb::Position | SubtaskVerb::GotoEndpt)
+    );
     let destination = plan.destination.location.map(|location| (location.record, location.array));
     let at_destination = below.placed.is_some_and(|placed| {
         plan.object == Some(placed.object)
@@ -69,7 +74,7 @@ pub fn placed(plan: &Plan, below: &SubtaskStatus) -> Placed {
     });
     let stands =
         |at: Standing| destination == Some((at.record, at.array)) && at.grip == Some(plan.destination.grip);
-    match (at_destination && plan.resumed != Resumed::Not, below.at.is_some_and(stands)) {
+    match (at_destination && placing && plan.resumed != Resumed::Not, below.at.is_some_and(stands)) {
         (false, _) => Placed::Not,
         (true, true) => Placed::AtDestination,
         (true, false) => Placed::Left,

@@ -122,7 +122,7 @@ impl State {
             drum: if below.drum { Drum::Inside } else { Drum::Outside },
             way: way(below.at, plan, inputs.data),
             resumed: plan.resumed,
-            placed: placed(plan, below),
+            placed: placed(plan, below, inputs.memory.task.ledger.as_ref()),
             part: if below.pedestal_part { Part::InPedestal } else { Part::Elsewhere },
         }
     }

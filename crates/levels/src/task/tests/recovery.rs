@@ -221,6 +221,20 @@ fn a_transfer_that_stays_goes_back_to_its_object() {
 }
 
 #[test]
+fn what_an_earlier_command_has_placed_does_not_count() {
+    let mut bench = moving_bench();
+    assert_eq!(bench.run(TRANSFER), FINISHED);
+    bench.command(TRANSFER);
+    while bench.memory.task.subtask.command != SubtaskVerb::GetObject {
+        bench.step();
+    }
+    assert_eq!(bench.run(PAUSE), FINISHED);
+    assert!(bench.memory.subtask.status.placed.is_some());
+    assert_eq!(bench.run(TRANSFER), FINISHED);
+    assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ", "GOTO-ENDPT"]);
+}
+
+#[test]
 fn another_command_about_an_object_ends_what_was_interrupted() {
     let mut bench = moving_bench();
     bench.command(TRANSFER);
