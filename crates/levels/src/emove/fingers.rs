@@ -46,16 +46,6 @@ pub(super) fn sizes<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&
     data.end_eff(EndEffId::from_option(command.object_parameters))
 }
 
-/// What the fingers have between them.
-pub(super) fn fingers(command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Fingers {
-    let grasp_size = sizes(command, inputs.data).map_or(0, |sizes| sizes.grasp_size);
-    let gripper = Gripper::attached(inputs.memory);
-    match gripper.opening(inputs.memory) {
-        Some(opening) if gripper.grips(opening, grasp_size) => Fingers::Gripping,
-        _ => Fingers::Empty,
-    }
-}
-
 fn attached_stands_at(opening: i32, memory: &CommonMemory) -> bool {
     let attached = Gripper::attached(memory);
     attached != Gripper::None && attached.stands_at(opening, memory)
@@ -168,6 +158,27 @@ impl State {
             (None, Felt::Something) => Holding::Something,
             (None, Felt::NotKnown) => Holding::NotKnown,
         }
+    }
+
+    /// What the fingers have between them. A gripper that does not know its opening has what counts as held.
+    pub(super) fn fingers(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Fingers {
+        let memory = inputs.memory;
+        let grasp_size = sizes(command, inputs.data).map_or(0, |sizes| sizes.grasp_size);
+        let gripper = Gripper::attached(memory);
+        let gripping = match gripper.opening(memory) {
+            Some(opening) => gripper.grips(opening, grasp_size) && !self.is_half_let_go(opening, inputs),
+            None => self.beliefs.held.is_some(),
+        };
+        if gripping { Fingers::Gripping } else { Fingers::Empty }
+    }
+
+    /// Does something count as held that the fingers, at rest with an opening, 0.01 in, are not around any more?
+    fn is_half_let_go(&self, opening: i32, inputs: &Inputs<'_, TaskData<'_>>) -> bool {
+        let Some(held) = self.beliefs.held else { return false };
+        let (gripper, memory) = (Gripper::of(held.gripper), inputs.memory);
+        let around = gripper.still_grips(opening, held.grasp_size, held.opening)
+            && gripper.felt(memory) != Felt::Nothing;
+        !around && !self.grippers.are_moving(inputs.tick, memory)
     }
 
     /// The opening to release the held object, or the object of the command, 0.01 in. Something unknown may be wider

@@ -262,6 +262,10 @@ impl State {
             FingerVerb::Grasp => {
                 let by_name = action == Action::Close;
                 self.beliefs.grasping = by_name.then(|| self.grasp_of(command, inputs));
+                // What is closed on anew is held when the fingers have closed on it.
+                if by_name {
+                    (self.beliefs.held, self.carrying) = (None, false);
+                }
                 self.beliefs.empty = false;
             }
             FingerVerb::Stand

@@ -15,7 +15,6 @@ use rcs_core::handshake::Lower;
 use taskdata::files::TaskData;
 
 use super::{
-    fingers::fingers,
     gripper::Gripper,
     locate::{is_another, is_plausible},
     order::FingerVerb,
@@ -256,7 +255,7 @@ impl State {
             ahead: self.ahead(inputs.data),
             opening,
             held: Held::of(self.holding(memory), command.object),
-            fingers: fingers(command, inputs),
+            fingers: self.fingers(command, inputs),
             spread: self.spread(gripper, command, inputs),
             readiness: self.readiness(gripper, memory),
             mate: match memory.quick_change.status.end_effector_id {

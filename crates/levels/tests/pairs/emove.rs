@@ -4,7 +4,7 @@
 use interfaces::{
     ChangingPose, CommonMemory, EmoveOutputs, ExternalInputs, GripOutputs, Reason, StatusReport,
     emove::{EmoveCommand, EmoveVerb, GoneTo, Holding, ObjectGrip},
-    grip::{Felt, GripReport},
+    grip::{Felt, GripCommand, GripReport},
     pose_range,
     prim::PrimReport,
     process::{Inputs, Process},
@@ -186,7 +186,7 @@ impl World for Pair {
                 for (fingers, arrive) in self.fingers.next(self.grip_out.valves.bits) {
                     let event = Event { told, fingers, prim, long: false };
                     let quiet = told.is_none();
-                    events.push((event, quiet && arrive && (!moving || prim == PrimDoes::Ends)));
+                    events.push((event, quiet && arrive && (!moving || prim != PrimDoes::Goes)));
                     let waits = quiet && fingers == self.fingers && !arrive;
                     if waits && !moving && self.is_settled() && self.is_still() {
                         events.push((Event { long: true, ..event }, true));
@@ -240,8 +240,23 @@ impl World for Pair {
         if !executes && it.command.command != EmoveVerb::Pause {
             (it.emove.step, it.emove.ordered, it.emove.uses_prim) = Default::default();
         }
+        // Rows that order something lead to later steps: none of them fires twice in a command.
+        it.emove.execution.last_order = None;
         if !executes {
-            it.emove.execution.last_order = None;
+            it.emove.carrying = false;
+        }
+        let beliefs = &mut it.emove.beliefs;
+        beliefs.placed = None;
+        match &mut beliefs.grasping {
+            grasping if beliefs.held.is_some() || beliefs.empty => *grasping = None,
+            Some(grasping) => grasping.opening = 0,
+            None => {}
+        }
+        if beliefs.held.is_none() {
+            it.emove.unfelt = 0;
+        }
+        if it.is_settled() {
+            it.emove_out.grip = GripCommand { number: it.emove_out.grip.number, ..GripCommand::default() };
         }
         if it.grip.execution.outcome != Outcome::Executing {
             (it.grip.step, it.grip.goal, it.grip.settled, it.grip.missed) = Default::default();

@@ -5,7 +5,7 @@ use rcs_core::decision_table;
 decision_table! {
     /// ACQUIRE-TOOL (V.2.1): open the tool gripper, move towards the machine tool, calibrate, touch the
     /// strike plate, calibrate, slide to the left around the tool, grasp it. Done at once if it is held in
-    /// the drum. Sent again after an interruption it goes on from where the robot is at the drum
+    /// the drum, between the fingers. Sent again after an interruption it goes on from where the robot is at the drum
     /// (docs/design/recovery.md "Drum"): fingers that are around the tool close, others slide on, or touch
     /// the strike plate again.
     pub ACQUIRE_TOOL: fn acquire_tool(enum AcquireToolStep, super::Situation) -> super::Action {
@@ -16,7 +16,7 @@ decision_table! {
         Start {
             2:  held: Other                                => Fail(AlreadyHolding);
             3:  held: NotKnown                             => Fail(HeldNotKnown);
-            4:  held: Right, at: InDrum                    => Finish;
+            4:  held: Right, fingers: Gripping, at: InDrum => Finish;
             5:  held: Right, at: Elsewhere | Before | There => Fail(NotPrepared);
             6:  at: InDrum                                 => Close                -> Grasping;
             7:  at: Elsewhere, drum: Inside                => Close                -> Grasping;

@@ -7,8 +7,8 @@ decision_table! {
     /// for the calibration of the parts gripper (VI.3.1 UP-INIT), and finds out where the robot is. Fingers
     /// that move do first what they were told: a valve that is left open would close them with the whole
     /// supply pressure. While it stands, the joystick box has robot and gripper. A link that fails before it
-    /// is done is initialized again; one that fails afterwards is reported beside `done`, and the next motion
-    /// restarts it.
+    /// is done is initialized again, once; one that fails afterwards is reported beside `done`, and the next
+    /// motion restarts it.
     pub E_PAUSE: fn e_pause(enum EPauseStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                                              => Wait;
@@ -31,10 +31,14 @@ decision_table! {
         Start | Awaiting {
             6: motion: AtRest                                          => Pause     -> Pausing;
         }
+        Pausing | PausingAgain {
+            7:  prim: Pending | Executing                              => Wait;
+        }
         /// The processes below are pausing.
         Pausing {
-            7:  prim: Pending | Executing                              => Wait;
-            8:  prim: Error                                            => RobotInit -> Initializing;
+            8:  prim: Error                                            => RobotInit -> InitializingAgain;
+        }
+        Pausing | PausingAgain {
             9:  prim: Lost                                             => PassUp;
             10: prim: Joystick                                         => Manual    -> Standing;
             11: prim: Done, tooling: Busy                              => Wait;
@@ -50,6 +54,14 @@ decision_table! {
             18: button: None, prim: Joystick                           => Manual;
             19: button: None, prim: Done | Error                       => Finish;
             20: button: None, prim: Pending | Executing | Lost         => Wait;
+        }
+        /// Prim is initializing a link that has failed while the robot paused.
+        InitializingAgain {
+            21: work: Over                                             => Pause     -> PausingAgain;
+        }
+        /// The processes below are pausing once more.
+        PausingAgain {
+            22: prim: Error                                            => PassUp;
         }
     }
 }

@@ -3,20 +3,21 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// GRASP-OBJ (V.2.1): close the gripper on the object; done at once if it is held. What is felt at
-    /// the object is grasped anew: it may be half gripped.
+    /// GRASP-OBJ (V.2.1): close the gripper on the object; done at once if it is held and between the
+    /// fingers. What is felt at the object is grasped anew: it may be half gripped. So is what
+    /// counts as held since a release of it has not ended well.
     pub GRASP_OBJ: fn grasp_obj(enum GraspObjStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                                => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: held: Right                               => Finish;
+            2: held: Right, fingers: Gripping            => Finish;
             3: held: Other                               => Fail(AlreadyHolding);
             4: held: Something, at: Elsewhere | Before | InDrum   => Fail(AlreadyHolding);
             5: held: NotKnown, at: Elsewhere | Before | InDrum    => Fail(HeldNotKnown);
             6: held: Something | NotKnown, at: There     => Close -> Closing;
-            7: held: Nothing                             => Close -> Closing;
+            7: held: Nothing | Right                     => Close -> Closing;
         }
         /// The gripper is closing.
         Closing {

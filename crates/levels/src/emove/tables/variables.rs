@@ -159,7 +159,8 @@ pub enum Load {
 /// What closed fingers have between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Fingers {
-    /// Nothing, or nothing of the object's size.
+    /// Nothing, or nothing of the object's size. So it is if something counts as held and has been half let
+    /// go: the fingers rest and are wider than they were with it, or feel nothing.
     Empty,
     /// Something.
     Gripping,

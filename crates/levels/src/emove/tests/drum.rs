@@ -221,6 +221,12 @@ fn a_failing_gripper_ends_the_command() {
     let mut bench = inserted();
     bench.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::JawsStuck));
+    // What was half let go is grasped anew.
+    bench.world.mishaps.clear();
+    bench.tool_grip.opening = SIZE + 50;
+    bench.world.log.clear();
+    assert_eq!(run(&mut bench, AcquireTool), DONE);
+    assert!(bench.log().contains(&"GRASP 250"), "{:?}", bench.log());
     for word in ["POSE", "GRASP"] {
         let mut bench = empty();
         bench.spoil(word, Mishap::Jaws(JawsReport::Stuck));

@@ -35,6 +35,7 @@ pub const SCENARIOS: &[fn()] = &[
     a_loose_gripper_that_is_led_away_is_still_to_be_changed,
     a_grasp_is_made_again_from_every_tick,
     fingers_that_are_stopped_while_they_let_go_have_not_let_go,
+    what_was_half_let_go_is_grasped_anew,
     what_is_not_known_is_held,
     a_bare_robot_leaves_a_holster_without_a_gripper,
     id_pins_that_fail_change_nothing,
@@ -471,6 +472,38 @@ fn fingers_that_are_stopped_while_they_let_go_have_not_let_go() {
     bench.steps(10);
     assert_eq!(bench.pause(), DONE);
     assert!(bench.memory.emove.beliefs.placed.is_some());
+}
+
+#[test]
+fn what_was_half_let_go_is_grasped_anew() {
+    for (gripper, object, size, wide, stuck) in [
+        (1, "BLOCK", 75, 140, Mishap::Grip(Reason::GripUnattainable)),
+        (2, "SHAFT", 204, 250, Mishap::Jaws(JawsReport::Stuck)),
+        (3, "CUTTER", 250, 300, Mishap::Jaws(JawsReport::Stuck)),
+    ] {
+        let mut bench = Bench::ready("BENCH", gripper);
+        bench.hold(object, size, gripper);
+        assert_eq!(send(&mut bench, (GraspObj, object, 1, "BENCH", gripper)), DONE);
+        assert!(bench.log().is_empty(), "held firmly: {:?}", bench.log());
+        bench.spoil("RELEASE", stuck).spoil("OPEN-GRIP", stuck);
+        bench.command(Release, object, 1, "BENCH", gripper);
+        assert_ne!(bench.finish(), DONE, "{object}");
+        bench.world.mishaps.clear();
+        (bench.grip.opening, bench.v_grip.opening, bench.tool_grip.opening) = (wide, wide, wide);
+        bench.steps(10);
+        assert!(matches!(bench.memory.emove.status.held, Holding::Object(_)), "RELEASE can be sent again");
+        let mut gone = bench.clone();
+        gone.world.object = None;
+        assert_eq!(send(&mut gone, (GraspObj, object, 1, "BENCH", gripper)), error(Reason::GraspMissed));
+        assert_eq!(gone.memory.emove.status.held, Holding::Nothing, "{object}");
+        bench.world.object = Some(size);
+        bench.at_every_tick((GraspObj, object, 1, "BENCH", gripper), |fork| {
+            Interruption::Paused.of(fork);
+            let held = fork.memory.emove.status.held.object().map(|held| held.as_str().to_owned());
+            assert_eq!(held.as_deref(), Some(object), "what they have closed on has its name");
+        });
+        assert!(matches!(bench.memory.emove.status.held, Holding::Object(_)), "{object}");
+    }
 }
 
 #[test]

@@ -52,6 +52,9 @@ fn a_link_that_fails_in_a_pause_is_initialized_again_or_reported() {
     bench.steps(40);
     assert_eq!(bench.log()[before..before + 2], ["ROBOT-INIT", "PAUSE"]);
     assert_eq!(bench.memory.emove.status.report, StatusReport::Executing);
+    let mut again = bench.clone();
+    (again.prim.report, again.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
+    assert_eq!(again.finish(), error(Reason::LinkError), "not a third time");
     bench.dead.push("Prim");
     assert_eq!(bench.finish(), error(Reason::NeighbourLost));
     // The pause is done and stands.
