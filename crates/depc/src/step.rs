@@ -259,6 +259,15 @@ mod tests {
         }
     }
 
+    /// There D lacks no more than the limit, and R, which turns with it and with the tool, a little more.
+    #[test]
+    fn a_pole_is_left_also_where_only_r_is_over_the_limit() {
+        let from = Plate { words: [1009, 2021, 2990, 13_308, 18_000, 7560] };
+        let goal = tool([1010, 2020, 2990, 13_537, 17_996, 7793]);
+        let way = walk(from, &goal, 3);
+        assert_eq!(way[1].words, [1009, 2021, 2990, 13_537, 18_000, 7789]);
+    }
+
     #[test]
     fn what_has_no_words_is_refused() {
         let home = Position::reported(HOME, &T3);

@@ -189,6 +189,14 @@ mod tests {
     }
 
     #[test]
+    fn a_command_is_lost_when_its_echo_is_later_than_the_limit() {
+        let commander = Commander { number: 7, sent: Tick(10), started: true };
+        let read = |tick| commander.read(Tick(tick), &header(tick - 1), 6, Lower::Done);
+        assert_eq!(read(10 + ECHO_LIMIT), Lower::Pending);
+        assert_eq!(read(11 + ECHO_LIMIT), Lower::Lost);
+    }
+
+    #[test]
     fn numbers_run_on_past_the_end_without_zero() {
         let mut commander = Commander { number: u32::MAX, sent: Tick(1), started: true };
         assert_eq!(commander.send(Tick(2)), 1);

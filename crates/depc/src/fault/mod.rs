@@ -462,6 +462,13 @@ mod tests {
     }
 
     #[test]
+    fn a_plan_permits_at_least_one_fault_a_tick() {
+        let most = |most| Plan::new(1).most_per_tick(most);
+        assert_eq!(most(0), most(1));
+        assert_ne!(most(1), most(2));
+    }
+
+    #[test]
     fn a_plan_has_an_end() {
         let mut plan = Plan::new(1);
         for _ in 0..RULES {

@@ -152,6 +152,7 @@ fn a_patience_of_its_own_ends_a_silence() {
 #[test]
 fn a_wrong_report_is_asked_for_again_at_once() {
     let mut host = running();
+    assert_eq!(host.counters().checksum_errors, 0);
     assert_eq!(tick(&mut host, &[], &Intent::Restart).1, [0x05]);
     let mut wrong = report();
     wrong[8] ^= 0x40;
@@ -204,6 +205,40 @@ fn dtr_is_watched() {
     assert!(!host.transmit(&Intent::Restart, &mut tx));
     assert_eq!(tx.length, 0);
     assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
+}
+
+#[test]
+fn a_controller_without_dtr_is_blamed_after_three_times_the_time_for_an_answer() {
+    let mut host = Host::new(ANSWER_TICKS);
+    let blamed = (1..100).find(|_| {
+        host.receive(&LinkBytes::default(), false);
+        host.fault() != LinkFault::None
+    });
+    assert_eq!(blamed, Some(u16::from(START_ATTEMPTS) * ANSWER_TICKS));
+}
+
+#[test]
+fn transmit_tells_whether_it_has_sent_the_intent() {
+    let sent = |host: &mut Host, intent: &Intent| {
+        let mut tx = LinkBytes::default();
+        host.receive(&LinkBytes::default(), true);
+        (host.transmit(intent, &mut tx), usize::from(tx.length))
+    };
+    let mut host = running();
+    assert_eq!(sent(&mut host, &Intent::Idle), (false, 0));
+    assert_eq!(sent(&mut host, &position(NO_FUNCTION)), (true, FRAME_BYTES));
+    for _ in 1..ANSWER_TICKS {
+        assert_eq!(sent(&mut host, &position(NO_FUNCTION)), (false, 0), "one is outstanding");
+    }
+    assert_eq!(sent(&mut host, &position(NO_FUNCTION)), (false, 1), "a restart is due");
+    let mut host = running();
+    assert_eq!(sent(&mut host, &Intent::Restart), (true, 1));
+    let mut host = running();
+    assert_eq!(sent(&mut host, &Intent::Cancel), (true, 1));
+    for _ in 1..ANSWER_TICKS {
+        assert_eq!(sent(&mut host, &Intent::Idle), (false, 0));
+    }
+    assert_eq!(sent(&mut host, &Intent::Idle), (false, 1), "the cancel again");
 }
 
 #[test]
