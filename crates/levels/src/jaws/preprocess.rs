@@ -108,11 +108,13 @@ impl State {
 impl State {
     /// What is between the fingers, by the potentiometer alone (VI.4 has no force sensors): something, if the fingers
     /// rest between the ends of their travel. At an end they hold nothing, although an object as small as the opening
-    /// of closed fingers reads the same.
+    /// of closed fingers reads the same. Fingers that seem to rest open while the valves close them have no air, or
+    /// their potentiometer is stuck: they may close on something at any time.
     fn felt(&self, motion: Motion, stop: Stop, opening: f64, parameters: &Parameters) -> Felt {
         let settled = motion == Motion::Stopped && self.attached_ticks >= SETTLED_TICKS;
         match stop {
             _ if !settled => Felt::NotKnown,
+            Stop::Opened if self.valves.close => Felt::NotKnown,
             Stop::Closed | Stop::Opened => Felt::Nothing,
             Stop::Between if (parameters.closed..=parameters.opened).contains(&opening) => Felt::Something,
             Stop::Between => Felt::NotKnown,

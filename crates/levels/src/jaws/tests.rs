@@ -237,6 +237,17 @@ fn what_is_held_is_felt_whatever_was_commanded() {
 }
 
 #[test]
+fn open_fingers_that_are_told_to_close_do_not_count_as_empty() {
+    let mut bench = VBench::new(3.5);
+    assert_eq!(bench.wait(20).status.felt, Felt::Nothing);
+    bench.fingers.speed = 0.0;
+    assert_eq!(bench.execute(JawsVerb::Grasp, 0.0).0, JawsReport::Opened);
+    assert_eq!(bench.wait(20).status.felt, Felt::NotKnown, "there is no air");
+    (bench.fingers.speed, bench.fingers.object) = (3.0, Some(2.0));
+    assert_eq!(bench.wait(100).status.felt, Felt::Something, "the air is back");
+}
+
+#[test]
 fn an_object_is_pressed_until_it_is_released() {
     let mut bench = VBench::new(3.5);
     bench.fingers.object = Some(2.0);
