@@ -8,7 +8,7 @@ decision_table! {
     /// Something unknown that is held where the object is gone to is what an interrupted grasp has closed on:
     /// the grasp is made again.
     pub GET_OBJECT: fn get_object(enum GetObjectStep, super::Situation) -> super::Action {
-        any {
+        Start | Viewing | Locating | Grasping {
             1:  work: Busy                              => Wait;
         }
         /// Nothing done yet.
@@ -30,16 +30,19 @@ decision_table! {
         Locating {
             11: work: Over                              => MovToObj         -> Moving;
         }
-        /// The robot is on its way to the object.
+        /// The robot is on its way to the object. If the pictures are lost, as with the link to the robot, E-move
+        /// goes to where the object should be.
         Moving {
-            12: work: Over                              => GraspObj         -> Grasping;
+            12: vision: Needed                          => MovToVu          -> Viewing;
+            13: vision: NotNeeded | Done, work: Busy    => Wait;
+            14: vision: NotNeeded | Done, work: Over    => GraspObj         -> Grasping;
         }
         /// The gripper is closing.
         Grasping {
-            13: held: Right                             => Finish;
-            14: held: Nothing | Other                   => Fail(GraspMissed);
-            15: held: Something                         => Fail(UnknownHeld);
-            16: held: NotKnown                          => Fail(HeldNotKnown);
+            15: held: Right                             => Finish;
+            16: held: Nothing | Other                   => Fail(GraspMissed);
+            17: held: Something                         => Fail(UnknownHeld);
+            18: held: NotKnown                          => Fail(HeldNotKnown);
         }
     }
 }

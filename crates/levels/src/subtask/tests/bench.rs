@@ -4,7 +4,7 @@
 use geometry::pose::Pose;
 use interfaces::{
     CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, StatusReport,
-    emove::{EmoveCommand, EmoveVerb, Holding, ObjectGrip, PlacedObject, Standing},
+    emove::{EmoveCommand, EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Standing},
     grip::Felt,
     pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
     process::{Inputs, Process},
@@ -119,6 +119,13 @@ impl EmoveDouble {
                 self.hold("", 0);
             }
             EmoveVerb::ReleaseTool => self.hold("", 0),
+            EmoveVerb::LocateObj => {
+                self.outputs.status.located = command.object.map(|object| LocatedObject {
+                    object,
+                    record: command.location_record,
+                    array: command.location_array,
+                });
+            }
             EmoveVerb::QcDetach => {
                 (self.outputs.status.end_effector_id, self.outputs.status.exchange) = (None, None);
             }
@@ -142,7 +149,12 @@ impl EmoveDouble {
     pub fn hold(&mut self, object: &str, grip: i32) {
         let object = Name16::new(object).unwrap();
         let held = Holding::Object(ObjectGrip { object, grip });
-        self.outputs.status.held = if object.is_empty() { Holding::Nothing } else { held };
+        self.outputs.status.held = if object.is_empty() {
+            Holding::Nothing
+        } else {
+            self.outputs.status.located = None;
+            held
+        };
     }
 }
 

@@ -539,6 +539,9 @@ fn all_rows() -> Coverage {
     restarted.process = Subtask::default();
     restarted.finish();
     play(&mut restarted);
+    let mut lost = recovery::pictures_lost();
+    lost.finish();
+    play(&mut lost);
 
     // Command, object, grips, location; held object and its grip; what goes wrong in E-move.
     type Case = (

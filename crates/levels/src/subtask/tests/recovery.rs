@@ -441,6 +441,26 @@ fn what_vision_has_found_is_not_looked_for_again() {
     assert_eq!(bench.sent(), ["MOV-TO-OBJ", "GRASP-OBJ"]);
 }
 
+/// GET-OBJECT whose pictures are lost on the way to the object.
+pub fn pictures_lost() -> Bench<'static> {
+    let mut bench = Bench::default();
+    bench.command(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1");
+    while bench.memory.subtask.emove.command != EmoveVerb::MovToObj {
+        bench.step();
+    }
+    bench.emove.outputs.status.located = None;
+    bench
+}
+
+#[test]
+fn pictures_that_are_lost_on_the_way_are_taken_again_before_anything_is_grasped() {
+    let mut bench = pictures_lost();
+    bench.finish();
+    let sent = ["MOV-TO-VU", "LOCATE-OBJ", "MOV-TO-OBJ"];
+    let sent = [&sent[..], &sent[..], &["GRASP-OBJ"]].concat();
+    assert_eq!(bench.sent(), sent);
+}
+
 /// The tool commands with fingers in the drum, outside, or at no place.
 fn tools(rows: &mut Coverage) {
     for verb in
