@@ -262,9 +262,12 @@ impl State {
             FingerVerb::Grasp => {
                 let by_name = action == Action::Close;
                 self.beliefs.grasping = by_name.then(|| self.grasp_of(command, inputs));
-                // What is closed on anew is held when the fingers have closed on it.
                 if by_name {
+                    // What is closed on anew is held when the fingers have closed on it.
                     (self.beliefs.held, self.carrying) = (None, false);
+                } else {
+                    // The operator may take what was placed, and leave it elsewhere.
+                    self.beliefs.placed = None;
                 }
                 self.beliefs.empty = false;
             }

@@ -284,11 +284,13 @@ fn the_operator_moves_the_robot_and_the_fingers() {
         bench.steps(20);
         assert_eq!(bench.log().len(), 1, "pressing counts, not holding down: {:?}", bench.log());
         assert!(!bench.memory.emove.status.held.is_held(), "the fingers are open");
+        assert!(bench.memory.emove.status.placed.is_some());
         bench.world.button = JoystickGrip::None;
         bench.steps(3);
         bench.world.button = JoystickGrip::Close;
         bench.steps(20);
         assert_eq!(bench.log().len(), 2);
+        assert_eq!(bench.memory.emove.status.placed, None, "it may be between the fingers again");
         let closed = [bench.grip.opening, bench.v_grip.opening, bench.tool_grip.opening];
         assert_eq!(closed[usize::from(gripper) - 1], [10, 50, 100][usize::from(gripper) - 1]);
         // The operator has carried the robot to the vise and gives it back.
