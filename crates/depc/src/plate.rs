@@ -205,6 +205,15 @@ mod tests {
         }
     }
 
+    #[test]
+    fn angles_are_between_across_half_a_turn_and_coordinates_are_not() {
+        let (before, last) =
+            (plate([-20_000, 0, 0, 0, 9000, 17_990]), plate([20_000, 0, 0, 0, 9000, -17_990]));
+        assert!(plate([0, 0, 0, 0, 9000, 18_000]).is_between(&before, &last, 2));
+        assert!(!plate([0, 0, 0, 0, 9000, 0]).is_between(&before, &last, 2));
+        assert!(!plate([-21_000, 0, 0, 0, 9000, 18_000]).is_between(&before, &last, 2));
+    }
+
     fn plate(words: [i16; 6]) -> Plate {
         Plate { words }
     }

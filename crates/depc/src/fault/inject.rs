@@ -308,8 +308,10 @@ mod tests {
 
     #[test]
     fn flip_changes_one_bit_of_each_byte() {
-        for (got, sent) in arrived(Rule::new(FaultKind::Flip).at(0), ABC)[0].iter().zip(ABC) {
-            assert_eq!((got ^ sent).count_ones(), 1);
+        for bytes in [ABC, &[0; 8], &[0xFF; 8]] {
+            for (got, sent) in arrived(Rule::new(FaultKind::Flip).at(0), bytes)[0].iter().zip(bytes) {
+                assert_eq!((got ^ sent).count_ones(), 1);
+            }
         }
     }
 

@@ -197,6 +197,28 @@ fn a_report_closed_by_the_next_one_is_not_believed() {
 }
 
 #[test]
+fn a_function_is_lost_only_with_its_command() {
+    let mut host = running();
+    tick(&mut host, &[], &position([1, 2]));
+    assert_eq!(tick(&mut host, &[0x06], &Intent::Restart).0, HostEvent::Acknowledged);
+    assert_eq!(host.lost_function(), NO_FUNCTION, "it has run");
+    assert_eq!(tick(&mut host, &report(), &position([3, 4])).0, HostEvent::Started);
+    tick(&mut host, &[], &Intent::Restart);
+    assert_eq!(host.lost_function(), [3, 4]);
+    assert_eq!(tick(&mut host, &report(), &position(NO_FUNCTION)).0, HostEvent::Started);
+    tick(&mut host, &[], &Intent::Restart);
+    assert_eq!(host.lost_function(), [3, 4], "it is that of the last command with one");
+}
+
+#[test]
+fn limited_points_are_counted() {
+    let mut host = running();
+    host.count_limited();
+    host.count_limited();
+    assert_eq!(host.counters().limited, 2);
+}
+
+#[test]
 fn dtr_is_watched() {
     let mut host = running();
     assert_eq!(host.receive(&LinkBytes::default(), false), HostEvent::Lost);

@@ -211,6 +211,18 @@ fn sensors_that_fail_on_the_way_stop_the_ring() {
 }
 
 #[test]
+fn a_ring_that_locks_under_an_illegal_id_is_a_fault_of_the_sensors() {
+    let mut bench = Bench::default();
+    bench.step(false, true, 4);
+    bench.command(1, QuickChangeVerb::Lock);
+    for _ in 0..MALFUNCTION_TICKS {
+        assert_eq!(bench.report(false, true, 4), QuickChangeReport::Executing);
+    }
+    let end = (0..MALFUNCTION_TICKS).map(|_| bench.step(true, false, 4).status).last().unwrap();
+    assert_eq!((end.report, end.reason), (QuickChangeReport::SensorMalfunction, Reason::QuickChangeFault));
+}
+
+#[test]
 fn a_restart_while_the_ring_turns_leaves_it_where_it_is() {
     let (mut bench, mut ring) = (Bench::default(), UNLOCKED);
     bench.step(false, true, 1);

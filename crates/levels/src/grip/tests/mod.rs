@@ -115,6 +115,25 @@ fn a_grasp_has_the_commanded_force() {
 }
 
 #[test]
+fn a_grasp_that_both_fingers_touch_waits_for_neither() {
+    let mut bench = calibrated(5);
+    bench.gripper.object = Some(Object { size: 0.625, off_centre: 0.0 });
+    for force in [30, 60] {
+        bench.done(GripVerb::OpenGrip, 3.5, 0);
+        bench.command(GripVerb::CloseGrip, 0.60, force);
+        let mut touched = 0;
+        while matches!(bench.step().status.report, GripReport::Executing | GripReport::Paused) {
+            let status = bench.memory.grip.status;
+            if status.left_force.min(status.right_force) >= 5 {
+                assert_eq!(status.report, GripReport::Executing);
+                touched += 1;
+            }
+        }
+        assert!(touched > 2, "{force}: {touched} ticks");
+    }
+}
+
+#[test]
 fn a_grasp_of_nothing_is_done_at_or_below_the_grasp_size() {
     let mut bench = calibrated(6);
     for grasp_size in [0.60, 0.61, 0.13, 0.10, 2.50] {

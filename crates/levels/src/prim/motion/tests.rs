@@ -377,6 +377,43 @@ fn a_halt_forgets_the_goal() {
     assert!(motion.distance() < 1e-12);
 }
 
+#[test]
+fn a_halt_before_the_first_tick_forgets_the_goal() {
+    let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
+    let mut motion = Motion::at_rest(&start);
+    assert_eq!(motion.distance(), 0.0);
+    motion.go(&shifted(&start, 20.0, 0.0), &printed(), None);
+    motion.halt();
+    assert_eq!((motion.is_at_rest(), motion.distance()), (true, 0.0));
+}
+
+#[test]
+fn a_robot_that_has_stood_goes_on_to_its_goal_from_there() {
+    let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
+    let goal = shifted(&start, 20.0, 0.0);
+    let mut motion = Motion::at_rest(&start);
+    motion.go(&goal, &printed(), None);
+    for _ in 0..30 {
+        motion.step(1000);
+    }
+    let here = motion.frame();
+    motion.stand();
+    assert_eq!((motion.frame(), motion.current), (here, None));
+    assert!((motion.distance() - here.distance(&goal).path()).abs() < 1e-12);
+    // Put elsewhere meanwhile, it still has its goal.
+    motion.put(&start);
+    assert_eq!((motion.frame(), motion.goal.frame()), (start, goal));
+    while !motion.is_at_rest() {
+        motion.step(1000);
+    }
+    assert_eq!(motion.frame(), goal);
+    motion.stand();
+    assert!(motion.is_at_rest());
+    // At rest it has no other goal than where it is put.
+    motion.put(&start);
+    assert_eq!((motion.frame(), motion.distance()), (start, 0.0));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 

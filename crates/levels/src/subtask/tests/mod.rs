@@ -6,7 +6,8 @@ mod recovery;
 
 use interfaces::{
     Reason, StatusReport, SubtaskOutputs,
-    emove::EmoveVerb,
+    emove::{EmoveVerb, Holding},
+    grip::Felt,
     pedestal::{PedestalReport, PedestalVerb},
     pose_range,
     subtask::{LocationKind, SubtaskVerb},
@@ -246,6 +247,19 @@ fn an_object_that_the_pedestal_does_not_have_is_not_let_go() {
     bench.pedestal.slips = true;
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::ObjectLost));
     assert_eq!(bench.sent(), ["MOV-OBJ-TO", "RELEASE", "MOV-TO-LOC"]);
+}
+
+#[test]
+fn a_pedestal_that_holds_something_else_is_named_and_nothing_moves() {
+    let mut bench = Bench::grasped("PART", 1);
+    (bench.pedestal.outputs.status.felt, bench.pedestal.outputs.status.gripped) = (Felt::Something, true);
+    bench.step();
+    assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::PedestalHoldsOther));
+    assert!(bench.sent().is_empty());
+    // What the robot holds is asked for first.
+    bench.emove.outputs.status.held = Holding::NotKnown;
+    bench.step();
+    assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::HeldNotKnown));
 }
 
 #[test]

@@ -491,6 +491,20 @@ fn fingers_that_have_let_go_are_led_out_of_the_drum() {
     tools(&mut Coverage::default());
 }
 
+/// An interrupted grasp has closed on something in the drum, which can only be the tool.
+#[test]
+fn an_interrupted_grasp_of_a_tool_is_made_again() {
+    for (drum, end, sent) in [(true, DONE, &["ACQUIRE-TOOL"][..]), (false, error(Reason::UnknownHeld), &[])] {
+        let mut bench = Bench::default();
+        bench.emove.outputs.status.held = holding("something");
+        bench.emove.outputs.status.at = standing(&bench, Some(("TOOL-TRNS", None)));
+        bench.emove.outputs.status.drum = drum;
+        bench.step();
+        assert_eq!(bench.run(SubtaskVerb::AcquireTool, "TOOL-1", (1, 1), ""), end);
+        assert_eq!(bench.sent(), sent);
+    }
+}
+
 /// What a pause waits for, and what a command that comes then does.
 fn pauses(rows: &mut Coverage) {
     let mut play = |bench: &mut Bench<'_>| rows.append(&mut bench.rows);

@@ -349,6 +349,20 @@ fn updates(bench: &Bench<'_>) -> Vec<(String, i32)> {
     told.map(|told| (told.position.to_string(), told.sector.unwrap_or(0))).collect()
 }
 
+/// The robot arrives before the Data System answers: the answer is waited for, and nothing is told twice.
+#[test]
+fn a_position_is_finished_when_the_data_system_knows_where_the_object_is() {
+    for seat in [SEAT, SEAT_BY_DESTINATION] {
+        let mut bench = Bench::connected();
+        assert_eq!(bench.run(FROM_TRAY), FINISHED);
+        bench.data_system.answer = Answer::After(100);
+        assert_eq!(bench.run(seat), FINISHED);
+        assert_eq!(updates(&bench), [("PFIXTURE".to_owned(), 0)]);
+        assert_eq!(bench.sent(), ["RELEASE", ">POSITION"]);
+        assert!(bench.memory.task.beliefs.owed.iter().all(Option::is_none));
+    }
+}
+
 #[test]
 fn the_books_follow_an_object_out_of_the_hand() {
     for seat in [SEAT, SEAT_BY_DESTINATION] {
