@@ -9,28 +9,37 @@
 //!
 //! All changes that [`mutate`] knows are drawn in an order that the seed gives. One that does not compile is
 //! counted and does not stand for a row: the table is not total any more, has a dead row, or the names do not
-//! fit. One that compiles is *killed* if a test fails or does not end, and has *survived* otherwise: first the
-//! tests of the process whose table it is are run, then all of `levels`. Each of them is printed as a line, a
-//! survivor as a difference. The repository is copied to `target/row-mutants/source` first; tests are built
-//! with little optimisation, which is sooner done, and draw fewer random cases.
+//! fit. One that compiles is *killed* if a test fails or does not end, and has *survived* otherwise. Each of them
+//! is printed as a line, a survivor as a difference.
+//!
+//! The repository is copied to `target/row-mutants/source`, and there all changes are compiled at once ([`switch`]).
+//! Each test is run once without a change, which says what changes it can notice. Then those tests are run with
+//! each change, the quickest first, until one fails. Tests draw fewer random cases.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program of the developers, at a terminal")]
 
 mod mutate;
+mod switch;
+mod testing;
 
 use std::{
-    collections::HashMap,
-    fs,
-    os::unix::process::CommandExt as _,
+    collections::{BTreeMap, BTreeSet},
+    fs, io,
     path::{Path, PathBuf},
     process::{Command, ExitCode, Stdio},
+    sync::{
+        Mutex,
+        atomic::{AtomicUsize, Ordering},
+    },
     thread,
-    time::{Duration, Instant},
+    time::Instant,
 };
 
 use clap::Parser;
 use mutate::Mutant;
-use rustix::process::{Pid, Signal, kill_process_group};
+use serde_json::Value;
+use switch::Switched;
+use testing::{Program, Test};
 use whole_system_tests::root;
 
 /// Change rows of decision tables one at a time, and count which changes the tests of `levels` notice
@@ -50,143 +59,232 @@ struct Arguments {
     own: bool,
 }
 
-/// What became of a changed row.
-enum Fate {
-    Refused,
-    Killed,
-    Survived,
-}
-
 /// A copy of the repository, and where it is built.
 struct Copied {
+    root: PathBuf,
     source: PathBuf,
     target: PathBuf,
-    /// What the tests of each process may take, and what all may: three times what they take without a change,
-    /// and a minute.
-    patience: HashMap<Option<String>, Duration>,
 }
 
 impl Copied {
-    /// Copy all files that git knows, but only those that differ: what is built already stays fresh.
-    fn of(root: &Path) -> std::io::Result<Self> {
+    fn new(root: &Path) -> Self {
         let scratch = root.join("target/row-mutants");
-        let copied =
-            Self { source: scratch.join("source"), target: scratch.join("target"), patience: HashMap::new() };
-        let listed = Command::new("git").args(["ls-files", "-z"]).current_dir(root).output()?;
+        Self { root: root.to_owned(), source: scratch.join("source"), target: scratch.join("target") }
+    }
+
+    /// Copy all files that git knows, `switched` in the place of some, but only those that differ: what is built
+    /// already stays fresh.
+    fn write(&self, switched: &Switched) -> io::Result<()> {
+        let listed = Command::new("git").args(["ls-files", "-z"]).current_dir(&self.root).output()?;
         for name in listed.stdout.split(|byte| *byte == 0).filter(|name| !name.is_empty()) {
             let name = String::from_utf8_lossy(name).into_owned();
-            let (from, to) = (root.join(&name), copied.source.join(&name));
-            // A file that git knows may have been deleted.
-            let Ok(content) = fs::read(from) else { continue };
+            let (from, to) = (self.root.join(&name), self.source.join(&name));
+            let content = match switched.texts.get(Path::new(&name)) {
+                Some(text) => text.clone().into_bytes(),
+                // A file that git knows may have been deleted.
+                None => match fs::read(from) {
+                    Ok(content) => content,
+                    Err(_) => continue,
+                },
+            };
             if fs::read(&to).ok().as_ref() != Some(&content) {
                 fs::create_dir_all(to.parent().unwrap_or(&to))?;
                 fs::write(to, content)?;
             }
         }
-        Ok(copied)
+        Ok(())
     }
 
-    fn cargo(&self, more: &[&str]) -> Command {
+    /// Run cargo for `levels`: its messages, and what it says besides if it fails.
+    fn cargo(&self, arguments: &[&str]) -> io::Result<(Vec<Value>, Option<String>)> {
         let mut command = Command::new("cargo");
-        command.args(["test", "--quiet", "--package", "levels"]);
+        command.args(arguments).args(["--quiet", "--package", "levels", "--message-format=json"]);
         for package in ["levels", "geometry", "rcs-core", "depc", "interfaces"] {
             let profile = format!("profile.dev.package.{package}");
             command.args(["--config", &format!("{profile}.opt-level=1")]);
             command.args(["--config", &format!("{profile}.debug=false")]);
         }
-        command.args(more);
         command.current_dir(&self.source).env("CARGO_TARGET_DIR", &self.target).env("CARGO_INCREMENTAL", "1");
-        // The same random cases for each change.
-        command.env("PROPTEST_RNG_SEED", "1988").env("PROPTEST_CASES", "16").env("RCS_MOVES", "2000");
-        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        command
+        let output = command.stdin(Stdio::null()).output()?;
+        let lines = String::from_utf8_lossy(&output.stdout).into_owned();
+        let failed = !output.status.success();
+        Ok((
+            lines.lines().filter_map(|line| serde_json::from_str(line).ok()).collect(),
+            failed.then(|| String::from_utf8_lossy(&output.stderr).into_owned()),
+        ))
     }
 
-    fn builds(&self) -> std::io::Result<bool> {
-        Ok(self.cargo(&["--lib", "--no-run"]).status()?.success())
-    }
-
-    /// Do the tests of a process pass in time, or all?
-    fn passes(&self, process: Option<&str>) -> std::io::Result<bool> {
-        let arguments = process.map_or(vec!["--lib", "--tests"], |process| vec!["--lib", "--", process]);
-        let patience = self.patience.get(&process.map(str::to_owned));
-        let (mut child, began) = (self.cargo(&arguments).process_group(0).spawn()?, Instant::now());
+    /// The first `number` of the changes that compile, and how many before them did not.
+    fn compile(&self, mutants: &[Mutant], number: usize) -> Result<(BTreeMap<usize, Mutant>, usize), String> {
+        let said = |error: io::Error| error.to_string();
+        let mut refused = BTreeSet::new();
+        let mut drawn = 0;
         loop {
-            if let Some(status) = child.try_wait()? {
-                return Ok(status.success());
+            // Of the changes that are drawn about two thirds compile.
+            drawn = (drawn + 2 * number).min(mutants.len());
+            loop {
+                let tried = mutants.iter().zip(1..).take(drawn).map(|(mutant, number)| (number, mutant));
+                let tried: BTreeMap<_, _> = tried.filter(|(number, _)| !refused.contains(number)).collect();
+                let switched = Switched::new(&self.root, &tried).map_err(said)?;
+                self.write(&switched).map_err(said)?;
+                let (messages, failed) = self.cargo(&["check", "--lib"]).map_err(said)?;
+                let Some(text) = failed else { break };
+                let errors: Vec<_> = messages.iter().filter(|it| it["message"]["level"] == "error").collect();
+                let wrong: BTreeSet<_> = errors.iter().filter_map(|it| place(it, &switched)).collect();
+                if wrong.is_empty() {
+                    let texts = errors.iter().filter_map(|it| it["message"]["rendered"].as_str());
+                    return Err(format!("levels does not build:\n{text}{}", texts.collect::<String>()));
+                }
+                refused.extend(wrong);
             }
-            if patience.is_some_and(|patience| began.elapsed() > *patience) {
-                // The test that cargo has started does not end with it.
-                let group = Pid::from_child(&child);
-                kill_process_group(group, Signal::KILL)?;
-                child.wait()?;
-                return Ok(false);
+            if drawn - refused.len() >= number || drawn == mutants.len() {
+                break;
             }
-            thread::sleep(Duration::from_millis(50));
         }
+        let compiled = mutants.iter().cloned().zip(1..).take(drawn).map(|(mutant, number)| (number, mutant));
+        let compiled: BTreeMap<_, _> =
+            compiled.filter(|(number, _)| !refused.contains(number)).take(number).collect();
+        let last = compiled.keys().next_back().copied().unwrap_or(drawn);
+        let switched = Switched::new(&self.root, &compiled.iter().map(|(at, it)| (*at, it)).collect());
+        self.write(&switched.map_err(said)?).map_err(said)?;
+        Ok((compiled, refused.range(..last).count()))
     }
 
-    fn judge(&self, mutant: &Mutant, own: bool) -> std::io::Result<Fate> {
-        let file = self.source.join(&mutant.file);
-        let before = fs::read_to_string(&file)?;
-        fs::write(&file, mutant.apply(&before))?;
-        let fate = if !self.builds()? {
-            Fate::Refused
-        } else if self.passes(Some(&mutant.process()))? && (own || self.passes(None)?) {
-            Fate::Survived
-        } else {
-            Fate::Killed
-        };
-        fs::write(&file, before)?;
-        Ok(fate)
+    /// Build the tests, those of the library alone or all.
+    fn tests(&self, own: bool) -> Result<Vec<Program>, String> {
+        let arguments: &[&str] = if own { &["--lib"] } else { &["--lib", "--tests"] };
+        let (messages, failed) =
+            self.cargo(&[&["test", "--no-run"], arguments].concat()).map_err(|error| error.to_string())?;
+        if let Some(text) = failed {
+            return Err(format!("the tests of levels do not build:\n{text}"));
+        }
+        let programs = messages.iter().filter_map(|message| {
+            let is_library = message["target"]["kind"][0] == "lib";
+            message["executable"].as_str().map(|path| (!is_library, PathBuf::from(path)))
+        });
+        let mut programs: Vec<_> = programs.collect();
+        programs.sort();
+        let directory = self.source.join("crates/levels");
+        Ok(programs.into_iter().map(|(_, path)| Program { path, directory: directory.clone() }).collect())
     }
 }
 
+/// The number of the change that an error of the compiler is about.
+fn place(error: &Value, switched: &Switched) -> Option<usize> {
+    let spans = error["message"]["spans"].as_array()?;
+    let primary = spans.iter().filter(|span| span["is_primary"] == true);
+    let mut changes = primary.filter_map(|span| {
+        let line = usize::try_from(span["line_start"].as_u64()?).ok()?;
+        switched.change_at(Path::new(span["file_name"].as_str()?), line)
+    });
+    changes.next()
+}
+
+/// Do something with all items, on all cores; the results in the order of the items.
+fn on_all_cores<T: Sync, R: Send>(
+    items: &[T],
+    work: impl Fn(&T) -> io::Result<R> + Sync,
+) -> io::Result<Vec<R>> {
+    let (next, results) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let worker = || {
+        while let Some((at, item)) = {
+            let at = next.fetch_add(1, Ordering::Relaxed);
+            items.get(at).map(|item| (at, item))
+        } {
+            let result = work(item);
+            if let Ok(mut results) = results.lock() {
+                results.push((at, result));
+            }
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(worker);
+        }
+    });
+    let mut results = results.into_inner().map_err(|_| io::Error::other("a worker has panicked"))?;
+    results.sort_by_key(|(at, _)| *at);
+    results.into_iter().map(|(_, result)| result).collect()
+}
+
+/// The tests of which `own` asks for some, run without a change: the quickest first.
+fn measured<'a>(
+    programs: &'a [Program],
+    scratch: &Path,
+    own: Option<&BTreeSet<String>>,
+) -> io::Result<Vec<Test<'a>>> {
+    let mut wanted = Vec::new();
+    for program in programs {
+        let names = program.tests()?;
+        let is_wanted =
+            |name: &String| own.is_none_or(|own| own.iter().any(|process| name.starts_with(process)));
+        wanted.extend(names.into_iter().filter(is_wanted).map(|name| (program, name)));
+    }
+    let numbered: Vec<_> = wanted.into_iter().zip(0..).collect();
+    let mut tests = on_all_cores(&numbered, |((program, name), at)| {
+        Test::measure(program, name.clone(), &scratch.join(format!("reached-{at}")))
+    })?;
+    tests.sort_by_key(|test| test.taken);
+    Ok(tests)
+}
+
+/// What became of a change.
+enum Fate {
+    Killed,
+    /// Although this many tests reach it.
+    Survived(usize),
+}
+
+fn judge(tests: &[Test<'_>], (number, mutant): &(usize, Mutant), own: bool) -> io::Result<Fate> {
+    let process = mutant.process();
+    let mut reach = 0;
+    for test in tests {
+        if test.reaches.contains(number) && (!own || test.name.starts_with(&process)) {
+            reach += 1;
+            if !test.passes(*number)? {
+                println!("killed    {mutant}, by {}", test.name);
+                return Ok(Fate::Killed);
+            }
+        }
+    }
+    let (before, after) = (mutant.before.trim(), mutant.after.trim());
+    let other = mutant.other.iter().map(|(_, after)| format!("\n  + {}", after.trim())).collect::<String>();
+    println!("SURVIVED  {mutant}, reached by {reach} tests\n  - {before}\n  + {after}{other}");
+    Ok(Fate::Survived(reach))
+}
+
 fn run(arguments: &Arguments) -> Result<(), String> {
-    let said = |error: std::io::Error| error.to_string();
-    let mut copied = Copied::of(root()).map_err(said)?;
-    let mutants = mutate::drawn(&copied.source, arguments.seed, &arguments.only).map_err(said)?;
+    let said = |error: io::Error| error.to_string();
+    let copied = Copied::new(root());
+    let mutants = mutate::drawn(root(), arguments.seed, &arguments.only).map_err(said)?;
     if mutants.is_empty() {
         return Err(format!("no file with a table has {:?} in its path", arguments.only));
     }
     eprintln!("{} changes of rows are known", mutants.len());
-    if !copied.builds().map_err(said)? {
-        return Err("levels does not build without a change".to_owned());
-    }
-    let mut parts: Vec<Option<String>> = mutants.iter().map(|mutant| Some(mutant.process())).collect();
-    parts.sort_unstable();
-    parts.dedup();
-    parts.extend((!arguments.own).then_some(None));
-    for part in parts {
-        let began = Instant::now();
-        if !copied.passes(part.as_deref()).map_err(said)? {
-            return Err(format!("tests fail without a change: {}", part.as_deref().unwrap_or("all")));
-        }
-        copied.patience.insert(part, began.elapsed() * 3 + Duration::from_secs(60));
-    }
-    let started = Instant::now();
-    let [mut refused, mut killed, mut survived] = [0_usize; 3];
-    for mutant in &mutants {
-        if killed + survived == arguments.number {
-            break;
-        }
-        match copied.judge(mutant, arguments.own).map_err(said)? {
-            Fate::Refused => refused += 1,
-            Fate::Killed => {
-                killed += 1;
-                println!("killed    {mutant}");
-            }
-            Fate::Survived => {
-                survived += 1;
-                println!("SURVIVED  {mutant}\n  - {}\n  + {}", mutant.before.trim(), mutant.after.trim());
-            }
-        }
-    }
+    let began = Instant::now();
+    let (compiled, refused) = copied.compile(&mutants, arguments.number)?;
+    let programs = copied.tests(arguments.own)?;
+    let built = began.elapsed().as_secs();
+    eprintln!("{} of them are built in {built} s, {refused} more do not compile", compiled.len());
+
+    let began = Instant::now();
+    let own: BTreeSet<String> = compiled.values().map(Mutant::process).collect();
+    let tests = measured(&programs, &copied.target, arguments.own.then_some(&own)).map_err(said)?;
+    let without = began.elapsed().as_secs();
+    eprintln!("{} tests pass without a change in {without} s", tests.len());
+
+    let began = Instant::now();
+    let compiled: Vec<(usize, Mutant)> = compiled.into_iter().collect();
+    let fates = on_all_cores(&compiled, |change| judge(&tests, change, arguments.own)).map_err(said)?;
+    let killed = fates.iter().filter(|fate| matches!(fate, Fate::Killed)).count();
+    let unreached = fates.iter().filter(|fate| matches!(fate, Fate::Survived(0))).count();
     println!(
-        "{} s, seed {}: {} changed rows compile, {killed} killed, {survived} survived; the compiler refused {refused} more",
-        started.elapsed().as_secs(),
+        "{built} s to build, {without} s without a change, {} s with, seed {}: {} changed rows compile, {killed} \
+         killed, {} survived, of which no test reaches {unreached}; the compiler refused {refused} more",
+        began.elapsed().as_secs(),
         arguments.seed,
-        killed + survived
+        fates.len(),
+        fates.len() - killed,
     );
     Ok(())
 }

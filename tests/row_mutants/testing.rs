@@ -1,0 +1,117 @@
+//! Tests of programs, each run by itself, with a change switched on or to find out which changes it reaches.
+
+use std::{
+    collections::BTreeSet,
+    fs, io,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use crate::switch::{CHANGED, REACHED};
+
+/// A program of tests.
+#[derive(Clone, Debug)]
+pub struct Program {
+    pub path: PathBuf,
+    /// Where it is run: the directory of its package.
+    pub directory: PathBuf,
+}
+
+/// A test, and what was found out about it without a change.
+#[derive(Debug)]
+pub struct Test<'a> {
+    program: &'a Program,
+    pub name: String,
+    pub taken: Duration,
+    /// Numbers of the changes that would have decided otherwise somewhere in it.
+    pub reaches: BTreeSet<usize>,
+}
+
+impl Program {
+    fn command(&self) -> Command {
+        let mut command = Command::new(&self.path);
+        command.current_dir(&self.directory).env("CARGO_MANIFEST_DIR", &self.directory);
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        // The same random cases for each change, and no search for a smaller one.
+        command.env("PROPTEST_RNG_SEED", "1988").env("PROPTEST_CASES", "16").env("RCS_MOVES", "2000");
+        command.env("PROPTEST_MAX_SHRINK_ITERS", "0");
+        command
+    }
+
+    /// The names of its tests.
+    pub fn tests(&self) -> io::Result<Vec<String>> {
+        let output = self.command().args(["--list", "--format=terse"]).stdout(Stdio::piped()).output()?;
+        let listed = String::from_utf8_lossy(&output.stdout).into_owned();
+        Ok(listed.lines().filter_map(|line| line.strip_suffix(": test")).map(str::to_owned).collect())
+    }
+}
+
+impl<'a> Test<'a> {
+    /// Run a test without a change; `reached` is a file of its own.
+    ///
+    /// # Errors
+    /// It fails.
+    pub fn measure(program: &'a Program, name: String, reached: &Path) -> io::Result<Self> {
+        fs::write(reached, "")?;
+        let mut test = Self { program, name, taken: Duration::ZERO, reaches: BTreeSet::new() };
+        let began = Instant::now();
+        if !program.command().args(["--exact", &test.name]).env(REACHED, reached).status()?.success() {
+            return Err(io::Error::other(format!("{} fails without a change", test.name)));
+        }
+        test.taken = began.elapsed();
+        test.reaches = fs::read_to_string(reached)?.lines().filter_map(|line| line.parse().ok()).collect();
+        Ok(test)
+    }
+
+    /// Does it pass with a change, in three times what it takes without one and some seconds?
+    pub fn passes(&self, change: usize) -> io::Result<bool> {
+        let patience = self.taken * 3 + Duration::from_secs(20);
+        let mut command = self.program.command();
+        command.args(["--exact", &self.name]).env(CHANGED, change.to_string());
+        let (mut child, began) = (command.spawn()?, Instant::now());
+        loop {
+            if let Some(status) = child.try_wait()? {
+                return Ok(status.success());
+            }
+            if began.elapsed() > patience {
+                child.kill()?;
+                child.wait()?;
+                return Ok(false);
+            }
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::unix::fs::PermissionsExt as _;
+
+    use super::*;
+
+    /// Stands for a program of two tests, of which change 3 breaks one.
+    const SCRIPT: &str = r#"#!/bin/sh
+case "$*" in
+    --list*) echo 'opens: test'; echo 'closes: test' ;;
+    *opens) [ -z "$RCS_REACHED_ROWS" ] || echo 3 >> "$RCS_REACHED_ROWS"; [ "$RCS_CHANGED_ROW" != 3 ] ;;
+esac
+"#;
+
+    #[test]
+    fn a_test_tells_which_changes_it_reaches_and_which_break_it() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("program");
+        fs::write(&path, SCRIPT).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+        let program = Program { path, directory: directory.path().to_owned() };
+        let names = program.tests().unwrap();
+        assert_eq!(names, ["opens", "closes"]);
+        let reached = directory.path().join("reached");
+        let [opens, closes] =
+            ["opens", "closes"].map(|name| Test::measure(&program, name.to_owned(), &reached).unwrap());
+        assert_eq!((opens.reaches.len(), opens.reaches.contains(&3), closes.reaches.len()), (1, true, 0));
+        assert_eq!([2, 3].map(|change| opens.passes(change).unwrap()), [true, false]);
+    }
+}
