@@ -46,9 +46,11 @@ pub(super) fn sizes<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&
     data.end_eff(EndEffId::from_option(command.object_parameters))
 }
 
+/// Do the fingers stand at an opening, 0.01 in, without air that moves them from there?
 fn attached_stands_at(opening: i32, memory: &CommonMemory) -> bool {
     let attached = Gripper::attached(memory);
-    attached != Gripper::None && attached.stands_at(opening, memory)
+    let goes = attached.has_air(!attached.closes_for(opening), memory);
+    attached != Gripper::None && attached.stands_at(opening, memory) && !goes
 }
 
 impl State {
@@ -172,12 +174,14 @@ impl State {
         if gripping { Fingers::Gripping } else { Fingers::Empty }
     }
 
-    /// Does something count as held that the fingers, at rest with an opening, 0.01 in, are not around any more?
+    /// Does something count as held that the fingers, at rest with an opening, 0.01 in, are not around any more, or
+    /// that air still lets go of?
     fn is_half_let_go(&self, opening: i32, inputs: &Inputs<'_, TaskData<'_>>) -> bool {
         let Some(held) = self.beliefs.held else { return false };
         let (gripper, memory) = (Gripper::of(held.gripper), inputs.memory);
         let around = gripper.still_grips(opening, held.grasp_size, held.opening)
-            && gripper.felt(memory) != Felt::Nothing;
+            && gripper.felt(memory) != Felt::Nothing
+            && !gripper.has_air(false, memory);
         !around && !self.grippers.are_moving(inputs.tick, memory)
     }
 

@@ -162,6 +162,11 @@ impl Gripper {
         velocity.saturating_abs() < STILL
     }
 
+    /// Does air move the fingers to one end, or press them there? Jaws that were stuck at the other one may still go.
+    pub(super) fn has_air(self, to_close: bool, memory: &CommonMemory) -> bool {
+        self.jaws(memory).is_some_and(|jaws| if to_close { jaws.valves.close } else { jaws.valves.open })
+    }
+
     /// Whether closed fingers with this opening hold an object of `grasp_size`, 0.01 in.
     ///
     /// The parts gripper closes until it feels the object: any opening above the grasp size means an object (VIII.9.1).
@@ -213,8 +218,8 @@ impl Gripper {
         at && self.is_still(memory)
     }
 
-    /// Are the fingers at least as wide open as `FingerVerb::Release` with `opening` would bring them? True
-    /// without a gripper.
+    /// Are the fingers at least as wide open as `FingerVerb::Release` with `opening` would bring them, without
+    /// air that closes them? True without a gripper.
     #[must_use]
     pub fn is_open(self, opening: i32, memory: &CommonMemory) -> bool {
         let Some(now) = self.opening(memory) else { return self == Self::None };
@@ -222,6 +227,7 @@ impl Gripper {
             Some((_, open)) => opening.min(open).saturating_sub(JAWS_BAND),
             None => opening.saturating_sub(PARTS_BAND),
         };
-        now >= least && self.is_still(memory)
+        let closes = self.has_air(true, memory) && !self.closes_for(opening);
+        now >= least && self.is_still(memory) && !closes
     }
 }

@@ -1,10 +1,12 @@
-//! E-move and Grip. Around them: Subtask, the fingers with a part or without, Prim, Quick Change. The robot stands at
-//! an object and does not move.
+//! E-move and the process of a gripper. Around them: Subtask, the fingers with a part or without, Prim, Quick Change.
+//! The robot stands at an object and does not move.
+
+use std::fmt::Debug;
 
 use interfaces::{
-    ChangingPose, CommonMemory, EmoveOutputs, ExternalInputs, GripOutputs, Reason, StatusReport,
+    ChangingPose, CommonMemory, EmoveOutputs, ExternalInputs, Reason, StatusReport,
+    device::GripSensors,
     emove::{EmoveCommand, EmoveVerb, GoneTo, Holding, ObjectGrip},
-    grip::{Felt, GripCommand, GripReport},
     pose_range,
     prim::PrimReport,
     process::{Inputs, Process},
@@ -12,27 +14,62 @@ use interfaces::{
 };
 use levels::{
     emove::{self, Emove, gripper::Gripper},
-    execution::Outcome,
-    grip::{self, Grip, tables::Phase},
+    execution::{Execution, Outcome},
     places::robot_at,
 };
-use rcs_core::tick::Tick;
+use rcs_core::{handshake::Commander, tick::Tick};
 
 use crate::{
     data::{data, emove_command, place},
-    fingers::{Fingers, Sizes, calibration, flow},
     image::{Image, rebase, rebase_echoes},
     search::{World, Wrong},
 };
 
-/// Longer than the time limit of the gripper's commands.
+/// Longer than the time limit of a gripper's command.
 const LONG: u64 = 200;
-/// The greatest age that is within it, ticks.
-const LIMIT: u64 = 150;
-/// The object, its grip, and where the robot stands.
-const OBJECT: (&str, i32, &str) = ("LINKBAR1", 2, "PFIXTURE");
-/// Its depart size, a little more than its grasp size, and its force.
-const SIZES: Sizes = Sizes { open: 350, part: 66, force: 30 };
+
+/// The process of a gripper, its outputs, and its fingers.
+pub trait Fingered: Clone {
+    const GRIPPER: Gripper;
+    /// The object, its grip, and where the robot stands.
+    const OBJECT: (&'static str, i32, &'static str);
+    /// The greatest age that is within the time limit of a command, ticks.
+    const LIMIT: u64;
+    /// Fields that count up to a greatest value.
+    const COUNTERS: &'static [(&'static str, u8)];
+    /// Ticks for which E-move need not know that the part has gone.
+    const LATE: u8;
+
+    type Fingers: Copy + Debug + PartialEq;
+    const OPEN: Self::Fingers;
+
+    /// A process that waits for a command, with open fingers.
+    fn first() -> Self;
+    /// Where the fingers can be in the next tick, and whether that is prompt.
+    fn next(&self, fingers: Self::Fingers) -> Vec<(Self::Fingers, bool)>;
+    /// May a long time have passed, if they are there in the next tick?
+    fn may_be_long(&self, fingers: Self::Fingers, next: (Self::Fingers, bool)) -> bool;
+    fn sensors(fingers: Self::Fingers) -> GripSensors;
+    fn are_around(fingers: Self::Fingers) -> bool;
+    fn are_open(fingers: Self::Fingers) -> bool;
+
+    fn write(&self, memory: &mut CommonMemory, stamp: Tick);
+    fn step(&mut self, inputs: &Inputs<'_, ()>);
+    fn execution(&mut self) -> &mut Execution;
+    fn reports_executing(&self) -> bool;
+    /// Nothing moves the fingers.
+    fn rests(&self) -> bool;
+    fn echo(&self) -> u32;
+
+    fn number(outputs: &mut EmoveOutputs) -> &mut u32;
+    fn renumber(&mut self, commander: &mut Commander, number: &mut u32);
+    fn commander(state: &mut emove::state::State) -> &mut Commander;
+    /// Take away what no row asks for any more.
+    fn forget(&mut self, tick: Tick);
+    /// Take away the text of an order that has been taken.
+    fn forget_order(outputs: &mut EmoveOutputs);
+    fn add_to(&self, outputs: &EmoveOutputs, image: &mut Image);
+}
 
 /// What Prim does with its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +81,7 @@ pub enum PrimDoes {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Event {
+pub struct Event<Fingers> {
     pub told: Option<EmoveVerb>,
     pub fingers: Fingers,
     pub prim: PrimDoes,
@@ -53,59 +90,58 @@ pub struct Event {
 }
 
 #[derive(Clone)]
-pub struct Pair {
+pub struct Pair<G: Fingered> {
     tick: Tick,
     commands: &'static [EmoveVerb],
     command: EmoveCommand,
     emove: emove::state::State,
     emove_out: EmoveOutputs,
-    grip: grip::state::State,
-    grip_out: GripOutputs,
-    fingers: Fingers,
+    gripper: G,
+    fingers: G::Fingers,
+    /// Ticks for which nothing has been between them.
+    apart: u8,
     prim: (u32, PrimReport),
     quick_change: u32,
 }
 
-impl Pair {
+impl<G: Fingered> Pair<G> {
     /// The first tick of a system that is booted, with a gripper that is calibrated and open around the object;
     /// these commands can come.
     pub fn first(commands: &'static [EmoveVerb]) -> Self {
-        let calibration = Some(calibration());
         let mut pair = Self {
             tick: Tick(10_000),
             commands,
             command: EmoveCommand::default(),
             emove: emove::state::State {
                 started: true,
-                attached: Gripper::Parts,
+                attached: G::GRIPPER,
                 ..emove::state::State::default()
             },
             emove_out: EmoveOutputs::default(),
-            grip: grip::state::State { phase: Phase::Valid, calibration, ..grip::state::State::default() },
-            grip_out: GripOutputs { calibration, ..GripOutputs::default() },
-            fingers: Fingers::Open,
+            gripper: G::first(),
+            fingers: G::OPEN,
+            apart: G::LATE + 1,
             prim: (0, PrimReport::Idle),
             quick_change: 0,
         };
-        let (object, grip, location) = OBJECT;
+        let (object, grip, location) = G::OBJECT;
         let at = place(location);
         let object = emove_command(EmoveVerb::None, object, grip, location).object.unwrap_or_default();
         let stands = robot_at(GoneTo::Object(ObjectGrip { object, grip }), &at, &at.frame);
         pair.emove.beliefs.place = Some(stands);
         pair.emove_out.beliefs = pair.emove.beliefs;
-        pair.emove_out.status.end_effector_id = Some(1);
-        let status = &mut pair.grip_out.status;
-        (status.initialized, status.position, status.felt) = (true, i32::from(SIZES.open), Felt::Nothing);
-        for execution in [&mut pair.emove.execution, &mut pair.grip.execution] {
-            execution.receiver.started = true;
-        }
+        pair.emove_out.status.end_effector_id = G::GRIPPER.id();
+        pair.emove.execution.receiver.started = true;
+        pair.gripper.execution().receiver.started = true;
         pair
     }
 
     fn tell(&mut self, verb: EmoveVerb) {
-        let (object, grip, location) = OBJECT;
+        let (object, grip, location) = G::OBJECT;
         let number = self.command.number + 1;
-        self.command = EmoveCommand { number, ..emove_command(verb, object, grip, location) };
+        let end_effector_id = G::GRIPPER.id();
+        self.command =
+            EmoveCommand { number, end_effector_id, ..emove_command(verb, object, grip, location) };
     }
 
     fn prim_does(&mut self, does: PrimDoes) {
@@ -125,7 +161,8 @@ impl Pair {
         let before = self.tick.previous();
         let mut memory = CommonMemory::default();
         memory.subtask.emove = self.command;
-        (memory.emove, memory.grip) = (self.emove_out, self.grip_out);
+        memory.emove = self.emove_out;
+        self.gripper.write(&mut memory, before);
         let status = &mut memory.prim.status;
         (status.echo, status.report, status.link_running) = (self.prim.0, self.prim.1, true);
         let pose = self.emove.beliefs.place.map(|place| place.pose).unwrap_or_default();
@@ -134,9 +171,8 @@ impl Pair {
             (memory.prim.poses[0].number, memory.prim.poses[0].number);
         let status = &mut memory.quick_change.status;
         (status.echo, status.report) = (self.quick_change, QuickChangeReport::Locked);
-        (status.end_effector_id, status.ring) = (Some(1), RingPosition::Locked);
-        let headers = [&mut memory.emove.header, &mut memory.grip.header, &mut memory.prim.header];
-        headers.into_iter().for_each(|header| header.stamp = before);
+        (status.end_effector_id, status.ring) = (G::GRIPPER.id(), RingPosition::Locked);
+        (memory.emove.header.stamp, memory.prim.header.stamp) = (before, before);
         (memory.subtask.header.stamp, memory.quick_change.header.stamp) = (before, before);
         memory
     }
@@ -153,19 +189,14 @@ impl Pair {
         if !ended(self) || ended(before) {
             return Ok(());
         }
-        let between = matches!(before.fingers, Fingers::Holding | Fingers::Emptied);
         match self.command.command {
-            EmoveVerb::GraspObj if !between => Err("done, and nothing is between the fingers"),
+            EmoveVerb::GraspObj if before.apart > G::LATE => Err("done, and nothing is between the fingers"),
             EmoveVerb::GraspObj if status.held.object() != self.command.object => {
                 Err("done, and the object is not held")
             }
-            EmoveVerb::Release if !matches!(before.fingers, Fingers::Open | Fingers::Drifted) => {
-                Err("done, and the fingers are not open")
-            }
+            EmoveVerb::Release if !G::are_open(before.fingers) => Err("done, and the fingers are not open"),
             EmoveVerb::Release if status.held != Holding::Nothing => Err("done, and something is held"),
-            EmoveVerb::Pause if before.grip_out.status.report == GripReport::Executing => {
-                Err("done, and the fingers move")
-            }
+            EmoveVerb::Pause if before.gripper.reports_executing() => Err("done, and the fingers move"),
             EmoveVerb::Pause if before.prim.1 == PrimReport::Executing => Err("done, and the robot moves"),
             EmoveVerb::None => Err("an unknown command is done"),
             _ => Ok(()),
@@ -173,22 +204,22 @@ impl Pair {
     }
 }
 
-impl World for Pair {
-    type Event = Event;
+impl<G: Fingered> World for Pair<G> {
+    type Event = Event<G::Fingers>;
 
-    fn events(&self) -> Vec<(Event, bool)> {
+    fn events(&self) -> Vec<(Event<G::Fingers>, bool)> {
         let moving = self.is_moving();
         let prim: &[PrimDoes] =
             if moving { &[PrimDoes::Goes, PrimDoes::Ends, PrimDoes::Fails] } else { &[PrimDoes::Goes] };
         let mut events = Vec::new();
         for told in self.commands() {
             for &prim in prim {
-                for (fingers, arrive) in self.fingers.next(self.grip_out.valves.bits) {
+                for (fingers, arrive) in self.gripper.next(self.fingers) {
                     let event = Event { told, fingers, prim, long: false };
                     let quiet = told.is_none();
                     events.push((event, quiet && arrive && (!moving || prim != PrimDoes::Goes)));
-                    let waits = quiet && fingers == self.fingers && !arrive;
-                    if waits && !moving && self.is_settled() && self.is_still() {
+                    let waits = quiet && !moving && self.is_settled();
+                    if waits && self.gripper.may_be_long(self.fingers, (fingers, arrive)) {
                         events.push((Event { long: true, ..event }, true));
                     }
                 }
@@ -197,33 +228,32 @@ impl World for Pair {
         events
     }
 
-    fn step(&mut self, event: Event) -> Result<(), Wrong> {
+    fn step(&mut self, event: Self::Event) -> Result<(), Wrong> {
         self.tick = if event.long { Tick(self.tick.0 + LONG) } else { self.tick.next() };
-        let mut process = (Emove::default(), Grip::default());
-        process.0.restore(self.emove);
-        Process::<()>::restore(&mut process.1, self.grip);
+        let mut process = Emove::default();
+        process.restore(self.emove);
         if let Some(verb) = event.told {
             self.tell(verb);
         }
         let memory = self.memory();
         let mut external = ExternalInputs::default();
         let devices = &mut external.devices;
-        devices.grip = self.fingers.sensors(&SIZES);
-        (devices.quick_change.locked, devices.quick_change.end_effector_id) = (true, 1);
+        devices.grip = G::sensors(self.fingers);
+        let id = G::GRIPPER.id().unwrap_or_default();
+        (devices.quick_change.locked, devices.quick_change.end_effector_id) = (true, id);
         let data = data();
         let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &data };
         let old = self.clone();
-        let (mut emove_out, mut grip_out) = (self.emove_out, self.grip_out);
-        process.0.step(&inputs, &mut emove_out);
-        let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &() };
-        process.1.step(&inputs, &mut grip_out);
+        let mut emove_out = self.emove_out;
+        process.step(&inputs, &mut emove_out);
+        self.gripper.step(&Inputs { tick: self.tick, memory: &memory, external: &external, data: &() });
         // Prim and Quick Change read what was written in the tick before.
         self.prim_does(event.prim);
         self.quick_change = self.emove_out.quick_change.number;
         self.fingers = event.fingers;
-        (self.emove_out, self.grip_out) = (emove_out, grip_out);
-        self.emove = *process.0.state();
-        self.grip = *Process::<()>::state(&process.1);
+        self.apart = if G::are_around(self.fingers) { 0 } else { (self.apart + 1).min(G::LATE + 1) };
+        self.emove_out = emove_out;
+        self.emove = *process.state();
         let wrong = self.judge(&old);
         self.renumber();
         wrong
@@ -231,11 +261,9 @@ impl World for Pair {
 
     /// Without what no row asks for any more: reasons; what a process that executes nothing has of its command.
     fn image(&self) -> Vec<u8> {
-        let counters =
-            &[("settled", 6), ("missed", 3), ("touch_ticks", 5), ("still_ticks", 5), ("unfelt", UNFELT)];
-        let mut image = Image::new(self.tick, LIMIT, counters);
+        let mut image = Image::new(self.tick, G::LIMIT, G::COUNTERS);
         let mut it = self.clone();
-        (it.emove.execution.reason, it.grip.execution.reason) = (Reason::None, Reason::None);
+        (it.emove.execution.reason, it.gripper.execution().reason) = (Reason::None, Reason::None);
         let executes = it.emove.execution.outcome == Outcome::Executing;
         if !executes && it.command.command != EmoveVerb::Pause {
             (it.emove.step, it.emove.ordered, it.emove.uses_prim) = Default::default();
@@ -256,35 +284,22 @@ impl World for Pair {
             it.emove.unfelt = 0;
         }
         if it.is_settled() {
-            it.emove_out.grip = GripCommand { number: it.emove_out.grip.number, ..GripCommand::default() };
+            G::forget_order(&mut it.emove_out);
         }
-        if it.grip.execution.outcome != Outcome::Executing {
-            (it.grip.step, it.grip.goal, it.grip.settled, it.grip.missed) = Default::default();
-            it.grip.since = it.tick;
-        }
-        it.grip.steady = Default::default();
+        it.gripper.forget(it.tick);
         image.add(&it.command);
         image.add(&it.emove);
         image.add(&it.emove_out.prim);
         image.add(&it.emove_out.quick_change);
-        image.add(&it.emove_out.grip);
         image.add(&it.emove_out.status.echo);
         image.add(&it.emove_out.status.report);
-        image.add(&it.grip);
-        let status = &it.grip_out.status;
-        image.add(&status.echo);
-        image.add(&status.report);
-        image.add(&status.felt);
-        image.add(&status.initialized);
-        image.add(&status.position);
-        image.add(&status.left_force);
-        image.add(&status.right_force);
-        image.add(&status.velocity);
-        image.add(&it.fingers.sensors(&SIZES));
+        it.gripper.add_to(&it.emove_out, &mut image);
+        image.add(&G::sensors(it.fingers));
         image.add(&it.prim.0);
         image.add(&it.prim.1);
         image.add(&it.quick_change);
-        image.bytes.push(it.grip_out.valves.bits);
+        let grasps = executes && it.command.command == EmoveVerb::GraspObj;
+        image.bytes.push(if grasps { it.apart } else { 0 });
         image.bytes
     }
 
@@ -294,9 +309,8 @@ impl World for Pair {
         status.echo == self.command.number
             && over
             && self.is_settled()
-            && self.grip.execution.outcome != Outcome::Executing
+            && self.gripper.rests()
             && !self.is_moving()
-            && flow(self.grip_out.valves.bits) == (false, false)
     }
 
     fn pauses(&self) -> bool {
@@ -304,10 +318,7 @@ impl World for Pair {
     }
 }
 
-/// Ticks for which the fingers feel nothing that make no more difference.
-const UNFELT: u8 = 6;
-
-impl Pair {
+impl<G: Fingered> Pair<G> {
     /// Any command can come when the last one has ended, and another one than it before.
     fn commands(&self) -> Vec<Option<EmoveVerb>> {
         let status = &self.emove_out.status;
@@ -316,10 +327,11 @@ impl Pair {
         core::iter::once(None).chain(self.commands.iter().filter(may).map(|verb| Some(*verb))).collect()
     }
 
-    /// Grip has read its last command, and E-move its echo.
+    /// The gripper's process has read its last command, and E-move its echo.
     fn is_settled(&self) -> bool {
-        let number = self.emove_out.grip.number;
-        (number == 0 || (number == self.grip_out.status.echo && number == self.grip.execution.receiver.echo))
+        let number = *G::number(&mut { self.emove_out });
+        let read = self.gripper.clone().execution().receiver.echo;
+        (number == 0 || (number == self.gripper.echo() && number == read))
             && self.emove_out.quick_change.number == self.quick_change
     }
 
@@ -329,20 +341,12 @@ impl Pair {
         (number != self.prim.0 && number != 0) || self.prim.1 == PrimReport::Executing
     }
 
-    /// The fingers have stood for so long that their process has noted it.
-    fn is_still(&self) -> bool {
-        let read = self.grip.sensed.map(|sensed| sensed.last);
-        read == Some(self.fingers.sensors(&SIZES)) && self.grip.still_ticks >= 5 && self.grip.touch_ticks >= 5
-    }
-
     /// What does not count any more begins again.
     fn renumber(&mut self) {
         let (emove, out) = (&mut self.emove, &mut self.emove_out);
         let echo = &mut emove.execution.receiver.echo;
         rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
-        let echo = &mut self.grip.execution.receiver.echo;
-        let parts = &mut emove.grippers.parts;
-        rebase(parts, &mut [&mut out.grip.number, echo, &mut self.grip_out.status.echo]);
+        self.gripper.renumber(G::commander(emove), G::number(out));
         rebase(&mut emove.prim, &mut [&mut out.prim.number, &mut self.prim.0]);
         rebase(&mut emove.quick_change, &mut [&mut out.quick_change.number, &mut self.quick_change]);
     }

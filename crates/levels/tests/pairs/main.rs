@@ -16,14 +16,17 @@
 mod data;
 mod emove;
 mod fingers;
+mod grip;
 mod hand;
 mod image;
+mod jaws;
 mod pedestal;
 mod search;
 mod task;
 mod told;
 
 use interfaces::{emove::EmoveVerb, pedestal::PedestalVerb};
+use levels::jaws::{CylindricalPartGripper, ToolGripper};
 use search::{Found, World, search};
 
 /// Everything, or what an ordinary run has time for.
@@ -119,10 +122,26 @@ fn task_and_subtask_transfer_with_a_mishap() {
     tasks("task and subtask, TRANSFER with a mishap", 1, &HANDLING[..2], 25);
 }
 
+const GRASPING: &[EmoveVerb] = &[EmoveVerb::GraspObj, EmoveVerb::Release, EmoveVerb::Pause];
+
+fn grasping<G: emove::Fingered>(name: &str, commands: &'static [EmoveVerb], pause: u32, any: u32) {
+    let found = is_sound(name, emove::Pair::<G>::first(commands), 1_000_000);
+    assert!(found.states > 1000, "{} states", found.states);
+    assert!(found.pause <= pause && found.any <= any, "{} and {}", found.pause, found.any);
+}
+
 #[test]
 fn emove_and_grip() {
-    let commands = &[EmoveVerb::GraspObj, EmoveVerb::Release, EmoveVerb::Pause];
-    let found = is_sound("E-move and Grip", emove::Pair::first(commands), 1_000_000);
-    assert!(found.states > 1000, "{} states", found.states);
-    assert!(found.pause <= 25 && found.any <= 30, "{} and {}", found.pause, found.any);
+    grasping::<grip::Grip>("E-move and Grip", GRASPING, 25, 30);
+}
+
+#[test]
+fn emove_and_v_grip() {
+    grasping::<jaws::Jaws<CylindricalPartGripper>>("E-move and V-Grip", GRASPING, 19, 29);
+}
+
+#[test]
+fn emove_and_tool_grip() {
+    let commands = if is_full() { GRASPING } else { &GRASPING[..2] };
+    grasping::<jaws::Jaws<ToolGripper>>("E-move and Tool-Grip", commands, 19, 29);
 }

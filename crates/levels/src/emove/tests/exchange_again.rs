@@ -3,6 +3,7 @@
 
 use interfaces::{
     Reason,
+    device::JawValves,
     emove::{
         EmoveVerb::{
             self, AcquireTool, GraspObj, InsertTool, LocateObj, MovObjTo, MovToHol, MovToLoc, MovToObj,
@@ -36,6 +37,7 @@ pub const SCENARIOS: &[fn()] = &[
     a_grasp_is_made_again_from_every_tick,
     fingers_that_are_stopped_while_they_let_go_have_not_let_go,
     what_was_half_let_go_is_grasped_anew,
+    jaws_that_air_moves_do_not_stand,
     what_is_not_known_is_held,
     a_bare_robot_leaves_a_holster_without_a_gripper,
     id_pins_that_fail_change_nothing,
@@ -503,6 +505,28 @@ fn what_was_half_let_go_is_grasped_anew() {
             assert_eq!(held.as_deref(), Some(object), "what they have closed on has its name");
         });
         assert!(matches!(bench.memory.emove.status.held, Holding::Object(_)), "{object}");
+    }
+}
+
+/// Jaws that were stuck may still go where their air presses them.
+#[test]
+fn jaws_that_air_moves_do_not_stand() {
+    for (close, open) in [(false, false), (true, false), (false, true)] {
+        let air = JawValves { open, close };
+        let mut bench = Bench::ready("HOME", 2);
+        bench.memory.v_grip.valves = air;
+        assert_eq!(send(&mut bench, (Release, "SHAFT", 1, "BENCH", 2)), DONE);
+        assert_eq!(bench.log().contains(&"RELEASE 350"), close, "{:?}", bench.log());
+        let mut bench = Bench::ready("HOME", 2);
+        bench.memory.v_grip.valves = air;
+        assert_eq!(send(&mut bench, (MovToObj, "SHAFT", 1, "BENCH", 2)), DONE);
+        assert_eq!(bench.log().contains(&"POSE 350"), close, "{:?}", bench.log());
+        let mut bench = Bench::ready("BENCH", 2);
+        bench.hold("SHAFT", 204, 2);
+        bench.world.log.clear();
+        bench.memory.v_grip.valves = air;
+        assert_eq!(send(&mut bench, (GraspObj, "SHAFT", 1, "BENCH", 2)), DONE);
+        assert_eq!(!bench.log().is_empty(), open, "{:?}", bench.log());
     }
 }
 

@@ -1,0 +1,145 @@
+//! Grip, the process of the parts gripper.
+
+use interfaces::{
+    CommonMemory, EmoveOutputs, GripOutputs,
+    device::GripSensors,
+    grip::{Felt, GripCommand, GripReport},
+    process::{Inputs, Process},
+};
+use levels::{
+    emove::{self, gripper::Gripper},
+    execution::{Execution, Outcome},
+    grip::{self, tables::Phase},
+};
+use rcs_core::{handshake::Commander, tick::Tick};
+
+use crate::{
+    emove::Fingered,
+    fingers::{Fingers, Sizes, calibration, flow},
+    image::{Image, rebase},
+};
+
+/// Depart size of the object, a little more than its grasp size, and its force.
+const SIZES: Sizes = Sizes { open: 350, part: 66, force: 30 };
+
+#[derive(Clone)]
+pub struct Grip {
+    state: grip::state::State,
+    outputs: GripOutputs,
+}
+
+impl Fingered for Grip {
+    const GRIPPER: Gripper = Gripper::Parts;
+    const OBJECT: (&'static str, i32, &'static str) = ("LINKBAR1", 2, "PFIXTURE");
+    const LIMIT: u64 = 150;
+    const COUNTERS: &'static [(&'static str, u8)] =
+        &[("settled", 6), ("missed", 3), ("touch_ticks", 5), ("still_ticks", 5), ("unfelt", 6)];
+    const LATE: u8 = 0;
+
+    type Fingers = Fingers;
+    const OPEN: Fingers = Fingers::Open;
+
+    /// The gripper is calibrated.
+    fn first() -> Self {
+        let calibration = Some(calibration());
+        let mut outputs = GripOutputs { calibration, ..GripOutputs::default() };
+        let status = &mut outputs.status;
+        (status.initialized, status.position, status.felt) = (true, i32::from(SIZES.open), Felt::Nothing);
+        Self {
+            state: grip::state::State { phase: Phase::Valid, calibration, ..grip::state::State::default() },
+            outputs,
+        }
+    }
+
+    fn next(&self, fingers: Fingers) -> Vec<(Fingers, bool)> {
+        fingers.next(self.outputs.valves.bits)
+    }
+
+    /// They have stood for so long that their process has noted it.
+    fn may_be_long(&self, fingers: Fingers, (next, arrive): (Fingers, bool)) -> bool {
+        let it = &self.state;
+        let read = it.sensed.map(|sensed| sensed.last) == Some(fingers.sensors(&SIZES));
+        next == fingers && !arrive && read && it.still_ticks >= 5 && it.touch_ticks >= 5
+    }
+
+    fn sensors(fingers: Fingers) -> GripSensors {
+        fingers.sensors(&SIZES)
+    }
+
+    fn are_around(fingers: Fingers) -> bool {
+        matches!(fingers, Fingers::Holding | Fingers::Emptied)
+    }
+
+    fn are_open(fingers: Fingers) -> bool {
+        matches!(fingers, Fingers::Open | Fingers::Drifted)
+    }
+
+    fn write(&self, memory: &mut CommonMemory, stamp: Tick) {
+        memory.grip = self.outputs;
+        memory.grip.header.stamp = stamp;
+    }
+
+    fn step(&mut self, inputs: &Inputs<'_, ()>) {
+        let mut process = grip::Grip::default();
+        Process::<()>::restore(&mut process, self.state);
+        process.step(inputs, &mut self.outputs);
+        self.state = *Process::<()>::state(&process);
+    }
+
+    fn execution(&mut self) -> &mut Execution {
+        &mut self.state.execution
+    }
+
+    fn reports_executing(&self) -> bool {
+        self.outputs.status.report == GripReport::Executing
+    }
+
+    fn rests(&self) -> bool {
+        self.state.execution.outcome != Outcome::Executing && flow(self.outputs.valves.bits) == (false, false)
+    }
+
+    fn echo(&self) -> u32 {
+        self.outputs.status.echo
+    }
+
+    fn number(outputs: &mut EmoveOutputs) -> &mut u32 {
+        &mut outputs.grip.number
+    }
+
+    fn renumber(&mut self, commander: &mut Commander, number: &mut u32) {
+        let read = &mut self.state.execution.receiver.echo;
+        rebase(commander, &mut [number, read, &mut self.outputs.status.echo]);
+    }
+
+    fn commander(state: &mut emove::state::State) -> &mut Commander {
+        &mut state.grippers.parts
+    }
+
+    fn forget(&mut self, tick: Tick) {
+        let state = &mut self.state;
+        if state.execution.outcome != Outcome::Executing {
+            (state.step, state.goal, state.settled, state.missed) = Default::default();
+            state.since = tick;
+        }
+        state.steady = Default::default();
+    }
+
+    fn forget_order(outputs: &mut EmoveOutputs) {
+        outputs.grip = GripCommand { number: outputs.grip.number, ..GripCommand::default() };
+    }
+
+    fn add_to(&self, outputs: &EmoveOutputs, image: &mut Image) {
+        let status = &self.outputs.status;
+        image.add(&outputs.grip);
+        image.add(&self.state);
+        image.add(&status.echo);
+        image.add(&status.report);
+        image.add(&status.felt);
+        image.add(&status.initialized);
+        image.add(&status.position);
+        image.add(&status.left_force);
+        image.add(&status.right_force);
+        image.add(&status.velocity);
+        image.bytes.push(self.outputs.valves.bits);
+    }
+}

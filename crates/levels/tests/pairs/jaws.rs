@@ -1,0 +1,222 @@
+//! V-Grip and Tool-Grip, the processes of the grippers that open and close, and their fingers.
+//!
+//! The fingers have no force sensor, and air presses them as long as no other command comes.
+
+use std::marker::PhantomData;
+
+use interfaces::{
+    CommonMemory, EmoveOutputs, JawsOutputs,
+    device::GripSensors,
+    grip::Felt,
+    jaws::{JawsCommand, JawsReport},
+    process::{Inputs, Process},
+};
+use levels::{
+    emove::{self, gripper::Gripper},
+    execution::{Execution, Outcome},
+    jaws::{
+        CylindricalPartGripper, Jaws as Real, JawsKind, POTENTIOMETER_OFFSET, POTENTIOMETER_SCALE,
+        ToolGripper, state::State,
+    },
+};
+use rcs_core::{handshake::Commander, tick::Tick};
+
+use crate::{
+    emove::Fingered,
+    image::{Image, rebase},
+};
+
+/// Where the fingers are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fingers {
+    /// At the open end of their way.
+    Open,
+    /// Wider than the part by an inch.
+    Wide,
+    /// At the part.
+    Holding,
+    /// At the closed end of their way.
+    Closed,
+}
+
+/// What is different between the two.
+pub trait Side: JawsKind + Clone + Default {
+    const GRIPPER: Gripper;
+    const OBJECT: (&'static str, i32, &'static str);
+    /// Grasp size of the object, in.
+    const PART: f64;
+
+    fn commander(state: &mut emove::state::State) -> &mut Commander;
+    fn order(outputs: &mut EmoveOutputs) -> &mut JawsCommand;
+    fn outputs(memory: &mut CommonMemory) -> &mut JawsOutputs;
+}
+
+impl Side for CylindricalPartGripper {
+    const GRIPPER: Gripper = Gripper::V;
+    const OBJECT: (&'static str, i32, &'static str) = ("SHAFT", -1, "V-VFIXTURE");
+    const PART: f64 = 1.4;
+
+    fn commander(state: &mut emove::state::State) -> &mut Commander {
+        &mut state.grippers.v
+    }
+
+    fn order(outputs: &mut EmoveOutputs) -> &mut JawsCommand {
+        &mut outputs.v_grip
+    }
+
+    fn outputs(memory: &mut CommonMemory) -> &mut JawsOutputs {
+        &mut memory.v_grip
+    }
+}
+
+impl Side for ToolGripper {
+    const GRIPPER: Gripper = Gripper::Tool;
+    const OBJECT: (&'static str, i32, &'static str) = ("DRILL-2", 1, "TOOL-SAFE");
+    const PART: f64 = 1.75;
+
+    fn commander(state: &mut emove::state::State) -> &mut Commander {
+        &mut state.grippers.tool
+    }
+
+    fn order(outputs: &mut EmoveOutputs) -> &mut JawsCommand {
+        &mut outputs.tool_grip
+    }
+
+    fn outputs(memory: &mut CommonMemory) -> &mut JawsOutputs {
+        &mut memory.tool_grip
+    }
+}
+
+#[derive(Clone)]
+pub struct Jaws<S> {
+    state: State,
+    outputs: JawsOutputs,
+    side: PhantomData<S>,
+}
+
+impl<S: Side> Fingered for Jaws<S> {
+    const GRIPPER: Gripper = S::GRIPPER;
+    const OBJECT: (&'static str, i32, &'static str) = S::OBJECT;
+    const LIMIT: u64 = 100;
+    const COUNTERS: &'static [(&'static str, u8)] = &[("attached_ticks", 5), ("air_ticks", 6)];
+    /// The process reads the fingers a tick later, and E-move its status another one.
+    const LATE: u8 = 2;
+
+    type Fingers = Fingers;
+    const OPEN: Fingers = Fingers::Open;
+
+    fn first() -> Self {
+        let counts = Self::sensors(Fingers::Open).potentiometer;
+        let state =
+            State { window: Some([counts; 4]), attached_ticks: 10, air_ticks: 10, ..State::default() };
+        let mut outputs = JawsOutputs::default();
+        (outputs.status.size, outputs.status.felt) = (S::GRIPPER.closed() + 300, Felt::Nothing);
+        Self { state, outputs, side: PhantomData }
+    }
+
+    /// Fingers that stand still have stopped for their process, wherever that is.
+    fn next(&self, fingers: Fingers) -> Vec<(Fingers, bool)> {
+        use Fingers::{Closed, Holding, Open, Wide};
+        let valves = self.outputs.valves;
+        let also: &[(Fingers, bool)] = match (valves.open, valves.close, fingers) {
+            (true, _, Closed | Holding) => &[(Wide, true), (Open, true)],
+            (true, _, Wide) => &[(Open, true)],
+            (_, true, Open) => &[(Wide, true), (Holding, true), (Closed, true)],
+            (_, true, Wide) => &[(Holding, true), (Closed, true)],
+            // The part slips out.
+            (_, true, Holding) => &[(Closed, false)],
+            _ => &[],
+        };
+        [&[(fingers, true)], also].concat()
+    }
+
+    /// Fingers that never stop are left out: between the places of a long motion there would have to be others.
+    fn may_be_long(&self, _: Fingers, _: (Fingers, bool)) -> bool {
+        false
+    }
+
+    fn sensors(fingers: Fingers) -> GripSensors {
+        let opening = match fingers {
+            Fingers::Open => S::PARAMETERS.opened,
+            Fingers::Wide => S::PART + 1.0,
+            Fingers::Holding => S::PART,
+            Fingers::Closed => S::PARAMETERS.closed,
+        };
+        let potentiometer = (POTENTIOMETER_OFFSET + POTENTIOMETER_SCALE * opening).round() as u16;
+        GripSensors { potentiometer, strain_left: 0, strain_right: 0, beams: 0 }
+    }
+
+    fn are_around(fingers: Fingers) -> bool {
+        fingers == Fingers::Holding
+    }
+
+    fn are_open(fingers: Fingers) -> bool {
+        fingers == Fingers::Open
+    }
+
+    fn write(&self, memory: &mut CommonMemory, stamp: Tick) {
+        let outputs = S::outputs(memory);
+        *outputs = self.outputs;
+        outputs.header.stamp = stamp;
+    }
+
+    fn step(&mut self, inputs: &Inputs<'_, ()>) {
+        let mut process = Real::<S>::default();
+        Process::<()>::restore(&mut process, self.state);
+        process.step(inputs, &mut self.outputs);
+        self.state = *Process::<()>::state(&process);
+    }
+
+    fn execution(&mut self) -> &mut Execution {
+        &mut self.state.execution
+    }
+
+    fn reports_executing(&self) -> bool {
+        self.outputs.status.report == JawsReport::Executing
+    }
+
+    fn rests(&self) -> bool {
+        self.state.execution.outcome != Outcome::Executing
+    }
+
+    fn echo(&self) -> u32 {
+        self.outputs.status.echo
+    }
+
+    fn number(outputs: &mut EmoveOutputs) -> &mut u32 {
+        &mut S::order(outputs).number
+    }
+
+    fn renumber(&mut self, commander: &mut Commander, number: &mut u32) {
+        let read = &mut self.state.execution.receiver.echo;
+        rebase(commander, &mut [number, read, &mut self.outputs.status.echo]);
+    }
+
+    fn commander(state: &mut emove::state::State) -> &mut Commander {
+        S::commander(state)
+    }
+
+    fn forget(&mut self, tick: Tick) {
+        let state = &mut self.state;
+        if state.execution.outcome != Outcome::Executing {
+            (state.step, state.verb, state.since) = (Default::default(), Default::default(), tick);
+        }
+    }
+
+    fn forget_order(outputs: &mut EmoveOutputs) {
+        let number = *Self::number(outputs);
+        *S::order(outputs) = JawsCommand { number, ..JawsCommand::default() };
+    }
+
+    fn add_to(&self, outputs: &EmoveOutputs, image: &mut Image) {
+        let status = &self.outputs.status;
+        image.add(S::order(&mut { *outputs }));
+        image.add(&self.state);
+        image.add(&status.echo);
+        image.add(&status.report);
+        image.add(&status.felt);
+        image.add(&status.size);
+        image.add(&status.velocity);
+        image.add(&self.outputs.valves);
+    }
+}
