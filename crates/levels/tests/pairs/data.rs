@@ -54,6 +54,12 @@ pub fn emove_command(verb: EmoveVerb, object: &str, grip: i32, location: &str) -
     }
 }
 
+/// The record of the pose of a location point without a movetable.
+pub fn pose_of_point(name: &str) -> u32 {
+    let found = data().locpt_named(&Name16::new(name).expect("a name")).and_then(|id| data().locpt(id));
+    found.expect("the data have the point").pose.number()
+}
+
 /// A location by name.
 pub fn place(name: &str) -> Location {
     let name = Name16::new(name).expect("a name");

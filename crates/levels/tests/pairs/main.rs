@@ -21,6 +21,7 @@ mod hand;
 mod image;
 mod jaws;
 mod pedestal;
+mod prim;
 mod search;
 mod task;
 mod told;
@@ -144,4 +145,21 @@ fn emove_and_v_grip() {
 fn emove_and_tool_grip() {
     let commands = if is_full() { GRASPING } else { &GRASPING[..2] };
     grasping::<jaws::Jaws<ToolGripper>>("E-move and Tool-Grip", commands, 19, 29);
+}
+
+/// E-move and Prim: `motions` commands interrupt a motion, and as many `faults` come.
+fn moves(name: &str, motions: u8, faults: u8) {
+    let found = is_sound(name, prim::Pair::first(&["HOME", "SAFE"], motions, faults), 1_000_000);
+    assert!(found.states > 1000, "{} states", found.states);
+    assert!(found.pause <= 9 && found.any <= 26, "{} and {}", found.pause, found.any);
+}
+
+#[test]
+fn emove_and_prim() {
+    moves("E-move and Prim", if is_full() { 2 } else { 1 }, 0);
+}
+
+#[test]
+fn emove_and_prim_with_a_fault() {
+    moves("E-move and Prim, a fault", u8::from(is_full()), 1);
 }
