@@ -38,6 +38,7 @@ impl State {
     pub(super) fn part(&self, held: Held, status: &PedestalStatus, command: &SubtaskCommand) -> Part {
         let right = self.regrip.is_some_and(|regrip| Some(regrip.object) == command.object);
         match (held, pedestal_hand(status)) {
+            (Held::NotKnown, PedestalHand::HoldsPart) if right => Part::Touched,
             (Held::NotKnown, _) => Part::NotKnown,
             (_, PedestalHand::Unsure) => Part::Unsure,
             (_, PedestalHand::HoldsPart) if !right => Part::Other,

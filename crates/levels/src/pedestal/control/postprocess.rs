@@ -31,7 +31,7 @@ impl State {
         match action {
             Action::Wait => {}
             Action::OpenAndTurn => {
-                self.open(tick, outputs);
+                self.command_hand(hand_command(&self.command), tick, outputs);
                 self.command_table(TableVerb::Turn, angle, tick, outputs);
                 self.ordered = Ordered::Both;
             }
@@ -47,7 +47,7 @@ impl State {
                 self.command_hand(hand_command(&self.command), tick, outputs);
             }
             Action::Turn => self.command_table(TableVerb::Turn, angle, tick, outputs),
-            Action::Open => self.open(tick, outputs),
+            Action::Open => self.command_hand(hand_command(&self.command), tick, outputs),
             Action::StopTable => self.command_table(TableVerb::Pause, 0, tick, outputs),
             Action::Finish => self.execution.finish(),
             Action::Lose(reason) => {
@@ -64,12 +64,6 @@ impl State {
     fn pass_up(&mut self, lower: Lower, below: Reason) {
         let silent = lower == Lower::Lost || below == Reason::None;
         self.execution.fail(if silent { Reason::NeighbourLost } else { below });
-    }
-
-    /// Open the hand, which releases its part.
-    fn open(&mut self, tick: Tick, outputs: &mut PedestalOutputs) {
-        self.gripped = false;
-        self.command_hand(hand_command(&self.command), tick, outputs);
     }
 
     fn command_hand(&mut self, command: GripCommand, tick: Tick, outputs: &mut PedestalOutputs) {

@@ -3,7 +3,7 @@
 
 use interfaces::{
     CommonMemory, PedestalOutputs,
-    grip::Felt,
+    grip::{Felt, GripVerb},
     pedestal::{PedestalVerb, TableVerb},
     process::Inputs,
 };
@@ -43,8 +43,12 @@ impl State {
         if asked == Asked::Now {
             (self.command, self.ordered) = (*command, Ordered::Nothing);
         }
-        let object = self.object(felt(inputs), memory);
         let (hand, table) = (self.hand(memory, tick), self.table(memory, tick));
+        // A hand that was told to open and has not, as one that was restarted meanwhile, still grips.
+        if written.hand.command == GripVerb::OpenGrip && hand == Lower::Done {
+            self.gripped = false;
+        }
+        let object = self.object(felt(inputs), memory);
         Seen {
             arrival,
             replaced: Replaced {

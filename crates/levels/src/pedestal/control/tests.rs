@@ -621,6 +621,26 @@ fn the_object_stays_gripped_whatever_fails() {
     }
 }
 
+/// A hand that is restarted before its fingers have opened keeps its part, and the pedestal process says so.
+#[test]
+fn what_the_hand_has_not_let_go_is_gripped() {
+    let mut kept = 0;
+    for later in 0..40 {
+        let mut cell = Cell::new(1.0, -1200);
+        cell.take();
+        cell.send(PedestalVerb::Release, 450, 0);
+        (0..later).for_each(|_| cell.step());
+        cell.hand = Hand::default();
+        (0..200).for_each(|_| cell.step());
+        let status = cell.memory.pedestal.status;
+        assert!(status.gripped || status.felt != Felt::Something, "restarted after {later} ticks");
+        kept += u32::from(status.gripped && status.felt == Felt::Something);
+        assert_eq!(cell.execute(PedestalVerb::Release, 450, 0), DONE, "restarted after {later} ticks");
+        assert!(!cell.memory.pedestal.status.gripped);
+    }
+    assert!(kept > 0, "the first of them come before the fingers move");
+}
+
 /// Every pair of commands, the second at some ticks of the first, in worlds that obey and worlds that do not,
 /// with processes that are restarted in between: all end, with a reason if they fail.
 #[test]

@@ -100,7 +100,7 @@ pub enum Part {
     Robot,
     /// Robot and pedestal.
     Both,
-    /// The pedestal, and something is between the robot's fingers, which may be the part.
+    /// The pedestal, and something is between the robot's fingers, which may be the part, or they do not tell.
     Touched,
     /// The pedestal.
     Hand,
@@ -110,7 +110,7 @@ pub enum Part {
     Other,
     /// The pedestal has nothing, and the robot something unknown.
     Unknown,
-    /// The robot's gripper does not tell.
+    /// The robot's gripper does not tell, and the pedestal does not have the object.
     NotKnown,
     /// The pedestal's hand does not tell.
     Unsure,
