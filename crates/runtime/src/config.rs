@@ -329,6 +329,10 @@ impl FromStr for LogTarget {
             "" => Err("a file name or none was expected".into()),
             "default" => Ok(Self::Default),
             "none" | "/dev/null" => Ok(Self::None),
+            "off" => {
+                Err("a file name, or none for no log, was expected; for a file with this name write ./off"
+                    .into())
+            }
             path => Ok(Self::File(path.into())),
         }
     }
@@ -337,6 +341,15 @@ impl FromStr for LogTarget {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_log_goes_into_a_file_or_nowhere() {
+        assert_eq!("none".parse(), Ok(LogTarget::None));
+        assert_eq!("run.mcap".parse(), Ok(LogTarget::File("run.mcap".into())));
+        let error = "off".parse::<LogTarget>().expect_err("most likely a mistake for none");
+        assert!(error.contains("none for no log"), "{error}");
+        assert_eq!("./off".parse(), Ok(LogTarget::File("./off".into())));
+    }
 
     #[test]
     fn a_robot_is_simulated_or_at_a_port() {
