@@ -262,6 +262,9 @@ pub enum Reason {
     PinsFail,
     /// All is done, and the robot has been sent away from where the command leaves it: send the next command.
     SentAway,
+    /// An object is held, and the robot is not where POSITION would let it go: bring it there with MOVE, or place it
+    /// with TRANSFER.
+    HeldElsewhere,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

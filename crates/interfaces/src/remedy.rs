@@ -75,7 +75,7 @@ impl Reason {
                 "press Hold again or cycle start at the robot controller's panel, if it shows HOLD; \
                  else start it up there"
             }
-            Self::AlreadyHolding => "send the command that places the held object",
+            Self::AlreadyHolding | Self::HeldElsewhere => "send the command that places the held object",
             Self::ObjectLost => "take the object away, and put it back to where the command takes it from",
             Self::UnknownHeld => "take out what the gripper holds, or let it go with POSITION",
             Self::HeldNotKnown => "take out what the gripper may hold, and send POSITION",

@@ -172,9 +172,14 @@ fn station(at: Option<Name10>) -> Station {
 /// The way from where the robot is to the position of a POSITION, as far as the names of the locations tell.
 fn way(at: Option<Standing>, plan: &Plan, data: &TaskData<'_>) -> Way {
     let Some(at) = at else { return Way::NoStart };
-    let Some(goal) = plan.source.location.or(plan.destination.location) else { return Way::Known };
+    let Some(goal) = plan.source.location.or(plan.destination.location) else { return Way::Here };
     let from = place_of(goal.kind, at.record, at.array);
     let to = place_of(goal.kind, goal.record, goal.array);
-    let leads = same_location(&from, &to) || data.trajectory(&from, &to).is_some();
-    if leads { Way::Known } else { Way::NoTrajectory }
+    if same_location(&from, &to) {
+        Way::Here
+    } else if data.trajectory(&from, &to).is_some() {
+        Way::Leads
+    } else {
+        Way::NoTrajectory
+    }
 }

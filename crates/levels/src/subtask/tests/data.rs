@@ -65,6 +65,9 @@ BLOCK# 5 OFFSET 21000
   -own-  HOLSTER        -m-   lpt        HOLSTER-R
                         -m-   lpt        HOLSTER-L
                         -m-   lpt        HOLSTER-C
+BLOCK# 6 OFFSET 21000
+-traj   UT1-PFIX       lpt     UNIT_1  lpt    PFIXTURE
+  -ppt     4      100      8      300     mtb    -1050ty
 BLOCK# 1 OFFSET 20000
   -obj-  PART             1     300     60     30     350
   -obj-  PART            -1     310     61     31     351

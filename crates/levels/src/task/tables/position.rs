@@ -5,7 +5,8 @@ use rcs_core::decision_table;
 decision_table! {
     /// POSITION (V.4.1): release what is held, then move to the position, with the parameters of a virtual
     /// object if one is named. The position is the source location, or the destination if the source is null
-    /// (SPECNOTES.md, contradiction 24). Nothing is released if the robot could not go there afterwards. The
+    /// (SPECNOTES.md, contradiction 24). Nothing is released if the robot could not go there afterwards. What has
+    /// a name is released only there; something unknown, or not known to be there, wherever the robot stands. The
     /// data base is told where an object is let go that it knows as the robot's (an extension: SPECNOTES.md).
     pub POSITION: fn position(enum PositionStep, super::Situation) -> super::Action {
         any {
@@ -17,28 +18,29 @@ decision_table! {
             3:  held: Nothing, source: Null                 => Position(Destination)           -> Moving;
             4:  way: NoStart                                => Fail(UnknownStart);
             5:  way: NoTrajectory                           => Fail(NoTrajectory);
-            6:  way: Known                                  => Release                         -> Releasing;
+            6:  held: Right | Other, way: Leads             => Fail(HeldElsewhere);
+            7:  way: Here | Leads                           => Release                         -> Releasing;
         }
         /// The held object is being released.
         Releasing {
-            7:  update: None | Owed, source: Named          => Position(Source)                -> Moving;
-            8:  update: None | Owed, source: Null           => Position(Destination)           -> Moving;
-            9:  update: Due, source: Named                  => UpdateAndPosition(Source)       -> Leaving;
-            10: update: Due, source: Null                   => UpdateAndPosition(Destination)  -> Leaving;
+            8:  update: None | Owed, source: Named          => Position(Source)                -> Moving;
+            9:  update: None | Owed, source: Null           => Position(Destination)           -> Moving;
+            10: update: Due, source: Named                  => UpdateAndPosition(Source)       -> Leaving;
+            11: update: Due, source: Null                   => UpdateAndPosition(Destination)  -> Leaving;
         }
         /// The robot is on its way.
         Moving {
-            11: work: Over                                  => Finish;
+            12: work: Over                                  => Finish;
         }
         /// The robot is on its way, and the data base is being told where the object is.
         Leaving {
-            12: update: Owed                                => AwaitUpdate                     -> Telling;
-            13: update: None | Due                          => Finish;
+            13: update: Owed                                => AwaitUpdate                     -> Telling;
+            14: update: None | Due                          => Finish;
         }
         /// The data base is being told.
         Telling {
-            14: update: Owed                                => TellOwed;
-            15: update: None | Due                          => Finish;
+            15: update: Owed                                => TellOwed;
+            16: update: None | Due                          => Finish;
         }
     }
 }

@@ -78,8 +78,10 @@ pub enum Drum {
 /// Can the robot go to the position of a POSITION, as far as Task can tell?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Way {
-    /// It is there, or the task data have a trajectory.
-    Known,
+    /// It is there.
+    Here,
+    /// It is elsewhere, and the task data have a trajectory.
+    Leads,
     /// They have none.
     NoTrajectory,
     /// It is not known where the robot is.

@@ -343,6 +343,20 @@ fn what_is_unknown_is_let_go_by_position_alone() {
     }
 }
 
+#[test]
+fn an_object_is_let_go_only_where_position_goes() {
+    for at in ["PFIXTURE", "UNIT_1"] {
+        let mut bench = Bench::default();
+        bench.set(1, "PART", at);
+        let (end, sent): (_, &[_]) = match at {
+            "PFIXTURE" => (FINISHED, &["RELEASE", ">POSITION"]),
+            _ => (error(Reason::HeldElsewhere), &[]),
+        };
+        assert_eq!(bench.run(SEAT), end, "{at}");
+        assert_eq!(bench.sent(), sent, "{at}");
+    }
+}
+
 /// What the updates say that the Data System has taken: item and position.
 fn updates(bench: &Bench<'_>) -> Vec<(String, i32)> {
     let told = bench.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
