@@ -265,6 +265,8 @@ pub enum Reason {
     /// An object is held, and the robot is not where POSITION would let it go: bring it there with MOVE, or place it
     /// with TRANSFER.
     HeldElsewhere,
+    /// The fingers have not let go of an object whose release was begun: send the command that releases it again.
+    ReleaseNotEnded,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

@@ -84,6 +84,7 @@ impl Reason {
             Self::HolsterEmpty => "put the gripper into its holster",
             Self::InHolster | Self::RingNotLocked => "send the command that changes the gripper again",
             Self::InDrum => "send the interrupted tool command again",
+            Self::ReleaseNotEnded => "send the command that releases the object again",
             Self::SentAway => "send the next command",
             Self::ForwardOnly => "send the interrupted command again",
             Self::NotDetected | Self::Detected => {

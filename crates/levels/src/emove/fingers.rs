@@ -111,12 +111,17 @@ impl State {
         !looks && !moving && !self.beliefs.empty
     }
 
+    /// Has a release been begun at this place that has not ended?
+    fn is_letting_go(&self) -> bool {
+        self.releasing && self.beliefs.held.is_some() && self.place().is_some()
+    }
+
     /// Whether the held object is still held. Opening fingers count as holding it until they have released it: if they
     /// stop half-way, the object is still between them, and the command that releases it can be sent again.
     fn sense_loss(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
         let Some(held) = self.beliefs.held else { return };
-        let letting_go = self.releasing && self.place().is_some();
+        let letting_go = self.is_letting_go();
         let gripper = Gripper::of(held.gripper);
         // A part that was held with little force leaves the fingers where they are when it falls: only the
         // force tells.
@@ -234,6 +239,9 @@ impl State {
 
     /// The opening for the goal of the route.
     pub(super) fn opening(&self, gripper: Lower, inputs: &Inputs<'_, TaskData<'_>>) -> Opening {
+        if self.is_letting_go() {
+            return Opening::LettingGo;
+        }
         let Some((route, opening)) = self.route.and_then(|route| Some((route, route.opening?))) else {
             return Opening::Set;
         };

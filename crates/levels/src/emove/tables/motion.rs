@@ -15,20 +15,21 @@ decision_table! {
         Moving {
             2: opening: Uncalibrated                              => Calibrate;
             3: opening: Due                                       => Open;
-            4: ahead: Through                                     => GoThru;
-            5: ahead: Missing                                     => Fail(BadRecord);
-            6: ahead: Stop | Nothing, opening: Departing | Moving => Wait;
-            7: ahead: Stop                                        => GotoPt -> Stopping;
-            8: ahead: Nothing                                     => Arrive;
-            9: ahead: Beside                                      => GotoPt -> Rejoining;
+            4: opening: LettingGo, ahead: Through | Stop | Beside => Fail(ReleaseNotEnded);
+            5: ahead: Through                                     => GoThru;
+            6: ahead: Missing                                     => Fail(BadRecord);
+            7: ahead: Stop | Nothing, opening: Departing | Moving => Wait;
+            8: ahead: Stop                                        => GotoPt -> Stopping;
+            9: ahead: Nothing                                     => Arrive;
+            10: ahead: Beside                                     => GotoPt -> Rejoining;
         }
         /// On the final motion.
         Stopping {
-            10: work: Over                                        => Arrive;
+            11: work: Over                                        => Arrive;
         }
         /// Back to the way beside which a person has left the robot.
         Rejoining {
-            11: work: Over                                        => Wait -> Moving;
+            12: work: Over                                        => Wait -> Moving;
         }
     }
 }

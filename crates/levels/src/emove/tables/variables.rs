@@ -141,6 +141,8 @@ pub enum Opening {
     Moving,
     /// The gripper reports an error.
     Failed,
+    /// A release that was begun where the robot stands has not ended.
+    LettingGo,
 }
 
 /// What was held when the command came.

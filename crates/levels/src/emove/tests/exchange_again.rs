@@ -460,9 +460,13 @@ fn fingers_that_are_stopped_while_they_let_go_have_not_let_go() {
     assert_eq!(stuck.pause(), DONE);
     assert_eq!(stuck.memory.emove.beliefs.placed, None);
     assert!(matches!(stuck.memory.emove.status.held, Holding::Object(_)));
-    // Elsewhere the part is lost.
-    let mut away = stuck.clone();
-    assert_eq!(away.run(MovObjTo, "SHAFT", 1, "VISE", 2), error(Reason::ObjectLost));
+    // The robot does not leave with it.
+    for line in [(MovObjTo, "SHAFT", 1, "VISE", 2), (MovToLoc, "", 0, "HOME", 0)] {
+        stuck.world.log.clear();
+        assert_eq!(send(&mut stuck, line), error(Reason::ReleaseNotEnded));
+        assert!(!stuck.log().iter().any(|word| word.starts_with("GO")), "{:?}", stuck.log());
+    }
+    assert_eq!(stuck.run(MovObjTo, "SHAFT", 1, "BENCH", 2), DONE, "it is there");
     assert_eq!(send(&mut stuck, (Release, "SHAFT", 1, "BENCH", 2)), DONE);
     assert_eq!(stuck.memory.emove.status.held, Holding::Nothing);
     assert!(stuck.memory.emove.beliefs.placed.is_some());
