@@ -66,6 +66,27 @@ fn the_table_is_written_as_markdown() {
     assert!(table.contains("| interruption | linkbar | clevis |"), "{table}");
 }
 
+/// Branches of docs/campaign.md "Found by series": each was hurt before the tables were mended.
+#[test]
+fn what_searches_have_found_hurts_nothing_any_more() {
+    for (job, tick, kind) in [
+        ("turned-part", "1564", "fault:id-pins-bad"),
+        ("turned-part", "2528", "fault:air-lost+1:replaced"),
+        ("turned-part", "2553", "fault:id-pins-bad"),
+        ("turned-part", "3608,3609", "replaced"),
+        ("turned-part", "3618", "replaced+1:fault:air-lost"),
+        ("clevis", "1054", "pause+9:answer-late"),
+        ("clevis", "2456", "replaced"),
+        ("clevis", "6128", "restart:hand"),
+        ("tool-change", "4893", "fault:air-lost+1:replaced"),
+    ] {
+        let campaign = json(&["campaign", job, "--at", tick, "--interrupt", kind, "--json"]);
+        for branch in campaign["branches"].as_array().expect("branches are listed") {
+            assert_ne!(branch["verdict"], "hurt", "{job}: {branch}");
+        }
+    }
+}
+
 /// Interruptions that a job must survive in 97 of 100 branches, without harm.
 const REQUIRED: &str =
     "pause,pause-twice,refused,replaced,answer-lost,answer-late,answer-damaged,hold,nudge,held,restart";

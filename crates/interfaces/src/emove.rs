@@ -205,6 +205,8 @@ pub enum GoneTo {
     View(ObjectGrip),
     /// The tool drum, with the fingers around a tool in it: only the tool commands lead away from there.
     Drum,
+    /// The destination of an object, where it has been brought and is held still.
+    Brought(ObjectGrip),
 }
 
 /// A place of the robot: where a move ended, or where one leads.

@@ -117,6 +117,22 @@ fn the_blank_goes_from_the_tray_into_the_vise() {
 }
 
 #[test]
+fn what_was_brought_is_taken_out_as_it_came_in() {
+    let (nest, home) = (location("V-VFIXTURE", 0, ""), location("HOME", 0, ""));
+    let shaft = gripped("SHAFT_BH", 1);
+    let held = data().grip_frame(&shaft.object, shaft.grip, &nest).unwrap();
+    let leave = |gone_to| {
+        let from = robot_at(gone_to, &nest, &held);
+        planned(EmoveVerb::MovToLoc, "", 0, &home, Some(&from)).unwrap()
+    };
+    let (empty, brought) = (leave(GoneTo::Object(shaft)), leave(GoneTo::Brought(shaft)));
+    assert_eq!(empty[..1], texts(&[("departure A/D-8", 20)]));
+    // The approach in reverse, each segment with the lower velocity of its two ends.
+    assert_eq!(brought[..2], texts(&[("departure D/A+1.5rwz", 5), ("departure A/D-10+1.5", 10)]));
+    assert_eq!(brought[2..], empty[1..], "the same trajectory");
+}
+
+#[test]
 fn hold_then_seat_needs_no_trajectory_and_no_depart() {
     let vise = location("PFIXTURE", 0, "");
     let hold = data().grip_frame(&Name16::new("H-LINKBAR1_BH").unwrap(), 1, &vise).unwrap();

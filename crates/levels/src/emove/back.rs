@@ -38,7 +38,7 @@ impl Back {
 }
 
 /// The parameters with the lower velocity: those of both ends of a segment hold when it is flown back.
-fn slower(a: TrajParaId, b: TrajParaId, data: &TaskData<'_>) -> TrajParaId {
+pub(super) fn slower(a: TrajParaId, b: TrajParaId, data: &TaskData<'_>) -> TrajParaId {
     let velocity = |id| data.traj_para(id).map_or(i32::MAX, |parameters| parameters.vel_max);
     if velocity(b) < velocity(a) { b } else { a }
 }

@@ -2,7 +2,7 @@
 
 use interfaces::{
     EmoveOutputs,
-    emove::{EmoveCommand, GoneTo, Grasped, ObjectGrip},
+    emove::{EmoveCommand, EmoveVerb, GoneTo, Grasped, ObjectGrip},
     process::Inputs,
 };
 use taskdata::files::TaskData;
@@ -17,8 +17,18 @@ use super::{
 impl State {
     /// The robot is at the goal of the current command: report done.
     pub(super) fn arrive(&mut self, command: &EmoveCommand, outputs: &EmoveOutputs) {
-        self.settle(command, gone_to(command), outputs);
+        let at = match gone_to(command) {
+            GoneTo::Object(object) if self.brings(command) => GoneTo::Brought(object),
+            at => at,
+        };
+        self.settle(command, at, outputs);
         self.finish();
+    }
+
+    /// Does the robot bring the object of the command, which it holds?
+    fn brings(&self, command: &EmoveCommand) -> bool {
+        let held = self.beliefs.held.map(|held| held.object.object);
+        command.command == EmoveVerb::MovObjTo && held == command.object
     }
 
     /// The robot has come to rest at the goal record: remember where that is.

@@ -5,7 +5,7 @@ use core::mem;
 
 use interfaces::{
     CommonMemory,
-    emove::{EmoveCommand, EmoveVerb, Grasped, Holding, PlacedObject, RobotPlace},
+    emove::{EmoveCommand, EmoveVerb, GoneTo, Grasped, Holding, PlacedObject, RobotPlace},
     grip::Felt,
     process::Inputs,
     quick_change::RingPosition,
@@ -90,6 +90,12 @@ impl State {
                 }
             }
             Felt::Something | Felt::NotKnown => {}
+        }
+        // What was brought has been let go, or is lost: the empty fingers depart as from any object.
+        if let (None, Some(place)) = (self.beliefs.held, &mut self.beliefs.place)
+            && let GoneTo::Brought(object) = place.gone_to
+        {
+            place.gone_to = GoneTo::Object(object);
         }
     }
 

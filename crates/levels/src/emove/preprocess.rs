@@ -300,7 +300,7 @@ impl State {
         match self.place() {
             Some(at) if same_location(&place(&at), &place_named(command)) => match at.gone_to {
                 GoneTo::Drum => At::InDrum,
-                GoneTo::Location | GoneTo::Object(_) | GoneTo::View(_) => At::There,
+                GoneTo::Location | GoneTo::Object(_) | GoneTo::View(_) | GoneTo::Brought(_) => At::There,
             },
             Some(at) if at.location.as_str() == named::TOOL_SAFE => At::Before,
             _ => At::Elsewhere,

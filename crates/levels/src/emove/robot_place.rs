@@ -69,7 +69,7 @@ pub const fn place_named(command: &EmoveCommand) -> Place {
 #[must_use]
 pub const fn standing(at: &RobotPlace) -> Standing {
     let grip = match at.gone_to {
-        GoneTo::Object(ObjectGrip { grip, .. }) => Some(grip),
+        GoneTo::Object(ObjectGrip { grip, .. }) | GoneTo::Brought(ObjectGrip { grip, .. }) => Some(grip),
         GoneTo::Location | GoneTo::View(_) | GoneTo::Drum => None,
     };
     Standing { location: at.location, record: at.record, array: at.array, grip }

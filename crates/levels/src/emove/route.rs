@@ -15,7 +15,10 @@ use interfaces::emove::{EmoveCommand, EmoveVerb, GoneTo, Leg as Part, ObjectGrip
 use rcs_core::Plain;
 use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Place, Target, TaskData, TrajParaId, VisionId};
 
-use super::robot_place::{gone_to, place, place_named, robot_at};
+use super::{
+    back::slower,
+    robot_place::{gone_to, place, place_named, robot_at},
+};
 
 /// Opening, 0.01 in, when pictures are taken: the camera looks between the open fingers (V.2.1 MOV-TO-VU).
 /// The parts gripper opens as wide; the others open to their stop.
@@ -76,7 +79,8 @@ pub struct Route {
     pub from: RobotPlace,
     /// The goal.
     pub to: RobotPlace,
-    /// Depart points, relative to the pose departed from.
+    /// Depart points, relative to the pose departed from; from where an object was brought to the approach points,
+    /// which are passed in reverse.
     pub depart: PathId,
     /// Intermediate trajectory.
     pub between: PathId,
@@ -239,10 +243,14 @@ impl Route {
             GoneTo::Location => data.depart_location(&start),
             GoneTo::Object(ObjectGrip { object, grip }) => data.depart(&object, grip, &start),
             GoneTo::View(ObjectGrip { object, grip }) => data.view_depart(&object, grip, &start),
+            // The depart path may be that of empty fingers: with the object the robot goes out as it came in.
+            GoneTo::Brought(ObjectGrip { object, grip }) => data.approach(&object, grip, &start),
         };
         let approach = match to.gone_to {
             GoneTo::Location | GoneTo::Drum => data.approach_location(&end),
-            GoneTo::Object(ObjectGrip { object, grip }) => data.approach(&object, grip, &end),
+            GoneTo::Object(ObjectGrip { object, grip }) | GoneTo::Brought(ObjectGrip { object, grip }) => {
+                data.approach(&object, grip, &end)
+            }
             GoneTo::View(ObjectGrip { object, grip }) => data.view_approach(&object, grip, &end),
         };
         let between =
@@ -270,7 +278,13 @@ impl Route {
     /// The points to go through, in the direction of the goal.
     fn points<'a>(&self, data: &TaskData<'a>) -> impl Iterator<Item = (Part, &'a PathPoint)> + use<'a> {
         let part = |part, path| data.path(path).iter().map(move |point| (part, point));
-        part(Part::Depart, self.depart)
+        let (out, backwards) = (data.path(self.depart), matches!(self.from.gone_to, GoneTo::Brought(_)));
+        let nth = move |nth: usize| {
+            if backwards { out.len().checked_sub(nth.saturating_add(1)) } else { Some(nth) }
+        };
+        (0..out.len())
+            .filter_map(move |at| out.get(nth(at)?))
+            .map(|point| (Part::Depart, point))
             .chain(part(Part::Trajectory, self.between))
             .chain(part(Part::Approach, self.approach))
             .filter(|(_, point)| point.target != Target::Stop)
@@ -284,7 +298,8 @@ impl Route {
     /// The number of depart points.
     #[must_use]
     pub fn depart_points(&self, data: &TaskData<'_>) -> u16 {
-        u16::try_from(data.path(self.depart).len()).unwrap_or(u16::MAX)
+        let points = data.path(self.depart).iter().filter(|point| point.target != Target::Stop);
+        u16::try_from(points.count()).unwrap_or(u16::MAX)
     }
 
     /// The point to which the robot was sent last, from 0; the goal is the last.
@@ -360,7 +375,17 @@ impl Route {
             }
             (Target::Stop, _) => return None,
         };
-        Some(Leg { at, parameters: point.para })
+        let takes_out = part == Part::Depart && matches!(self.from.gone_to, GoneTo::Brought(_));
+        let parameters = if takes_out { slower(point.para, self.behind(data)?, data) } else { point.para };
+        Some(Leg { at, parameters })
+    }
+
+    /// Parameters of the point before the next one, on the way out of a place by its approach path.
+    fn behind(&self, data: &TaskData<'_>) -> Option<TrajParaId> {
+        match self.commanded.checked_sub(1) {
+            Some(before) => self.points(data).nth(usize::from(before)).map(|(_, point)| point.para),
+            None => data.path(self.depart).last().map(|stop| stop.para),
+        }
     }
 
     /// Note that the next leg has been commanded.

@@ -172,7 +172,8 @@ impl State {
         let closed = here
             && !way.straight
             && route.depart_points(data) == 0
-            && matches!((way.from.gone_to, way.to.gone_to), (GoneTo::Object(_), GoneTo::Object(_)));
+            && matches!(way.from.gone_to, GoneTo::Object(_) | GoneTo::Brought(_))
+            && matches!(way.to.gone_to, GoneTo::Object(_));
         Start {
             robot,
             goal: if is_same(&way.to, goal) { GoalOf::Way } else { GoalOf::Another },
