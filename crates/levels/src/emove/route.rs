@@ -275,15 +275,18 @@ impl Route {
             .find_map(|path| Some(data.path(path).last()?.para))
     }
 
+    /// Does the robot leave with an object by the approach path, which is passed in reverse?
+    const fn takes_out(&self) -> bool {
+        matches!(self.from.gone_to, GoneTo::Brought(_))
+    }
+
     /// The points to go through, in the direction of the goal.
     fn points<'a>(&self, data: &TaskData<'a>) -> impl Iterator<Item = (Part, &'a PathPoint)> + use<'a> {
         let part = |part, path| data.path(path).iter().map(move |point| (part, point));
-        let (out, backwards) = (data.path(self.depart), matches!(self.from.gone_to, GoneTo::Brought(_)));
-        let nth = move |nth: usize| {
-            if backwards { out.len().checked_sub(nth.saturating_add(1)) } else { Some(nth) }
-        };
-        (0..out.len())
-            .filter_map(move |at| out.get(nth(at)?))
+        let (depart, none): (&[PathPoint], &[PathPoint]) = (data.path(self.depart), &[]);
+        let (written, reversed) = if self.takes_out() { (none, depart) } else { (depart, none) };
+        let depart = written.iter().chain(reversed.iter().rev());
+        depart
             .map(|point| (Part::Depart, point))
             .chain(part(Part::Trajectory, self.between))
             .chain(part(Part::Approach, self.approach))
@@ -375,8 +378,8 @@ impl Route {
             }
             (Target::Stop, _) => return None,
         };
-        let takes_out = part == Part::Depart && matches!(self.from.gone_to, GoneTo::Brought(_));
-        let parameters = if takes_out { slower(point.para, self.behind(data)?, data) } else { point.para };
+        let reversed = part == Part::Depart && self.takes_out();
+        let parameters = if reversed { slower(point.para, self.behind(data)?, data) } else { point.para };
         Some(Leg { at, parameters })
     }
 

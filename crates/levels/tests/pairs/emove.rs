@@ -71,6 +71,17 @@ pub trait Fingered: Clone {
     fn add_to(&self, outputs: &EmoveOutputs, image: &mut Image);
 }
 
+/// Run the process of a gripper for a tick, from one state to the next.
+pub fn run<P>(state: &mut P::State, inputs: &Inputs<'_, ()>, outputs: &mut P::Outputs)
+where
+    P: Process<(), State: Copy> + Default,
+{
+    let mut process = P::default();
+    process.restore(*state);
+    process.step(inputs, outputs);
+    *state = *process.state();
+}
+
 /// What Prim does with its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PrimDoes {

@@ -4,7 +4,7 @@ use interfaces::{
     CommonMemory, EmoveOutputs, GripOutputs,
     device::GripSensors,
     grip::{Felt, GripCommand, GripReport},
-    process::{Inputs, Process},
+    process::Inputs,
 };
 use levels::{
     emove::{self, gripper::Gripper},
@@ -14,7 +14,7 @@ use levels::{
 use rcs_core::{handshake::Commander, tick::Tick};
 
 use crate::{
-    emove::Fingered,
+    emove::{Fingered, run},
     fingers::{Fingers, Sizes, calibration, flow},
     image::{Image, rebase},
 };
@@ -80,10 +80,7 @@ impl Fingered for Grip {
     }
 
     fn step(&mut self, inputs: &Inputs<'_, ()>) {
-        let mut process = grip::Grip::default();
-        Process::<()>::restore(&mut process, self.state);
-        process.step(inputs, &mut self.outputs);
-        self.state = *Process::<()>::state(&process);
+        run::<grip::Grip>(&mut self.state, inputs, &mut self.outputs);
     }
 
     fn execution(&mut self) -> &mut Execution {

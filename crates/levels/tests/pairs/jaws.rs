@@ -9,7 +9,7 @@ use interfaces::{
     device::GripSensors,
     grip::Felt,
     jaws::{JawsCommand, JawsReport},
-    process::{Inputs, Process},
+    process::Inputs,
 };
 use levels::{
     emove::{self, gripper::Gripper},
@@ -22,7 +22,7 @@ use levels::{
 use rcs_core::{handshake::Commander, tick::Tick};
 
 use crate::{
-    emove::Fingered,
+    emove::{Fingered, run},
     image::{Image, rebase},
 };
 
@@ -161,10 +161,7 @@ impl<S: Side> Fingered for Jaws<S> {
     }
 
     fn step(&mut self, inputs: &Inputs<'_, ()>) {
-        let mut process = Real::<S>::default();
-        Process::<()>::restore(&mut process, self.state);
-        process.step(inputs, &mut self.outputs);
-        self.state = *Process::<()>::state(&process);
+        run::<Real<S>>(&mut self.state, inputs, &mut self.outputs);
     }
 
     fn execution(&mut self) -> &mut Execution {

@@ -30,8 +30,8 @@ decision_table! {
         Locating {
             11: work: Over                              => MovToObj         -> Moving;
         }
-        /// The robot is on its way to the object. If the pictures are lost, as with the link to the robot, E-move
-        /// goes to where the object should be.
+        /// The robot is on its way to the object. A link to the robot that fails drops the pictures: E-move would
+        /// go to where the task data have the object.
         Moving {
             12: vision: Needed                          => MovToVu          -> Viewing;
             13: vision: NotNeeded | Done, work: Busy    => Wait;
