@@ -4,18 +4,11 @@
 //! The arm here takes every set point at once; masses, lag and contacts belong to the cell's tests.
 
 mod fingers;
+mod rig;
 
-use std::{path::Path, sync::OnceLock};
-
-use depc::{Limits, Plate, controller};
-use fingers::Fingers;
-use geometry::{
-    frame::Frame,
-    kinematics::{HOME_JOINTS, Joints, T3},
-};
 use interfaces::{
-    CommonMemory, DataBaseCommand, ExternalInputs, Header, HwsCommand, OutsidePedestal, Reason,
-    device::{LinkBytes, RESOLVER_COUNTS, single_step},
+    CommonMemory, DataBaseCommand, ExternalInputs, Header, OutsidePedestal, Reason,
+    device::single_step,
     emove::{Grasped, Located, PlacedObject},
     hws::{HwsReport, Ledger},
     operator::{BOARDS, Variable, Write, board_bit, process_bit},
@@ -26,149 +19,10 @@ use levels::ladder::{Ladder, LadderState, PROCESS_COUNT, ProcessId};
 use proptest::prelude::*;
 use rcs_core::{
     Plain,
-    digest::Digest,
-    name::Name16,
     plain::{Writer, from_bytes},
     tick::Tick,
 };
-use taskdata::load::Store;
-
-fn store() -> &'static Store {
-    static STORE: OnceLock<Store> = OnceLock::new();
-    STORE.get_or_init(|| match Store::load(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))) {
-        Ok((store, _)) => store,
-        Err(report) => panic!("{report}"),
-    })
-}
-
-/// Joints that follow every accepted set point at once.
-struct PlainArm {
-    joints: Joints,
-    plate: Plate,
-}
-
-impl controller::Robot for PlainArm {
-    fn present(&mut self) -> Plate {
-        self.plate
-    }
-
-    fn accept(&mut self, goal: &Plate) -> Result<(), controller::Refusal> {
-        self.joints = controller::joints_for(&T3, goal, &self.joints)?;
-        self.plate = *goal;
-        Ok(())
-    }
-}
-
-/// The controller, the link and the arm, a tick at a time.
-struct Rig {
-    ladder: Ladder,
-    before: CommonMemory,
-    external: ExternalInputs,
-    tick: Tick,
-    controller: controller::Controller,
-    arm: PlainArm,
-    fingers: Fingers,
-    /// Gripper on the quick change.
-    gripper: u8,
-    digest: Digest,
-    warnings: u32,
-}
-
-impl Rig {
-    fn new() -> Self {
-        let plate =
-            Plate::from_tool(&T3.forward(&HOME_JOINTS), &T3, &Plate::default()).expect("HOME has words");
-        let mut rig = Self {
-            ladder: Ladder::default(),
-            before: CommonMemory::default(),
-            external: ExternalInputs::default(),
-            tick: Tick::BEFORE_START,
-            controller: controller::Controller::new(Limits::NBS),
-            arm: PlainArm { joints: HOME_JOINTS, plate },
-            fingers: Fingers { opening: 2.0, force: 0.0 },
-            gripper: 1,
-            digest: Digest::new(),
-            warnings: 0,
-        };
-        rig.sense(LinkBytes::default());
-        // A process that starts adopts the command it finds; the workstation speaks once Task listens.
-        rig.step(ProcessId::ALL);
-        rig
-    }
-
-    /// Device words for the next tick.
-    fn sense(&mut self, rx: LinkBytes) {
-        let devices = &mut self.external.devices;
-        devices.link_rx = rx;
-        devices.link_ready = true;
-        for (count, angle) in devices.resolvers.counts.iter_mut().zip(self.arm.joints) {
-            let turns = (angle / std::f64::consts::TAU).rem_euclid(1.0);
-            *count = (turns * f64::from(RESOLVER_COUNTS)).round() as u32 % RESOLVER_COUNTS;
-        }
-        devices.resolvers.valid = true;
-        devices.quick_change.locked = true;
-        devices.quick_change.end_effector_id = self.gripper;
-        devices.joystick.velocity = 1000;
-        self.fingers.show(&mut devices.grip);
-    }
-
-    /// One tick with the given processes in the given order.
-    fn step(&mut self, order: &[ProcessId]) {
-        self.tick = self.tick.next();
-        let mut after = CommonMemory::default();
-        let data = store().view();
-        self.ladder.step_in_order(order, self.tick, &self.before, &self.external, &data, &mut after);
-        let mut scratch = vec![0; CommonMemory::SIZE];
-        self.digest.add_record(&after, &mut scratch);
-        self.before = after;
-
-        let outputs = after.device_outputs();
-        self.fingers.advance(outputs.grip.bits);
-        let inputs = controller::ControllerInputs {
-            rx: outputs.link_tx,
-            cts: true,
-            board: true,
-            start: self.controller.state() == controller::ControllerState::Off,
-            // The operator answers every warning with ENTER.
-            enter: self.controller.state() == controller::ControllerState::Warning,
-            ..Default::default()
-        };
-        self.warnings += u32::from(inputs.enter);
-        let answer = self.controller.step(&inputs, &mut self.arm);
-        self.sense(answer.tx);
-    }
-
-    fn command(&mut self, verb: &str, destination: &str) {
-        let hws = &mut self.external.hws;
-        *hws = HwsCommand {
-            number: hws.number + 1,
-            command: Name16::new(verb).unwrap(),
-            destination: Name16::new(destination).ok().filter(|name| !name.is_empty()),
-            ..HwsCommand::default()
-        };
-    }
-
-    /// Run until the last command has ended.
-    fn finish(&mut self, order: &[ProcessId], limit: u32) -> (HwsReport, Reason) {
-        for _ in 0..limit {
-            self.step(order);
-            let status = self.before.task.status;
-            if status.echo == self.external.hws.number
-                && !matches!(status.report, HwsReport::Executing | HwsReport::Idle)
-            {
-                return (status.report, status.reason);
-            }
-        }
-        panic!("{:?} did not end: {:#?}", self.external.hws.command, self.before);
-    }
-
-    fn at(&self, location: &str) -> bool {
-        let name = Name16::new(location).unwrap();
-        let goal: Frame = store().view().resolve_location(&name, None, None::<&Name16>).unwrap().frame;
-        let distance = T3.forward(&self.arm.joints).distance(&goal);
-        distance.inches < 0.02 && distance.radians < 0.002
-    }
-}
+use rig::{Rig, store};
 
 const FINISHED: (HwsReport, Reason) = (HwsReport::Finished, Reason::None);
 
