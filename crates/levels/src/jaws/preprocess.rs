@@ -22,6 +22,9 @@ pub const POTENTIOMETER_SCALE: f64 = 600.0;
 
 /// Ticks after a change of the air in which fingers may not have begun to move.
 pub(super) const START_TICKS: u8 = 6;
+/// Ticks after which fingers that closing air has stopped on something press it (1 s, ASSUMED): the pressure builds up
+/// behind them, or comes back after a drop, and they have no force sensors (VI.4).
+pub(super) const PRESSED_TICKS: u8 = 25;
 /// Ticks after which the readings of a gripper that was attached just now count.
 const SETTLED_TICKS: u8 = 5;
 /// Ticks in which any way of the fingers must end (4 s).
@@ -62,7 +65,8 @@ impl State {
         let window = self.sample(gripper, devices.grip.potentiometer);
         let [newest, second, third, oldest] = window.map(f64::from);
         let opening = opening_at((newest + second + third + oldest) / 4.0);
-        let (motion, stop) = (self.motion(&window, inputs.tick), stop(opening, &K::PARAMETERS));
+        let stop = stop(opening, &K::PARAMETERS);
+        let motion = self.motion(&window, stop, inputs.tick);
         Seen {
             arrival,
             request: Request {
@@ -92,10 +96,14 @@ impl State {
         self.window.unwrap_or_default()
     }
 
-    fn motion(&self, window: &[u16; WINDOW], tick: Tick) -> Motion {
+    fn motion(&mut self, window: &[u16; WINDOW], stop: Stop, tick: Tick) -> Motion {
         let (least, most) =
             window.iter().fold((u16::MAX, 0), |(least, most), &c| (least.min(c), most.max(c)));
-        if most.abs_diff(least) <= STILL_COUNTS && self.air_ticks >= START_TICKS {
+        let still = most.abs_diff(least) <= STILL_COUNTS && self.air_ticks >= START_TICKS;
+        let grips = still && self.valves.close && stop == Stop::Between;
+        self.gripping_ticks =
+            if grips { self.gripping_ticks.saturating_add(1).min(PRESSED_TICKS) } else { 0 };
+        if still && (!grips || self.gripping_ticks == PRESSED_TICKS) {
             Motion::Stopped
         } else if tick.since(self.since) > LIMIT_TICKS {
             Motion::Endless

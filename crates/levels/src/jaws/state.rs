@@ -30,6 +30,8 @@ pub struct State {
     /// Potentiometer readings of the last ticks, the newest first, if the gripper was attached in the last
     /// tick.
     pub window: Option<[u16; WINDOW]>,
+    /// Ticks for which closing air has stood against something, up to [`super::preprocess::PRESSED_TICKS`].
+    pub gripping_ticks: u8,
     /// Ticks for which the gripper has been attached.
     pub attached_ticks: u8,
     /// Air.

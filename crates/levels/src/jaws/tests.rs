@@ -262,6 +262,29 @@ fn an_object_is_pressed_until_it_is_released() {
     assert!(bench.outputs.valves.open && !bench.outputs.valves.close);
 }
 
+/// The air may fail when the fingers touch the object, and come back: until they press it, it is not grasped.
+#[test]
+fn fingers_that_closed_on_something_have_grasped_it_when_they_have_stood_for_a_second() {
+    let mut bench = VBench::new(3.5);
+    bench.fingers.object = Some(2.0);
+    bench.send(JawsVerb::Grasp, 2.0);
+    while bench.fingers.opening > 2.0 {
+        bench.step();
+    }
+    let arrived = bench.tick;
+    assert_eq!(bench.wait(24).status.felt, Felt::NotKnown);
+    bench.send(JawsVerb::Pause, 0.0);
+    assert_eq!(
+        (bench.finish(), bench.outputs.status.felt),
+        ((JawsReport::AtPosition, Reason::None), Felt::Something)
+    );
+    assert!((25..=30).contains(&bench.tick.since(arrived)), "{}", bench.tick.since(arrived));
+    bench.fingers.object = None;
+    bench.wait(30);
+    let empty = bench.tick;
+    assert_eq!((bench.execute(JawsVerb::Grasp, 2.0), bench.tick.since(empty) < 5), (CLOSED, true));
+}
+
 #[test]
 fn the_way_of_the_fingers_is_reported_as_executing_with_its_velocity() {
     let mut bench = ToolBench::new(4.0);

@@ -98,7 +98,8 @@ impl<S: Side> Fingered for Jaws<S> {
     const GRIPPER: Gripper = S::GRIPPER;
     const OBJECT: (&'static str, i32, &'static str) = S::OBJECT;
     const LIMIT: u64 = 100;
-    const COUNTERS: &'static [(&'static str, u8)] = &[("attached_ticks", 5), ("air_ticks", 6)];
+    const COUNTERS: &'static [(&'static str, u8)] =
+        &[("attached_ticks", 5), ("air_ticks", 6), ("gripping_ticks", 25)];
     /// The process reads the fingers a tick later, and E-move its status another one.
     const LATE: u8 = 2;
 

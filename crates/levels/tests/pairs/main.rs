@@ -138,13 +138,13 @@ fn emove_and_grip() {
 
 #[test]
 fn emove_and_v_grip() {
-    grasping::<jaws::Jaws<CylindricalPartGripper>>("E-move and V-Grip", GRASPING, 19, 29);
+    grasping::<jaws::Jaws<CylindricalPartGripper>>("E-move and V-Grip", GRASPING, 67, 76);
 }
 
 #[test]
 fn emove_and_tool_grip() {
     let commands = if is_full() { GRASPING } else { &GRASPING[..2] };
-    grasping::<jaws::Jaws<ToolGripper>>("E-move and Tool-Grip", commands, 19, 29);
+    grasping::<jaws::Jaws<ToolGripper>>("E-move and Tool-Grip", commands, 67, 76);
 }
 
 /// E-move and Prim: `motions` commands interrupt a motion, and as many `faults` come.

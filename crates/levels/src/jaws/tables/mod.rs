@@ -47,7 +47,7 @@ pub enum Gripper {
 /// What the fingers do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Motion {
-    /// They move, or may not have begun to.
+    /// They move, may not have begun to, or do not press yet what they have closed on.
     Moving,
     /// They stand still.
     Stopped,
