@@ -5,7 +5,7 @@
 
 use geometry::pose::Pose;
 use interfaces::{
-    emove::{EmoveCommand, EmoveVerb},
+    emove::{EmoveCommand, EmoveVerb, Holding},
     subtask::{LocationKind, SubtaskCommand, SubtaskVerb},
 };
 use rcs_core::{
@@ -102,6 +102,15 @@ impl Aim {
     fn with_object(self, object: Option<Name16>, grip: i32, data: &TaskData<'_>) -> Result<Self, Missing> {
         let (id, _) = object.and_then(|object| data.object(&object, grip)).ok_or(Missing::Grip)?;
         Ok(Self { object, grip, parameters: id.to_option(), ..self })
+    }
+
+    /// The same in the grip in which the object is held.
+    #[must_use]
+    pub fn as_held(self, held: &Holding, data: &TaskData<'_>) -> Self {
+        match held {
+            Holding::Object(held) => self.with_object(Some(held.object), held.grip, data).unwrap_or(self),
+            Holding::Nothing | Holding::Something | Holding::NotKnown => self,
+        }
     }
 
     /// A command to E-move with this aim, its number still 0.

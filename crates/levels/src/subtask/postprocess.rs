@@ -45,6 +45,10 @@ impl State {
             Action::LocateObj => send(EmoveVerb::LocateObj, &own),
             Action::MovToObj => send(EmoveVerb::MovToObj, &own),
             Action::GraspObj => send(EmoveVerb::GraspObj, &own),
+            Action::GraspAgain => {
+                let held = own.as_held(&inputs.memory.emove.status.held, inputs.data);
+                send(EmoveVerb::GraspObj, &held);
+            }
             Action::MovObjTo => send(EmoveVerb::MovObjTo, &own),
             Action::MovToLoc => send(EmoveVerb::MovToLoc, &own),
             Action::Release => send(EmoveVerb::Release, &own),

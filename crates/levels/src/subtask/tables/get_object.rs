@@ -3,8 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// GET-OBJECT (V.3.1): find the object if vision is needed, move to it and grasp it; done at once if it
-    /// is held, with a grip that the command names. What vision has found already is not looked for again.
+    /// GET-OBJECT (V.3.1): find the object if vision is needed, move to it and grasp it. If it counts as held
+    /// with a grip that the command names, GRASP-OBJ alone is sent: E-move asks the fingers, and ends it at
+    /// once unless a release has not ended well. What vision has found already is not looked for again.
     /// Something unknown that is held where the object is gone to is what an interrupted grasp has closed on:
     /// the grasp is made again.
     pub GET_OBJECT: fn get_object(enum GetObjectStep, super::Situation) -> super::Action {
@@ -13,7 +14,7 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2:  held: Right, grip: Source | Destination => Finish;
+            2:  held: Right, grip: Source | Destination => GraspAgain       -> Grasping;
             3:  held: Right, grip: Neither               => Fail(RegripNeeded);
             4:  held: Other                             => Fail(AlreadyHolding);
             5:  held: Something, station: There         => GraspObj         -> Grasping;

@@ -146,6 +146,8 @@ pub enum Action {
     MovToObj,
     /// GRASP-OBJ to E-move.
     GraspObj,
+    /// GRASP-OBJ to E-move, in the grip in which the object counts as held.
+    GraspAgain,
     /// MOV-OBJ-TO to E-move.
     MovObjTo,
     /// MOV-TO-LOC to E-move.

@@ -414,6 +414,22 @@ fn what_is_held_and_not_known_is_neither_taken_nor_placed() {
 }
 
 #[test]
+fn what_counts_as_held_is_grasped_again_in_its_grip() {
+    for grip in [1, -1] {
+        let mut bench = Bench::grasped("PART", grip);
+        assert_eq!(bench.run(SubtaskVerb::GetObject, "PART", (1, -1), "PFIXTURE"), DONE);
+        assert_eq!(bench.sent(), ["GRASP-OBJ"]);
+        let sent = bench.emove.received[0];
+        let part = bench.data.object(&Name16::new("PART").unwrap(), grip).map(|(id, _)| id.number());
+        assert_eq!((sent.grip, sent.object_parameters), (grip, part));
+        // A release that has not ended well has left nothing between the fingers.
+        bench.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::Error(Reason::GraspMissed)));
+        let end = bench.run(SubtaskVerb::GetObject, "PART", (1, -1), "PFIXTURE");
+        assert_eq!(end, error(Reason::GraspMissed));
+    }
+}
+
+#[test]
 fn an_object_that_is_placed_is_not_placed_again() {
     let mut bench = Bench::grasped("PART", 1);
     assert_eq!(bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE"), DONE);
