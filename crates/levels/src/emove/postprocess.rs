@@ -265,11 +265,9 @@ impl State {
                 if by_name {
                     // What is closed on anew is held when the fingers have closed on it.
                     (self.beliefs.held, self.carrying) = (None, false);
-                } else {
-                    // The operator may take what was placed, and leave it elsewhere.
-                    self.beliefs.placed = None;
                 }
-                self.beliefs.empty = false;
+                // What was placed may be taken, and lost elsewhere.
+                (self.beliefs.placed, self.beliefs.empty) = (None, false);
             }
             FingerVerb::Stand
             | FingerVerb::Release

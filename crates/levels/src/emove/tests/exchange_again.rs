@@ -37,6 +37,7 @@ pub const SCENARIOS: &[fn()] = &[
     a_grasp_is_made_again_from_every_tick,
     fingers_that_are_stopped_while_they_let_go_have_not_let_go,
     what_was_half_let_go_is_grasped_anew,
+    what_the_fingers_have_closed_on_since_does_not_count_as_placed,
     jaws_that_air_moves_do_not_stand,
     what_is_not_known_is_held,
     a_bare_robot_leaves_a_holster_without_a_gripper,
@@ -510,6 +511,17 @@ fn what_was_half_let_go_is_grasped_anew() {
         });
         assert!(matches!(bench.memory.emove.status.held, Holding::Object(_)), "{object}");
     }
+}
+
+#[test]
+fn what_the_fingers_have_closed_on_since_does_not_count_as_placed() {
+    let mut bench = Bench::ready("BENCH", 1);
+    bench.hold("BLOCK", 75, 1);
+    assert_eq!(send(&mut bench, (Release, "BLOCK", 1, "BENCH", 1)), DONE);
+    assert!(bench.memory.emove.status.placed.is_some());
+    bench.world.object = None;
+    assert_eq!(send(&mut bench, (GraspObj, "BLOCK", 1, "BENCH", 1)), error(Reason::GraspMissed));
+    assert_eq!(bench.memory.emove.status.placed, None);
 }
 
 /// Jaws that were stuck may still go where their air presses them.
