@@ -4,14 +4,15 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// LOCATE-OBJ (V.2.1): a fast flood picture, centre the camera over it, a second picture with recognition
-    /// and angle, align.
+    /// and angle, align. It moves the robot straight, so that nothing may be held: a grasp that was interrupted
+    /// may have ended since, and the robot stands in the nest of the part then.
     pub LOCATE_OBJ: fn locate_obj(enum LocateObjStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                                                => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: work: Over                                                => Flood   -> Flooding;
+            2: held: Nothing                                             => Flood   -> Flooding;
         }
         Flooding | Measuring {
             3: sight: Seen, aim: Unknown                                 => Fail(BadRecord);
@@ -37,6 +38,10 @@ decision_table! {
         /// The camera is moving over the part, and turning with it.
         Aligning {
             13: work: Over                                               => Located;
+        }
+        Start {
+            14: held: Right | Other | Something                          => Fail(AlreadyHolding);
+            15: held: NotKnown                                           => Fail(HeldNotKnown);
         }
     }
 }

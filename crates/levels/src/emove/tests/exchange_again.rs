@@ -577,6 +577,7 @@ fn what_is_not_known_is_held() {
         (MovObjTo, "BLOCK", "BENCH", Reason::NothingHeld, Reason::HeldNotKnown),
         (MovToHol, "GRIPPER-1", "HOLSTER-R", Reason::AlreadyHolding, Reason::HeldNotKnown),
         (GraspObj, "BLOCK", "BENCH", Reason::AlreadyHolding, Reason::HeldNotKnown),
+        (LocateObj, "BLOCK", "BENCH", Reason::AlreadyHolding, Reason::HeldNotKnown),
     ] {
         let mut bench = felt("HOME");
         assert_eq!(bench.run(verb, object, 1, location, 1), error(something), "{verb}");

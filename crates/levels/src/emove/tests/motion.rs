@@ -333,6 +333,10 @@ fn an_object_is_located() {
     assert!((distance.inches - 0.2_f64.hypot(0.1) * 2.0).abs() < 0.03, "{} in", distance.inches);
     assert!((distance.radians.to_degrees() - 10.0).abs() < 0.1, "{} rad", distance.radians);
     assert_eq!(bench.run(MovToVu, "SHAFT", 1, "BENCH", 0), error(Reason::BadRecord));
+    // A grasp that was interrupted has ended since: the robot does not drag the part to where the camera looks.
+    bench.hold("BLOCK", 75, 1);
+    assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::AlreadyHolding));
+    assert!(!bench.log().iter().any(|word| word.starts_with("GO")), "{:?}", bench.log());
 }
 
 #[test]
