@@ -315,9 +315,9 @@ commands! {
             drum::DRUM, carried::CARRIED, ordered::ORDERED;
         None | Pause            => e_pause::e_pause;
         MovToLoc                => motion::motion;
-        MovToObj | MovToVu      => mov_to_obj::mov_to_obj then motion::motion;
+        MovToObj                => mov_to_obj::mov_to_obj then motion::motion;
         MovObjTo                => mov_obj_to::mov_obj_to then motion::motion;
-        MovToHol                => mov_to_hol::mov_to_hol then motion::motion;
+        MovToHol | MovToVu      => mov_to_hol::mov_to_hol then motion::motion;
         LocateObj               => locate_obj::locate_obj;
         GraspObj                => grasp_obj::grasp_obj;
         Release                 => release::release;

@@ -335,6 +335,7 @@ fn an_object_is_located() {
     assert_eq!(bench.run(MovToVu, "SHAFT", 1, "BENCH", 0), error(Reason::BadRecord));
     // A grasp that was interrupted has ended since: the robot does not drag the part to where the camera looks.
     bench.hold("BLOCK", 75, 1);
+    assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), error(Reason::AlreadyHolding));
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::AlreadyHolding));
     assert!(!bench.log().iter().any(|word| word.starts_with("GO")), "{:?}", bench.log());
 }
