@@ -2,15 +2,21 @@
 
 use std::{path::Path, sync::OnceLock};
 
+use geometry::pose::Pose;
 use interfaces::{
-    HwsCommand,
+    ChangingPose, HwsCommand,
     emove::{EmoveCommand, EmoveVerb},
+    pose_range,
+    subtask::{SubtaskCommand, SubtaskVerb},
 };
 use rcs_core::name::Name16;
 use taskdata::{
     files::{Location, TaskData},
     load::{Step, Store, job::own_command},
 };
+
+/// Grip of the objects of commands of Subtask.
+const GRIP: i32 = 2;
 
 fn store() -> &'static Store {
     static STORE: OnceLock<Store> = OnceLock::new();
@@ -64,4 +70,35 @@ pub fn pose_of_point(name: &str) -> u32 {
 pub fn place(name: &str) -> Location {
     let name = Name16::new(name).expect("a name");
     data().resolve_location(&name, None, None::<&Name16>).expect("the data have the location")
+}
+
+/// A command of Subtask with its pose: about an object, its grip 2 and the parts gripper, or about a location alone.
+/// `nth` is the number of the pose.
+pub fn subtask_command(
+    verb: SubtaskVerb,
+    object: Option<&str>,
+    location: &str,
+    sector: Option<i32>,
+    nth: u32,
+) -> (SubtaskCommand, ChangingPose) {
+    let object = object.map(|object| Name16::new(object).expect("a name"));
+    let name = Name16::new(location).expect("a name");
+    let at = data().resolve_location(&name, sector, object.as_ref()).expect("the data have the location");
+    let number = Some(pose_range::TASK + nth);
+    let grip = if object.is_some() { GRIP } else { 0 };
+    let command = SubtaskCommand {
+        number: 0,
+        command: verb,
+        object,
+        end_effector_id: object.map(|_| 1),
+        source_grip: grip,
+        destination_grip: grip,
+        object_parameters: object.and_then(|object| data().object(&object, grip)).map(|(id, _)| id.number()),
+        location: at.name,
+        location_kind: at.place.kind,
+        location_record: at.place.locpt.to_option(),
+        location_array: at.place.array.to_option(),
+        pose: number,
+    };
+    (command, ChangingPose { number, pose: Pose::from_frame(&at.frame) })
 }

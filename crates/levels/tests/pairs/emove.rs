@@ -4,10 +4,9 @@
 use std::fmt::Debug;
 
 use interfaces::{
-    ChangingPose, CommonMemory, EmoveOutputs, ExternalInputs, Reason, StatusReport,
+    CommonMemory, EmoveOutputs, ExternalInputs, Reason, StatusReport,
     device::GripSensors,
     emove::{EmoveCommand, EmoveVerb, GoneTo, Holding, ObjectGrip},
-    pose_range,
     prim::PrimReport,
     process::{Inputs, Process},
     quick_change::{QuickChangeReport, RingPosition},
@@ -22,6 +21,7 @@ use rcs_core::{handshake::Commander, tick::Tick};
 use crate::{
     data::{data, emove_command, place},
     image::{Image, rebase, rebase_echoes},
+    robot::{PrimDoes, Robot},
     search::{World, Wrong},
 };
 
@@ -82,15 +82,6 @@ where
     *state = *process.state();
 }
 
-/// What Prim does with its order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PrimDoes {
-    /// Nothing new; an order that has just come is taken.
-    Goes,
-    Ends,
-    Fails,
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event<Fingers> {
     pub told: Option<EmoveVerb>,
@@ -111,7 +102,7 @@ pub struct Pair<G: Fingered> {
     fingers: G::Fingers,
     /// Ticks for which nothing has been between them.
     apart: u8,
-    prim: (u32, PrimReport),
+    robot: Robot,
     quick_change: u32,
 }
 
@@ -119,6 +110,10 @@ impl<G: Fingered> Pair<G> {
     /// The first tick of a system that is booted, with a gripper that is calibrated and open around the object;
     /// these commands can come.
     pub fn first(commands: &'static [EmoveVerb]) -> Self {
+        let (object, grip, location) = G::OBJECT;
+        let at = place(location);
+        let object = emove_command(EmoveVerb::None, object, grip, location).object.unwrap_or_default();
+        let stands = robot_at(GoneTo::Object(ObjectGrip { object, grip }), &at, &at.frame);
         let mut pair = Self {
             tick: Tick(10_000),
             commands,
@@ -132,13 +127,9 @@ impl<G: Fingered> Pair<G> {
             gripper: G::first(),
             fingers: G::OPEN,
             apart: G::LATE + 1,
-            prim: (0, PrimReport::Idle),
+            robot: Robot::new(stands.pose),
             quick_change: 0,
         };
-        let (object, grip, location) = G::OBJECT;
-        let at = place(location);
-        let object = emove_command(EmoveVerb::None, object, grip, location).object.unwrap_or_default();
-        let stands = robot_at(GoneTo::Object(ObjectGrip { object, grip }), &at, &at.frame);
         pair.emove.beliefs.place = Some(stands);
         pair.emove_out.beliefs = pair.emove.beliefs;
         pair.emove_out.status.end_effector_id = G::GRIPPER.id();
@@ -155,18 +146,6 @@ impl<G: Fingered> Pair<G> {
             EmoveCommand { number, end_effector_id, ..emove_command(verb, object, grip, location) };
     }
 
-    fn prim_does(&mut self, does: PrimDoes) {
-        let order = &self.emove_out.prim;
-        if order.number != self.prim.0 && order.number != 0 {
-            self.prim = (order.number, PrimReport::Executing);
-        }
-        match does {
-            PrimDoes::Goes => {}
-            PrimDoes::Ends => self.prim.1 = PrimReport::Done,
-            PrimDoes::Fails => self.prim.1 = PrimReport::T3LinkErr,
-        }
-    }
-
     /// What the processes read.
     fn memory(&self) -> CommonMemory {
         let before = self.tick.previous();
@@ -174,17 +153,14 @@ impl<G: Fingered> Pair<G> {
         memory.subtask.emove = self.command;
         memory.emove = self.emove_out;
         self.gripper.write(&mut memory, before);
-        let status = &mut memory.prim.status;
-        (status.echo, status.report, status.link_running) = (self.prim.0, self.prim.1, true);
-        let pose = self.emove.beliefs.place.map(|place| place.pose).unwrap_or_default();
-        memory.prim.poses[0] = ChangingPose { number: Some(pose_range::PRIM + 1), pose };
-        (status.present_pose, status.sensor_pose) =
-            (memory.prim.poses[0].number, memory.prim.poses[0].number);
+        self.robot.write(&mut memory, before);
         let status = &mut memory.quick_change.status;
         (status.echo, status.report) = (self.quick_change, QuickChangeReport::Locked);
         (status.end_effector_id, status.ring) = (G::GRIPPER.id(), RingPosition::Locked);
-        (memory.emove.header.stamp, memory.prim.header.stamp) = (before, before);
-        (memory.subtask.header.stamp, memory.quick_change.header.stamp) = (before, before);
+        for header in [&mut memory.subtask.header, &mut memory.emove.header, &mut memory.quick_change.header]
+        {
+            header.stamp = before;
+        }
         memory
     }
 
@@ -208,7 +184,9 @@ impl<G: Fingered> Pair<G> {
             EmoveVerb::Release if !G::are_open(before.fingers) => Err("done, and the fingers are not open"),
             EmoveVerb::Release if status.held != Holding::Nothing => Err("done, and something is held"),
             EmoveVerb::Pause if before.gripper.reports_executing() => Err("done, and the fingers move"),
-            EmoveVerb::Pause if before.prim.1 == PrimReport::Executing => Err("done, and the robot moves"),
+            EmoveVerb::Pause if before.robot.report == PrimReport::Executing => {
+                Err("done, and the robot moves")
+            }
             EmoveVerb::None => Err("an unknown command is done"),
             _ => Ok(()),
         }
@@ -259,8 +237,9 @@ impl<G: Fingered> World for Pair<G> {
         process.step(&inputs, &mut emove_out);
         self.gripper.step(&Inputs { tick: self.tick, memory: &memory, external: &external, data: &() });
         // Prim and Quick Change read what was written in the tick before.
-        self.prim_does(event.prim);
-        self.quick_change = self.emove_out.quick_change.number;
+        self.robot.take(&memory)?;
+        self.robot.does(event.prim);
+        self.quick_change = memory.emove.quick_change.number;
         self.fingers = event.fingers;
         self.apart = if G::are_around(self.fingers) { 0 } else { (self.apart + 1).min(G::LATE + 1) };
         self.emove_out = emove_out;
@@ -306,8 +285,7 @@ impl<G: Fingered> World for Pair<G> {
         image.add(&it.emove_out.status.report);
         it.gripper.add_to(&it.emove_out, &mut image);
         image.add(&G::sensors(it.fingers));
-        image.add(&it.prim.0);
-        image.add(&it.prim.1);
+        it.robot.add_to(&mut image);
         image.add(&it.quick_change);
         let grasps = executes && it.command.command == EmoveVerb::GraspObj;
         image.bytes.push(if grasps { it.apart } else { 0 });
@@ -348,8 +326,7 @@ impl<G: Fingered> Pair<G> {
 
     /// Prim has not ended its last order.
     fn is_moving(&self) -> bool {
-        let number = self.emove_out.prim.number;
-        (number != self.prim.0 && number != 0) || self.prim.1 == PrimReport::Executing
+        self.robot.is_busy(&self.emove_out.prim)
     }
 
     /// What does not count any more begins again.
@@ -358,7 +335,7 @@ impl<G: Fingered> Pair<G> {
         let echo = &mut emove.execution.receiver.echo;
         rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
         self.gripper.renumber(G::commander(emove), G::number(out));
-        rebase(&mut emove.prim, &mut [&mut out.prim.number, &mut self.prim.0]);
+        rebase(&mut emove.prim, &mut [&mut out.prim.number, &mut self.robot.echo]);
         rebase(&mut emove.quick_change, &mut [&mut out.quick_change.number, &mut self.quick_change]);
     }
 }

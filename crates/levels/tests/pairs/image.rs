@@ -3,6 +3,11 @@
 //! A time enters as whether it is over its limit; the time of a command as its age, while an echo may be due. A counter
 //! enters up to the value from which on it makes no difference. The row that fired is left out: no process reads it.
 
+use interfaces::{EmoveOutputs, Reason, pose_range};
+use levels::{
+    emove::{self, tables::Step},
+    execution::Outcome,
+};
 use rcs_core::{
     Plain,
     handshake::Commander,
@@ -50,6 +55,11 @@ impl Image {
             Schema::Option(of) => {
                 self.bytes.push(bytes[0]);
                 1 + if bytes[0] == 0 { of.size() } else { self.walk(of, name, &bytes[1..]) }
+            }
+            Schema::Array(Schema::I32 | Schema::F64, _) => {
+                let size = schema.size();
+                self.bytes.extend_from_slice(&bytes[..size]);
+                size
             }
             Schema::Array(of, count) => {
                 let mut at = 0;
@@ -102,4 +112,50 @@ pub fn rebase_echoes(numbers: &mut [&mut u32]) -> bool {
     let Some(before) = least.map(|least| least - 1) else { return false };
     numbers.iter_mut().for_each(|number| **number = number.saturating_sub(before));
     numbers.iter().all(|number| **number == 1)
+}
+
+/// Record numbers of E-move begin again: those of the records that stand, in their order, and one for all others.
+pub fn renumber_poses(emove: &mut emove::state::State, out: &mut EmoveOutputs) {
+    let (first, others) = (pose_range::EMOVE | 1, pose_range::EMOVE | 9);
+    let stand = out.poses.map(|record| record.number);
+    let renamed = |number: u32| {
+        let at = stand.iter().position(|stands| *stands == Some(number));
+        at.map_or(others, |at| first + u32::try_from(at).unwrap_or_default())
+    };
+    for record in &mut out.poses {
+        record.number = record.number.map(renamed);
+    }
+    if out.prim.pose & pose_range::WRITER == pose_range::EMOVE {
+        out.prim.pose = renamed(out.prim.pose);
+    }
+    if let Some(route) = &mut emove.route {
+        (route.departure, route.goal) = (renamed(route.departure), renamed(route.goal));
+    }
+    emove.last_pose = others;
+}
+
+/// Take away what no row of E-move asks for any more: the reason, the nearest places, and what it has of a command that
+/// it does not execute. Does it execute one?
+pub fn forget(emove: &mut emove::state::State) -> bool {
+    emove.execution.reason = Reason::None;
+    emove.surroundings = Default::default();
+    let executes = emove.execution.outcome == Outcome::Executing && !emove.execution.waiting;
+    if !executes {
+        if !matches!(emove.step, Step::EPause(_)) {
+            emove.step = Step::default();
+        }
+        (emove.ordered, emove.uses_prim, emove.carrying) = Default::default();
+        (emove.route, emove.back, emove.rejoin) = Default::default();
+        (emove.execution.last_order, emove.tries) = Default::default();
+    }
+    let beliefs = &mut emove.beliefs;
+    match &mut beliefs.grasping {
+        grasping if beliefs.held.is_some() || beliefs.empty => *grasping = None,
+        Some(grasping) => grasping.opening = 0,
+        None => {}
+    }
+    if beliefs.held.is_none() {
+        emove.unfelt = 0;
+    }
+    executes
 }

@@ -20,15 +20,20 @@ mod grip;
 mod hand;
 mod image;
 mod jaws;
+mod parts_gripper;
 mod pedestal;
 mod prim;
+mod ring;
+mod robot;
 mod search;
+mod subtask;
 mod task;
 mod told;
 
 use interfaces::{emove::EmoveVerb, pedestal::PedestalVerb};
 use levels::jaws::{CylindricalPartGripper, ToolGripper};
 use search::{Found, World, search};
+use subtask::{BRING, GET, GOTO, GRIPPER, PAUSE, PLACE, POSITION, RELEASE};
 
 /// Everything, or what an ordinary run has time for.
 fn is_full() -> bool {
@@ -162,4 +167,67 @@ fn emove_and_prim() {
 #[test]
 fn emove_and_prim_with_a_fault() {
     moves("E-move and Prim, a fault", u8::from(is_full()), 1);
+}
+
+/// Subtask and E-move: `early` commands come before the last one has ended, and so many `mishaps`; a pair that rests
+/// takes `any` ticks at most.
+fn fetches(name: &str, object: &str, lines: &[subtask::Line], (early, mishaps): (u8, u8), any: u32) {
+    let found = is_sound(name, subtask::Pair::first(object, lines, early, mishaps), 4_000_000);
+    assert!(found.states > 1000, "{} states", found.states);
+    assert!(found.pause <= 12 && found.any <= any, "{} and {}", found.pause, found.any);
+}
+
+/// An object whose place the data say, and one that vision looks for.
+const KNOWN: &str = "LINKBAR1";
+const LOOKED_FOR: &str = "LINKBAR1_BH";
+
+#[test]
+fn subtask_and_emove() {
+    let some = if is_full() { 4 } else { 3 };
+    fetches("Subtask and E-move", KNOWN, &[PAUSE, GET, PLACE, GOTO][..some], (0, 0), 21);
+}
+
+#[test]
+fn subtask_and_emove_with_pictures() {
+    let (some, early) = if is_full() { (3, 1) } else { (2, 0) };
+    fetches("Subtask and E-move, pictures", LOOKED_FOR, &[PAUSE, GET, PLACE][..some], (early, 0), 52);
+}
+
+#[test]
+fn subtask_and_emove_with_a_command_too_early() {
+    let some = if is_full() { 3 } else { 2 };
+    fetches("Subtask and E-move, too early", KNOWN, &[PAUSE, GET, PLACE][..some], (1, 0), 28);
+}
+
+#[test]
+fn subtask_and_emove_with_a_mishap() {
+    let lines: &[_] = if is_full() { &[PAUSE, GET, PLACE] } else { &[PAUSE, GOTO] };
+    fetches("Subtask and E-move, a mishap", KNOWN, lines, (0, 1), 28);
+}
+
+#[test]
+fn subtask_and_emove_with_other_commands() {
+    let lines: &[_] = if is_full() {
+        &[PAUSE, GET, BRING, RELEASE, POSITION, GRIPPER]
+    } else {
+        &[PAUSE, GRIPPER, POSITION]
+    };
+    fetches("Subtask and E-move, other commands", KNOWN, lines, (0, 0), 28);
+}
+
+/// E-move and Quick Change: `early` commands come before the last one has ended, and so many `faults`.
+fn changes(name: &str, early: u8, faults: u8) {
+    let found = is_sound(name, ring::Pair::first(early, faults), 1_000_000);
+    assert!(found.states > 50_000, "{} states", found.states);
+    assert!(found.pause <= 14 && found.any <= 43, "{} and {}", found.pause, found.any);
+}
+
+#[test]
+fn emove_and_quick_change() {
+    changes("E-move and Quick Change", u8::from(is_full()), 0);
+}
+
+#[test]
+fn emove_and_quick_change_with_a_fault() {
+    changes("E-move and Quick Change, a fault", 0, 1);
 }

@@ -23,7 +23,7 @@ use rcs_core::tick::Tick;
 
 use crate::{
     data::{data, emove_command, place, pose_of_point},
-    image::{Image, rebase, rebase_echoes},
+    image::{Image, rebase, rebase_echoes, renumber_poses},
     search::{World, Wrong},
 };
 
@@ -312,25 +312,10 @@ impl Pair {
         }
     }
 
-    /// Record numbers begin again: those of the records that stand, in their order, and one for all others.
+    /// What does not count any more begins again.
     fn renumber(&mut self) {
+        renumber_poses(&mut self.emove, &mut self.emove_out);
         let (emove, out) = (&mut self.emove, &mut self.emove_out);
-        let (first, others) = (pose_range::EMOVE | 1, pose_range::EMOVE | 9);
-        let stand = out.poses.map(|record| record.number);
-        let renamed = |number: u32| {
-            let at = stand.iter().position(|stands| *stands == Some(number));
-            at.map_or(others, |at| first + u32::try_from(at).unwrap_or_default())
-        };
-        for record in &mut out.poses {
-            record.number = record.number.map(renamed);
-        }
-        if out.prim.pose & pose_range::WRITER == pose_range::EMOVE {
-            out.prim.pose = renamed(out.prim.pose);
-        }
-        if let Some(route) = &mut emove.route {
-            (route.departure, route.goal) = (renamed(route.departure), renamed(route.goal));
-        }
-        emove.last_pose = others;
         let (prim, below) = (&mut self.prim, &mut self.prim_out);
         for (at, record) in (1..).zip(&mut below.poses) {
             record.number = record.number.map(|_| pose_range::PRIM | at);

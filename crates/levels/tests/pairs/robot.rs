@@ -1,0 +1,155 @@
+//! Prim and the robot, as E-move sees them. A motion is one step: the robot stands where it was until it is at its
+//! goal.
+
+use geometry::pose::Pose;
+use interfaces::{
+    ChangingPose, CommonMemory, Reason, pose_range,
+    prim::{PrimCommand, PrimReport, PrimVerb},
+};
+use levels::places::pose_of;
+use rcs_core::tick::Tick;
+use taskdata::files::MovtabId;
+
+use crate::{data::data, image::Image, search::Wrong};
+
+/// What Prim does with its order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PrimDoes {
+    /// Nothing new; an order that has just come is taken.
+    Goes,
+    /// It ends the order: the robot is at its goal.
+    Ends,
+    /// It fails. The robot stands where it was.
+    Fails,
+    /// It fails, since the link does. The robot stands where it was.
+    LinkFails,
+    /// The robot has gone half of the way, if it has come from a goal, and goes on.
+    Half,
+    /// The robot is at its goal, and Prim does not say so yet.
+    Arrives,
+    /// It ends a GO-UNTIL whose condition has not come.
+    Misses,
+}
+
+/// Does the robot leave its place for an order?
+pub const fn moves(verb: PrimVerb) -> bool {
+    matches!(
+        verb,
+        PrimVerb::GoThru | PrimVerb::GotoPt | PrimVerb::GoUntil | PrimVerb::GoWhile | PrimVerb::DeltaMove
+    )
+}
+
+/// Half-way from one pose to another of the same orientation.
+fn middle(from: &Pose, to: &Pose) -> Pose {
+    let middle = |a: [i32; 3], b: [i32; 3]| [0, 1, 2].map(|axis| i32::midpoint(a[axis], b[axis]));
+    Pose {
+        wrist: middle(from.wrist, to.wrist),
+        tool: middle(from.tool, to.tool),
+        finger: middle(from.finger, to.finger),
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Robot {
+    pub echo: u32,
+    pub report: PrimReport,
+    /// Prim commands the robot.
+    pub link: bool,
+    pub at: Pose,
+    /// The goal of a motion that Prim executes; where the condition of a GO-UNTIL comes.
+    pub goal: Option<Pose>,
+    /// Where it ends if the condition does not come.
+    pub far: Pose,
+    /// It has gone half of the way since it was at a goal.
+    pub half: bool,
+    /// Ticks for which it has been at the goal, up to [`SETTLED`].
+    pub there: u8,
+}
+
+/// Ticks at the goal after which Prim can say so, where a search counts them: the robot comes to rest in them.
+pub const SETTLED: u8 = 2;
+
+impl Robot {
+    /// A robot that stands somewhere, and has been commanded nothing.
+    pub const fn new(at: Pose) -> Self {
+        Self { echo: 0, report: PrimReport::Idle, link: true, at, goal: None, far: at, half: false, there: 0 }
+    }
+
+    /// Prim has not ended this order of E-move.
+    pub fn is_busy(&self, order: &PrimCommand) -> bool {
+        (order.number != self.echo && order.number != 0) || self.report == PrimReport::Executing
+    }
+
+    /// The robot moves for this order, or will.
+    pub fn is_moving(&self, order: &PrimCommand) -> bool {
+        self.goal.is_some() || (order.number != self.echo && moves(order.command))
+    }
+
+    /// Prim takes what E-move has written in the tick before.
+    ///
+    /// # Errors
+    /// It is sent to a record that does not exist.
+    pub fn take(&mut self, memory: &CommonMemory) -> Result<(), Wrong> {
+        let order = &memory.emove.prim;
+        if order.number != self.echo && order.number != 0 {
+            (self.echo, self.report) = (order.number, PrimReport::Executing);
+            (self.goal, self.far, self.there) = (None, self.at, 0);
+            if moves(order.command) {
+                let base = pose_of(order.pose, memory, &data()).ok_or("Prim is sent to no record")?;
+                let goal = data().moved(&base, MovtabId::from_option(order.movetable));
+                self.far = Pose::from_frame(&goal);
+                self.goal = Some(self.far);
+            }
+        }
+        Ok(())
+    }
+
+    pub fn does(&mut self, does: PrimDoes) {
+        if self.there > 0 {
+            self.there = (self.there + 1).min(SETTLED);
+        }
+        match does {
+            PrimDoes::Goes => return,
+            PrimDoes::Arrives => {
+                (self.at, self.there, self.half) = (self.goal.unwrap_or(self.at), 1, false);
+                return;
+            }
+            PrimDoes::Half => {
+                let goal = self.goal.unwrap_or(self.at);
+                (self.at, self.half) = (middle(&self.at, &goal), true);
+                return;
+            }
+            PrimDoes::Ends => {
+                (self.report, self.link) = (PrimReport::Done, true);
+                if let Some(goal) = self.goal {
+                    (self.at, self.half) = (goal, false);
+                }
+            }
+            PrimDoes::Misses => (self.report, self.at) = (PrimReport::NotDetected, self.far),
+            PrimDoes::Fails => self.report = PrimReport::Error,
+            PrimDoes::LinkFails => (self.report, self.link) = (PrimReport::T3LinkOff, false),
+        }
+        (self.goal, self.far, self.there) = (None, self.at, 0);
+    }
+
+    /// What E-move reads.
+    pub fn write(&self, memory: &mut CommonMemory, stamp: Tick) {
+        let prim = &mut memory.prim;
+        prim.header.stamp = stamp;
+        prim.poses[0] = ChangingPose { number: Some(pose_range::PRIM + 1), pose: self.at };
+        let status = &mut prim.status;
+        (status.echo, status.report, status.reason) = (self.echo, self.report, Reason::None);
+        status.link_running = self.link;
+        (status.present_pose, status.sensor_pose) = (prim.poses[0].number, prim.poses[0].number);
+    }
+
+    pub fn add_to(&self, image: &mut Image) {
+        image.add(&self.echo);
+        image.add(&self.report);
+        image.bytes.push(u8::from(self.link));
+        image.add(&self.at);
+        image.add(&self.goal.unwrap_or_default());
+        image.add(&self.far);
+        image.bytes.extend([u8::from(self.goal.is_some()), u8::from(self.half), self.there]);
+    }
+}

@@ -1,0 +1,112 @@
+//! What must hold of Subtask and E-move in each tick.
+
+use geometry::pose::Pose;
+use interfaces::{
+    emove::EmoveVerb,
+    grip::GripVerb,
+    subtask::{SubtaskCommand, SubtaskVerb},
+};
+use levels::{execution::Outcome, places::place_of};
+
+use super::{Event, LATE, Mishap, Pair};
+use crate::{data::data, parts_gripper, robot, search::Wrong};
+
+/// The robot is where it was sent within this, in.
+const THERE: f64 = 0.021;
+
+impl Pair {
+    /// Is it where the robot is to stand for a command?
+    fn is_goal(&self, command: &SubtaskCommand, at: &Pose) -> bool {
+        let Some((_, pose)) = self.commands.iter().find(|(_, pose)| pose.number == command.pose) else {
+            return false;
+        };
+        let base = pose.pose.to_frame().expect("commands have frames");
+        let place = place_of(command.location_kind, command.location_record, command.location_array);
+        let grip =
+            command.object.and_then(|object| data().grip_movetable(&object, command.source_grip, &place));
+        let goal = grip.map_or(base, |grip| data().moved(&base, grip));
+        at.to_frame().is_ok_and(|at| goal.distance(&at).inches <= THERE)
+    }
+
+    pub(super) fn is_destination(&self, at: &Pose) -> bool {
+        let mut places = self.commands.iter().filter(|(command, _)| command.command == SubtaskVerb::PlaceObj);
+        places.any(|(command, _)| self.is_goal(command, at))
+    }
+
+    /// Does E-move give an order that moves robot or fingers?
+    fn orders_motion(&self, before: &Self) -> bool {
+        let (now, then) = (&self.emove_out, &before.emove_out);
+        (now.prim.number != then.prim.number && robot::moves(now.prim.command))
+            || (now.grip.number != then.grip.number && parts_gripper::moves(now.grip.command))
+    }
+
+    fn is_done(&self, number: u32) -> bool {
+        let execution = &self.subtask.execution;
+        execution.outcome == Outcome::Done && execution.receiver.echo == number
+    }
+
+    /// `before` is the pair as it was when the processes read it.
+    pub(super) fn judge(&self, before: &Self, event: Event) -> Result<(), Wrong> {
+        self.judge_orders(before, event)?;
+        let number = self.command.number;
+        if !self.is_done(number) {
+            return Ok(());
+        }
+        // What is placed already may be found so while a robot whose motion has failed comes to rest.
+        let at_once = matches!(self.command.command, SubtaskVerb::PlaceObj | SubtaskVerb::GetEndeff);
+        let out = &before.emove_out;
+        let fingers = self.command.command == SubtaskVerb::Pause && before.grip.is_moving(&out.grip);
+        let robot = !at_once && before.robot.is_moving(&out.prim);
+        if self.orders_motion(before) || fingers || robot {
+            return Err("done, and something moves");
+        }
+        if before.is_done(number) { Ok(()) } else { self.judge_end(before) }
+    }
+
+    /// Nothing of a command that was replaced is ordered. The robot stands still while the fingers close or let go, and
+    /// at the object when they close.
+    fn judge_orders(&self, before: &Self, event: Event) -> Result<(), Wrong> {
+        let (now, then) = (&self.emove_out, &before.emove_out);
+        let fresh = event.told.is_some() || event.mishap != Mishap::None;
+        if self.orders_motion(before) && !before.own && !fresh {
+            return Err("an order of a command that was replaced");
+        }
+        let holds = matches!(then.grip.command, GripVerb::OpenGrip | GripVerb::CloseGrip);
+        let sends = now.prim.number != then.prim.number && robot::moves(now.prim.command);
+        if sends && holds && before.grip.is_busy(&then.grip) {
+            return Err("the robot is moved while the fingers close or let go");
+        }
+        let (order, last) = (self.subtask_out.emove.command, before.subtask_out.emove.command);
+        // What is held has not been gone to.
+        let arrived = before.own && order == EmoveVerb::GraspObj && last == EmoveVerb::MovToObj;
+        let empty = !then.status.held.is_held();
+        if arrived && empty && !self.is_goal(&self.command, &before.robot.at) {
+            return Err("the fingers close, and the robot is not at the object");
+        }
+        Ok(())
+    }
+
+    /// What is reported done is done.
+    fn judge_end(&self, before: &Self) -> Result<(), Wrong> {
+        let (status, held) = (&before.emove_out.status, before.emove_out.status.held.object());
+        let there = self.is_goal(&self.command, &before.robot.at);
+        match self.command.command {
+            SubtaskVerb::GetObject if before.apart > LATE => Err("done, and nothing is between the fingers"),
+            SubtaskVerb::GetObject | SubtaskVerb::MoveObjToDest if held != self.command.object => {
+                Err("done, and the object is not held")
+            }
+            SubtaskVerb::PlaceObj if !before.let_go => Err("done, and the object is not placed"),
+            SubtaskVerb::PlaceObj | SubtaskVerb::Release if before.grip.full => {
+                Err("done, and something is between the fingers")
+            }
+            SubtaskVerb::GotoDest | SubtaskVerb::MoveObjToDest if !there => {
+                Err("done, and the robot is not there")
+            }
+            SubtaskVerb::GotoDest if status.at.is_none_or(|at| at.location != self.command.location) => {
+                Err("done, and E-move does not know that the robot is there")
+            }
+            SubtaskVerb::None => Err("an unknown command is done"),
+            _ => Ok(()),
+        }
+    }
+}
