@@ -73,12 +73,14 @@ fn what_searches_have_found_hurts_nothing_any_more() {
         ("turned-part", "1564", "fault:id-pins-bad"),
         ("turned-part", "2528", "fault:air-lost+1:replaced"),
         ("turned-part", "2553", "fault:id-pins-bad"),
-        ("turned-part", "3608,3609", "replaced"),
-        ("turned-part", "3618", "replaced+1:fault:air-lost"),
+        ("turned-part", "3632,3633", "replaced"),
+        ("turned-part", "3642", "replaced+1:fault:air-lost"),
+        ("turned-part", "2553,2554", "replaced+1:fault:air-lost"),
+        ("turned-part", "2556", "fault:air-lost"),
         ("clevis", "1054", "pause+9:answer-late"),
         ("clevis", "2456", "replaced"),
         ("clevis", "6128", "restart:hand"),
-        ("tool-change", "4893", "fault:air-lost+1:replaced"),
+        ("tool-change", "4917", "fault:air-lost+1:replaced"),
     ] {
         let campaign = json(&["campaign", job, "--at", tick, "--interrupt", kind, "--json"]);
         for branch in campaign["branches"].as_array().expect("branches are listed") {

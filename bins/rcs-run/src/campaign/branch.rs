@@ -10,6 +10,7 @@ use std::{convert::Infallible, sync::Arc};
 
 use depc::fault::{Direction, FaultKind, Injector, Plan, Rule};
 use executive::{
+    alloc::Section,
     course::{Course, Levels},
     failure::Watch,
     generations::is_busy,
@@ -20,7 +21,7 @@ use interfaces::{
 };
 use levels::ladder::{Ladder, ProcessId};
 use neighbours::{
-    data_system::{self, ANSWER_TICKS, DataSystem, Pace},
+    data_system::{self, ANSWER_TICKS, DataSystem, Item, Pace},
     mailbox::{HWSC_COMMAND, Mailbox},
     workstation::{
         Gate, command,
@@ -262,8 +263,11 @@ impl<'f> Branch<'f> {
             operator: OperatorInputs::ZERO,
         };
         let data = data(self.facility, control.generation);
-        let Ok(()) = control.course.step(&control.external, &data, &mut |_| {});
-        control.course.sum_up(&control.external);
+        {
+            let _section = Section::enter();
+            let Ok(()) = control.course.step(&control.external, &data, &mut |_| {});
+            control.course.sum_up(&control.external);
+        }
         let mut outputs = control.course.memory().device_outputs();
         if !control.course.levels().processes.contains(&ProcessId::T3i) {
             // The last frame of a lost process goes out only once.
@@ -355,6 +359,20 @@ impl<'f> Branch<'f> {
     #[must_use]
     pub const fn at(&self) -> Tick {
         self.control.course.tick()
+    }
+
+    /// The processes that are not lost.
+    #[must_use]
+    pub fn processes(&self) -> &[ProcessId] {
+        &self.control.course.levels().processes
+    }
+
+    /// What the Data System knows of the items.
+    ///
+    /// # Errors
+    /// A text that says why it cannot list them.
+    pub fn items(&mut self) -> Result<Vec<Item>, String> {
+        self.data_system.items()
     }
 
     /// Common memory after the last tick.

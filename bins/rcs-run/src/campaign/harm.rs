@@ -1,5 +1,6 @@
 //! Compares the cell with that of the undisturbed run, and watches for harm.
 
+use neighbours::data_system::Item;
 use plant::{CellEvent, t3::Stage};
 use rcs_core::tick::Tick;
 
@@ -18,7 +19,7 @@ pub fn is_commanded(branch: &Branch<'_>) -> bool {
     t3.stage() == Stage::Depc && t3.cut().is_none()
 }
 
-/// Parts, gripper and hand at the end of a command.
+/// Parts, gripper, hand and the items of the Data System at the end of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     parts: Vec<PartAt>,
@@ -26,6 +27,7 @@ pub struct World {
     gripper: Option<u8>,
     /// Middle between the fingertips, world coordinates, in.
     hand: [f64; 3],
+    items: Result<Vec<Item>, String>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +46,8 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 impl World {
     /// The present world of a branch.
     #[must_use]
-    pub fn of(branch: &Branch<'_>) -> Self {
+    pub fn of(branch: &mut Branch<'_>) -> Self {
+        let items = branch.items();
         let cell = &branch.workstation.cell;
         let parts = cell.parts().into_iter().map(|part| PartAt {
             name: part.name,
@@ -53,7 +56,7 @@ impl World {
             clamped: part.clamped,
             at: part.position,
         });
-        Self { parts: parts.collect(), gripper: cell.gripper(), hand: cell.tool().position.into() }
+        Self { parts: parts.collect(), gripper: cell.gripper(), hand: cell.tool().position.into(), items }
     }
 
     /// The first difference from the undisturbed run, as text; `None` if there is none.
@@ -70,10 +73,29 @@ impl World {
         let parts = self.parts.iter().zip(&undisturbed.parts);
         let part = parts.filter_map(|(one, other)| one.unlike(other)).next();
         let away = distance(&self.hand, &undisturbed.hand);
-        part.or_else(|| {
+        let moved = part.or_else(|| {
             (away > HAND).then(|| format!("the hand is {away:.2} in from where the command leaves it"))
+        });
+        moved.or_else(|| {
+            (self.items != undisturbed.items).then(|| {
+                format!("the Data System has {}, not {}", listed(&self.items), listed(&undisturbed.items))
+            })
         })
     }
+}
+
+/// The items as text: `LINKBAR1 at UNIT_1 4`.
+fn listed(items: &Result<Vec<Item>, String>) -> String {
+    let items = match items {
+        Ok(items) if items.is_empty() => return "no item".to_owned(),
+        Ok(items) => items,
+        Err(why) => return format!("no list of items ({why})"),
+    };
+    let at = |item: &Item| match item.sector {
+        0 => format!("{} at {}", item.name, item.position),
+        sector => format!("{} at {} {sector}", item.name, item.position),
+    };
+    items.iter().map(at).collect::<Vec<_>>().join(" and ")
 }
 
 impl PartAt {
@@ -148,6 +170,12 @@ impl HarmMonitor {
             }
             None => false,
         }
+    }
+
+    /// Note what must not be, such as an invariant that is broken.
+    pub fn note(&mut self, tick: Tick, what: String) {
+        let commanded = !self.is_displaced();
+        self.harms.push(Harm { tick, kind: what.clone(), what, commanded, contact: None });
     }
 
     /// Check a tick. `person` is true while a person moves the robot at the joystick box.

@@ -16,6 +16,7 @@ mod arguments;
 mod branch;
 mod harm;
 mod interruption;
+mod invariants;
 mod journal;
 mod markdown;
 mod motion;

@@ -94,7 +94,7 @@ impl Parent {
             let tick = branch.at();
             while parent.begun.len() < hwsc.begun_steps().len() {
                 if !parent.begun.is_empty() {
-                    parent.worlds.push(World::of(&branch));
+                    parent.worlds.push(World::of(&mut branch));
                 }
                 parent.begun.push(tick);
             }
@@ -109,7 +109,7 @@ impl Parent {
             match hwsc.progress() {
                 Progress::Running => {}
                 Progress::Over => {
-                    parent.worlds.push(World::of(&branch));
+                    parent.worlds.push(World::of(&mut branch));
                     (parent.ticks, parent.digest) = (tick.0, branch.digest().to_string());
                     return Ok(parent);
                 }

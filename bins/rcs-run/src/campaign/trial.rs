@@ -11,6 +11,7 @@ use super::{
     branch::{Branch, Facility, Fork},
     harm::{HarmMonitor, World, is_commanded},
     interruption::{Kind, Script},
+    invariants::Invariants,
     motion::Motion,
     operator::{Operator, Recovery, Then},
     parent::Parent,
@@ -116,6 +117,7 @@ struct Trial<'f, 'p> {
     branch: Branch<'f>,
     operator: Operator<'f>,
     monitor: HarmMonitor,
+    invariants: Invariants,
     series: &'p Series,
     /// Index of the present or last interruption.
     interruption: usize,
@@ -153,13 +155,14 @@ pub fn run(
     let (line, began) = parent.line_at(at);
     let operator = Operator::new(&facility.job.steps, line, began, branch.command(), procedure.tries)
         .with_recovery(procedure.recovery);
-    let monitor = HarmMonitor::from_now(&branch);
+    let (monitor, invariants) = (HarmMonitor::from_now(&branch), Invariants::from_now(&branch));
     let doing = present(&branch);
     let trial = Trial {
         parent,
         branch,
         operator,
         monitor,
+        invariants,
         series,
         interruption: 0,
         over: None,
@@ -218,6 +221,9 @@ impl Trial<'_, '_> {
             let at_box = !over && matches!(self.kind(), Kind::Nudge | Kind::Away);
             self.tears |= self.takes_from_vise();
             self.monitor.look(&self.branch, at_box || (self.tears && self.operator.has_replaced()));
+            if let Some(broken) = self.invariants.broken(&self.branch, !over) {
+                self.monitor.note(self.branch.at(), broken);
+            }
             observer.tick(&self.branch);
             if let Some(motion) = &mut self.motion {
                 motion.look(&self.branch);
@@ -342,7 +348,7 @@ impl Trial<'_, '_> {
         if self.monitor.worst().is_some() || !is_commanded(&self.branch) {
             return;
         }
-        if let Some(unlike) = World::of(&self.branch).unlike(world) {
+        if let Some(unlike) = World::of(&mut self.branch).unlike(world) {
             if self.monitor.blame_slide(&unlike) {
                 return;
             }
