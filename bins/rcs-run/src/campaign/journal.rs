@@ -1,7 +1,8 @@
 //! The file into which a campaign writes each branch as soon as it is judged, so that it can be stopped and continued.
 //!
-//! Each line is a JSON object: the campaign, the branch, and the decision rows that this branch fired first. A line
-//! counts if it belongs to the same campaign: same undisturbed run, program and procedure.
+//! Each line is a JSON object: the campaign, the branch, and the rows and states that it was the first to meet; all that
+//! it has met if they decide what is drawn next. A line counts if it belongs to the same campaign: same undisturbed run,
+//! program and procedure.
 
 use std::{
     borrow::Cow,
@@ -17,9 +18,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     branch::Facility,
+    coverage::Coverage,
     parent::Parent,
     pool::Plan,
-    rows::RowsFired,
     trial::{BranchResult, Procedure},
 };
 use crate::error::Error;
@@ -30,7 +31,8 @@ struct Line<'a> {
     campaign: String,
     #[serde(flatten)]
     branch: Cow<'a, BranchResult>,
-    rows: RowsFired,
+    #[serde(flatten)]
+    met: Cow<'a, Coverage>,
 }
 
 /// The branches judged before, and the file to which new ones are appended. The default journal is empty and writes
@@ -39,9 +41,11 @@ struct Line<'a> {
 pub struct Journal {
     file: Option<(PathBuf, File)>,
     campaign: String,
-    known: HashMap<(u64, String), BranchResult>,
-    rows: RowsFired,
+    known: HashMap<(u64, String), Judged>,
 }
+
+/// A branch, and what it has met.
+pub type Judged = (BranchResult, Coverage);
 
 /// Identifies a campaign: equal branches of the same campaign end the same way.
 #[must_use]
@@ -82,8 +86,8 @@ impl Journal {
             })?;
             if line.campaign == campaign {
                 let branch = line.branch.into_owned();
-                journal.rows.take_in(line.rows);
-                journal.known.insert((branch.at, branch.interruption.clone()), branch);
+                let place = (branch.at, branch.interruption.clone());
+                journal.known.insert(place, (branch, line.met.into_owned()));
             }
         }
         let write = |source| Error::Write { path: path.to_owned(), source };
@@ -92,9 +96,9 @@ impl Journal {
         Ok(journal)
     }
 
-    /// The result of a branch that was judged before, if any.
+    /// A branch that was judged before, if any.
     #[must_use]
-    pub fn result(&self, plan: &Plan) -> Option<&BranchResult> {
+    pub fn known(&self, plan: &Plan) -> Option<&Judged> {
         self.known.get(&(plan.at, plan.series.to_string()))
     }
 
@@ -102,19 +106,13 @@ impl Journal {
     ///
     /// # Errors
     /// [`Error`] if it cannot be written.
-    pub fn write(&self, result: &BranchResult, rows: &RowsFired) -> Result<(), Error> {
+    pub fn write(&self, result: &BranchResult, met: &Coverage) -> Result<(), Error> {
         let Some((path, file)) = &self.file else { return Ok(()) };
-        let line =
-            Line { campaign: self.campaign.clone(), branch: Cow::Borrowed(result), rows: rows.clone() };
+        let (branch, met) = (Cow::Borrowed(result), Cow::Borrowed(met));
+        let line = Line { campaign: self.campaign.clone(), branch, met };
         let mut text = serde_json::to_string(&line).map_err(io::Error::from)?;
         text.push('\n');
         // One write per line: lines of several threads do not mix.
         (&*file).write_all(text.as_bytes()).map_err(|source| Error::Write { path: path.clone(), source })
-    }
-
-    /// The rows that fired in the branches that were judged before.
-    #[must_use]
-    pub fn into_rows(self) -> RowsFired {
-        self.rows
     }
 }

@@ -14,6 +14,7 @@
 
 mod arguments;
 mod branch;
+mod coverage;
 mod harm;
 mod interruption;
 mod invariants;
@@ -25,21 +26,15 @@ mod parent;
 mod pool;
 mod random;
 mod report;
-mod rows;
+mod runner;
 mod series;
 mod story;
 #[cfg(test)]
 mod tests;
 mod trial;
 
-use std::{
-    fs,
-    io::{self, IsTerminal as _},
-    process::ExitCode,
-    time::Duration,
-};
+use std::{fs, io, process::ExitCode};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use os_io::console;
 use runtime::{
     StartError,
@@ -50,12 +45,11 @@ pub use self::arguments::CampaignArguments;
 use self::{
     branch::Facility,
     interruption::Kind,
-    journal::Journal,
     parent::{Parent, Ticks},
-    pool::{Outcome, Plan},
+    pool::Plan,
     random::Draw,
     report::CampaignReport,
-    rows::RowsFired,
+    runner::{Keep, Runner},
     series::Series,
     trial::{BranchResult, NoObserver, Procedure, Until, Verdict},
 };
@@ -91,16 +85,26 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
     let procedure =
         Procedure { recovery: arguments.recovery, tries: arguments.tries, until: arguments.judge };
     let parent = Parent::run(&facility)?;
-    let plans = plans(arguments, &facility, &parent, procedure)?;
-    if let ([Plan { at, series, .. }], false) = (&plans[..], arguments.json) {
-        let fork = pool::fork_at(&facility, *at)?;
-        let mut story = story::Story::new(*at, arguments.around);
-        let result = trial::run(&facility, &parent, &fork, series, procedure, &mut story)?;
-        console::answer(&story.told(&result))?;
-        return Ok(None);
-    }
-    let mut outcome = branches(arguments, &facility, &parent, procedure, &plans)?;
-    for (plan, result) in plans.iter().zip(&mut outcome.results) {
+    let (plans, judged, met) = match arguments.random {
+        Some(branches) => {
+            let draw = draw(arguments, &facility, &parent, procedure, branches)?;
+            let runner = Runner::new(arguments, &facility, &parent, procedure, branches)?;
+            let (plans, judged) = runner.draw(draw)?;
+            (plans, judged, runner.finish())
+        }
+        None => {
+            let plans = plans(arguments, &facility, &parent, procedure)?;
+            if let ([plan], false) = (&plans[..], arguments.json) {
+                tell(arguments, &facility, &parent, plan)?;
+                return Ok(None);
+            }
+            let runner = Runner::new(arguments, &facility, &parent, procedure, plans.len())?;
+            let judged = runner.run(&plans, Keep::New)?;
+            (plans, judged, runner.finish())
+        }
+    };
+    let mut results: Vec<BranchResult> = judged.into_iter().map(|(result, _)| result).collect();
+    for (plan, result) in plans.iter().zip(&mut results) {
         if plan.series.interruptions().len() > 1 && !matches!(result.verdict, Verdict::Done | Verdict::Apart)
         {
             let fork = pool::fork_at(&facility, plan.at)?;
@@ -112,44 +116,40 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
         }
     }
     let called = format!("rcs-run campaign {job} --seed {}", arguments.seed);
-    let report = CampaignReport::new(&facility.job.name, called, &parent, &outcome);
+    let report = CampaignReport::new(&facility.job.name, called, &parent, &results, &met);
     console::answer(&if arguments.json { report.json()? } else { report.text() })?;
     Ok(Some(report.column()))
 }
 
-/// Run the branches that the journal does not contain, and return the results of all.
-fn branches(
+/// Run one branch, and print every row that fires in it.
+fn tell(
+    arguments: &CampaignArguments,
+    facility: &Facility,
+    parent: &Parent,
+    plan: &Plan,
+) -> Result<(), Error> {
+    let Plan { at, series, procedure } = plan;
+    let fork = pool::fork_at(facility, *at)?;
+    let mut story = story::Story::new(*at, arguments.around);
+    let result = trial::run(facility, parent, &fork, series, *procedure, &mut story)?;
+    console::answer(&story.told(&result))?;
+    Ok(())
+}
+
+/// The draw that the arguments ask for.
+fn draw(
     arguments: &CampaignArguments,
     facility: &Facility,
     parent: &Parent,
     procedure: Procedure,
-    plans: &[Plan],
-) -> Result<Outcome, Error> {
-    let journal = match &arguments.journal {
-        Some(path) => Journal::open(path, &journal::campaign(facility, parent, procedure))?,
-        None => Journal::default(),
-    };
-    let missing: Vec<Plan> = plans.iter().filter(|plan| journal.result(plan).is_none()).cloned().collect();
-    let bar = bar(plans.len(), plans.len() - missing.len());
-    let done = |result: &BranchResult, fresh: &RowsFired| {
-        if let Some(bar) = &bar {
-            bar.inc(1);
-            if result.verdict == Verdict::Hurt {
-                bar.println(format!("hurt: {} at {}: {}", result.interruption, result.at, result.detail));
-            }
-        }
-        journal.write(result, fresh)
-    };
-    let Outcome { results, mut rows } =
-        pool::run(facility, parent, &missing, usize::from(arguments.threads), &done)?;
-    if let Some(bar) = &bar {
-        bar.finish_and_clear();
-    }
-    let mut run = results.into_iter();
-    let results = plans.iter().map(|plan| journal.result(plan).cloned().or_else(|| run.next()));
-    let results = results.collect::<Option<_>>().unwrap_or_default();
-    rows.take_in(journal.into_rows());
-    Ok(Outcome { results, rows })
+    branches: usize,
+) -> Result<Draw, Error> {
+    let (data, cell) = (&arguments.data, &facility.description);
+    let kinds = arguments.interrupt.iter().map(|text| Kind::named(text, data, cell));
+    let kinds = kinds.collect::<Result<Vec<_>, _>>()?.concat();
+    let settings =
+        random::Settings { branches, longest: usize::from(arguments.longest), seed: arguments.draw };
+    Ok(Draw::new(parent, &kinds, procedure, settings))
 }
 
 /// The branches that the arguments ask for.
@@ -160,12 +160,6 @@ fn plans(
     procedure: Procedure,
 ) -> Result<Vec<Plan>, Error> {
     let (data, cell) = (&arguments.data, &facility.description);
-    if let Some(branches) = arguments.random {
-        let kinds = arguments.interrupt.iter().map(|text| Kind::named(text, data, cell));
-        let kinds = kinds.collect::<Result<Vec<_>, _>>()?.concat();
-        let draw = Draw { branches, longest: usize::from(arguments.longest), seed: arguments.draw };
-        return Ok(draw.plans(parent, &kinds, procedure));
-    }
     let series = arguments.interrupt.iter().map(|text| Series::named(text, data, cell));
     let series = series.collect::<Result<Vec<_>, _>>()?.concat();
     let stops = |series: &Series| series.interruptions().last().is_some_and(|last| last.kind.is_stop());
@@ -201,17 +195,4 @@ fn ticks(arguments: &CampaignArguments) -> Ticks {
         _ if arguments.states => Ticks::States,
         (every, false) => Ticks::Every(every.unwrap_or(EVERY)),
     }
-}
-
-/// The progress bar on a terminal; `None` if standard error is not a terminal.
-fn bar(branches: usize, known: usize) -> Option<ProgressBar> {
-    io::stderr().is_terminal().then(|| {
-        let bar = ProgressBar::new(branches as u64).with_position(known as u64).with_elapsed(Duration::ZERO);
-        if let Ok(style) =
-            ProgressStyle::with_template("{wide_bar} {pos}/{len} branches, {per_sec}, {eta} left")
-        {
-            bar.set_style(style);
-        }
-        bar
-    })
 }

@@ -57,7 +57,7 @@ fn steps(memory: &CommonMemory, task: u32) -> Steps {
 }
 
 /// Step and last fired row of each process.
-fn state(memory: &CommonMemory) -> Vec<(Option<Name16>, Option<Decided>)> {
+pub fn state(memory: &CommonMemory) -> Vec<(Option<Name16>, Option<Decided>)> {
     let of = |process: &ProcessId| {
         let header = memory.header(*process);
         (header.step, header.decided)

@@ -1,12 +1,12 @@
 //! Runs the branches: one thread runs and forks the undisturbed job, the other threads run the forks.
 
-use std::sync::{Arc, Mutex, mpsc};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::thread;
 
 use super::{
     branch::{Branch, Facility, Fork},
+    coverage::Coverage,
     parent::{Parent, emulator},
-    rows::RowsFired,
     series::Series,
     trial::{self, BranchResult, Procedure},
 };
@@ -26,28 +26,19 @@ pub struct Plan {
 /// A forked state, and the index of the plan that begins with it.
 type Work = (Arc<Fork>, usize);
 
-/// The results of branches.
-#[derive(Debug, Default)]
-pub struct Outcome {
-    /// Results in the order of the plans.
-    pub results: Vec<BranchResult>,
-    /// Rows that have fired in the branches.
-    pub rows: RowsFired,
-}
-
-/// Run a branch for each plan. Calls `done` with each new result and the rows that no earlier branch has fired. The
-/// outcome does not depend on `threads`.
+/// Run a branch for each plan. Calls `done` with each new result and what the branch has met; what it returns is
+/// collected in the order of the plans, which does not depend on `threads`.
 ///
 /// # Errors
 /// [`Error`] if the run cannot be forked, and the errors of `done`.
-pub fn run(
+pub fn run<T: Send>(
     facility: &Facility,
     parent: &Parent,
     plans: &[Plan],
     threads: usize,
-    done: &(impl Fn(&BranchResult, &RowsFired) -> Result<(), Error> + Sync),
-) -> Result<Outcome, Error> {
-    let collected = Mutex::new((Vec::with_capacity(plans.len()), RowsFired::default()));
+    done: &(impl Fn(BranchResult, Coverage) -> Result<T, Error> + Sync),
+) -> Result<Vec<T>, Error> {
+    let collected = Mutex::new(Vec::with_capacity(plans.len()));
     // A branch takes longer than a fork, so the queue of forks is bounded.
     let (send, receive) = mpsc::sync_channel::<Work>(2 * threads);
     let receive = Mutex::new(receive);
@@ -62,14 +53,11 @@ pub fn run(
                             continue;
                         }
                         let Plan { series, procedure, .. } = &plans[at];
-                        let mut rows = RowsFired::default();
-                        outcome = trial::run(facility, parent, &fork, series, *procedure, &mut rows)
-                            .and_then(|result| {
-                                let Ok(mut collected) = collected.lock() else { return Ok(()) };
-                                let fresh = collected.1.take_in(rows);
-                                done(&result, &fresh)?;
-                                collected.0.push((at, result));
-                                Ok(())
+                        let mut met = Coverage::default();
+                        outcome = trial::run(facility, parent, &fork, series, *procedure, &mut met)
+                            .and_then(|result| done(result, met))
+                            .map(|done| {
+                                collected.lock().unwrap_or_else(PoisonError::into_inner).push((at, done))
                             });
                     }
                     outcome
@@ -86,9 +74,9 @@ pub fn run(
         worked.and(forked)
     });
     outcome?;
-    let (mut results, rows) = collected.into_inner().unwrap_or_default();
-    results.sort_by_key(|(at, _)| *at);
-    Ok(Outcome { results: results.into_iter().map(|(_, result)| result).collect(), rows })
+    let mut collected = collected.into_inner().unwrap_or_else(PoisonError::into_inner);
+    collected.sort_by_key(|(at, _)| *at);
+    Ok(collected.into_iter().map(|(_, done)| done).collect())
 }
 
 /// The next fork; `None` if there are no more.

@@ -1,25 +1,38 @@
 //! Branches drawn at random, and the smallest series of interruptions with the same outcome as a drawn one.
+//!
+//! Branches are drawn in rounds. From the second round on every other branch is a change of an earlier one, and those
+//! that have met most new rows and states are changed most. A draw depends on its seed and on what the branches of the
+//! rounds before have met, and not on the order in which they end.
 
-use std::iter;
+use std::collections::HashSet;
 
-use rand::{Rng, RngExt as _, SeedableRng as _, seq::IndexedRandom as _};
+use rand::{RngExt as _, SeedableRng as _, seq::IndexedRandom as _};
 use rand_chacha::ChaCha8Rng;
 
 use super::{
+    coverage::Coverage,
     interruption::Kind,
     parent::{Parent, Ticks},
     pool::Plan,
-    series::Series,
+    series::{Interruption, Series},
     trial::{Procedure, Until},
 };
 
 /// Upper limits of the ticks between two interruptions, one of which is drawn: at once, within a step, within a
 /// command.
 const BETWEEN: [u64; 3] = [3, 60, 600];
+/// Branches of a round.
+const ROUND: usize = 64;
+/// Weight of a new row: that of so many new states.
+const ROW: usize = 20;
+/// A changed branch begins this many ticks sooner or later, at most.
+const NEAR: u64 = 12;
+/// Number of times that a branch is drawn again if it was drawn before.
+const AGAIN: usize = 8;
 
-/// Parameters of the draw.
+/// Parameters of a draw.
 #[derive(Clone, Copy, Debug)]
-pub struct Draw {
+pub struct Settings {
     /// Number of branches.
     pub branches: usize,
     /// Largest number of interruptions of a branch.
@@ -28,34 +41,131 @@ pub struct Draw {
     pub seed: u64,
 }
 
+/// A draw of branches.
+pub struct Draw {
+    settings: Settings,
+    procedure: Procedure,
+    random: ChaCha8Rng,
+    /// Last tick after which a branch can begin, and the ticks in which something changes.
+    last: u64,
+    changes: Vec<u64>,
+    /// The kinds that are drawn, and the stops that follow if the branches are judged at rest; those with the same word
+    /// in a group.
+    kinds: Vec<Vec<Kind>>,
+    stops: Vec<Vec<Kind>>,
+    drawn: HashSet<(u64, String)>,
+    met: Coverage,
+    /// Branches that have met something new, and how much.
+    fruitful: Vec<(Plan, usize)>,
+}
+
 impl Draw {
-    /// The drawn branches. Half of them begin in ticks in which something changes. A branch that is judged at rest gets
-    /// a stop after its drawn interruptions.
+    /// A draw of these kinds. Half of the branches begin in ticks in which something changes. A branch that is judged at
+    /// rest gets a stop after its drawn interruptions.
     #[must_use]
-    pub fn plans(&self, parent: &Parent, kinds: &[Kind], procedure: Procedure) -> Vec<Plan> {
-        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
-        let changes = parent.forks(&Ticks::Changes);
-        let is_same_word = |a: &Kind, b: &Kind| word(a) == word(b);
-        let (rest, drawn): (bool, Vec<Kind>) = match procedure.until {
-            Until::Rest => (true, kinds.iter().filter(|kind| !kind.is_for_good()).cloned().collect()),
-            Until::Next | Until::Job => (false, kinds.to_vec()),
+    pub fn new(parent: &Parent, kinds: &[Kind], procedure: Procedure, settings: Settings) -> Self {
+        let rest = procedure.until == Until::Rest;
+        let group = |keep: &dyn Fn(&&Kind) -> bool| {
+            let kinds: Vec<Kind> = kinds.iter().filter(keep).cloned().collect();
+            kinds.chunk_by(|a, b| word(a) == word(b)).map(<[Kind]>::to_vec).collect::<Vec<_>>()
         };
-        let groups: Vec<&[Kind]> = drawn.chunk_by(is_same_word).collect();
-        let stops: Vec<Kind> = kinds.iter().filter(|kind| kind.is_stop()).cloned().collect();
-        let stops: Vec<&[Kind]> = stops.chunk_by(is_same_word).collect();
-        let mut draw = || {
-            let change = changes.choose(&mut random).filter(|_| random.random());
-            let at = change.copied().unwrap_or_else(|| random.random_range(1..parent.ticks));
-            let mut series = Series::from(kind(&groups, &mut random)?);
-            let more = random.random_range(1..=self.longest) - 1;
-            for groups in iter::repeat_n(&groups, more).chain(rest.then_some(&stops)) {
-                let most = BETWEEN.choose(&mut random).copied()?;
-                series = series.then(random.random_range(0..=most), kind(groups, &mut random)?);
-            }
-            Some(Plan { at, series, procedure })
-        };
-        (0..self.branches).map_while(|_| draw()).collect()
+        Self {
+            settings,
+            procedure,
+            random: ChaCha8Rng::seed_from_u64(settings.seed),
+            last: parent.ticks - 1,
+            changes: parent.forks(&Ticks::Changes),
+            kinds: group(&|kind| !rest || !kind.is_for_good()),
+            stops: if rest { group(&|kind| kind.is_stop()) } else { Vec::new() },
+            drawn: HashSet::new(),
+            met: Coverage::default(),
+            fruitful: Vec::new(),
+        }
     }
+
+    /// The branches of the next round; none if all are drawn.
+    pub fn round(&mut self) -> Vec<Plan> {
+        let left = self.settings.branches - self.drawn.len().min(self.settings.branches);
+        (0..left.min(ROUND)).map_while(|_| self.next()).collect()
+    }
+
+    /// Learn what a branch of the last round has met. Call it for all of them, in order.
+    pub fn learn(&mut self, plan: &Plan, coverage: Coverage) {
+        let (rows, states) = self.met.take_in(coverage).counts();
+        let weight = ROW * rows + states;
+        if weight > 0 {
+            self.fruitful.push((plan.clone(), weight));
+        }
+    }
+
+    /// Draw a branch that was not drawn before, if there is one.
+    fn next(&mut self) -> Option<Plan> {
+        let mut plan = self.draw()?;
+        for _ in 0..AGAIN {
+            if !self.drawn.contains(&key(&plan)) {
+                break;
+            }
+            plan = self.draw()?;
+        }
+        self.drawn.insert(key(&plan)).then_some(plan)
+    }
+
+    fn draw(&mut self) -> Option<Plan> {
+        let known = self.fruitful.choose_weighted(&mut self.random, |(_, weight)| *weight);
+        let known = known.ok().map(|(plan, _)| plan.clone());
+        let (at, mut drawn) = match known.filter(|_| self.random.random()) {
+            Some(plan) => self.changed(&plan)?,
+            None => self.anew()?,
+        };
+        if !self.stops.is_empty() {
+            drawn.push(Interruption { after: self.between()?, kind: kind(&self.stops, &mut self.random)? });
+        }
+        Some(Plan { at, series: Series::of(drawn)?, procedure: self.procedure })
+    }
+
+    /// A tick and interruptions that have nothing to do with those before.
+    fn anew(&mut self) -> Option<(u64, Vec<Interruption>)> {
+        let change = self.changes.choose(&mut self.random).filter(|_| self.random.random());
+        let at = change.copied().unwrap_or_else(|| self.random.random_range(1..=self.last));
+        let mut drawn = Vec::new();
+        for place in 0..self.random.random_range(1..=self.settings.longest) {
+            let after = if place == 0 { 0 } else { self.between()? };
+            drawn.push(Interruption { after, kind: kind(&self.kinds, &mut self.random)? });
+        }
+        Some((at, drawn))
+    }
+
+    /// Change one thing of a branch: its tick, one of its interruptions, or the time before one; or add an interruption.
+    fn changed(&mut self, plan: &Plan) -> Option<(u64, Vec<Interruption>)> {
+        let mut drawn = plan.series.interruptions().to_vec();
+        drawn.truncate(drawn.len() - usize::from(!self.stops.is_empty()));
+        let place = self.random.random_range(0..drawn.len());
+        let mut at = plan.at;
+        match self.random.random_range(0..4) {
+            0 => drawn[place].kind = kind(&self.kinds, &mut self.random)?,
+            1 if place > 0 => drawn[place].after = self.between()?,
+            2 if drawn.len() < self.settings.longest => {
+                let after = self.between()?;
+                drawn.push(Interruption { after, kind: kind(&self.kinds, &mut self.random)? });
+            }
+            _ => {
+                let near = at.saturating_sub(NEAR).max(1)..=(at + NEAR).min(self.last);
+                at = self.random.random_range(near);
+            }
+        }
+        Some((at, drawn))
+    }
+
+    /// Ticks between two interruptions.
+    fn between(&mut self) -> Option<u64> {
+        let most = BETWEEN.choose(&mut self.random).copied()?;
+        Some(self.random.random_range(0..=most))
+    }
+}
+
+/// What tells a branch from others.
+fn key(plan: &Plan) -> (u64, String) {
+    (plan.at, plan.series.to_string())
 }
 
 /// The command line word of a kind, without its parameter.
@@ -64,7 +174,7 @@ fn word(kind: &Kind) -> String {
 }
 
 /// Draw a kind: each word is equally likely, whatever number of kinds it selects.
-fn kind(groups: &[&[Kind]], random: &mut impl Rng) -> Option<Kind> {
+fn kind(groups: &[Vec<Kind>], random: &mut ChaCha8Rng) -> Option<Kind> {
     groups.choose(random)?.choose(random).cloned()
 }
 

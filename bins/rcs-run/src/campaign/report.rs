@@ -5,9 +5,9 @@ use std::{collections::BTreeMap, fmt::Write as _, io};
 use serde::Serialize;
 
 use super::{
+    coverage::Coverage,
     markdown::Column,
     parent::Parent,
-    pool::Outcome,
     trial::{BranchResult, Verdict},
 };
 use crate::error::Error;
@@ -105,9 +105,15 @@ struct Json<'a> {
 impl<'a> CampaignReport<'a> {
     /// A report on these branches; `command` is the command line that repeats the campaign.
     #[must_use]
-    pub fn new(job: &'a str, command: String, parent: &'a Parent, outcome: &'a Outcome) -> Self {
+    pub fn new(
+        job: &'a str,
+        command: String,
+        parent: &'a Parent,
+        results: &'a [BranchResult],
+        met: &Coverage,
+    ) -> Self {
         let mut rows: Vec<Row> = Vec::new();
-        for result in &outcome.results {
+        for result in results {
             let title = title(result);
             let at = rows.iter().position(|row| row.interruption == title).unwrap_or_else(|| {
                 rows.push(Row { interruption: title, ..Row::default() });
@@ -115,8 +121,8 @@ impl<'a> CampaignReport<'a> {
             });
             rows[at].add(result);
         }
-        let (decisions, never_fired) = outcome.rows.missing();
-        Self { job, parent, results: &outcome.results, rows, decisions, never_fired, command }
+        let (decisions, never_fired) = met.missing();
+        Self { job, parent, results, rows, decisions, never_fired, command }
     }
 
     /// The report as one JSON object.

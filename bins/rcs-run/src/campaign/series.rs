@@ -40,6 +40,13 @@ impl fmt::Display for Series {
 }
 
 impl Series {
+    /// A series of these interruptions; `None` if there are none.
+    #[must_use]
+    pub fn of(mut interruptions: Vec<Interruption>) -> Option<Self> {
+        interruptions.first_mut()?.after = 0;
+        Some(Self(interruptions))
+    }
+
     /// The series with another interruption at its end.
     #[must_use]
     pub fn then(mut self, after: u64, kind: Kind) -> Self {
@@ -58,8 +65,7 @@ impl Series {
     pub fn without(&self, at: usize) -> Option<Self> {
         let mut others = self.0.clone();
         others.remove(at);
-        others.first_mut()?.after = 0;
-        Some(Self(others))
+        Self::of(others)
     }
 
     /// The series with half the ticks before one interruption; `None` if there are no ticks before it.

@@ -11,13 +11,13 @@ use taskdata::load::{Job, Source};
 
 use super::{
     branch::{Branch, Commander, Facility, Fork},
+    coverage::Coverage,
     interruption::Kind,
     journal::{self, Journal},
     operator::Recovery,
     parent::{Parent, Ticks, emulator},
-    pool::{self, Outcome, Plan},
-    random::{self, Draw},
-    rows::RowsFired,
+    pool::{self, Plan},
+    random::{self, Draw, Settings},
     series::Series,
     trial::{self, BranchResult, NoObserver, Procedure, Until, Verdict},
 };
@@ -211,10 +211,13 @@ fn all_threads_give_the_same_judgements_in_the_same_order() {
         })
         .collect();
     let campaign = |threads: usize| {
-        let Outcome { results, rows } =
-            pool::run(&facility, &parent, &plans, threads, &|_, _| Ok(())).expect("the branches can be run");
-        let results = results.into_iter().map(|one| (one.interruption, one.at, one.digest));
-        (results.collect::<Vec<_>>(), rows)
+        let run = pool::run(&facility, &parent, &plans, threads, &|result, met| Ok((result, met)));
+        let mut all = Coverage::default();
+        let results = run.expect("the branches can be run").into_iter().map(|(one, met)| {
+            let new = all.take_in(met);
+            (one.interruption, one.at, one.digest, new.counts())
+        });
+        (results.collect::<Vec<_>>(), all)
     };
     let one = campaign(1);
     assert_eq!(one.0.len(), plans.len());
@@ -236,20 +239,23 @@ fn a_campaign_goes_on_from_its_journal() {
     let path = directory.path().join("journal");
     let campaign = journal::campaign(&facility, &parent, PROCEDURE);
     let journal = Journal::open(&path, &campaign).expect("the journal is made");
-    let done = |result: &BranchResult, rows: &RowsFired| journal.write(result, rows);
-    let first = pool::run(&facility, &parent, &plans[..1], 1, &done).expect("the branch can be run");
+    let done = |result: BranchResult, met: Coverage| {
+        journal.write(&result, &met)?;
+        Ok((result, met))
+    };
+    let run = pool::run(&facility, &parent, &plans[..1], 1, &done).expect("the branch can be run");
+    let (first, met) = &run[0];
     let whole = fs::read(&path).expect("the journal is there");
 
     let other = Journal::open(&path, "another campaign").expect("the journal is read");
-    assert!(other.result(&plans[0]).is_none(), "a branch of another campaign counts");
+    assert!(other.known(&plans[0]).is_none(), "a branch of another campaign counts");
 
     fs::write(&path, [&whole[..], &whole[..whole.len() / 2]].concat()).expect("the journal can be written");
     let again = Journal::open(&path, &campaign).expect("a torn line is cut off");
-    let known = again.result(&plans[0]).map(|known| (&known.digest, known.verdict));
-    assert_eq!(known, Some((&first.results[0].digest, first.results[0].verdict)));
-    assert!(again.result(&plans[1]).is_none());
+    let known = again.known(&plans[0]).map(|(known, met)| (&known.digest, known.verdict, met));
+    assert_eq!(known, Some((&first.digest, first.verdict, met)));
+    assert!(again.known(&plans[1]).is_none());
     assert_eq!(fs::read(&path).expect("the journal is there"), whole);
-    assert_eq!(again.into_rows(), first.rows);
 
     fs::write(&path, [b"{}\n", &whole[..]].concat()).expect("the journal can be written");
     let error = Journal::open(&path, &campaign).expect_err("a line is no branch").to_string();
@@ -316,7 +322,9 @@ fn a_branch_that_is_judged_at_rest_ends_with_a_stop() {
     let named = |text| Kind::named(text, Path::new(DATA), &facility.description).expect("it is known");
     let kinds = [named("all"), named("cut"), named("lost")].concat();
     let procedure = Procedure { until: Until::Rest, ..PROCEDURE };
-    let plans = Draw { branches: 50, longest: 3, seed: 7 }.plans(&parent, &kinds, procedure);
+    let settings = Settings { branches: 50, longest: 3, seed: 7 };
+    let plans = Draw::new(&parent, &kinds, procedure, settings).round();
+    assert_eq!(plans.len(), 50);
     for plan in plans {
         let (last, others) = plan.series.interruptions().split_last().expect("there are some");
         assert!(last.kind.is_stop() && !others.is_empty());
@@ -362,14 +370,42 @@ fn a_series_is_read_back_from_its_name() {
 fn a_draw_repeats_and_another_seed_draws_other_branches() {
     let (facility, parent, _) = empty_move();
     let kinds = Kind::named("all", Path::new(DATA), &facility.description).expect("there are some");
-    let draw = |seed| Draw { branches: 200, longest: 3, seed }.plans(&parent, &kinds, PROCEDURE);
-    let plans = draw(7);
-    assert_eq!(plans, draw(7));
-    assert_ne!(plans, draw(8));
+    // As if each branch had met its own tick, and nothing else.
+    let draw = |seed, learns: bool| {
+        let mut draw = Draw::new(&parent, &kinds, PROCEDURE, Settings { branches: 200, longest: 3, seed });
+        let mut plans = Vec::new();
+        loop {
+            let round = draw.round();
+            if round.is_empty() {
+                return plans;
+            }
+            for plan in round.iter().filter(|_| learns) {
+                draw.learn(plan, Coverage::of_states([plan.at]));
+            }
+            plans.extend(round);
+        }
+    };
+    let plans = draw(7, true);
+    assert_eq!(plans.len(), 200);
+    assert_eq!(plans, draw(7, true));
+    assert_ne!(plans, draw(8, true));
+    let (first, later) = plans.split_at(64);
+    assert_eq!(first, &draw(7, false)[..64]);
+    let is_near = |plan: &Plan| {
+        first.iter().any(|known| known.at.abs_diff(plan.at) <= 12 && shares_a_kind(known, plan))
+    };
+    let near = later.iter().filter(|plan| is_near(plan)).count();
+    let anew = draw(7, false)[64..].iter().filter(|plan| is_near(plan)).count();
+    assert!(near > later.len() / 2 && near > anew, "{near} and {anew} of {} are near", later.len());
     let counts =
         |count: usize| plans.iter().filter(|plan| plan.series.interruptions().len() == count).count();
     assert!([1, 2, 3].map(counts).iter().all(|branches| *branches > 40));
     assert!(plans.iter().all(|plan| (1..parent.ticks).contains(&plan.at)));
+}
+
+fn shares_a_kind(a: &Plan, b: &Plan) -> bool {
+    let of = |plan: &Plan| plan.series.interruptions().to_vec();
+    of(a).iter().any(|one| of(b).iter().any(|other| one.kind == other.kind))
 }
 
 #[test]

@@ -1,0 +1,144 @@
+//! Runs branches that the journal does not contain, writes them into it, and shows the progress.
+
+use std::{
+    io::{self, IsTerminal as _},
+    sync::{Mutex, PoisonError},
+    time::Duration,
+};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{
+    arguments::CampaignArguments,
+    branch::Facility,
+    coverage::Coverage,
+    journal::{self, Journal, Judged},
+    parent::Parent,
+    pool::{self, Plan},
+    random::Draw,
+    trial::{BranchResult, Procedure, Verdict},
+};
+use crate::error::Error;
+
+/// What is kept of the coverage of a branch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Keep {
+    /// What no earlier branch has met.
+    New,
+    /// All: it decides what is drawn next.
+    All,
+}
+
+/// Runs the branches of a campaign.
+pub struct Runner<'a> {
+    facility: &'a Facility,
+    parent: &'a Parent,
+    threads: usize,
+    journal: Journal,
+    bar: Option<ProgressBar>,
+    met: Mutex<Coverage>,
+}
+
+impl<'a> Runner<'a> {
+    /// A runner for a number of branches.
+    ///
+    /// # Errors
+    /// [`Error`] if the journal cannot be read.
+    pub fn new(
+        arguments: &CampaignArguments,
+        facility: &'a Facility,
+        parent: &'a Parent,
+        procedure: Procedure,
+        branches: usize,
+    ) -> Result<Self, Error> {
+        let journal = match &arguments.journal {
+            Some(path) => Journal::open(path, &journal::campaign(facility, parent, procedure))?,
+            None => Journal::default(),
+        };
+        let threads = usize::from(arguments.threads);
+        let met = Mutex::default();
+        Ok(Self { facility, parent, threads, journal, bar: bar(branches), met })
+    }
+
+    /// Run the branches that the journal does not contain, and return all of them in order.
+    ///
+    /// # Errors
+    /// [`Error`] if the undisturbed run cannot be forked, or the journal cannot be written.
+    pub fn run(&self, plans: &[Plan], keep: Keep) -> Result<Vec<Judged>, Error> {
+        let known: Vec<Option<Judged>> = plans.iter().map(|plan| self.journal.known(plan).cloned()).collect();
+        let missing = plans.iter().zip(&known).filter(|(_, known)| known.is_none());
+        let missing: Vec<Plan> = missing.map(|(plan, _)| plan.clone()).collect();
+        for (_, met) in known.iter().flatten() {
+            self.learn(met.clone());
+        }
+        let done = |result: BranchResult, met: Coverage| {
+            self.warn(&result);
+            let new = self.learn(met.clone());
+            let kept = if keep == Keep::All { met } else { new };
+            self.journal.write(&result, &kept)?;
+            Ok((result, kept))
+        };
+        let mut run = pool::run(self.facility, self.parent, &missing, self.threads, &done)?.into_iter();
+        Ok(known.into_iter().filter_map(|known| known.or_else(|| run.next())).collect())
+    }
+
+    /// Draw and run branches, in rounds.
+    ///
+    /// # Errors
+    /// See [`Self::run`].
+    pub fn draw(&self, mut draw: Draw) -> Result<(Vec<Plan>, Vec<Judged>), Error> {
+        let (mut plans, mut judged) = (Vec::new(), Vec::new());
+        loop {
+            let round = draw.round();
+            if round.is_empty() {
+                return Ok((plans, judged));
+            }
+            let results = self.run(&round, Keep::All)?;
+            for (plan, (_, met)) in round.iter().zip(&results) {
+                draw.learn(plan, met.clone());
+            }
+            plans.extend(round);
+            judged.extend(results);
+        }
+    }
+
+    /// Take in what a branch has met, and show it. Returns what is new.
+    fn learn(&self, met: Coverage) -> Coverage {
+        let mut all = self.met.lock().unwrap_or_else(PoisonError::into_inner);
+        let new = all.take_in(met);
+        if let Some(bar) = &self.bar {
+            let (rows, states) = all.counts();
+            bar.set_message(format!("{rows} rows, {states} states"));
+            bar.inc(1);
+        }
+        new
+    }
+
+    /// Show a branch that is hurt at once.
+    fn warn(&self, result: &BranchResult) {
+        if let (Some(bar), Verdict::Hurt) = (&self.bar, result.verdict) {
+            bar.println(format!("hurt: {} at {}: {}", result.interruption, result.at, result.detail));
+        }
+    }
+
+    /// What all branches have met.
+    pub fn finish(self) -> Coverage {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+        self.met.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The progress bar on a terminal; `None` if standard error is not a terminal.
+fn bar(branches: usize) -> Option<ProgressBar> {
+    io::stderr().is_terminal().then(|| {
+        let bar = ProgressBar::new(branches as u64).with_elapsed(Duration::ZERO);
+        if let Ok(style) =
+            ProgressStyle::with_template("{wide_bar} {pos}/{len} branches, {per_sec}, {msg}, {eta} left")
+        {
+            bar.set_style(style);
+        }
+        bar
+    })
+}
