@@ -26,6 +26,8 @@ use crate::{
 
 /// Fingers farther than this from a blocking part are free, in.
 const FREE_GAP: f64 = 0.001;
+/// Speed below which fingers that press a part with their whole force stand, in/s.
+const SWAY: f64 = 0.05;
 /// Time for which seal friction holds freed fingers before trapped air moves them, s; a part that slides out is clear
 /// by then.
 const BREAKAWAY_TIME: f64 = 0.25;
@@ -93,10 +95,12 @@ impl Air {
     }
 
     /// True if the fingers did not move in the last step, and this supply neither moves them nor changes their force.
+    /// Fingers that press with their whole force follow the sway of a part: that is no motion.
     #[must_use]
     pub fn stands(&self, supply: &Supply) -> bool {
-        let full = supply.flow < 0.0 && self.force >= self.greatest_force;
-        self.speed == 0.0 && !supply.vent && (supply.flow == 0.0 || full)
+        let presses = supply.flow < 0.0 && self.force >= self.greatest_force;
+        let still = self.speed == 0.0 || (presses && self.speed.abs() < SWAY);
+        still && !supply.vent && (supply.flow == 0.0 || presses)
     }
 
     /// Apply a supply for `dt` seconds; `stop` is the opening at which something between the fingers blocks them.
@@ -201,6 +205,12 @@ impl Gripper {
     #[must_use]
     pub fn finger_bodies(&self) -> [RigidBodyHandle; 2] {
         self.fingers.map(|finger| finger.body)
+    }
+
+    /// True if a body is one of its fingers.
+    #[must_use]
+    pub fn is_finger(&self, body: RigidBodyHandle) -> bool {
+        self.fingers.iter().any(|finger| finger.body == body)
     }
 
     /// Colliders of the left and the right finger.

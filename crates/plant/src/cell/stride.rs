@@ -4,7 +4,7 @@
 //! nothing needs them. The servos of the arm always move in sub-steps; the physics takes several at once while
 //!
 //! * only kinematic bodies move: a whole tick;
-//! * a part hangs free in the motionless fingers of one hand: a quarter of a tick.
+//! * parts hang free in the motionless fingers of robot or pedestal, one hand each: a quarter of a tick.
 //!
 //! The physics takes single sub-steps while anything is nearer to the robot's hand than [`NEAR`].
 
@@ -127,16 +127,19 @@ impl Cell {
             || !self.changer.rests()
     }
 
-    /// True if a body is a part in the motionless fingers of the robot and touches nothing else.
+    /// True if a body is a part in the motionless fingers of one hand and touches nothing else, or a finger of the
+    /// pedestal's hand around such a part: its springs always move it.
     fn hangs_free(&self, body: RigidBodyHandle, outputs: &DeviceOutputs) -> bool {
-        let Some(hand) = self.changer.mated() else { return false };
-        let Some((index, hold)) = &self.hand(hand).hold else { return false };
-        let part = &self.parts[*index];
-        part.body == body
-            && hold.sticks()
-            && self.hand(hand).air.stands(&self.supply(hand, outputs))
-            && !self.is_held_elsewhere(hand, *index)
-            && !self.world.contact_pairs_with(part.collider).any(ContactPair::has_any_active_contact)
+        self.changer.mated().into_iter().chain([Hand::Pedestal]).any(|hand| {
+            let gripper = self.hand(hand);
+            let Some((index, hold)) = &gripper.hold else { return false };
+            let part = &self.parts[*index];
+            (part.body == body || (hand == Hand::Pedestal && gripper.is_finger(body)))
+                && hold.sticks()
+                && gripper.air.stands(&self.supply(hand, outputs))
+                && !self.is_held_elsewhere(hand, *index)
+                && !self.world.contact_pairs_with(part.collider).any(ContactPair::has_any_active_contact)
+        })
     }
 
     /// Colliders of a hand and of the part that it holds, and their poses in the hand.
