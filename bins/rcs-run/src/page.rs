@@ -114,13 +114,13 @@ impl fmt::Display for Page<'_> {
             writeln!(f, "slowest    {slowest}")?;
         }
         if let Some(TickTimes { p50, p99, max }) = &result.late_us {
-            let mut blame = String::new();
+            let mut skipped = String::new();
             for (part, slots) in &result.overruns_by {
-                blame += &format!("; {slots} slots skipped for {part}");
+                skipped += &format!("; {slots} slots skipped for {part}");
             }
             writeln!(
                 f,
-                "punctual   ticks begin late by p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us{blame}"
+                "punctual   ticks begin late by p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us{skipped}"
             )?;
         }
         writeln!(f, "digest     {}", result.digest)?;

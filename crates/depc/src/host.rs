@@ -320,7 +320,7 @@ impl Host {
         self.waited = 0;
         let sent = tx.extend(bytes) == bytes.len();
         if !sent {
-            self.blame(LinkFault::NotTransmitted);
+            self.note_fault(LinkFault::NotTransmitted);
             self.restart();
         }
         sent

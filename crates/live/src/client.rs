@@ -28,7 +28,7 @@ const IDLE: Duration = Duration::from_millis(10);
 /// Interval between pings.
 const PING: Duration = Duration::from_secs(1);
 /// Time limit for closing a connection.
-const FAREWELL: Duration = Duration::from_millis(500);
+const CLOSING_LIMIT: Duration = Duration::from_millis(500);
 /// Interval between reports of the number of dropped messages.
 const COUNT: Duration = Duration::from_secs(5);
 /// Greatest number of a client's messages read before messages are written.
@@ -306,7 +306,7 @@ impl Client {
         while reason.len() > 123 {
             reason.pop();
         }
-        let until = Instant::now() + FAREWELL;
+        let until = Instant::now() + CLOSING_LIMIT;
         let _ = self.socket.close(Some(CloseFrame { code, reason: reason.into() }));
         while Instant::now() < until {
             let _ = self.socket.flush();

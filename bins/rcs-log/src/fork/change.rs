@@ -135,7 +135,7 @@ pub struct Refusal {
 }
 
 /// An operation on a run, made from a change.
-pub enum Deed {
+pub enum Operation {
     /// Load these blocks of task data.
     Data(Source),
     /// Insert a line before the next one.
@@ -148,7 +148,7 @@ pub enum Deed {
     Faults(Box<FaultFile>),
 }
 
-impl Deed {
+impl Operation {
     /// Applies the operation to a run; `seed` is the seed of the faults.
     ///
     /// # Errors
@@ -198,22 +198,26 @@ pub fn description(text: &str) -> Result<CellDescription, Box<Refusal>> {
 ///
 /// # Errors
 /// [`Refusal`] of the first change that is not possible.
-pub fn deeds(changes: &[Change], store: &Store, cell: &CellDescription) -> Result<Vec<Deed>, Box<Refusal>> {
+pub fn operations(
+    changes: &[Change],
+    store: &Store,
+    cell: &CellDescription,
+) -> Result<Vec<Operation>, Box<Refusal>> {
     let mut words = Words::default();
-    let mut deeds = Vec::new();
+    let mut operations = Vec::new();
     for change in changes {
-        let deed = match change {
+        let operation = match change {
             Change::Cell { .. } => continue,
             Change::Datum(datum) => {
                 words.change(store, datum).map_err(|why| change.refused(why))?;
                 continue;
             }
-            Change::Seed(seed) => Ok(Deed::Seed(*seed)),
-            Change::Line(text) => line(text, store).map(Deed::Line),
-            Change::Command(text) => line(text, store).and_then(command).map(Deed::Command),
+            Change::Seed(seed) => Ok(Operation::Seed(*seed)),
+            Change::Line(text) => line(text, store).map(Operation::Line),
+            Change::Command(text) => line(text, store).and_then(command).map(Operation::Command),
             Change::Fault(path) => faults(path, cell),
         };
-        deeds.push(deed.map_err(|why| change.refused(why))?);
+        operations.push(operation.map_err(|why| change.refused(why))?);
     }
     // Changed words of one entry may be valid only together, so they are checked together.
     if let Some(source) = words.source() {
@@ -221,17 +225,17 @@ pub fn deeds(changes: &[Change], store: &Store, cell: &CellDescription) -> Resul
             let why = RefusedChange::Data(report.render(false));
             return Err(Box::new(Refusal { what: "task data".to_owned(), why }));
         }
-        deeds.push(Deed::Data(source));
+        operations.push(Operation::Data(source));
     }
-    Ok(deeds)
+    Ok(operations)
 }
 
-fn faults(path: &Path, cell: &CellDescription) -> Result<Deed, RefusedChange> {
+fn faults(path: &Path, cell: &CellDescription) -> Result<Operation, RefusedChange> {
     let text =
         files::read_text(path).map_err(|source| RefusedChange::Read { path: path.to_owned(), source })?;
     let source = Source { name: path.display().to_string(), text: text.into() };
     let faults = text::parse(&source, cell).map_err(RefusedChange::Faults)?;
-    Ok(Deed::Faults(Box::new(faults)))
+    Ok(Operation::Faults(Box::new(faults)))
 }
 
 /// Parses one line of a job.

@@ -24,7 +24,7 @@ use serde::Serialize;
 
 pub use self::error::ForkError;
 use self::{
-    change::{Change, Deed},
+    change::{Change, Operation},
     repetition::Repetition,
 };
 use crate::{
@@ -118,7 +118,7 @@ pub fn fork(arguments: &Arguments) -> Result<ExitCode, Error> {
 fn run(log: &Log, arguments: &Arguments, tick: u64) -> Result<Trace, ForkError> {
     let directory = tempfile::Builder::new().prefix("rcs-fork-").tempdir()?;
     let mut config = repeat::unpack(log, directory.path())?;
-    let deeds = prepare(log, &arguments.changes, tick, &config)?;
+    let operations = prepare(log, &arguments.changes, tick, &config)?;
     let seed = config.seed;
     if let Some(output) = &arguments.output {
         if is_same(output, &arguments.file) {
@@ -137,8 +137,8 @@ fn run(log: &Log, arguments: &Arguments, tick: u64) -> Result<Trace, ForkError> 
         }
         run.follow(&logged)?;
     }
-    for deed in deeds {
-        deed.apply(&mut run.run, seed).map_err(|source| ForkError::Change { tick, source })?;
+    for operation in operations {
+        operation.apply(&mut run.run, seed).map_err(|source| ForkError::Change { tick, source })?;
     }
     while run.step() {}
     let outcome = run.run.finish();
@@ -152,7 +152,12 @@ fn is_same(a: &Path, b: &Path) -> bool {
 
 /// Converts the changes to operations before the run begins. Writes a changed cell description into the run's
 /// directory.
-fn prepare(log: &Log, changes: &[Change], tick: u64, config: &RunConfig) -> Result<Vec<Deed>, ForkError> {
+fn prepare(
+    log: &Log,
+    changes: &[Change],
+    tick: u64,
+    config: &RunConfig,
+) -> Result<Vec<Operation>, ForkError> {
     let cell = log.attachment(Attachment::CELL).ok_or(RepeatError::Missing("cell description"))?;
     let mut text = String::from_utf8_lossy(&cell.data).into_owned();
     for change in changes {
@@ -173,7 +178,7 @@ fn prepare(log: &Log, changes: &[Change], tick: u64, config: &RunConfig) -> Resu
     })?;
     let store = usize::try_from(generation).ok().and_then(|generation| all.get(generation));
     let store = store.ok_or(ReplayError::Generation { tick, generation })?;
-    Ok(change::deeds(changes, store, &description)?)
+    Ok(change::operations(changes, store, &description)?)
 }
 
 impl fmt::Display for Forked {

@@ -124,7 +124,7 @@ pub fn condition(asked: &Condition) -> String {
 
 /// Action and next step of a row as text: `GraspObj, then Grasping`. For a row that fires in any step, the text names
 /// the step: `Wait in step moving`.
-pub fn deed(row: &Row, step: &str) -> String {
+pub fn effect(row: &Row, step: &str) -> String {
     let at = if row.steps.is_empty() && row.next.is_none() && !step.is_empty() {
         format!(" in step {step}")
     } else {
@@ -147,9 +147,9 @@ pub fn row_words(process: ProcessId, fired: &Fired) -> String {
     match row_of(process, fired) {
         None => "by no row of a table".to_owned(),
         Some((table, row)) => {
-            let (deed, because) =
-                (deed(row, fired.step.unwrap_or_default().as_str()), because(&conditions(row)));
-            format!("table {} row {}: {deed}, {because}", table.name, row.number)
+            let (effect, because) =
+                (effect(row, fired.step.unwrap_or_default().as_str()), because(&conditions(row)));
+            format!("table {} row {}: {effect}, {because}", table.name, row.number)
         }
     }
 }
@@ -184,8 +184,8 @@ mod tests {
             argument: None,
             next: None,
         };
-        assert_eq!(deed(&any, "letting-go"), "Wait in step letting-go");
-        assert_eq!(deed(&any, ""), "Wait");
+        assert_eq!(effect(&any, "letting-go"), "Wait in step letting-go");
+        assert_eq!(effect(&any, ""), "Wait");
         assert_eq!(because(&conditions(&any)), "because work is Busy or Lost");
         let one = Row {
             number: 2,
@@ -195,7 +195,7 @@ mod tests {
             argument: Some("Own"),
             next: Some("Stowing"),
         };
-        assert_eq!(deed(&one, "stowing"), "MovToHol(Own), then Stowing");
+        assert_eq!(effect(&one, "stowing"), "MovToHol(Own), then Stowing");
         assert_eq!(because(&conditions(&one)), "because step is Start");
         assert_eq!(because(&conditions(&Row { steps: &[], ..one })), "whatever the state");
     }

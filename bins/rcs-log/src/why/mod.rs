@@ -30,7 +30,7 @@ use serde::Serialize;
 pub use self::{chain::Link, history::History};
 use self::{
     chain::Root,
-    history::{because, conditions, deed, info},
+    history::{because, conditions, effect, info},
     world::World,
 };
 use crate::{
@@ -136,7 +136,7 @@ struct Rung {
     step: String,
     /// Action and next step as text.
     #[serde(skip)]
-    deed: String,
+    effect: String,
 }
 
 /// Explains a tick and prints the explanation.
@@ -250,7 +250,7 @@ fn explain(log: &Log, moment: &Moment, world: Option<World>, told: Option<Told>)
             action: row.map(|(_, row)| row.call().to_string()),
             next: row.and_then(|(_, row)| row.next).map(str::to_owned),
             step: step.to_string(),
-            deed: row.map_or_else(String::new, |(_, row)| deed(row, step.as_str())),
+            effect: row.map_or_else(String::new, |(_, row)| effect(row, step.as_str())),
         }
     });
     let (failure, begun) = told.map_or((None, None), |told| (Some(told.story), Some(told.begun)));
@@ -353,7 +353,7 @@ impl fmt::Display for Rung {
         writeln!(f, "  {:<14} executes {command}{held}", self.process)?;
         let (Some(table), Some(row)) = (&self.table, self.row) else { return Ok(()) };
         let old = self.old.map_or_else(String::new, |tick| format!("no row since tick {tick}, when it was "));
-        writeln!(f, "  {:<14} {old}{table} row {row}: {}, {}", "", self.deed, because(&self.conditions))?;
+        writeln!(f, "  {:<14} {old}{table} row {row}: {}, {}", "", self.effect, because(&self.conditions))?;
         if let Some(values) = self.values.as_ref().filter(|values| !values.is_empty()) {
             writeln!(f, "  {:<14} values: {values}", "")?;
         }

@@ -162,7 +162,7 @@ impl HarmMonitor {
 
     /// True if the difference `unlike` of a part is the consequence of a slide, which then counts as a harm: no sensor
     /// shows where in the fingers the part is. A slide without consequence is no harm.
-    pub fn blame_slide(&mut self, unlike: &str) -> bool {
+    pub fn attribute_to_slide(&mut self, unlike: &str) -> bool {
         match self.slide.take_if(|(part, _)| unlike.is_empty() || unlike.starts_with(part.as_str())) {
             Some((_, harm)) => {
                 self.harms.push(harm);

@@ -188,66 +188,76 @@ impl Kind {
     /// The steps of the interruption.
     #[must_use]
     pub fn script(&self) -> Script {
-        let hands = match self {
+        let steps = match self {
             Self::None | Self::Pause | Self::PauseTwice | Self::Refused | Self::Replaced => Vec::new(),
-            Self::AnswerLost => vec![Hand::Answer(FaultKind::Drop)],
-            Self::AnswerLate => vec![Hand::Answer(FaultKind::Delay)],
-            Self::AnswerDamaged => vec![Hand::Answer(FaultKind::Flip)],
-            Self::Hold => vec![Hand::key(Key::Hold(true)), Hand::Wait(HOLD), Hand::key(Key::Hold(false))],
+            Self::AnswerLost => vec![ScriptStep::Answer(FaultKind::Drop)],
+            Self::AnswerLate => vec![ScriptStep::Answer(FaultKind::Delay)],
+            Self::AnswerDamaged => vec![ScriptStep::Answer(FaultKind::Flip)],
+            Self::Hold => vec![
+                ScriptStep::key(Key::Hold(true)),
+                ScriptStep::Wait(HOLD),
+                ScriptStep::key(Key::Hold(false)),
+            ],
             Self::Nudge => nudge(),
             Self::Away => away(),
             Self::Held(process) => {
                 let bit = SWITCHES.iter().find(|(one, _)| one == process).map_or(0, |(_, bit)| *bit);
-                let hold = |action| Hand::Act(WorkstationAction::Joystick(action));
-                vec![hold(BoxAction::Hold(bit)), Hand::Wait(HELD), hold(BoxAction::Free(bit))]
+                let hold = |action| ScriptStep::Workstation(WorkstationAction::Joystick(action));
+                vec![hold(BoxAction::Hold(bit)), ScriptStep::Wait(HELD), hold(BoxAction::Free(bit))]
             }
-            Self::Restart(process) => vec![Hand::Restart(*process)],
-            Self::Lost(process) => vec![Hand::Lose(*process)],
-            Self::Cut => vec![Hand::Cut],
+            Self::Restart(process) => vec![ScriptStep::Restart(*process)],
+            Self::Lost(process) => vec![ScriptStep::Lose(*process)],
+            Self::Cut => vec![ScriptStep::Cut],
             Self::Estop => {
-                let mut hands = vec![Hand::key(Key::Press(EStop::Pedestal)), Hand::Wait(STOPPED)];
-                hands.push(Hand::key(Key::Release(EStop::Pedestal)));
-                hands.push(Hand::StartUp);
-                hands
+                let mut steps = vec![ScriptStep::key(Key::Press(EStop::Pedestal)), ScriptStep::Wait(STOPPED)];
+                steps.push(ScriptStep::key(Key::Release(EStop::Pedestal)));
+                steps.push(ScriptStep::StartUp);
+                steps
             }
             Self::Fault(_, file) => {
-                vec![Hand::Faults(Arc::clone(file)), Hand::Wait(FAULT), Hand::Enter, Hand::StartUp]
+                vec![
+                    ScriptStep::Faults(Arc::clone(file)),
+                    ScriptStep::Wait(FAULT),
+                    ScriptStep::Enter,
+                    ScriptStep::StartUp,
+                ]
             }
         };
-        Script { hands, at: 0, until: None, height: 0.0 }
+        Script { steps, at: 0, until: None, height: 0.0 }
     }
 }
 
 /// An action on a control of the joystick box.
-const fn at_box(action: BoxAction) -> Hand {
-    Hand::Act(WorkstationAction::Joystick(action))
+const fn at_box(action: BoxAction) -> ScriptStep {
+    ScriptStep::Workstation(WorkstationAction::Joystick(action))
 }
 
 /// The actions at the box between the two throws of the frame switch.
-fn joystick(knob: u16, hands: impl IntoIterator<Item = Hand>) -> Vec<Hand> {
+fn joystick(knob: u16, steps: impl IntoIterator<Item = ScriptStep>) -> Vec<ScriptStep> {
     // A robot in motion ramps down first.
     let mut all = vec![
         at_box(BoxAction::Velocity(knob)),
         at_box(BoxAction::Frame(joystick_frame::WORLD)),
-        Hand::Wait(25),
+        ScriptStep::Wait(25),
     ];
-    all.extend(hands);
-    all.extend([at_box(BoxAction::Frame(0)), at_box(BoxAction::Velocity(KNOB_FULL)), Hand::Wait(5)]);
+    all.extend(steps);
+    all.extend([at_box(BoxAction::Frame(0)), at_box(BoxAction::Velocity(KNOB_FULL)), ScriptStep::Wait(5)]);
     all
 }
 
 /// Deflect the stick along X for some ticks, and back.
-fn nudge() -> Vec<Hand> {
+fn nudge() -> Vec<ScriptStep> {
     const TICKS: u32 = 11;
-    let stick =
-        |x: i16| [at_box(BoxAction::Stick { x, y: 0, ticks: TICKS }), Hand::Wait(u64::from(TICKS) + 10)];
+    let stick = |x: i16| {
+        [at_box(BoxAction::Stick { x, y: 0, ticks: TICKS }), ScriptStep::Wait(u64::from(TICKS) + 10)]
+    };
     joystick(100, [1000, -1000].into_iter().flat_map(stick))
 }
 
 /// Stop the robot with the box, move it up, and move it back by eye to the height at which it stopped.
-fn away() -> Vec<Hand> {
-    let stop = [at_box(BoxAction::Press(BoxButton::Up, 2)), Hand::Wait(25)];
-    let lead = [Hand::Rise, Hand::Wait(15), Hand::Sink, Hand::Wait(15)];
+fn away() -> Vec<ScriptStep> {
+    let stop = [at_box(BoxAction::Press(BoxButton::Up, 2)), ScriptStep::Wait(25)];
+    let lead = [ScriptStep::Rise, ScriptStep::Wait(15), ScriptStep::Sink, ScriptStep::Wait(15)];
     joystick(500, stop.into_iter().chain(lead))
 }
 
@@ -307,8 +317,8 @@ fn line_faults(plan: &Plan, from: u64) -> Plan {
 
 /// An action between two ticks.
 #[derive(Clone, Debug)]
-enum Hand {
-    Act(WorkstationAction),
+enum ScriptStep {
+    Workstation(WorkstationAction),
     Wait(u64),
     Restart(ProcessId),
     Lose(ProcessId),
@@ -327,9 +337,9 @@ enum Hand {
     Sink,
 }
 
-impl Hand {
+impl ScriptStep {
     const fn key(key: Key) -> Self {
-        Self::Act(WorkstationAction::T3(key))
+        Self::Workstation(WorkstationAction::T3(key))
     }
 }
 
@@ -339,7 +349,7 @@ const START_UP: [Key; 6] =
 
 /// The steps of an interruption, tick by tick.
 pub struct Script {
-    hands: Vec<Hand>,
+    steps: Vec<ScriptStep>,
     at: usize,
     until: Option<Tick>,
     /// Height of the tool before it was moved away, in.
@@ -350,15 +360,15 @@ impl Script {
     /// True if no step is left.
     #[must_use]
     pub const fn is_over(&self) -> bool {
-        self.at >= self.hands.len()
+        self.at >= self.steps.len()
     }
 
     /// Carry out the steps that come before the next tick. Returns the message of the cell if it refuses one.
     pub fn step(&mut self, branch: &mut Branch<'_>) -> Option<String> {
         let mut refused = None;
-        while let Some(hand) = self.hands.get(self.at).cloned() {
-            match hand {
-                Hand::Wait(ticks) => {
+        while let Some(step) = self.steps.get(self.at).cloned() {
+            match step {
+                ScriptStep::Wait(ticks) => {
                     let now = branch.at();
                     let until = *self.until.get_or_insert(Tick(now.0 + ticks));
                     if now < until {
@@ -366,7 +376,7 @@ impl Script {
                     }
                     self.until = None;
                 }
-                Hand::Key(key) => {
+                ScriptStep::Key(key) => {
                     let now = branch.at();
                     let until = *self.until.get_or_insert(Tick(now.0 + PATIENCE));
                     let busy = branch.workstation.cell.t3().busy();
@@ -375,14 +385,14 @@ impl Script {
                     }
                     self.until = None;
                 }
-                Hand::Rise | Hand::Sink => {
+                ScriptStep::Rise | ScriptStep::Sink => {
                     let (now, height) = (branch.at(), branch.workstation.cell.tool().position.z);
-                    if self.until.is_none() && matches!(hand, Hand::Rise) {
+                    if self.until.is_none() && matches!(step, ScriptStep::Rise) {
                         self.height = height;
                     }
                     let until = *self.until.get_or_insert(Tick(now.0 + LED));
-                    let (button, there) = match hand {
-                        Hand::Rise => (BoxButton::Up, height >= self.height + RISE),
+                    let (button, there) = match step {
+                        ScriptStep::Rise => (BoxButton::Up, height >= self.height + RISE),
                         _ => (BoxButton::Down, height <= self.height + GOES_ON),
                     };
                     if now < until && !there {
@@ -396,15 +406,15 @@ impl Script {
                     }
                     self.until = None;
                 }
-                Hand::Act(action) => {
+                ScriptStep::Workstation(action) => {
                     refused =
                         branch.workstation.cell.workstation(&action).err().map(|error| error.to_string());
                 }
-                Hand::Restart(process) => branch.restart(process),
-                Hand::Lose(process) => branch.lose(process),
-                Hand::Cut => branch.cut(),
-                Hand::Answer(kind) => branch.spoil_answer(kind),
-                Hand::Faults(file) => {
+                ScriptStep::Restart(process) => branch.restart(process),
+                ScriptStep::Lose(process) => branch.lose(process),
+                ScriptStep::Cut => branch.cut(),
+                ScriptStep::Answer(kind) => branch.spoil_answer(kind),
+                ScriptStep::Faults(file) => {
                     let from = branch.at().0 + 1;
                     let seed = branch.facility().seed;
                     branch.workstation.cell.add_faults(&cell_faults(&file.cell, from), seed);
@@ -412,11 +422,11 @@ impl Script {
                         branch.spoil_line(&line_faults(plan, from));
                     }
                 }
-                Hand::Enter => {
+                ScriptStep::Enter => {
                     // Only a warning accepts the key.
                     let _ = branch.workstation.cell.press(Key::Enter);
                 }
-                Hand::StartUp => self.start_up(branch),
+                ScriptStep::StartUp => self.start_up(branch),
             }
             self.at += 1;
         }
@@ -428,8 +438,8 @@ impl Script {
             return;
         }
         for key in START_UP {
-            self.hands.extend([Hand::Key(key), Hand::Wait(1)]);
+            self.steps.extend([ScriptStep::Key(key), ScriptStep::Wait(1)]);
         }
-        self.hands.push(Hand::Wait(REHEARSAL));
+        self.steps.push(ScriptStep::Wait(REHEARSAL));
     }
 }

@@ -25,6 +25,8 @@ const BETWEEN: [u64; 3] = [3, 60, 600];
 const ROUND: usize = 64;
 /// Weight of a new row: that of so many new states.
 const ROW: usize = 20;
+/// Greatest weight of a branch: the first ones meet everything for the first time.
+const MOST: usize = 5 * ROW;
 /// A changed branch begins this many ticks sooner or later, at most.
 const NEAR: u64 = 12;
 /// Number of times that a branch is drawn again if it was drawn before.
@@ -92,7 +94,7 @@ impl Draw {
     /// Learn what a branch of the last round has met. Call it for all of them, in order.
     pub fn learn(&mut self, plan: &Plan, coverage: Coverage) {
         let (rows, states) = self.met.take_in(coverage).counts();
-        let weight = ROW * rows + states;
+        let weight = (ROW * rows + states).min(MOST);
         if weight > 0 {
             self.fruitful.push((plan.clone(), weight));
         }

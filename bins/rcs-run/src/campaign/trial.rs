@@ -331,7 +331,7 @@ impl Trial<'_, '_> {
             return (self.branch.at().since(tick) >= AFTERMATH).then_some(Verdict::Hurt);
         }
         let stranded = self.operator.stranded().is_some() || self.branch.check().is_stuck();
-        let apart = worst.is_some() || (stranded && self.monitor.blame_slide(""));
+        let apart = worst.is_some() || (stranded && self.monitor.attribute_to_slide(""));
         match (stranded, apart) {
             (true, false) => Some(Verdict::Stranded),
             (true, true) => Some(Verdict::Apart),
@@ -349,7 +349,7 @@ impl Trial<'_, '_> {
             return;
         }
         if let Some(unlike) = World::of(&mut self.branch).unlike(world) {
-            if self.monitor.blame_slide(&unlike) {
+            if self.monitor.attribute_to_slide(&unlike) {
                 return;
             }
             let verb = command.split_whitespace().next().unwrap_or_default();

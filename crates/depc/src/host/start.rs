@@ -79,12 +79,12 @@ impl Host {
         if was_running {
             (self.starting, self.attempt) = (0, LinkFault::None);
             self.note_lost_function();
-            self.blame(LinkFault::NotResponding);
+            self.note_fault(LinkFault::NotResponding);
         } else if self.state == HostState::Starting || self.waited >= self.answer_ticks {
             self.waited = 0;
             self.attempts = self.attempts.saturating_add(1);
             if self.attempts >= START_ATTEMPTS {
-                self.blame(LinkFault::NotResponding);
+                self.note_fault(LinkFault::NotResponding);
             }
         }
         self.receiver.clear();
@@ -95,7 +95,7 @@ impl Host {
     }
 
     pub(super) fn lost(&mut self, fault: LinkFault) -> HostEvent {
-        self.blame(fault);
+        self.note_fault(fault);
         self.restart();
         HostEvent::Lost
     }
@@ -132,7 +132,7 @@ impl Host {
         self.silent |= self.starting >= RESTART_TICKS;
         if self.starting >= self.patience && !self.has_candidate {
             let silent = self.attempt == LinkFault::None;
-            self.blame(if silent { LinkFault::NotResponding } else { self.attempt });
+            self.note_fault(if silent { LinkFault::NotResponding } else { self.attempt });
         }
     }
 
@@ -147,7 +147,7 @@ impl Host {
         DataCommand::parse(&self.frame).map_or(NO_FUNCTION, |command| command.function)
     }
 
-    pub(super) fn blame(&mut self, fault: LinkFault) {
+    pub(super) fn note_fault(&mut self, fault: LinkFault) {
         if self.fault == LinkFault::None {
             self.fault = fault;
         }

@@ -42,7 +42,7 @@ const GATHER: Duration = Duration::from_millis(20);
 /// Number of checks after which board 0 tests whether a board that had joined is still alive.
 const LIFE: u32 = 25;
 /// Time limit for the boards to end by themselves when the run is over.
-const FAREWELL: Duration = Duration::from_secs(2);
+const CLOSING_LIMIT: Duration = Duration::from_secs(2);
 
 /// A board joined or left before the first tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -405,7 +405,7 @@ impl Coordinator {
 
     /// Wait for the processes that board 0 started to end, and kill those that do not.
     fn reap(&mut self) {
-        let deadline = Instant::now() + FAREWELL;
+        let deadline = Instant::now() + CLOSING_LIMIT;
         for child in self.seats.iter_mut().filter_map(|seat| seat.child.as_mut()) {
             while Instant::now() < deadline && matches!(child.try_wait(), Ok(None)) {
                 std::thread::sleep(Duration::from_millis(2));

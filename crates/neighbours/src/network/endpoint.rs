@@ -27,7 +27,7 @@ use crate::mailbox::{Mailbox, Place};
 /// Time between two checks for an interruption while a tick waits for a neighbour.
 const LOOK: Duration = Duration::from_millis(50);
 /// How long the end of a run waits until its last session has sent the disconnect reason.
-const FAREWELL: Duration = Duration::from_secs(2);
+const CLOSING_LIMIT: Duration = Duration::from_secs(2);
 
 /// The tick's side.
 pub struct Endpoint {
@@ -204,7 +204,7 @@ impl Drop for Endpoint {
         // Wait until the session has sent the disconnect reason.
         let connected = |_: &mut u64| self.shared.session.load(Ordering::Acquire) != 0;
         let answered = locked(&self.shared.answered);
-        drop(self.shared.changed.wait_timeout_while(answered, FAREWELL, connected));
+        drop(self.shared.changed.wait_timeout_while(answered, CLOSING_LIMIT, connected));
     }
 }
 

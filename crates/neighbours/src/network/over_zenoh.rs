@@ -46,7 +46,7 @@ const WAITING: usize = 64;
 /// Time to wait for the last bytes after the end of a liveliness token, which can overtake them.
 const GRACE: Duration = Duration::from_millis(500);
 /// Longest time that the end of a connection waits until its last bytes are published.
-const FAREWELL: Duration = Duration::from_secs(2);
+const CLOSING_LIMIT: Duration = Duration::from_secs(2);
 /// Length of an ID, bytes.
 const ID: usize = 16;
 /// Greatest number of bytes that are published at once.
@@ -242,7 +242,7 @@ fn accept(session: &Session, front: &str, asked: &Receiver<Option<Query>>, serve
             Ok(None) | Err(RecvTimeoutError::Disconnected) => break,
         }
     }
-    let until = Instant::now() + FAREWELL;
+    let until = Instant::now() + CLOSING_LIMIT;
     carriers.into_iter().for_each(|carrier| carrier.finish(until));
 }
 
@@ -292,7 +292,7 @@ impl Tunnel {
 impl Drop for Tunnel {
     fn drop(&mut self) {
         if let Some(carrier) = self.carrier.take() {
-            carrier.finish(Instant::now() + FAREWELL);
+            carrier.finish(Instant::now() + CLOSING_LIMIT);
         }
         // If the network cannot be reached, the session need not be closed.
         let _ = self.session.close().wait();

@@ -25,7 +25,7 @@ use crate::mailbox::{Mailbox, MailboxError, Place};
 /// Time between two attempts to connect.
 const PAUSE: Duration = Duration::from_millis(50);
 /// How long the end of a connection may take.
-const FAREWELL: Duration = Duration::from_secs(1);
+const CLOSING_LIMIT: Duration = Duration::from_secs(1);
 
 /// Why a connection cannot be made, or ends.
 #[derive(Debug, thiserror::Error)]
@@ -324,7 +324,7 @@ impl Peer {
 
 impl Drop for Peer {
     fn drop(&mut self) {
-        self.channel.finish(&mut self.session, Instant::now() + FAREWELL);
+        self.channel.finish(&mut self.session, Instant::now() + CLOSING_LIMIT);
     }
 }
 
