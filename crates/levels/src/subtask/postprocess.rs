@@ -13,6 +13,7 @@ use taskdata::files::TaskData;
 use super::{
     aims::Aim,
     pedestal_hand::{pedestal_hand, turned},
+    preprocess::location_pose,
     state::State,
     tables::{Action, Flip, Holster, Ordered, Pedestal, PedestalHand, Seen},
 };
@@ -32,6 +33,13 @@ impl State {
         let both = action == Action::Pause && self.pause_pedestal(seen, inputs, outputs);
         if action == Action::PedGrip {
             self.give(&inputs.memory.task.subtask);
+        }
+        match action {
+            Action::LocateObj => self.located_at = location_pose(&inputs.memory.task.subtask, inputs),
+            Action::MovToObj | Action::MovObjTo => {
+                self.gone_to = location_pose(&inputs.memory.task.subtask, inputs);
+            }
+            _ => {}
         }
         let mut send = |verb, aim: &Aim| {
             let number = self.emove.send(inputs.tick);

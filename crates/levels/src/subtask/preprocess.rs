@@ -1,5 +1,6 @@
 //! Preprocess of Subtask: its state variables, from the statuses of E-move and of the Active Pedestal.
 
+use geometry::pose::Pose;
 use interfaces::{
     StatusReport,
     emove::{EmoveStatus, EmoveVerb, Holding},
@@ -23,7 +24,7 @@ use crate::{
     execution::{Asked, Work},
     halt::{Above, Below, BoxState, Intake, Kind, Replaced},
     held::Held,
-    places::{Missing, place_of},
+    places::{Missing, place_of, pose_of},
 };
 
 impl State {
@@ -95,11 +96,13 @@ impl State {
     fn situation(&self, command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Situation {
         let (emove, pedestal) = (&inputs.memory.emove.status, &inputs.memory.pedestal.status);
         let held = Held::of(emove.held, command.object);
+        // A restarted process knows no pose that differs.
+        let is_at = |last: Option<Pose>| last.is_none() || last == location_pose(command, inputs);
         Situation {
             work: Work::Busy,
             held,
             grip: grip_held(emove, command),
-            vision: vision(emove, command, inputs.data),
+            vision: vision(emove, is_at(self.located_at), command, inputs.data),
             gripper: match emove.end_effector_id {
                 None => Gripper::None,
                 Some(id) if command.end_effector_id.is_none_or(|wanted| wanted == id) => Gripper::Right,
@@ -110,7 +113,7 @@ impl State {
                 Some(id) if command.end_effector_id.is_none_or(|wanted| wanted == id) => Exchange::Wanted,
                 Some(_) => Exchange::Other,
             },
-            station: station(emove, command),
+            station: if is_at(self.gone_to) { station(emove, command) } else { Where::Elsewhere },
             placed: placed(emove, command),
             drum: match emove.at {
                 _ if emove.drum => Drum::Inside,
@@ -175,12 +178,17 @@ fn grip_held(emove: &EmoveStatus, command: &SubtaskCommand) -> GripHeld {
     }
 }
 
-/// Must vision find the object of a command?
-fn vision(emove: &EmoveStatus, command: &SubtaskCommand, data: &TaskData<'_>) -> Vision {
+/// The pose of the location of a command.
+pub(super) fn location_pose(command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Pose> {
+    pose_of(command.pose?, inputs.memory, inputs.data).map(|frame| Pose::from_frame(&frame))
+}
+
+/// Must vision find the object of a command? `is_at` is true if the last pictures were taken at its location.
+fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &TaskData<'_>) -> Vision {
     let place = place_of(command.location_kind, command.location_record, command.location_array);
     let located = emove.located.is_some_and(|located| {
         let there = (command.object, command.location_record, command.location_array);
-        (Some(located.object), located.record, located.array) == there
+        is_at && (Some(located.object), located.record, located.array) == there
     });
     let view = command.object.and_then(|object| data.view(&object, &place));
     if !view.is_some_and(|(_, view)| view.enabled) {

@@ -1,5 +1,6 @@
 //! The state of Subtask.
 
+use geometry::pose::Pose;
 use interfaces::subtask::Regrip;
 use rcs_core::{Plain, handshake::Commander};
 use taskdata::files::PedPara;
@@ -25,6 +26,11 @@ pub struct State {
     pub pedestal: Commander,
     /// The part in the pedestal's hand.
     pub regrip: Option<Regrip>,
+    /// Location pose for which LOCATE-OBJ was sent last. All sectors of an array have the same records: only the pose
+    /// tells them apart. `None` after a restart.
+    pub located_at: Option<Pose>,
+    /// Location pose for which the robot was sent to an object, or with one, last; `None` after a restart.
+    pub gone_to: Option<Pose>,
     /// What the current command names beside the location and the object that Task gave.
     pub aims: Aims,
     /// How the pedestal takes the object of the current FIX-GRIP.

@@ -477,6 +477,41 @@ fn pictures_that_are_lost_on_the_way_are_taken_again_before_anything_is_grasped(
     assert_eq!(bench.sent(), sent);
 }
 
+/// GET-OBJECT at another sector of the array: its location has the same records, and another pose.
+fn at_another_sector(bench: &mut Bench<'_>) {
+    bench.command(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1");
+    let pose = &mut bench.memory.task.poses[0].pose;
+    for point in [&mut pose.wrist, &mut pose.tool, &mut pose.finger] {
+        point[0] += 6_000;
+    }
+}
+
+#[test]
+fn what_belongs_to_one_sector_does_not_count_for_another() {
+    let begun = |until: EmoveVerb| {
+        let mut bench = Bench::default();
+        bench.command(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1");
+        while bench.memory.subtask.emove.command != until {
+            bench.step();
+        }
+        bench
+    };
+    let mut bench = begun(EmoveVerb::MovToObj);
+    bench.emove.received.clear();
+    at_another_sector(&mut bench);
+    assert_eq!(bench.finish(), DONE);
+    let sent = ["MOV-TO-OBJ", "E-PAUSE", "MOV-TO-VU", "LOCATE-OBJ", "MOV-TO-OBJ", "GRASP-OBJ"];
+    assert_eq!(bench.sent(), sent, "pictures of this sector");
+    // An interrupted grasp has closed on something at the first sector.
+    let mut bench = begun(EmoveVerb::GraspObj);
+    bench.emove.outputs.status.held = Holding::Something;
+    bench.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::NoEffect));
+    bench.emove.received.clear();
+    at_another_sector(&mut bench);
+    assert_eq!(bench.finish(), error(Reason::UnknownHeld));
+    assert_eq!(bench.sent(), ["GRASP-OBJ", "E-PAUSE"]);
+}
+
 /// The tool commands with fingers in the drum, outside, or at no place.
 fn tools(rows: &mut Coverage) {
     for verb in
