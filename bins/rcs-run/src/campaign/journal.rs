@@ -47,13 +47,17 @@ pub struct Journal {
 /// A branch, and what it has met.
 pub type Judged = (BranchResult, Coverage);
 
-/// Identifies a campaign: equal branches of the same campaign end the same way.
+/// Identifies a campaign: equal branches of the same campaign end the same way. The journal has all that a drawn branch
+/// has met, and of another one what is new.
 #[must_use]
-pub fn campaign(facility: &Facility, parent: &Parent, procedure: Procedure) -> String {
+pub fn campaign(facility: &Facility, parent: &Parent, procedure: Procedure, drawn: bool) -> String {
     let Procedure { recovery, tries, until } = procedure;
     format!(
-        "{} seed {} digest {} by {VERSION}: {recovery:?}, {tries} tries, judged at {until:?}",
-        facility.job.name, facility.seed, parent.digest
+        "{} seed {} digest {} by {VERSION}: {recovery:?}, {tries} tries, judged at {until:?}{}",
+        facility.job.name,
+        facility.seed,
+        parent.digest,
+        if drawn { ", drawn" } else { "" }
     )
 }
 

@@ -51,8 +51,9 @@ impl<'a> Runner<'a> {
         procedure: Procedure,
         branches: usize,
     ) -> Result<Self, Error> {
+        let campaign = journal::campaign(facility, parent, procedure, arguments.random.is_some());
         let journal = match &arguments.journal {
-            Some(path) => Journal::open(path, &journal::campaign(facility, parent, procedure))?,
+            Some(path) => Journal::open(path, &campaign)?,
             None => Journal::default(),
         };
         let threads = usize::from(arguments.threads);

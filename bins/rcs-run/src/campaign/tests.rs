@@ -237,7 +237,7 @@ fn a_campaign_goes_on_from_its_journal() {
     let plans = [60, 120].map(plan);
     let directory = tempfile::tempdir().expect("there is room");
     let path = directory.path().join("journal");
-    let campaign = journal::campaign(&facility, &parent, PROCEDURE);
+    let campaign = journal::campaign(&facility, &parent, PROCEDURE, false);
     let journal = Journal::open(&path, &campaign).expect("the journal is made");
     let done = |result: BranchResult, met: Coverage| {
         journal.write(&result, &met)?;
