@@ -1,8 +1,8 @@
 //! The file into which a campaign writes each branch as soon as it is judged, so that it can be stopped and continued.
 //!
-//! Each line is a JSON object: the campaign, the branch, and the rows and states that it was the first to meet; all that
-//! it has met if they decide what is drawn next. A line counts if it belongs to the same campaign: same undisturbed run,
-//! program and procedure.
+//! Each line is a JSON object: the campaign, the branch, and the rows and states that it was the first to meet; of a
+//! drawn branch all that it has met, since they decide what is drawn next. A line counts if it belongs to the same
+//! campaign: same undisturbed run, program and procedure.
 
 use std::{
     borrow::Cow,

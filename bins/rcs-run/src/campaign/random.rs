@@ -1,7 +1,7 @@
 //! Branches drawn at random, and the smallest series of interruptions with the same outcome as a drawn one.
 //!
-//! Branches are drawn in rounds. From the second round on every other branch is a change of an earlier one, and those
-//! that have met most new rows and states are changed most. A draw depends on its seed and on what the branches of the
+//! Branches are drawn in rounds. From the second round on about one half of them are changes of earlier ones, and those
+//! that have met most new rows and states are changed most often. A draw depends on its seed and on what the branches of the
 //! rounds before have met, and not on the order in which they end.
 
 use std::collections::HashSet;
@@ -62,8 +62,8 @@ pub struct Draw {
 }
 
 impl Draw {
-    /// A draw of these kinds. Half of the branches begin in ticks in which something changes. A branch that is judged at
-    /// rest gets a stop after its drawn interruptions.
+    /// A draw of these kinds. Half of the branches begin in ticks in which something changes. A branch that is judged
+    /// at rest gets a stop after its drawn interruptions.
     #[must_use]
     pub fn new(parent: &Parent, kinds: &[Kind], procedure: Procedure, settings: Settings) -> Self {
         let rest = procedure.until == Until::Rest;
@@ -87,7 +87,7 @@ impl Draw {
 
     /// The branches of the next round; none if all are drawn.
     pub fn round(&mut self) -> Vec<Plan> {
-        let left = self.settings.branches - self.drawn.len().min(self.settings.branches);
+        let left = self.settings.branches.saturating_sub(self.drawn.len());
         (0..left.min(ROUND)).map_while(|_| self.next()).collect()
     }
 
@@ -137,7 +137,7 @@ impl Draw {
         Some((at, drawn))
     }
 
-    /// Change one thing of a branch: its tick, one of its interruptions, or the time before one; or add an interruption.
+    /// Change one thing of a branch: its tick, an interruption, or the ticks before one; or add an interruption.
     fn changed(&mut self, plan: &Plan) -> Option<(u64, Vec<Interruption>)> {
         let mut drawn = plan.series.interruptions().to_vec();
         drawn.truncate(drawn.len() - usize::from(!self.stops.is_empty()));

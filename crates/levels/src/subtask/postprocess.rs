@@ -28,18 +28,12 @@ impl State {
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut SubtaskOutputs,
     ) {
-        let (own, aims) = (Aim::of_command(&inputs.memory.task.subtask), self.aims);
+        let command = &inputs.memory.task.subtask;
+        let (own, aims) = (Aim::of_command(command), self.aims);
         let ped = self.ped_para;
         let both = action == Action::Pause && self.pause_pedestal(seen, inputs, outputs);
         if action == Action::PedGrip {
-            self.give(&inputs.memory.task.subtask);
-        }
-        match action {
-            Action::LocateObj => self.located_at = location_pose(&inputs.memory.task.subtask, inputs),
-            Action::MovToObj | Action::MovObjTo => {
-                self.gone_to = location_pose(&inputs.memory.task.subtask, inputs);
-            }
-            _ => {}
+            self.give(command);
         }
         let mut send = |verb, aim: &Aim| {
             let number = self.emove.send(inputs.tick);
@@ -50,14 +44,23 @@ impl State {
             Action::Wait => {}
             Action::Pause => send(EmoveVerb::Pause, &own),
             Action::MovToVu => send(EmoveVerb::MovToVu, &own),
-            Action::LocateObj => send(EmoveVerb::LocateObj, &own),
-            Action::MovToObj => send(EmoveVerb::MovToObj, &own),
+            Action::LocateObj => {
+                self.located_at = location_pose(command, inputs);
+                send(EmoveVerb::LocateObj, &own);
+            }
+            Action::MovToObj => {
+                self.gone_to = location_pose(command, inputs);
+                send(EmoveVerb::MovToObj, &own);
+            }
             Action::GraspObj => send(EmoveVerb::GraspObj, &own),
             Action::GraspAgain => {
                 let held = own.as_held(&inputs.memory.emove.status.held, inputs.data);
                 send(EmoveVerb::GraspObj, &held);
             }
-            Action::MovObjTo => send(EmoveVerb::MovObjTo, &own),
+            Action::MovObjTo => {
+                self.gone_to = location_pose(command, inputs);
+                send(EmoveVerb::MovObjTo, &own);
+            }
             Action::MovToLoc => send(EmoveVerb::MovToLoc, &own),
             Action::Release => send(EmoveVerb::Release, &own),
             Action::MovToHol(Holster::Own) => send(EmoveVerb::MovToHol, &aims.first),

@@ -114,8 +114,8 @@ const SEAT: f64 = 1.5;
 const SEATED: f64 = 0.06;
 
 impl Pair {
-    /// A bare robot above the gripper with an open ring. So many commands come before the last one has ended, and so many
-    /// faults or restarts; with them Prim, Grip and the ring do not.
+    /// A bare robot above the gripper with an open ring. `early` commands may come before the last one has ended, and
+    /// `faults` faults or restarts may happen; if any may, Prim, Grip and the ring do not fail.
     pub fn first(early: u8, faults: u8) -> Self {
         let (_, object, location) = GRIPPER;
         let at = place(location);

@@ -1,8 +1,8 @@
 //! Subtask and E-move. Around them: Task, Prim with the robot, Grip with its fingers, vision. Quick Change is locked on
 //! the parts gripper.
 //!
-//! What is abstracted: a motion is one step, after which the robot is at its goal or, if it fails or is stopped, where it
-//! was. Fingers are open, around the part, or have closed on nothing; closing fingers find something wherever they are.
+//! What is abstracted: a motion is one step, after which the robot is at its goal or, if it fails or is stopped, where
+//! it was. Fingers are open, around the part, or have closed on nothing; closing fingers find something anywhere.
 //! Vision sees the object where the data have it, sees nothing, or does not answer.
 
 mod judge;
