@@ -69,8 +69,8 @@ impl<Data: ?Sized> Process<Data> for QuickChange {
     const NAME: &'static str = "Quick Change";
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, _: &QuickChangeOutputs) -> Seen {
-        self.state.sense(inputs)
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &QuickChangeOutputs) -> Seen {
+        self.state.sense(inputs, outputs)
     }
 
     /// The ring is watched in every tick, also in that of a refusal.

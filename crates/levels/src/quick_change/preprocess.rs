@@ -1,6 +1,8 @@
 //! Preprocess of Quick Change: its state variables, from the command and the sensors, and the filter of the readings.
 
-use interfaces::{device::QuickChangeSensors, process::Inputs, quick_change::RingPosition};
+use interfaces::{
+    QuickChangeOutputs, device::QuickChangeSensors, process::Inputs, quick_change::RingPosition,
+};
 use rcs_core::handshake::Arrival;
 
 use super::{
@@ -19,15 +21,23 @@ pub(super) const TURN_TICKS: u64 = 25;
 const GREATEST_ID: u8 = 3;
 
 impl State {
-    /// Read the inputs of a tick.
-    pub(super) fn sense<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> Seen {
+    /// Read the inputs of a tick. `outputs` are those of the last one. A ring that had air when the process was
+    /// restarted may go on in this tick: it is read in the next one.
+    pub(super) fn sense<Data: ?Sized>(
+        &mut self,
+        inputs: &Inputs<'_, Data>,
+        outputs: &QuickChangeOutputs,
+    ) -> Seen {
         let command = &inputs.memory.emove.quick_change;
+        let may_go_on = !self.execution.receiver.started && outputs.valves.port;
         let arrival = self.execution.observe(inputs.tick, command.number);
         if arrival == Arrival::New {
             (self.command, self.since) = (command.command, inputs.tick);
         }
         let sensors = &inputs.external.devices.quick_change;
-        self.read_ring(sensors);
+        if !may_go_on {
+            self.read_ring(sensors);
+        }
         let late = inputs.tick.since(self.since) > TURN_TICKS;
         Seen {
             arrival,

@@ -238,6 +238,24 @@ fn a_restart_while_the_ring_turns_leaves_it_where_it_is() {
     assert_eq!((outputs.status.report, ring.place), (QuickChangeReport::Locked, 1.0));
 }
 
+/// The air of the last tick may still turn it: where it was seen says nothing.
+#[test]
+fn a_ring_that_had_air_before_a_restart_is_read_in_the_next_tick() {
+    let mut bench = Bench::default();
+    bench.step(true, false, 1);
+    bench.command(1, QuickChangeVerb::Unlock);
+    assert!(bench.step(true, false, 1).valves.port);
+    bench.process = QuickChange::default();
+    let restarted = bench.step(true, false, 1);
+    assert_eq!(
+        (restarted.status.ring, restarted.valves),
+        (RingPosition::Unread, QuickChangeValves::default())
+    );
+    assert_eq!(restarted.status.report, QuickChangeReport::Executing);
+    let next = bench.step(false, true, 1).status;
+    assert_eq!((next.ring, next.report), (RingPosition::Unlocked, QuickChangeReport::Unlocked));
+}
+
 #[test]
 fn the_ring_is_reported_before_any_command_and_echoed_after_it() {
     let mut bench = Bench::default();

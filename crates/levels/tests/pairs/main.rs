@@ -229,5 +229,5 @@ fn emove_and_quick_change() {
 
 #[test]
 fn emove_and_quick_change_with_a_fault() {
-    changes("E-move and Quick Change, a fault", 0, 1);
+    changes("E-move and Quick Change, a fault", u8::from(is_full()), 1);
 }
