@@ -172,6 +172,11 @@ impl ContactCheck {
         self.commands
     }
 
+    /// The state on which later checks depend.
+    pub fn state(&self) -> impl fmt::Debug {
+        (&self.allowed, &self.open, &self.commands, self.margin())
+    }
+
     /// Distance within which the cell must report pairs, in: that of the nearest miss so far, and enough to detect the
     /// end of a contact.
     #[must_use]

@@ -6,7 +6,11 @@
 //! same order, so that both have the same digest. A [`Fork`] is the state between two ticks. Any number of branches can
 //! continue from it, each in its own thread.
 
-use std::{convert::Infallible, sync::Arc};
+use std::{
+    convert::Infallible,
+    fmt::{self, Write as _},
+    sync::Arc,
+};
 
 use depc::fault::{Direction, FaultKind, Injector, Plan, Rule};
 use executive::{
@@ -19,7 +23,7 @@ use interfaces::{
     CommonMemory, DataBaseCommand, DeviceInputs, DeviceOutputs, ExternalInputs, HwsCommand, OperatorInputs,
     OutsidePedestal, device::LinkBytes,
 };
-use levels::ladder::{Ladder, ProcessId};
+use levels::ladder::{Ladder, LadderState, ProcessId};
 use neighbours::{
     data_system::{self, ANSWER_TICKS, DataSystem, Item, Pace},
     mailbox::{HWSC_COMMAND, Mailbox},
@@ -393,6 +397,39 @@ impl<'f> Branch<'f> {
         self.control.course.digest()
     }
 
+    /// Forget the faults of cell and line that are over. Call it only if no others follow.
+    pub fn forget_past_faults(&mut self) {
+        self.workstation.cell.forget_past_faults();
+        let (tick, line) = (self.at(), &mut self.control.line);
+        line.file.take_if(|injector| injector.is_over(tick));
+        line.answer.take_if(|injector| injector.is_over(tick));
+    }
+
+    /// Digest of everything on which the next ticks depend, and of `beside`.
+    ///
+    /// # Errors
+    /// [`Error::Fork`] if the cell cannot be saved.
+    pub fn state(&self, beside: &impl fmt::Debug) -> Result<Digest, Error> {
+        let cell = self.workstation.cell.save().map_err(|error| Error::Fork(error.to_string()))?;
+        let Control { course, gate, command_box, check, inputs, line, generation, asked, told, .. } =
+            &self.control;
+        let mut digest = Digest::new();
+        digest.add(&cell);
+        let mut scratch = vec![0; CommonMemory::SIZE.max(LadderState::SIZE)];
+        digest.add_record(course.memory(), &mut scratch);
+        digest.add_record(&course.levels().ladder.state(), &mut scratch);
+        digest.add_record(inputs, &mut scratch);
+        // An older statement has been answered.
+        let age = told.last().map(|(tick, _)| self.at().since(*tick).min(ANSWER_TICKS + 1));
+        let statements: Vec<_> = told.iter().map(|(_, command)| command).collect();
+        let mailboxes = (gate, command_box, line, &course.levels().processes);
+        let data = (generation, asked, statements, age, self.data_system.status());
+        let all = (mailboxes, data, check.state(), self.workstation.state(), beside);
+        // Writing into a digest cannot fail.
+        let _ = write!(Text(&mut digest), "{all:?}");
+        Ok(digest)
+    }
+
     /// The contacts of the robot.
     #[must_use]
     pub const fn check(&self) -> &ContactCheck {
@@ -415,6 +452,16 @@ impl<'f> Branch<'f> {
     #[must_use]
     pub const fn facility(&self) -> &'f Facility {
         self.facility
+    }
+}
+
+/// Text that is added to a digest.
+struct Text<'d>(&'d mut Digest);
+
+impl fmt::Write for Text<'_> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.add(text.as_bytes());
+        Ok(())
     }
 }
 

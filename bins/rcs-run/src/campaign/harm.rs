@@ -154,6 +154,12 @@ impl HarmMonitor {
         Self { seen: branch.check().collisions().len(), harms: Vec::new(), slide: None, moved: Vec::new() }
     }
 
+    /// True if nothing has happened yet that could be harm.
+    #[must_use]
+    pub const fn has_seen_nothing(&self) -> bool {
+        self.harms.is_empty() && self.slide.is_none() && self.moved.is_empty()
+    }
+
     /// The first harm that a commanded point has caused, or else the first harm.
     #[must_use]
     pub fn worst(&self) -> Option<&Harm> {

@@ -34,6 +34,12 @@ impl Invariants {
         Self { allocations: alloc::allocations(), limited, wrong: 0 }
     }
 
+    /// True if all held in the last tick.
+    #[must_use]
+    pub const fn hold(&self) -> bool {
+        self.wrong == 0
+    }
+
     /// The invariant that this tick has broken, as a sentence. `disturbed` is true during an interruption.
     pub fn broken(&mut self, branch: &Branch<'_>, disturbed: bool) -> Option<String> {
         let unstamped = unstamped(branch);

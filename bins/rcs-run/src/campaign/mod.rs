@@ -19,6 +19,7 @@ mod harm;
 mod interruption;
 mod invariants;
 mod journal;
+mod known;
 mod markdown;
 mod motion;
 mod operator;
@@ -109,7 +110,7 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
         {
             let fork = pool::fork_at(&facility, plan.at)?;
             let smallest = random::smallest(&plan.series, |series| {
-                trial::run(&facility, &parent, &fork, series, procedure, &mut NoObserver)
+                trial::run(&facility, &parent, &fork, series, procedure, None, &mut NoObserver)
                     .map(|other| (other.verdict, &other.reason) == (result.verdict, &result.reason))
             })?;
             result.smallest = Some(smallest.to_string());
@@ -131,7 +132,7 @@ fn tell(
     let Plan { at, series, procedure } = plan;
     let fork = pool::fork_at(facility, *at)?;
     let mut story = story::Story::new(*at, arguments.around);
-    let result = trial::run(facility, parent, &fork, series, *procedure, &mut story)?;
+    let result = trial::run(facility, parent, &fork, series, *procedure, None, &mut story)?;
     console::answer(&story.told(&result))?;
     Ok(())
 }

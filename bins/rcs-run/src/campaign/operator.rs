@@ -9,6 +9,8 @@
 //!                                                      └─────────────┘ tries left; else stranded
 //! ```
 
+use std::fmt;
+
 use interfaces::{HwsCommand, hws::HwsReport};
 use neighbours::workstation::{
     Status, TaskState,
@@ -82,6 +84,7 @@ pub struct Ended {
 }
 
 /// An action that begins at a later tick.
+#[derive(Debug)]
 struct Later {
     due: Tick,
     action: Action,
@@ -200,6 +203,14 @@ impl<'f> Operator<'f> {
     #[must_use]
     pub const fn has_replaced(&self) -> bool {
         matches!(self.doing, Doing::Own(Then::SameCommand))
+    }
+
+    /// The state on which what the operator does next depends.
+    pub fn state(&self) -> impl fmt::Debug {
+        let place = (self.current, &self.doing, self.began, self.number, &self.outgoing);
+        let replaced = (self.replaced, self.has_finished, self.is_waiting);
+        let tries = (self.recovery, self.tries, self.tried, self.second_pause, &self.reason);
+        (place, replaced, tries, &self.later, &self.delayed)
     }
 
     /// The commands and actions that have ended since the last call.

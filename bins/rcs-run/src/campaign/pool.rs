@@ -6,6 +6,7 @@ use std::thread;
 use super::{
     branch::{Branch, Facility, Fork},
     coverage::Coverage,
+    known::Known,
     parent::{Parent, emulator},
     series::Series,
     trial::{self, BranchResult, Procedure},
@@ -26,7 +27,7 @@ pub struct Plan {
 /// A forked state, and the index of the plan that begins with it.
 type Work = (Arc<Fork>, usize);
 
-/// Run a branch for each plan. Calls `done` with each new result and what the branch has met; what it returns is
+/// Run a branch for each plan, up to a known state. Calls `done` with each new result and what the branch has met; what it returns is
 /// collected in the order of the plans, which does not depend on `threads`.
 ///
 /// # Errors
@@ -36,6 +37,7 @@ pub fn run<T: Send>(
     parent: &Parent,
     plans: &[Plan],
     threads: usize,
+    known: Option<&Known>,
     done: &(impl Fn(BranchResult, Coverage) -> Result<T, Error> + Sync),
 ) -> Result<Vec<T>, Error> {
     let collected = Mutex::new(Vec::with_capacity(plans.len()));
@@ -54,7 +56,7 @@ pub fn run<T: Send>(
                         }
                         let Plan { series, procedure, .. } = &plans[at];
                         let mut met = Coverage::default();
-                        outcome = trial::run(facility, parent, &fork, series, *procedure, &mut met)
+                        outcome = trial::run(facility, parent, &fork, series, *procedure, known, &mut met)
                             .and_then(|result| done(result, met))
                             .map(|done| {
                                 collected.lock().unwrap_or_else(PoisonError::into_inner).push((at, done))

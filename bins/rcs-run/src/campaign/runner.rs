@@ -13,6 +13,7 @@ use super::{
     branch::Facility,
     coverage::Coverage,
     journal::{self, Journal, Judged},
+    known::Known,
     parent::Parent,
     pool::{self, Plan},
     random::Draw,
@@ -37,6 +38,7 @@ pub struct Runner<'a> {
     journal: Journal,
     bar: Option<ProgressBar>,
     met: Mutex<Coverage>,
+    known: Known,
 }
 
 impl<'a> Runner<'a> {
@@ -58,7 +60,7 @@ impl<'a> Runner<'a> {
         };
         let threads = usize::from(arguments.threads);
         let met = Mutex::default();
-        Ok(Self { facility, parent, threads, journal, bar: bar(branches), met })
+        Ok(Self { facility, parent, threads, journal, bar: bar(branches), met, known: Known::default() })
     }
 
     /// Run the branches that the journal does not contain, and return all of them in order.
@@ -79,7 +81,10 @@ impl<'a> Runner<'a> {
             self.journal.write(&result, &kept)?;
             Ok((result, kept))
         };
-        let mut run = pool::run(self.facility, self.parent, &missing, self.threads, &done)?.into_iter();
+        // What a branch meets behind a known state was met before; a draw needs it for each branch.
+        let states = (keep == Keep::New).then_some(&self.known);
+        let mut run =
+            pool::run(self.facility, self.parent, &missing, self.threads, states, &done)?.into_iter();
         Ok(known.into_iter().filter_map(|known| known.or_else(|| run.next())).collect())
     }
 

@@ -14,6 +14,7 @@ use super::{
     coverage::Coverage,
     interruption::Kind,
     journal::{self, Journal},
+    known::Known,
     operator::Recovery,
     parent::{Parent, Ticks, emulator},
     pool::{self, Plan},
@@ -122,7 +123,7 @@ fn empty_move() -> (Facility, Parent, Fork) {
 
 fn judged(facility: &Facility, parent: &Parent, fork: &Fork, text: &str) -> BranchResult {
     let series = series(facility, text);
-    trial::run(facility, parent, fork, &series, PROCEDURE, &mut NoObserver).expect("the fork goes on")
+    trial::run(facility, parent, fork, &series, PROCEDURE, None, &mut NoObserver).expect("the fork goes on")
 }
 
 #[test]
@@ -199,19 +200,22 @@ fn a_part_that_slides_while_no_point_is_commanded_is_counted_apart() {
     assert!(result.ended.iter().any(|ended| ended.contains("MOVE") && ended.ends_with("finished")));
 }
 
+/// A plan for each interruption after every `step`-th tick.
+fn plans(facility: &Facility, parent: &Parent, texts: &[&str], step: u64) -> Vec<Plan> {
+    let of_text = |text: &&str| {
+        let series = series(facility, text);
+        let plan = move |at| Plan { at, series: series.clone(), procedure: PROCEDURE };
+        parent.forks(&Ticks::Every(step)).into_iter().map(plan)
+    };
+    texts.iter().flat_map(of_text).collect()
+}
+
 #[test]
 fn all_threads_give_the_same_judgements_in_the_same_order() {
     let (facility, parent, _) = empty_move();
-    let plans: Vec<Plan> = ["pause", "refused", "hold+5:pause"]
-        .iter()
-        .flat_map(|text| {
-            let series = series(&facility, text);
-            let plan = move |at| Plan { at, series: series.clone(), procedure: PROCEDURE };
-            parent.forks(&Ticks::Every(60)).into_iter().map(plan)
-        })
-        .collect();
+    let plans = plans(&facility, &parent, &["pause", "refused", "hold+5:pause"], 60);
     let campaign = |threads: usize| {
-        let run = pool::run(&facility, &parent, &plans, threads, &|result, met| Ok((result, met)));
+        let run = pool::run(&facility, &parent, &plans, threads, None, &|result, met| Ok((result, met)));
         let mut all = Coverage::default();
         let results = run.expect("the branches can be run").into_iter().map(|(one, met)| {
             let new = all.take_in(met);
@@ -229,6 +233,26 @@ fn all_threads_give_the_same_judgements_in_the_same_order() {
     assert_eq!(one, campaign(3));
 }
 
+#[test]
+fn a_branch_in_a_known_state_ends_as_if_it_went_on() {
+    let (facility, parent, _) = empty_move();
+    let texts = ["fault:camera-blind", "fault:bytes-lost", "restart:tool_grip", "held:task", "pause+9:hold"];
+    let plans = plans(&facility, &parent, &texts, 30);
+    let campaign = |known: Option<&Known>| {
+        let run = pool::run(&facility, &parent, &plans, 1, known, &|result, met| Ok((result, met)));
+        let (mut all, mut states) = (Coverage::default(), 0);
+        let results = run.expect("the branches can be run").into_iter().map(|(result, met)| {
+            states += met.counts().1;
+            all.take_in(met);
+            serde_json::to_value(result).expect("a result can be written")
+        });
+        (results.collect::<Vec<_>>(), all, states)
+    };
+    let (whole, joined) = (campaign(None), campaign(Some(&Known::default())));
+    assert_eq!((&joined.0, &joined.1), (&whole.0, &whole.1));
+    assert!(joined.2 < whole.2 * 9 / 10, "{} of {} states: hardly a branch was cut", joined.2, whole.2);
+}
+
 /// A campaign that was killed while it wrote a line continues after the last complete line.
 #[test]
 fn a_campaign_goes_on_from_its_journal() {
@@ -243,7 +267,7 @@ fn a_campaign_goes_on_from_its_journal() {
         journal.write(&result, &met)?;
         Ok((result, met))
     };
-    let run = pool::run(&facility, &parent, &plans[..1], 1, &done).expect("the branch can be run");
+    let run = pool::run(&facility, &parent, &plans[..1], 1, None, &done).expect("the branch can be run");
     let (first, met) = &run[0];
     let whole = fs::read(&path).expect("the journal is there");
 
@@ -308,7 +332,7 @@ fn every_stop_brings_the_robot_to_rest_from_every_state() {
             ["pause", "hold", "cut", "lost:task", "lost:subtask", "lost:emove", "lost:prim", "lost:t3i"]
         {
             let series = series(&facility, stop);
-            let result = trial::run(&facility, &parent, &fork, &series, procedure, &mut NoObserver);
+            let result = trial::run(&facility, &parent, &fork, &series, procedure, None, &mut NoObserver);
             let result = result.expect("the fork goes on");
             let rest = result.rest_after.expect("it is judged at rest");
             assert!(result.verdict == Verdict::Done && rest <= STOPS, "{stop} at {at}: {result:?}");

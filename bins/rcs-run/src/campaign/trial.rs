@@ -1,10 +1,12 @@
 //! One branch: interrupts it, lets an operator follow the recovery procedure, and judges the result.
 
+use std::sync::Arc;
+
 use executive::failure;
 use interfaces::HwsCommand;
 use levels::ladder::{Ladder, ProcessId};
 use neighbours::workstation::player::{Workstation as _, pause};
-use rcs_core::{name::Name16, tick::Tick};
+use rcs_core::{digest::Digest, name::Name16, tick::Tick};
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -12,6 +14,7 @@ use super::{
     harm::{HarmMonitor, World, is_commanded},
     interruption::{Kind, Script},
     invariants::Invariants,
+    known::{End, Known},
     motion::Motion,
     operator::{Operator, Recovery, Then},
     parent::Parent,
@@ -91,7 +94,7 @@ pub struct BranchResult {
     /// Ticks from the interruption to the last motion, if the branch is judged at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest_after: Option<u64>,
-    /// Digest of the branch.
+    /// Digest of its last state.
     pub digest: String,
 }
 
@@ -130,7 +133,10 @@ struct Trial<'f, 'p> {
     line: usize,
     /// The line at whose end the branch is judged.
     goal: usize,
-    ended: Vec<String>,
+    /// The commands that have ended, with their ticks.
+    ended: Vec<(Tick, String)>,
+    /// The states in which it was compared with others.
+    path: Vec<(Tick, Digest)>,
     mismatch: Option<(String, String)>,
     /// True if the operator has moved the robot away with a part that the vise holds, too.
     tears: bool,
@@ -138,16 +144,18 @@ struct Trial<'f, 'p> {
     motion: Option<Motion>,
 }
 
-/// Interrupt a fork after its last tick, and judge the branch.
+/// Interrupt a fork after its last tick, and judge the branch. If it comes to a known state it is not run to its end; if
+/// it is done, its states are known from then on.
 ///
 /// # Errors
-/// [`Error`] if the branch cannot be made from the fork.
+/// [`Error`] if the branch cannot be made from the fork, or its cell cannot be saved.
 pub fn run(
     facility: &Facility,
     parent: &Parent,
     fork: &Fork,
     series: &Series,
     procedure: Procedure,
+    known: Option<&Known>,
     observer: &mut impl Observer,
 ) -> Result<BranchResult, Error> {
     let branch = Branch::resume(facility, fork)?;
@@ -172,11 +180,12 @@ pub fn run(
         line,
         goal: usize::MAX,
         ended: Vec::new(),
+        path: Vec::new(),
         mismatch: None,
         tears: false,
         motion: None,
     };
-    Ok(trial.play(doing, observer))
+    trial.play(doing, known, observer)
 }
 
 /// The present command of each process.
@@ -197,7 +206,12 @@ fn present(branch: &Branch<'_>) -> Vec<String> {
 }
 
 impl Trial<'_, '_> {
-    fn play(mut self, doing: Vec<String>, observer: &mut impl Observer) -> BranchResult {
+    fn play(
+        mut self,
+        doing: Vec<String>,
+        known: Option<&Known>,
+        observer: &mut impl Observer,
+    ) -> Result<BranchResult, Error> {
         let mut script = self.begin(observer);
         loop {
             // A stop continues: the later steps of its script, which would release it, are skipped.
@@ -229,7 +243,18 @@ impl Trial<'_, '_> {
                 motion.look(&self.branch);
             }
             if let Some(verdict) = self.verdict(observer) {
-                return self.result(verdict, doing);
+                let end = Arc::new(self.end()?);
+                if let (Verdict::Done, Some(known)) = (verdict, known) {
+                    known.add(&self.path, &end);
+                }
+                return Ok(self.result(verdict, &end, doing));
+            }
+            if over
+                && let Some(known) = known.filter(|_| self.is_comparable())
+                && let Some(end) = self.known_end(known)?
+            {
+                known.add(&self.path, &end);
+                return Ok(self.result(Verdict::Done, &end, doing));
             }
             if over && self.motion.is_none() {
                 let now = self.branch.at();
@@ -240,6 +265,35 @@ impl Trial<'_, '_> {
                 }
             }
         }
+    }
+
+    /// True if the branch depends on nothing but its state and the operator's, and may be in a known one.
+    fn is_comparable(&self) -> bool {
+        let undisturbed = self.following && self.motion.is_none() && self.next().is_none();
+        let harmless = self.monitor.has_seen_nothing() && self.mismatch.is_none() && !self.tears;
+        Known::compares(self.branch.at()) && undisturbed && harmless && self.invariants.hold()
+    }
+
+    /// Digest of the state, with that of the operator and the line at whose end the branch is judged.
+    fn state(&mut self) -> Result<Digest, Error> {
+        self.branch.forget_past_faults();
+        self.branch.state(&(self.operator.state(), self.goal))
+    }
+
+    /// The end of a branch that was in the same state.
+    fn known_end(&mut self, known: &Known) -> Result<Option<Arc<End>>, Error> {
+        let (now, state) = (self.branch.at(), self.state()?);
+        let end = known.end(now, state);
+        if let Some(end) = &end {
+            self.ended.extend(end.ended.iter().filter(|(tick, _)| *tick > now).cloned());
+        }
+        self.path.push((now, state));
+        Ok(end)
+    }
+
+    /// The end of the branch, which is now.
+    fn end(&mut self) -> Result<End, Error> {
+        Ok(End { until: self.branch.at(), state: self.state()?, ended: self.ended.clone() })
     }
 
     /// The present or last interruption.
@@ -313,7 +367,7 @@ impl Trial<'_, '_> {
             let how = if ended.failure.is_empty() { "finished" } else { ended.failure.as_str() };
             let text = format!("tick {}: {}: {how}", ended.tick.0, ended.command);
             observer.say(ended.tick, &text);
-            self.ended.push(text);
+            self.ended.push((ended.tick, text));
             if ended.of_job && ended.failure.is_empty() {
                 self.compare(ended.line, &ended.command);
                 reached |= ended.line >= self.goal && self.next().is_none();
@@ -360,7 +414,7 @@ impl Trial<'_, '_> {
         }
     }
 
-    fn result(self, verdict: Verdict, doing: Vec<String>) -> BranchResult {
+    fn result(self, verdict: Verdict, end: &End, doing: Vec<String>) -> BranchResult {
         let (reason, detail) = self.why(verdict);
         let line = match self.line.checked_sub(1) {
             None => "PAUSE".to_owned(),
@@ -383,10 +437,10 @@ impl Trial<'_, '_> {
             line,
             met_command: self.operator.command_at(self.line).is_some(),
             doing,
-            ended: self.ended,
-            until: self.branch.at().0,
+            ended: self.ended.into_iter().map(|(_, text)| text).collect(),
+            until: end.until.0,
             rest_after: self.motion.as_ref().map(Motion::ticks),
-            digest: self.branch.digest().to_string(),
+            digest: end.state.to_string(),
         }
     }
 

@@ -108,6 +108,16 @@ impl Injector {
         (work.arrive(), ready && !work.is_low())
     }
 
+    /// True if the line carries everything as it is sent from now on, after `tick`: no rule acts any more, and nothing
+    /// is held.
+    #[must_use]
+    pub fn is_over(&self, tick: Tick) -> bool {
+        let past = |rule: &Rule| rule.until != 0 && rule.until <= tick.0.saturating_add(1);
+        let clear =
+            |line: &OneWay| line.held == 0 && line.stalled_until <= tick.0 && line.low_until <= tick.0;
+        self.plan.rules().iter().all(past) && clear(&self.to_controller) && clear(&self.to_host)
+    }
+
     /// Counts of one direction.
     #[must_use]
     pub const fn counts(&self, direction: Direction) -> &Counts {
@@ -252,6 +262,25 @@ mod tests {
     use super::*;
 
     const ABC: &[u8] = b"ABCDEFGH";
+
+    #[test]
+    fn a_line_is_over_when_its_rules_are_past_and_it_holds_nothing() {
+        let mut plan = Plan::new(1);
+        plan.add(Rule::new(FaultKind::Delay).at(5).ticks(4).only(Direction::ToHost)).unwrap();
+        plan.add(Rule::new(FaultKind::CtsLow).at(6).ticks(3)).unwrap();
+        let mut injector = Injector::new(&plan);
+        let over: Vec<u64> = (1..12)
+            .filter(|tick| {
+                injector.carry(Direction::ToHost, Tick(*tick), &bytes(ABC), true);
+                injector.carry(Direction::ToController, Tick(*tick), &bytes(ABC), true);
+                injector.is_over(Tick(*tick))
+            })
+            .collect();
+        assert_eq!(over, [9, 10, 11]);
+        let mut endless = Plan::new(1);
+        endless.add(Rule::new(FaultKind::Drop).rate(1)).unwrap();
+        assert!(!Injector::new(&endless).is_over(Tick(100)));
+    }
 
     fn bytes(of: &[u8]) -> LinkBytes {
         let mut link = LinkBytes::default();

@@ -99,6 +99,12 @@ impl Injector {
         self.push(plan.faults.iter().filter(stays), plan.seed, seed);
     }
 
+    /// Forget the faults that are over.
+    pub(crate) fn forget_past(&mut self) {
+        let next = self.tick + 1;
+        self.faults.retain(|running| running.active || running.fault.when.until > next);
+    }
+
     fn push<'f>(&mut self, faults: impl Iterator<Item = &'f Fault>, of_plan: u64, of_run: u64) {
         let seed = of_run ^ of_plan.wrapping_mul(MIX);
         let first = STREAMS + self.faults.len() as u64;
