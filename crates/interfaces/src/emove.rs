@@ -318,7 +318,8 @@ pub struct Beliefs {
     pub way: Option<Way>,
     /// What the gripper holds.
     pub held: Option<Grasped>,
-    /// The object that it was last commanded to grasp.
+    /// The object that it was last commanded to grasp. None beside something that counts as held: it has been
+    /// half let go, and the release was cut off.
     pub grasping: Option<Grasped>,
     /// The fingers were empty, and have not been told to close since.
     pub empty: bool,

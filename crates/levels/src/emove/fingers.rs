@@ -118,7 +118,7 @@ impl State {
     }
 
     /// Has a release been begun at this place that has not ended?
-    fn is_letting_go(&self) -> bool {
+    pub(super) fn is_letting_go(&self) -> bool {
         self.releasing && self.beliefs.held.is_some() && self.place().is_some()
     }
 
@@ -179,21 +179,19 @@ impl State {
         let grasp_size = sizes(command, inputs.data).map_or(0, |sizes| sizes.grasp_size);
         let gripper = Gripper::attached(memory);
         let gripping = match gripper.opening(memory) {
-            Some(opening) => gripper.grips(opening, grasp_size) && !self.is_half_let_go(opening, inputs),
+            Some(opening) => gripper.grips(opening, grasp_size),
             None => self.beliefs.held.is_some(),
         };
-        if gripping { Fingers::Gripping } else { Fingers::Empty }
+        if gripping && !self.is_half_let_go(inputs) { Fingers::Gripping } else { Fingers::Empty }
     }
 
-    /// Does something count as held that the fingers, at rest with an opening, 0.01 in, are not around any more, or
-    /// that air still lets go of?
-    fn is_half_let_go(&self, opening: i32, inputs: &Inputs<'_, TaskData<'_>>) -> bool {
+    /// Does something count as held that the fingers have been told to let go of, or do not feel at rest, or that air
+    /// lets go of?
+    fn is_half_let_go(&self, inputs: &Inputs<'_, TaskData<'_>>) -> bool {
         let Some(held) = self.beliefs.held else { return false };
         let (gripper, memory) = (Gripper::of(held.gripper), inputs.memory);
-        let around = gripper.still_grips(opening, held.grasp_size, held.opening)
-            && gripper.felt(memory) != Felt::Nothing
-            && !gripper.has_air(false, memory);
-        !around && !self.grippers.are_moving(inputs.tick, memory)
+        let around = gripper.felt(memory) != Felt::Nothing && !gripper.has_air(false, memory);
+        self.is_letting_go() || (!around && !self.grippers.are_moving(inputs.tick, memory))
     }
 
     /// The opening to release the held object, or the object of the command, 0.01 in. Something unknown may be wider

@@ -82,6 +82,10 @@ impl State {
             }
             Action::Pause => {
                 self.stop_robot(inputs, outputs);
+                if self.is_letting_go() {
+                    // After this order, nothing else says so to an E-move that is restarted.
+                    self.beliefs.grasping = None;
+                }
                 let request = FingerOrder { order: FingerVerb::Pause, ..FingerOrder::default() };
                 self.grippers.send(request, inputs.tick, inputs.memory, outputs);
             }
@@ -260,11 +264,13 @@ impl State {
         self.releasing = request.order == FingerVerb::Release;
         match request.order {
             FingerVerb::Grasp => {
-                let by_name = action == Action::Close;
-                self.beliefs.grasping = by_name.then(|| self.grasp_of(command, inputs));
-                if by_name {
+                if action == Action::Close {
                     // What is closed on anew is held when the fingers have closed on it.
                     (self.beliefs.held, self.carrying) = (None, false);
+                    self.beliefs.grasping = Some(self.grasp_of(command, inputs));
+                } else {
+                    // By hand: only what counts as held has a name, and it is not let go any more.
+                    self.beliefs.grasping = self.beliefs.held;
                 }
                 // What was placed may be taken, and lost elsewhere.
                 (self.beliefs.placed, self.beliefs.empty) = (None, false);

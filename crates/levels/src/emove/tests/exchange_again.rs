@@ -12,6 +12,7 @@ use interfaces::{
         Holding,
     },
     jaws::JawsReport,
+    prim::JoystickGrip,
     quick_change::QuickChangeReport,
 };
 
@@ -36,6 +37,7 @@ pub const SCENARIOS: &[fn()] = &[
     a_loose_gripper_that_is_led_away_is_still_to_be_changed,
     a_grasp_is_made_again_from_every_tick,
     fingers_that_are_stopped_while_they_let_go_have_not_let_go,
+    what_is_closed_on_by_hand_is_not_let_go,
     what_was_half_let_go_is_grasped_anew,
     what_the_fingers_have_closed_on_since_does_not_count_as_placed,
     jaws_that_air_moves_do_not_stand,
@@ -461,11 +463,17 @@ fn fingers_that_are_stopped_while_they_let_go_have_not_let_go() {
     assert_eq!(stuck.pause(), DONE);
     assert_eq!(stuck.memory.emove.beliefs.placed, None);
     assert!(matches!(stuck.memory.emove.status.held, Holding::Object(_)));
-    // The robot does not leave with it.
-    for line in [(MovObjTo, "SHAFT", 1, "VISE", 2), (MovToLoc, "", 0, "HOME", 0)] {
-        stuck.world.log.clear();
-        assert_eq!(send(&mut stuck, line), error(Reason::ReleaseNotEnded));
-        assert!(!stuck.log().iter().any(|word| word.starts_with("GO")), "{:?}", stuck.log());
+    // The robot does not leave with it, whether E-move is restarted or not.
+    for restarted in [false, true] {
+        if restarted {
+            stuck.process = Emove::default();
+            assert_eq!(stuck.finish(), error(Reason::Restarted));
+        }
+        for line in [(MovObjTo, "SHAFT", 1, "VISE", 2), (MovToLoc, "", 0, "HOME", 0)] {
+            stuck.world.log.clear();
+            assert_eq!(send(&mut stuck, line), error(Reason::ReleaseNotEnded));
+            assert!(!stuck.log().iter().any(|word| word.starts_with("GO")), "{:?}", stuck.log());
+        }
     }
     assert_eq!(stuck.run(MovObjTo, "SHAFT", 1, "BENCH", 2), DONE, "it is there");
     assert_eq!(send(&mut stuck, (Release, "SHAFT", 1, "BENCH", 2)), DONE);
@@ -481,10 +489,33 @@ fn fingers_that_are_stopped_while_they_let_go_have_not_let_go() {
     assert!(bench.memory.emove.beliefs.placed.is_some());
 }
 
+/// The operator opens the gripper a little, and closes it again.
+#[test]
+fn what_is_closed_on_by_hand_is_not_let_go() {
+    let mut bench = Bench::ready("BENCH", 2);
+    bench.hold("SHAFT", 204, 2);
+    bench.command(Pause, "", 0, "", 0);
+    bench.world.joystick = true;
+    bench.steps(20);
+    bench.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
+    for button in [JoystickGrip::Open, JoystickGrip::Close] {
+        bench.world.button = button;
+        bench.steps(20);
+    }
+    (bench.world.joystick, bench.world.button) = (false, JoystickGrip::None);
+    bench.steps(20);
+    bench.process = Emove::default();
+    assert_eq!(bench.finish(), error(Reason::Restarted));
+    assert!(matches!(bench.memory.emove.status.held, Holding::Object(_)));
+    assert_eq!(send(&mut bench, (MovObjTo, "SHAFT", 1, "VISE", 2)), DONE, "{:?}", bench.log());
+}
+
 #[test]
 fn what_was_half_let_go_is_grasped_anew() {
     for (gripper, object, size, wide, stuck) in [
         (1, "BLOCK", 75, 140, Mishap::Grip(Reason::GripUnattainable)),
+        // They still feel it.
+        (1, "BLOCK", 75, 75, Mishap::Grip(Reason::GripUnattainable)),
         (2, "SHAFT", 204, 250, Mishap::Jaws(JawsReport::Stuck)),
         (3, "CUTTER", 250, 300, Mishap::Jaws(JawsReport::Stuck)),
     ] {
@@ -509,6 +540,7 @@ fn what_was_half_let_go_is_grasped_anew() {
             let held = fork.memory.emove.status.held.object().map(|held| held.as_str().to_owned());
             assert_eq!(held.as_deref(), Some(object), "what they have closed on has its name");
         });
+        assert!(!bench.log().is_empty(), "they are closed");
         assert!(matches!(bench.memory.emove.status.held, Holding::Object(_)), "{object}");
     }
 }
