@@ -1,13 +1,15 @@
 //! E-move and the process of a gripper. Around them: Subtask, the fingers with a part or without, Prim, Quick Change.
 //! The robot stands at an object and does not move.
 
+mod judge;
+mod states;
+
 use std::fmt::Debug;
 
 use interfaces::{
-    CommonMemory, EmoveOutputs, ExternalInputs, Reason, StatusReport,
+    CommonMemory, EmoveOutputs, ExternalInputs, StatusReport,
     device::GripSensors,
-    emove::{EmoveCommand, EmoveVerb, GoneTo, Holding, ObjectGrip},
-    prim::PrimReport,
+    emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip},
     process::{Inputs, Process},
     quick_change::{QuickChangeReport, RingPosition},
 };
@@ -20,7 +22,7 @@ use rcs_core::{handshake::Commander, tick::Tick};
 
 use crate::{
     data::{data, emove_command, place},
-    image::{Image, rebase, rebase_echoes},
+    image::Image,
     robot::{PrimDoes, Robot},
     search::{World, Wrong},
 };
@@ -49,8 +51,10 @@ pub trait Fingered: Clone {
     fn next(&self, fingers: Self::Fingers) -> Vec<(Self::Fingers, bool)>;
     /// May a long time have passed, if they are there in the next tick?
     fn may_be_long(&self, fingers: Self::Fingers, next: (Self::Fingers, bool)) -> bool;
-    fn sensors(fingers: Self::Fingers) -> GripSensors;
+    fn sensors(&self, fingers: Self::Fingers) -> GripSensors;
     fn are_around(fingers: Self::Fingers) -> bool;
+    /// They hold the part.
+    fn hold(fingers: Self::Fingers) -> bool;
     fn are_open(fingers: Self::Fingers) -> bool;
 
     fn write(&self, memory: &mut CommonMemory, stamp: Tick);
@@ -59,6 +63,10 @@ pub trait Fingered: Clone {
     fn reports_executing(&self) -> bool;
     /// Nothing moves the fingers.
     fn rests(&self) -> bool;
+    /// What the fingers are around is pressed.
+    fn presses(&self) -> bool;
+    /// Begin again, with the outputs of before.
+    fn restart(&mut self);
     fn echo(&self) -> u32;
 
     fn number(outputs: &mut EmoveOutputs) -> &mut u32;
@@ -82,11 +90,21 @@ where
     *state = *process.state();
 }
 
+/// A process that is restarted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Restarted {
+    None,
+    Emove,
+    /// The other one of the pair.
+    Below,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event<Fingers> {
     pub told: Option<EmoveVerb>,
     pub fingers: Fingers,
     pub prim: PrimDoes,
+    pub restarted: Restarted,
     /// A long time has passed in which nothing else happened.
     pub long: bool,
 }
@@ -95,6 +113,8 @@ pub struct Event<Fingers> {
 pub struct Pair<G: Fingered> {
     tick: Tick,
     commands: &'static [EmoveVerb],
+    /// Commands that may still come before the last one has ended (any number if none is given), and restarts that may.
+    left: (Option<u8>, u8),
     command: EmoveCommand,
     emove: emove::state::State,
     emove_out: EmoveOutputs,
@@ -107,9 +127,10 @@ pub struct Pair<G: Fingered> {
 }
 
 impl<G: Fingered> Pair<G> {
-    /// The first tick of a system that is booted, with a gripper that is calibrated and open around the object;
-    /// these commands can come.
-    pub fn first(commands: &'static [EmoveVerb]) -> Self {
+    /// The first tick of a system that is booted, with a gripper that is calibrated and open around the object. These
+    /// commands can come, `early` of them before the last one has ended (any number if none is given), and so many
+    /// `restarts`.
+    pub fn first(commands: &'static [EmoveVerb], early: Option<u8>, restarts: u8) -> Self {
         let (object, grip, location) = G::OBJECT;
         let at = place(location);
         let object = emove_command(EmoveVerb::None, object, grip, location).object.unwrap_or_default();
@@ -117,6 +138,7 @@ impl<G: Fingered> Pair<G> {
         let mut pair = Self {
             tick: Tick(10_000),
             commands,
+            left: (early, restarts),
             command: EmoveCommand::default(),
             emove: emove::state::State {
                 started: true,
@@ -163,34 +185,6 @@ impl<G: Fingered> Pair<G> {
         }
         memory
     }
-
-    /// What is reported done is done.
-    ///
-    /// `before` is the pair as it was when the processes read it.
-    fn judge(&self, before: &Self) -> Result<(), Wrong> {
-        let status = &self.emove_out.status;
-        let ended = |it: &Self| {
-            let status = &it.emove_out.status;
-            status.echo == self.command.number && status.report == StatusReport::Done
-        };
-        if !ended(self) || ended(before) {
-            return Ok(());
-        }
-        match self.command.command {
-            EmoveVerb::GraspObj if before.apart > G::LATE => Err("done, and nothing is between the fingers"),
-            EmoveVerb::GraspObj if status.held.object() != self.command.object => {
-                Err("done, and the object is not held")
-            }
-            EmoveVerb::Release if !G::are_open(before.fingers) => Err("done, and the fingers are not open"),
-            EmoveVerb::Release if status.held != Holding::Nothing => Err("done, and something is held"),
-            EmoveVerb::Pause if before.gripper.reports_executing() => Err("done, and the fingers move"),
-            EmoveVerb::Pause if before.robot.report == PrimReport::Executing => {
-                Err("done, and the robot moves")
-            }
-            EmoveVerb::None => Err("an unknown command is done"),
-            _ => Ok(()),
-        }
-    }
 }
 
 impl<G: Fingered> World for Pair<G> {
@@ -200,16 +194,20 @@ impl<G: Fingered> World for Pair<G> {
         let moving = self.is_moving();
         let prim: &[PrimDoes] =
             if moving { &[PrimDoes::Goes, PrimDoes::Ends, PrimDoes::Fails] } else { &[PrimDoes::Goes] };
+        let all = [Restarted::None, Restarted::Emove, Restarted::Below];
+        let restarts = if self.left.1 > 0 { &all[..] } else { &all[..1] };
         let mut events = Vec::new();
         for told in self.commands() {
             for &prim in prim {
                 for (fingers, arrive) in self.gripper.next(self.fingers) {
-                    let event = Event { told, fingers, prim, long: false };
-                    let quiet = told.is_none();
-                    events.push((event, quiet && arrive && (!moving || prim != PrimDoes::Goes)));
-                    let waits = quiet && !moving && self.is_settled();
-                    if waits && self.gripper.may_be_long(self.fingers, (fingers, arrive)) {
-                        events.push((Event { long: true, ..event }, true));
+                    for &restarted in restarts {
+                        let event = Event { told, fingers, prim, restarted, long: false };
+                        let quiet = told.is_none() && restarted == Restarted::None;
+                        events.push((event, quiet && arrive && (!moving || prim != PrimDoes::Goes)));
+                        let waits = quiet && !moving && self.is_settled();
+                        if waits && self.gripper.may_be_long(self.fingers, (fingers, arrive)) {
+                            events.push((Event { long: true, ..event }, true));
+                        }
                     }
                 }
             }
@@ -219,20 +217,29 @@ impl<G: Fingered> World for Pair<G> {
 
     fn step(&mut self, event: Self::Event) -> Result<(), Wrong> {
         self.tick = if event.long { Tick(self.tick.0 + LONG) } else { self.tick.next() };
+        let old = self.clone();
         let mut process = Emove::default();
-        process.restore(self.emove);
+        if event.restarted != Restarted::Emove {
+            process.restore(self.emove);
+        }
+        if event.restarted == Restarted::Below {
+            self.gripper.restart();
+        }
+        self.left.1 -= u8::from(event.restarted != Restarted::None);
         if let Some(verb) = event.told {
+            if !self.has_ended() {
+                self.left.0 = self.left.0.map(|early| early - 1);
+            }
             self.tell(verb);
         }
         let memory = self.memory();
         let mut external = ExternalInputs::default();
         let devices = &mut external.devices;
-        devices.grip = G::sensors(self.fingers);
+        devices.grip = self.gripper.sensors(self.fingers);
         let id = G::GRIPPER.id().unwrap_or_default();
         (devices.quick_change.locked, devices.quick_change.end_effector_id) = (true, id);
         let data = data();
         let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &data };
-        let old = self.clone();
         let mut emove_out = self.emove_out;
         process.step(&inputs, &mut emove_out);
         self.gripper.step(&Inputs { tick: self.tick, memory: &memory, external: &external, data: &() });
@@ -244,62 +251,18 @@ impl<G: Fingered> World for Pair<G> {
         self.apart = if G::are_around(self.fingers) { 0 } else { (self.apart + 1).min(G::LATE + 1) };
         self.emove_out = emove_out;
         self.emove = *process.state();
-        let wrong = self.judge(&old);
+        self.judge(&old, &event)?;
         self.renumber();
-        wrong
+        if event.told.is_none() { self.judge_held(&old) } else { Ok(()) }
     }
 
-    /// Without what no row asks for any more: reasons; what a process that executes nothing has of its command.
     fn image(&self) -> Vec<u8> {
-        let mut image = Image::new(self.tick, G::LIMIT, G::COUNTERS);
-        let mut it = self.clone();
-        (it.emove.execution.reason, it.gripper.execution().reason) = (Reason::None, Reason::None);
-        let executes = it.emove.execution.outcome == Outcome::Executing;
-        if !executes && it.command.command != EmoveVerb::Pause {
-            (it.emove.step, it.emove.ordered, it.emove.uses_prim) = Default::default();
-        }
-        // Rows that order something lead to later steps: none of them fires twice in a command.
-        it.emove.execution.last_order = None;
-        if !executes {
-            it.emove.carrying = false;
-        }
-        let beliefs = &mut it.emove.beliefs;
-        beliefs.placed = None;
-        match &mut beliefs.grasping {
-            grasping if beliefs.held.is_some() || beliefs.empty => *grasping = None,
-            Some(grasping) => grasping.opening = 0,
-            None => {}
-        }
-        if beliefs.held.is_none() {
-            it.emove.unfelt = 0;
-        }
-        if it.is_settled() {
-            G::forget_order(&mut it.emove_out);
-        }
-        it.gripper.forget(it.tick);
-        image.add(&it.command);
-        image.add(&it.emove);
-        image.add(&it.emove_out.prim);
-        image.add(&it.emove_out.quick_change);
-        image.add(&it.emove_out.status.echo);
-        image.add(&it.emove_out.status.report);
-        it.gripper.add_to(&it.emove_out, &mut image);
-        image.add(&G::sensors(it.fingers));
-        it.robot.add_to(&mut image);
-        image.add(&it.quick_change);
-        let grasps = executes && it.command.command == EmoveVerb::GraspObj;
-        image.bytes.push(if grasps { it.apart } else { 0 });
-        image.bytes
+        self.alike()
     }
 
     fn rests(&self) -> bool {
-        let status = &self.emove_out.status;
         let over = self.emove.execution.outcome != Outcome::Executing && !self.emove.execution.waiting;
-        status.echo == self.command.number
-            && over
-            && self.is_settled()
-            && self.gripper.rests()
-            && !self.is_moving()
+        self.has_ended() && over && self.is_settled() && self.gripper.rests() && !self.is_moving()
     }
 
     fn pauses(&self) -> bool {
@@ -308,11 +271,15 @@ impl<G: Fingered> World for Pair<G> {
 }
 
 impl<G: Fingered> Pair<G> {
+    fn has_ended(&self) -> bool {
+        let status = &self.emove_out.status;
+        status.echo == self.command.number && status.report != StatusReport::Executing
+    }
+
     /// Any command can come when the last one has ended, and another one than it before.
     fn commands(&self) -> Vec<Option<EmoveVerb>> {
-        let status = &self.emove_out.status;
-        let ended = status.echo == self.command.number && status.report != StatusReport::Executing;
-        let may = |verb: &&EmoveVerb| ended || **verb != self.command.command;
+        let (ended, early) = (self.has_ended(), self.left.0 != Some(0));
+        let may = |verb: &&EmoveVerb| ended || (early && **verb != self.command.command);
         core::iter::once(None).chain(self.commands.iter().filter(may).map(|verb| Some(*verb))).collect()
     }
 
@@ -327,15 +294,5 @@ impl<G: Fingered> Pair<G> {
     /// Prim has not ended its last order.
     fn is_moving(&self) -> bool {
         self.robot.is_busy(&self.emove_out.prim)
-    }
-
-    /// What does not count any more begins again.
-    fn renumber(&mut self) {
-        let (emove, out) = (&mut self.emove, &mut self.emove_out);
-        let echo = &mut emove.execution.receiver.echo;
-        rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
-        self.gripper.renumber(G::commander(emove), G::number(out));
-        rebase(&mut emove.prim, &mut [&mut out.prim.number, &mut self.robot.echo]);
-        rebase(&mut emove.quick_change, &mut [&mut out.quick_change.number, &mut self.quick_change]);
     }
 }

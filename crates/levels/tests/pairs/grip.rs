@@ -3,7 +3,7 @@
 use interfaces::{
     CommonMemory, EmoveOutputs, GripOutputs,
     device::GripSensors,
-    grip::{Felt, GripCommand, GripReport},
+    grip::{Felt, GripCommand, GripReport, GripVerb},
     process::Inputs,
 };
 use levels::{
@@ -26,6 +26,8 @@ const SIZES: Sizes = Sizes { open: 350, part: 66, force: 30 };
 pub struct Grip {
     state: grip::state::State,
     outputs: GripOutputs,
+    /// Fingers that stand open do so at the last opening for which air has opened them.
+    sizes: Sizes,
 }
 
 impl Fingered for Grip {
@@ -48,26 +50,37 @@ impl Fingered for Grip {
         Self {
             state: grip::state::State { phase: Phase::Valid, calibration, ..grip::state::State::default() },
             outputs,
+            sizes: SIZES,
         }
     }
 
+    /// Fingers that let go may stop while one of them touches the part.
     fn next(&self, fingers: Fingers) -> Vec<(Fingers, bool)> {
-        fingers.next(self.outputs.valves.bits)
+        let bits = self.outputs.valves.bits;
+        let mut next = fingers.next(bits);
+        if fingers == Fingers::Holding && flow(bits).0 {
+            next.push((Fingers::Touching, false));
+        }
+        next
     }
 
     /// They have stood for so long that their process has noted it.
     fn may_be_long(&self, fingers: Fingers, (next, arrive): (Fingers, bool)) -> bool {
         let it = &self.state;
-        let read = it.sensed.map(|sensed| sensed.last) == Some(fingers.sensors(&SIZES));
+        let read = it.sensed.map(|sensed| sensed.last) == Some(self.sensors(fingers));
         next == fingers && !arrive && read && it.still_ticks >= 5 && it.touch_ticks >= 5
     }
 
-    fn sensors(fingers: Fingers) -> GripSensors {
-        fingers.sensors(&SIZES)
+    fn sensors(&self, fingers: Fingers) -> GripSensors {
+        fingers.sensors(&self.sizes)
     }
 
     fn are_around(fingers: Fingers) -> bool {
         matches!(fingers, Fingers::Holding | Fingers::Emptied)
+    }
+
+    fn hold(fingers: Fingers) -> bool {
+        fingers == Fingers::Holding
     }
 
     fn are_open(fingers: Fingers) -> bool {
@@ -81,6 +94,10 @@ impl Fingered for Grip {
 
     fn step(&mut self, inputs: &Inputs<'_, ()>) {
         run::<grip::Grip>(&mut self.state, inputs, &mut self.outputs);
+        let order = &inputs.memory.emove.grip;
+        if flow(self.outputs.valves.bits).0 && order.command == GripVerb::OpenGrip {
+            self.sizes.open = u16::try_from(order.position).unwrap_or_default();
+        }
     }
 
     fn execution(&mut self) -> &mut Execution {
@@ -93,6 +110,15 @@ impl Fingered for Grip {
 
     fn rests(&self) -> bool {
         self.state.execution.outcome != Outcome::Executing && flow(self.outputs.valves.bits) == (false, false)
+    }
+
+    /// They hold it without air, too.
+    fn presses(&self) -> bool {
+        true
+    }
+
+    fn restart(&mut self) {
+        self.state = grip::state::State::default();
     }
 
     fn echo(&self) -> u32 {
@@ -122,7 +148,8 @@ impl Fingered for Grip {
     }
 
     fn forget_order(outputs: &mut EmoveOutputs) {
-        outputs.grip = GripCommand { number: outputs.grip.number, ..GripCommand::default() };
+        let GripCommand { number, command, .. } = outputs.grip;
+        outputs.grip = GripCommand { number, command, ..GripCommand::default() };
     }
 
     fn add_to(&self, outputs: &EmoveOutputs, image: &mut Image) {

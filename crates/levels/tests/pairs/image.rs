@@ -150,7 +150,7 @@ pub fn forget(emove: &mut emove::state::State) -> bool {
     }
     let beliefs = &mut emove.beliefs;
     match &mut beliefs.grasping {
-        grasping if beliefs.held.is_some() || beliefs.empty => *grasping = None,
+        grasping if beliefs.held.is_none() && beliefs.empty => *grasping = None,
         Some(grasping) => grasping.opening = 0,
         None => {}
     }

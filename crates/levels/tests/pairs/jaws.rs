@@ -94,6 +94,19 @@ pub struct Jaws<S> {
     side: PhantomData<S>,
 }
 
+impl<S: Side> Jaws<S> {
+    /// Counts of the potentiometer.
+    fn reading(fingers: Fingers) -> u16 {
+        let opening = match fingers {
+            Fingers::Open => S::PARAMETERS.opened,
+            Fingers::Wide => S::PART + 1.0,
+            Fingers::Holding => S::PART,
+            Fingers::Closed => S::PARAMETERS.closed,
+        };
+        (POTENTIOMETER_OFFSET + POTENTIOMETER_SCALE * opening).round() as u16
+    }
+}
+
 impl<S: Side> Fingered for Jaws<S> {
     const GRIPPER: Gripper = S::GRIPPER;
     const OBJECT: (&'static str, i32, &'static str) = S::OBJECT;
@@ -107,7 +120,7 @@ impl<S: Side> Fingered for Jaws<S> {
     const OPEN: Fingers = Fingers::Open;
 
     fn first() -> Self {
-        let counts = Self::sensors(Fingers::Open).potentiometer;
+        let counts = Self::reading(Fingers::Open);
         let state =
             State { window: Some([counts; 4]), attached_ticks: 10, air_ticks: 10, ..State::default() };
         let mut outputs = JawsOutputs::default();
@@ -136,19 +149,16 @@ impl<S: Side> Fingered for Jaws<S> {
         false
     }
 
-    fn sensors(fingers: Fingers) -> GripSensors {
-        let opening = match fingers {
-            Fingers::Open => S::PARAMETERS.opened,
-            Fingers::Wide => S::PART + 1.0,
-            Fingers::Holding => S::PART,
-            Fingers::Closed => S::PARAMETERS.closed,
-        };
-        let potentiometer = (POTENTIOMETER_OFFSET + POTENTIOMETER_SCALE * opening).round() as u16;
-        GripSensors { potentiometer, strain_left: 0, strain_right: 0, beams: 0 }
+    fn sensors(&self, fingers: Fingers) -> GripSensors {
+        GripSensors { potentiometer: Self::reading(fingers), strain_left: 0, strain_right: 0, beams: 0 }
     }
 
     fn are_around(fingers: Fingers) -> bool {
         fingers == Fingers::Holding
+    }
+
+    fn hold(fingers: Fingers) -> bool {
+        Self::are_around(fingers)
     }
 
     fn are_open(fingers: Fingers) -> bool {
@@ -177,6 +187,14 @@ impl<S: Side> Fingered for Jaws<S> {
         self.state.execution.outcome != Outcome::Executing
     }
 
+    fn presses(&self) -> bool {
+        self.outputs.valves.close
+    }
+
+    fn restart(&mut self) {
+        self.state = State::default();
+    }
+
     fn echo(&self) -> u32 {
         self.outputs.status.echo
     }
@@ -202,8 +220,9 @@ impl<S: Side> Fingered for Jaws<S> {
     }
 
     fn forget_order(outputs: &mut EmoveOutputs) {
-        let number = *Self::number(outputs);
-        *S::order(outputs) = JawsCommand { number, ..JawsCommand::default() };
+        let order = S::order(outputs);
+        let JawsCommand { number, command, size, .. } = *order;
+        *order = JawsCommand { number, command, size, ..JawsCommand::default() };
     }
 
     fn add_to(&self, outputs: &EmoveOutputs, image: &mut Image) {

@@ -130,26 +130,54 @@ fn task_and_subtask_transfer_with_a_mishap() {
 
 const GRASPING: &[EmoveVerb] = &[EmoveVerb::GraspObj, EmoveVerb::Release, EmoveVerb::Pause];
 
-fn grasping<G: emove::Fingered>(name: &str, commands: &'static [EmoveVerb], pause: u32, any: u32) {
-    let found = is_sound(name, emove::Pair::<G>::first(commands), 1_000_000);
+/// E-move and the process of a gripper: `early` commands come before the last one has ended (any number if none is
+/// given), and so many `restarts`; a pair that rests takes `pause` and `any` ticks at most.
+fn grasping<G: emove::Fingered>(
+    name: &str,
+    commands: &'static [EmoveVerb],
+    (early, restarts): (Option<u8>, u8),
+    (pause, any): (u32, u32),
+) {
+    let found = is_sound(name, emove::Pair::<G>::first(commands, early, restarts), 1_000_000);
     assert!(found.states > 1000, "{} states", found.states);
     assert!(found.pause <= pause && found.any <= any, "{} and {}", found.pause, found.any);
 }
 
 #[test]
 fn emove_and_grip() {
-    grasping::<grip::Grip>("E-move and Grip", GRASPING, 25, 30);
+    grasping::<grip::Grip>("E-move and Grip", GRASPING, (None, 0), (25, 30));
 }
 
 #[test]
+fn emove_and_grip_with_a_restart() {
+    let early = if is_full() { None } else { Some(0) };
+    grasping::<grip::Grip>("E-move and Grip, a restart", GRASPING, (early, 1), (25, 30));
+}
+
+type VGrip = jaws::Jaws<CylindricalPartGripper>;
+type ToolGrip = jaws::Jaws<ToolGripper>;
+
+#[test]
 fn emove_and_v_grip() {
-    grasping::<jaws::Jaws<CylindricalPartGripper>>("E-move and V-Grip", GRASPING, 67, 76);
+    grasping::<VGrip>("E-move and V-Grip", GRASPING, (None, 0), (67, 76));
+}
+
+#[test]
+fn emove_and_v_grip_with_a_restart() {
+    let commands = if is_full() { GRASPING } else { &GRASPING[..2] };
+    grasping::<VGrip>("E-move and V-Grip, a restart", commands, (Some(0), 1), (67, 76));
 }
 
 #[test]
 fn emove_and_tool_grip() {
     let commands = if is_full() { GRASPING } else { &GRASPING[..2] };
-    grasping::<jaws::Jaws<ToolGripper>>("E-move and Tool-Grip", commands, 67, 76);
+    grasping::<ToolGrip>("E-move and Tool-Grip", commands, (None, 0), (67, 76));
+}
+
+#[test]
+fn emove_and_tool_grip_with_a_restart() {
+    let (commands, early) = if is_full() { (&GRASPING[..2], 1) } else { (&GRASPING[..1], 0) };
+    grasping::<ToolGrip>("E-move and Tool-Grip, a restart", commands, (Some(early), 1), (67, 76));
 }
 
 /// E-move and Prim: `motions` commands interrupt a motion, and as many `faults` come.
