@@ -107,14 +107,15 @@ impl State {
         locked && self.attached != Gripper::None && read != self.attached
     }
 
-    /// May something that is felt count as grasped? Not while the fingers move, nor before the command that
-    /// closes them has looked, nor if they were only opened since nothing was felt.
+    /// May something that is felt count as grasped? Not while the fingers move or do not press it, nor before the
+    /// command that closes them has looked, nor if they were only opened since nothing was felt.
     fn may_adopt(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> bool {
         let grasps = matches!(command.command, EmoveVerb::GraspObj | EmoveVerb::AcquireTool);
         let looks = grasps && self.execution.outcome == Outcome::Executing;
         let moving =
             matches!(self.grippers.status(inputs.tick, inputs.memory), Lower::Pending | Lower::Executing);
-        !looks && !moving && !self.beliefs.empty
+        let presses = Gripper::attached(inputs.memory).presses(inputs.memory);
+        !looks && !moving && presses && !self.beliefs.empty
     }
 
     /// Has a release been begun at this place that has not ended?
@@ -185,12 +186,11 @@ impl State {
         if gripping && !self.is_half_let_go(inputs) { Fingers::Gripping } else { Fingers::Empty }
     }
 
-    /// Does something count as held that the fingers have been told to let go of, or do not feel at rest, or that air
-    /// lets go of?
+    /// Does something count as held that the fingers have been told to let go of, or do not feel or press at rest?
     fn is_half_let_go(&self, inputs: &Inputs<'_, TaskData<'_>>) -> bool {
         let Some(held) = self.beliefs.held else { return false };
         let (gripper, memory) = (Gripper::of(held.gripper), inputs.memory);
-        let around = gripper.felt(memory) != Felt::Nothing && !gripper.has_air(false, memory);
+        let around = gripper.felt(memory) != Felt::Nothing && gripper.presses(memory);
         self.is_letting_go() || (!around && !self.grippers.are_moving(inputs.tick, memory))
     }
 

@@ -167,6 +167,11 @@ impl Gripper {
         self.jaws(memory).is_some_and(|jaws| if to_close { jaws.valves.close } else { jaws.valves.open })
     }
 
+    /// Is what the fingers are around pressed? The parts gripper holds without air, too.
+    pub(super) fn presses(self, memory: &CommonMemory) -> bool {
+        self.jaws(memory).is_none_or(|jaws| jaws.valves.close)
+    }
+
     /// Whether closed fingers with this opening hold an object of `grasp_size`, 0.01 in.
     ///
     /// The parts gripper closes until it feels the object: any opening above the grasp size means an object (VIII.9.1).

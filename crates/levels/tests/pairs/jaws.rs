@@ -144,9 +144,11 @@ impl<S: Side> Fingered for Jaws<S> {
         [&[(fingers, true)], also].concat()
     }
 
-    /// Fingers that never stop are left out: between the places of a long motion there would have to be others.
-    fn may_be_long(&self, _: Fingers, _: (Fingers, bool)) -> bool {
-        false
+    /// They have not stood still, and do not until the time limit is over.
+    fn may_be_long(&self, fingers: Fingers, (next, _): (Fingers, bool)) -> bool {
+        let still = self.state.window.is_some_and(|window| window.iter().all(|counts| *counts == window[0]));
+        let goes = self.outputs.valves.open || self.outputs.valves.close;
+        next == fingers && goes && !still && self.state.execution.outcome == Outcome::Executing
     }
 
     fn sensors(&self, fingers: Fingers) -> GripSensors {

@@ -7,7 +7,7 @@ use geometry::{
 };
 use interfaces::{
     CommonMemory, ExternalInputs, GripOutputs, Header, JawsOutputs, PrimOutputs, QuickChangeOutputs, Reason,
-    device::{Picture, VisionStatus},
+    device::{JawValves, Picture, VisionStatus},
     grip::{Felt, GripReport, GripVerb},
     jaws::{JawsCommand, JawsReport, JawsVerb},
     pose_range,
@@ -453,6 +453,10 @@ impl Jaws {
         let text = || format!("{} {}", command.command.text(), command.size);
         let new = command.number != self.receiving.receiver.echo;
         if self.receiving.step(command.number, TICKS, text, &mut world.log) {
+            let close = command.command == JawsVerb::Grasp;
+            if !matches!(command.command, JawsVerb::None | JawsVerb::Pause) {
+                outputs.valves = JawValves { open: !close, close };
+            }
             match (world.mishap(command.command.text()), command.command) {
                 (Some(Mishap::Jaws(report)), _) => self.report = report,
                 (_, JawsVerb::Pose | JawsVerb::Release) => {

@@ -41,6 +41,7 @@ pub const SCENARIOS: &[fn()] = &[
     what_was_half_let_go_is_grasped_anew,
     what_the_fingers_have_closed_on_since_does_not_count_as_placed,
     jaws_that_air_moves_do_not_stand,
+    jaws_without_air_have_grasped_nothing,
     what_is_not_known_is_held,
     a_bare_robot_leaves_a_holster_without_a_gripper,
     id_pins_that_fail_change_nothing,
@@ -556,7 +557,7 @@ fn what_the_fingers_have_closed_on_since_does_not_count_as_placed() {
     assert_eq!(bench.memory.emove.status.placed, None);
 }
 
-/// Jaws that were stuck may still go where their air presses them.
+/// Jaws that were stuck may still go where their air presses them, and hold nothing without air.
 #[test]
 fn jaws_that_air_moves_do_not_stand() {
     for (close, open) in [(false, false), (true, false), (false, true)] {
@@ -574,8 +575,27 @@ fn jaws_that_air_moves_do_not_stand() {
         bench.world.log.clear();
         bench.memory.v_grip.valves = air;
         assert_eq!(send(&mut bench, (GraspObj, "SHAFT", 1, "BENCH", 2)), DONE);
-        assert_eq!(!bench.log().is_empty(), open, "{:?}", bench.log());
+        assert_eq!(bench.log().is_empty(), close, "{:?}", bench.log());
     }
+}
+
+/// Jaws that do not stand still within their time limit have no air, wherever they stop later.
+#[test]
+fn jaws_without_air_have_grasped_nothing() {
+    let mut bench = Bench::ready("BENCH", 2);
+    bench.world.object = Some(204);
+    bench.spoil("GRASP", Mishap::Jaws(JawsReport::Stuck));
+    bench.command(GraspObj, "SHAFT", 1, "BENCH", 2);
+    bench.steps(2);
+    bench.v_grip.opening = 204;
+    assert_eq!(bench.finish(), error(Reason::JawsStuck));
+    bench.world.mishaps.clear();
+    bench.memory.v_grip.valves = JawValves::default();
+    bench.steps(10);
+    assert_eq!(bench.memory.emove.status.held, Holding::Something);
+    bench.world.log.clear();
+    assert_eq!(send(&mut bench, (GraspObj, "SHAFT", 1, "BENCH", 2)), DONE);
+    assert_eq!(bench.log(), ["GRASP 200"]);
 }
 
 #[test]

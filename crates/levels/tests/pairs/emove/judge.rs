@@ -55,7 +55,7 @@ impl<G: Fingered> Pair<G> {
         let holds = G::hold(self.fingers);
         let wrong = match self.emove_out.status.held {
             Holding::Nothing if holds => "at rest, and what is held counts as nothing",
-            Holding::Object(_) if !holds && !self.emove.releasing => {
+            Holding::Object(_) if !(holds && self.gripper.presses()) && !self.emove.releasing => {
                 "at rest, and something counts as held that is not, nor is being let go"
             }
             _ => return Ok(()),
