@@ -216,8 +216,8 @@ impl<G: Fingered> World for Pair<G> {
     }
 
     fn step(&mut self, event: Self::Event) -> Result<(), Wrong> {
-        self.tick = if event.long { Tick(self.tick.0 + LONG) } else { self.tick.next() };
         let old = self.clone();
+        self.tick = if event.long { Tick(self.tick.0 + LONG) } else { self.tick.next() };
         let mut process = Emove::default();
         if event.restarted != Restarted::Emove {
             process.restore(self.emove);
