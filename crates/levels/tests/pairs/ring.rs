@@ -27,7 +27,7 @@ use rcs_core::tick::Tick;
 
 use crate::{
     data::{data, emove_command, place, pose_of_point},
-    emove::run,
+    emove::{Restarted, run},
     parts_gripper::{GripDoes, PartsGripper},
     robot::{PrimDoes, Robot, SETTLED},
     search::{World, Wrong},
@@ -59,14 +59,6 @@ pub enum Fault {
     Both,
     /// The id pins read this.
     Pins(u8),
-}
-
-/// A process that is restarted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Restarted {
-    None,
-    Emove,
-    QuickChange,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -296,7 +288,7 @@ impl Pair {
         if self.left.1 > 0 {
             let faults = [Fault::Both, Fault::Pins(0), Fault::Pins(2), Fault::Pins(7)];
             mishaps.extend(faults.map(|fault| (Some(fault), Restarted::None)));
-            mishaps.extend([Restarted::Emove, Restarted::QuickChange].map(|process| (None, process)));
+            mishaps.extend([Restarted::Emove, Restarted::Below].map(|process| (None, process)));
         }
         mishaps
     }
@@ -357,7 +349,7 @@ impl World for Pair {
         if event.restarted != Restarted::Emove {
             process.restore(self.emove);
         }
-        if event.restarted == Restarted::QuickChange {
+        if event.restarted == Restarted::Below {
             self.quick_change = quick_change::state::State::default();
         }
         let fails = event.fault.is_some_and(|fault| fault != Fault::None);

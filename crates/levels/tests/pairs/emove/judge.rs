@@ -53,9 +53,10 @@ impl<G: Fingered> Pair<G> {
     /// `before` is the pair a tick before, in which nothing was commanded.
     pub(super) fn judge_held(&self, before: &Self) -> Result<(), Wrong> {
         let holds = G::hold(self.fingers);
+        let presses = holds && self.gripper.presses();
         let wrong = match self.emove_out.status.held {
             Holding::Nothing if holds => "at rest, and what is held counts as nothing",
-            Holding::Object(_) if !(holds && self.gripper.presses()) && !self.emove.releasing => {
+            Holding::Object(_) if !presses && !self.emove.releasing => {
                 "at rest, and something counts as held that is not, nor is being let go"
             }
             _ => return Ok(()),

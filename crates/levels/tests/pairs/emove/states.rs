@@ -1,36 +1,19 @@
 //! Which states of E-move and the process of a gripper are alike.
 
-use interfaces::{Reason, emove::EmoveVerb};
-use levels::execution::Outcome;
+use interfaces::Reason;
 
 use super::{Fingered, Pair};
-use crate::image::{Image, rebase, rebase_echoes};
+use crate::image::{Image, forget, rebase, rebase_echoes};
 
 impl<G: Fingered> Pair<G> {
     /// Without what no row asks for any more: reasons; what a process that executes nothing has of its command.
     pub(super) fn alike(&self) -> Vec<u8> {
         let mut image = Image::new(self.tick, G::LIMIT, G::COUNTERS);
         let mut it = self.clone();
-        (it.emove.execution.reason, it.gripper.execution().reason) = (Reason::None, Reason::None);
-        let executes = it.emove.execution.outcome == Outcome::Executing;
-        if !executes && it.command.command != EmoveVerb::Pause {
-            (it.emove.step, it.emove.ordered, it.emove.uses_prim) = Default::default();
-        }
+        forget(&mut it.emove);
+        it.gripper.execution().reason = Reason::None;
         // Rows that order something lead to later steps: none of them fires twice in a command.
-        it.emove.execution.last_order = None;
-        if !executes {
-            it.emove.carrying = false;
-        }
-        let beliefs = &mut it.emove.beliefs;
-        beliefs.placed = None;
-        match &mut beliefs.grasping {
-            grasping if beliefs.held.is_none() && beliefs.empty => *grasping = None,
-            Some(grasping) => grasping.opening = 0,
-            None => {}
-        }
-        if beliefs.held.is_none() {
-            it.emove.unfelt = 0;
-        }
+        (it.emove.execution.last_order, it.emove.beliefs.placed) = (None, None);
         if it.is_settled() {
             G::forget_order(&mut it.emove_out);
         }
@@ -45,9 +28,7 @@ impl<G: Fingered> Pair<G> {
         image.add(&it.gripper.sensors(it.fingers));
         it.robot.add_to(&mut image);
         image.add(&it.quick_change);
-        let grasps = executes && it.command.command == EmoveVerb::GraspObj;
-        let early = it.left.0.unwrap_or(u8::MAX);
-        image.bytes.extend([if grasps { it.apart } else { 0 }, early, it.left.1]);
+        image.bytes.extend([it.apart, it.left.0.unwrap_or(u8::MAX), it.left.1]);
         image.bytes
     }
 
