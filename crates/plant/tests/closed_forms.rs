@@ -3,15 +3,13 @@
 //! Each test gives the formula with which it compares the simulation. Steps of 2.5 ms integrate a constant acceleration
 //! with an error of half a step of velocity; tolerances are a few times that.
 
-mod rig;
-
+use crate::rig::{self, CELL, PFIX, Rig, UNIT_V1, description, table};
 use geometry::{
     frame::{Frame, Rotation, Vector, rotation_by, rotation_from_x_y, rotation_vector},
     movetable::System,
 };
 use plant::{CellDescription, CellEvent, WorkstationAction};
 use rcs_core::tick::TICK_S;
-use rig::{CELL, PFIX, Rig, UNIT_V1, description, table};
 
 /// Standard gravity, in/s².
 const GRAVITY: f64 = 9.806_65 / 0.0254;

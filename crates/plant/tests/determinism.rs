@@ -1,10 +1,8 @@
 //! The same seed gives the same bits: in ten runs, in two processes, and after saving and restoring the cell during
 //! contacts. `cargo run --example world_hash` with and without `--release` compares the two profiles.
 
-mod rig;
-
+use crate::rig::{Rig, description, scenes, tape::Tape};
 use plant::{Cell, RestoreError};
-use rig::{Rig, description, scenes, tape::Tape};
 
 /// Ticks for which a restored cell is compared with the saved one.
 const GOES_ON: usize = 500;
@@ -44,7 +42,7 @@ fn chains_of_this_process() {
 fn two_processes_have_the_same_digests() {
     let chains = || {
         let output = std::process::Command::new(std::env::current_exe().unwrap())
-            .args(["--exact", "chains_of_this_process", "--ignored", "--nocapture"])
+            .args(["--exact", "determinism::chains_of_this_process", "--ignored", "--nocapture"])
             .output()
             .unwrap();
         let text = String::from_utf8(output.stdout).unwrap();

@@ -1,7 +1,6 @@
 //! The cell through the controller's devices: link, resolvers, gripper sensors, camera, and what viewers get.
 
-mod rig;
-
+use crate::rig::{Rig, UNIT_V1, description, table};
 use depc::{
     Plate,
     controller::Warning,
@@ -17,7 +16,6 @@ use interfaces::device::{
 };
 use plant::{Cell, CellEvent, Key, Placement, WorkstationAction, WorkstationError};
 use rcs_core::Plain;
-use rig::{Rig, UNIT_V1, description, table};
 
 fn bytes(inputs: &DeviceInputs) -> Vec<u8> {
     let mut image = vec![0; DeviceInputs::SCHEMA.size()];

@@ -1,14 +1,12 @@
 //! Inserting tools into the tool drum and taking them out with guarded moves; arm and valves are driven directly.
 
-mod rig;
-
+use crate::rig::{self, FIX_V1, Rig};
 use geometry::{
     frame::{Frame, Vector},
     pose::Pose,
 };
 use interfaces::device::{FORCE_COUNTS_PER_LB, ForceSensor, JawValves, MOMENT_COUNTS_PER_IN_LB};
 use plant::{CellEvent, WorkstationAction, WorkstationError};
-use rig::{FIX_V1, Rig};
 
 /// Poses of the cell proposal, §4.
 const TOOL_V1: Pose =

@@ -1,14 +1,12 @@
 //! Faults in the cell, with arm and valves driven directly: what they change, and what they do not.
 
-mod rig;
-
+use crate::rig::{Rig, description};
 use diagnostics::Source;
 use interfaces::device::{DeviceOutputs, VisionStatus};
 use plant::{
     Cell, CellEvent, Placement, WorkstationAction,
     fault::{FaultPlan, text::parse},
 };
-use rig::{Rig, description};
 
 fn plan(text: &str) -> FaultPlan {
     let source = Source { name: "faults.toml".to_owned(), text: text.into() };

@@ -1,13 +1,11 @@
 //! Programs of the vise, nests, cylinders: workstation actions with parts of other shapes.
 
-mod rig;
-
+use crate::rig::{self, PFIX, Rig, description, table};
 use geometry::{
     frame::{Frame, Vector, rotation_by, rotation_from_x_y},
     movetable::System,
 };
 use plant::{Placement, WorkstationAction, WorkstationError};
-use rig::{PFIX, Rig, description, table};
 
 fn place(rig: &mut Rig, part: &str, unit: &str, sector: u16) -> Result<(), WorkstationError> {
     let placement = Placement::Random;

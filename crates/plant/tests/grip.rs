@@ -1,11 +1,9 @@
 //! Limits of a grip.
 
-mod rig;
-
+use crate::rig::{self, Rig, UNIT_V1, description, table};
 use geometry::frame::{Vector, rotation_vector};
 use interfaces::device::valve;
 use plant::{CellEvent, Placement, WorkstationAction};
-use rig::{Rig, UNIT_V1, description, table};
 
 /// Position of the part relative to the fingertips, in.
 fn in_fingers(rig: &Rig) -> Vector {

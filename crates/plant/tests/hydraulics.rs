@@ -1,7 +1,6 @@
 //! The arm without pressure: how it sags, its contacts, and its return under pressure.
 
-mod rig;
-
+use crate::rig::{FIX_V1, FX1, Rig, UNIT_V1, description};
 use depc::{controller::ControllerState, wire::Report};
 use geometry::{
     frame::{Frame, Vector},
@@ -9,7 +8,6 @@ use geometry::{
 };
 use interfaces::device::DeviceOutputs;
 use plant::{Cell, CellDescription, CellEvent, Cut, Droop, EStop, Key, WorkstationAction, t3::Stage};
-use rig::{FIX_V1, FX1, Rig, UNIT_V1, description};
 
 /// Ticks within which an arm comes to rest, whatever it falls on.
 const LONGEST: u32 = 3000;

@@ -1,9 +1,7 @@
 //! The linkbar of chapter VIII without a controller: the actions of the job of Figure VIII.4, step by step.
 
-mod rig;
-
+use crate::rig::{self, FX2, HOLD, Rig, SEAT, description};
 use plant::WorkstationAction::{self, ViseClose, ViseOpen, VisePartial};
-use rig::{FX2, HOLD, Rig, SEAT, description};
 
 fn machine() -> WorkstationAction {
     WorkstationAction::Machine {

@@ -1,14 +1,12 @@
 //! The Active Pedestal: its grip, its rotation, and the handover of a part.
 
-mod rig;
-
+use crate::rig::{PED, Rig, description, table};
 use geometry::{
     frame::{Frame, Vector, rotation_from_x_y, rotation_vector},
     movetable::System,
 };
 use interfaces::device::{MotorOrder, TABLE_STEPS_PER_TENTH, valve};
 use plant::{CellEvent, WorkstationAction};
-use rig::{PED, Rig, description, table};
 
 /// The pedestal's frame: X away from the robot, Y left, Z up.
 fn pedestal() -> Frame {

@@ -1,14 +1,12 @@
 //! Detaching and attaching grippers at their holsters, with arm and valves driven directly.
 
-mod rig;
-
+use crate::rig::{Rig, description};
 use geometry::{
     frame::{Frame, Vector, rotation_by},
     pose::Pose,
 };
 use interfaces::device::{GripValves, HolsterSensors, JawValves, QuickChangeValves, valve};
 use plant::CellEvent;
-use rig::{Rig, description};
 
 /// Poses of the cell proposal, §4.
 const HOL_V1: Pose =

@@ -3,15 +3,13 @@
 //! The linkbar job depends on gaps of a millimetre (cell proposal, §2). 0.5 mm a minute is permitted; the limit here is
 //! 0.1 mm.
 
-mod rig;
-
+use crate::rig::{self, CELL, Rig, UNIT_V1, description, scenes, table};
 use geometry::{
     frame::{Frame, Vector, rotation_by, rotation_from_x_y, rotation_vector},
     movetable::System,
 };
 use interfaces::device::JawValves;
 use plant::{CellDescription, WorkstationAction};
-use rig::{CELL, Rig, UNIT_V1, description, scenes, table};
 
 /// A minute, ticks.
 const MINUTE: u32 = 1500;

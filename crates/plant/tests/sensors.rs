@@ -1,14 +1,12 @@
 //! From true values to words: noise, weight and bias, dead time, light, and hidden parts.
 
-mod rig;
-
+use crate::rig::{Rig, UNIT_V1, description, table};
 use geometry::{frame::Vector, movetable::System};
 use interfaces::device::{
     FORCE_COUNTS_PER_LB, FORCE_ZERO, Picture, RESOLVER_COUNTS, VisionRequest, VisionResponse, VisionStatus,
     valve,
 };
 use plant::description::Mounted;
-use rig::{Rig, UNIT_V1, description, table};
 
 /// A rig with the tool gripper on.
 fn with_tool_gripper(noise: f64) -> Rig {

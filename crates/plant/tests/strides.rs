@@ -1,9 +1,7 @@
 //! Long steps of the physics give the same results as small ones: the same scenes with and without them.
 
-mod rig;
-
+use crate::rig::{FIX_V1, Rig, description, scenes, tape::Beat};
 use plant::{Cell, CellDescription};
-use rig::{FIX_V1, Rig, description, scenes, tape::Beat};
 
 /// Greatest distance of a part between a run with long steps and one with small steps, in.
 const ALIKE: f64 = 0.02;

@@ -1,10 +1,8 @@
 //! Parts in the vise: standing, falling and being machined.
 
-mod rig;
-
+use crate::rig::{self, PFIX, Rig, description};
 use geometry::frame::{Frame, Vector, rotation_by, rotation_from_x_y};
 use plant::{CellEvent, WorkstationAction, WorkstationError};
-use rig::{PFIX, Rig, description};
 
 /// A bar upright in the vise: its middle at `position` in the fixture's frame, tilted to the front by `lean` degrees
 /// about the front edge of the ledge.

@@ -1,0 +1,22 @@
+//! Tests of the simulated cell, in one program: each program takes a while to link.
+
+mod closed_forms;
+mod description;
+mod determinism;
+mod devices;
+mod drum;
+mod faults;
+mod fixtures;
+mod grip;
+mod hydraulics;
+mod lines;
+mod linkbar;
+mod numbers;
+mod pedestal;
+mod quick_change;
+mod rest;
+mod rig;
+mod sensors;
+mod strides;
+mod urdf;
+mod vise;

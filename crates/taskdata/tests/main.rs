@@ -1,0 +1,12 @@
+//! Tests of the task data, in one program: each program takes a while to link.
+
+mod chains;
+mod commands;
+mod data;
+mod figures;
+mod generations;
+mod guarded;
+mod job_lines;
+mod lookups;
+mod mistakes;
+mod print;
