@@ -412,3 +412,12 @@ impl Operator<'_> {
         }
     }
 }
+
+/// A commander that sends nothing: Task continues its command.
+pub struct Silent;
+
+impl Commander for Silent {
+    fn step(&mut self, _: Tick, _: &Status<'_>, _: &mut SimulatedWorkstation) -> Option<HwsCommand> {
+        None
+    }
+}

@@ -219,7 +219,7 @@ fn all_threads_give_the_same_judgements_in_the_same_order() {
         let mut all = Coverage::default();
         let results = run.expect("the branches can be run").into_iter().map(|(one, met)| {
             let new = all.take_in(met);
-            (one.interruption, one.at, one.digest, new.counts())
+            (one.interruption, one.at, one.state, new.counts())
         });
         (results.collect::<Vec<_>>(), all)
     };
@@ -276,8 +276,8 @@ fn a_campaign_goes_on_from_its_journal() {
 
     fs::write(&path, [&whole[..], &whole[..whole.len() / 2]].concat()).expect("the journal can be written");
     let again = Journal::open(&path, &campaign).expect("a torn line is cut off");
-    let known = again.known(&plans[0]).map(|(known, met)| (&known.digest, known.verdict, met));
-    assert_eq!(known, Some((&first.digest, first.verdict, met)));
+    let known = again.known(&plans[0]).map(|(known, met)| (&known.state, known.verdict, met));
+    assert_eq!(known, Some((&first.state, first.verdict, met)));
     assert!(again.known(&plans[1]).is_none());
     assert_eq!(fs::read(&path).expect("the journal is there"), whole);
 

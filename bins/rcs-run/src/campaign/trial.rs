@@ -16,7 +16,7 @@ use super::{
     invariants::Invariants,
     known::{End, Known},
     motion::Motion,
-    operator::{Operator, Recovery, Then},
+    operator::{Operator, Recovery, Silent, Then},
     parent::Parent,
     series::Series,
 };
@@ -95,7 +95,10 @@ pub struct BranchResult {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest_after: Option<u64>,
     /// Digest of its last state.
-    pub digest: String,
+    pub state: String,
+    /// Digest of all its ticks, if nothing has interrupted it: that of the ordinary run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub digest: Option<String>,
 }
 
 /// Observes a branch.
@@ -267,11 +270,13 @@ impl Trial<'_, '_> {
         }
     }
 
-    /// True if the branch depends on nothing but its state and the operator's, and may be in a known one.
+    /// True if the branch depends on nothing but its state and the operator's, and may be in a known one. A branch that
+    /// nothing interrupts shows that a fork goes on as the ordinary run does, and runs to its end.
     fn is_comparable(&self) -> bool {
-        let undisturbed = self.following && self.motion.is_none() && self.next().is_none();
+        let was_interrupted = *self.kind() != Kind::None && self.next().is_none();
+        let goes_on = self.following && self.motion.is_none();
         let harmless = self.monitor.has_seen_nothing() && self.mismatch.is_none() && !self.tears;
-        Known::compares(self.branch.at()) && undisturbed && harmless && self.invariants.hold()
+        Known::compares(self.branch.at()) && was_interrupted && goes_on && harmless && self.invariants.hold()
     }
 
     /// Digest of the state, with that of the operator and the line at whose end the branch is judged.
@@ -416,6 +421,7 @@ impl Trial<'_, '_> {
 
     fn result(self, verdict: Verdict, end: &End, doing: Vec<String>) -> BranchResult {
         let (reason, detail) = self.why(verdict);
+        let digest = (*self.kind() == Kind::None).then(|| self.branch.digest().to_string());
         let line = match self.line.checked_sub(1) {
             None => "PAUSE".to_owned(),
             Some(at) => self
@@ -440,7 +446,8 @@ impl Trial<'_, '_> {
             ended: self.ended.into_iter().map(|(_, text)| text).collect(),
             until: end.until.0,
             rest_after: self.motion.as_ref().map(Motion::ticks),
-            digest: end.state.to_string(),
+            state: end.state.to_string(),
+            digest,
         }
     }
 
@@ -489,19 +496,5 @@ fn go(location: &str) -> HwsCommand {
         command: Name16::clipped("MOVE"),
         destination: Some(Name16::clipped(location)),
         ..HwsCommand::default()
-    }
-}
-
-/// A commander that sends nothing: Task continues its command.
-struct Silent;
-
-impl super::branch::Commander for Silent {
-    fn step(
-        &mut self,
-        _: Tick,
-        _: &neighbours::workstation::Status<'_>,
-        _: &mut runtime::workstation::SimulatedWorkstation,
-    ) -> Option<HwsCommand> {
-        None
     }
 }
