@@ -27,8 +27,8 @@ pub struct Plan {
 /// A forked state, and the index of the plan that begins with it.
 type Work = (Arc<Fork>, usize);
 
-/// Run a branch for each plan, up to a known state. Calls `done` with each new result and what the branch has met; what it returns is
-/// collected in the order of the plans, which does not depend on `threads`.
+/// Run a branch for each plan, up to a known state. Calls `done` with each new result and what the branch has met; what
+/// it returns is collected in the order of the plans, which does not depend on `threads`.
 ///
 /// # Errors
 /// [`Error`] if the run cannot be forked, and the errors of `done`.
