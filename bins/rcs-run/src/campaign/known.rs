@@ -1,8 +1,8 @@
 //! States of branches that are done: a branch that comes to one of them is done, too.
 //!
 //! A tick depends on nothing but the state. Two branches that are in the same state in the same tick go on alike, bit
-//! for bit, and the second one need not be run to its end. Many interruptions leave nothing behind, such as the fault of
-//! a sensor that nobody reads, or leave the same behind as at another tick, such as a process that has restarted.
+//! for bit, and the second one need not be run to its end. Many interruptions leave nothing behind, such as the fault
+//! of a sensor that is not read, or leave the same behind as at another tick, such as a process that has restarted.
 //!
 //! ```text
 //!   branch 1  --x----------+-----------+-----------+------- done     x  interrupted
@@ -17,7 +17,7 @@ use std::{
 
 use rcs_core::{digest::Digest, tick::Tick};
 
-/// Ticks between two comparisons (2 s). The state of a cell takes about as long to write down as five ticks take.
+/// Ticks between two comparisons (2 s): for each of them the whole cell is saved.
 const EVERY: u64 = 50;
 
 /// A state: its tick, and its digest.

@@ -1,8 +1,8 @@
 //! Branches drawn at random, and the smallest series of interruptions with the same outcome as a drawn one.
 //!
 //! Branches are drawn in rounds. From the second round on about one half of them are changes of earlier ones, and those
-//! that have met most new rows and states are changed most often. A draw depends on its seed and on what the branches of the
-//! rounds before have met, and not on the order in which they end.
+//! that have met most new rows and states are changed most often. A draw depends on its seed and on what the branches
+//! of the rounds before have met, and not on the order in which they end.
 
 use std::collections::HashSet;
 

@@ -147,8 +147,8 @@ struct Trial<'f, 'p> {
     motion: Option<Motion>,
 }
 
-/// Interrupt a fork after its last tick, and judge the branch. If it comes to a known state it is not run to its end; if
-/// it is done, its states are known from then on.
+/// Interrupt a fork after its last tick, and judge the branch. If it comes to a known state it is not run to its end;
+/// if it is done, its states are known from then on.
 ///
 /// # Errors
 /// [`Error`] if the branch cannot be made from the fork, or its cell cannot be saved.

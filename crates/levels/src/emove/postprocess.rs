@@ -83,7 +83,7 @@ impl State {
             Action::Pause => {
                 self.stop_robot(inputs, outputs);
                 if self.is_letting_go() {
-                    // After this order, nothing else says so to an E-move that is restarted.
+                    // The order no longer says that a release has not ended. If E-move is restarted, this does.
                     self.beliefs.grasping = None;
                 }
                 let request = FingerOrder { order: FingerVerb::Pause, ..FingerOrder::default() };

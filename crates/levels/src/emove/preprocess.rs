@@ -119,8 +119,8 @@ impl State {
             let (before, now) = (Gripper::of(outputs.status.end_effector_id), Gripper::attached(memory));
             self.attached = if now == Gripper::None || now == before { before } else { Gripper::None };
             self.grippers.adopt(memory);
-            let half = self.beliefs.held.is_some() && self.beliefs.grasping.is_none();
-            self.releasing = half || self.grippers.order == FingerVerb::Release;
+            let cut_off = self.beliefs.held.is_some() && self.beliefs.grasping.is_none();
+            self.releasing = cut_off || self.grippers.order == FingerVerb::Release;
         }
     }
 

@@ -17,7 +17,8 @@
 //! QC-LOCK and QC-UNLOCK give the ring air and enable the control port, until the ring has arrived, both
 //! sensors see it, or 25 ticks have passed; then the port is disabled again, so that nothing can unlock a
 //! gripper by accident. In between the status is that of the ring, not of a command: QC-PAUSE watches from
-//! the first tick on, before any command, after a restart and after the end of the other commands. One thing
+//! the first tick on, before any command, after a restart and after the end of the other commands. A ring that
+//! had air before a restart may go on in that tick, and is read from the next one on. One thing
 //! is kept: a ring that did not arrive, or sensors that failed while it turned, are reported until the next
 //! command, whatever the sensors say meanwhile.
 //!

@@ -90,6 +90,11 @@ where
     *state = *process.state();
 }
 
+/// Has E-move reported a command done?
+pub fn is_done(outputs: &EmoveOutputs, number: u32) -> bool {
+    outputs.status.echo == number && outputs.status.report == StatusReport::Done
+}
+
 /// A process that is restarted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restarted {

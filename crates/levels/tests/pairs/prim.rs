@@ -23,6 +23,7 @@ use rcs_core::tick::Tick;
 
 use crate::{
     data::{data, emove_command, place, pose_of_point},
+    emove::is_done,
     image::{Image, rebase, rebase_echoes, renumber_poses},
     search::{World, Wrong},
 };
@@ -288,11 +289,8 @@ impl Pair {
             return Err("Prim is done, and the robot is not at its goal");
         }
         let status = &self.emove_out.status;
-        let ended = |it: &Self| {
-            let status = &it.emove_out.status;
-            status.echo == self.command.number && status.report == StatusReport::Done
-        };
-        if !ended(self) || ended(before) {
+        let number = self.command.number;
+        if !is_done(&self.emove_out, number) || is_done(&before.emove_out, number) {
             return Ok(());
         }
         match self.command.command {

@@ -162,7 +162,7 @@ pub enum Load {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Fingers {
     /// Nothing, or nothing of the object's size. So it is if something counts as held and has been half let
-    /// go: a release of it has not ended, or the fingers rest and feel nothing.
+    /// go: a release of it has not ended, or the fingers rest and do not feel or press it.
     Empty,
     /// Something.
     Gripping,

@@ -6,7 +6,7 @@ use interfaces::{
     prim::PrimReport,
 };
 
-use super::{Event, Fingered, Pair, Restarted};
+use super::{Event, Fingered, Pair, Restarted, is_done};
 use crate::search::{World as _, Wrong};
 
 impl<G: Fingered> Pair<G> {
@@ -26,11 +26,8 @@ impl<G: Fingered> Pair<G> {
         if refused && (fingers_move || robot_moves) {
             return Err("restarted is reported before what was ordered is at rest");
         }
-        let ended = |it: &Self| {
-            let status = &it.emove_out.status;
-            status.echo == self.command.number && status.report == StatusReport::Done
-        };
-        if !ended(self) || ended(before) {
+        let number = self.command.number;
+        if !is_done(&self.emove_out, number) || is_done(&before.emove_out, number) {
             return Ok(());
         }
         match self.command.command {

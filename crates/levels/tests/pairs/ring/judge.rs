@@ -1,31 +1,26 @@
 //! What must hold of E-move and Quick Change in each tick.
 
-use interfaces::{StatusReport, emove::EmoveVerb};
+use interfaces::emove::EmoveVerb;
 use levels::emove::relative::Relative;
 
 use super::{Pair, Ring};
-use crate::{data::data, robot, search::Wrong};
+use crate::{data::data, emove::is_done, robot, search::Wrong};
 
 /// The robot is clear of the holster if it is as far above it, in the axes of the holster, in.
 const CLEAR: f64 = -2.9;
 
 impl Pair {
-    fn is_done(&self, number: u32) -> bool {
-        let status = &self.emove_out.status;
-        status.echo == number && status.report == StatusReport::Done
-    }
-
     /// `before` is the pair as it was when the processes read it.
     pub(super) fn judge(&self, before: &Self) -> Result<(), Wrong> {
         self.judge_motion(before)?;
         let number = self.command.number;
-        if !self.is_done(number) {
+        if !is_done(&self.emove_out, number) {
             return Ok(());
         }
         if before.robot.is_moving(&before.emove_out.prim) || before.is_driven() || self.is_driven() {
             return Err("done, and the robot moves, or the ring turns");
         }
-        if before.is_done(number) {
+        if is_done(&before.emove_out, number) {
             return Ok(());
         }
         let id = self.emove_out.status.end_effector_id;
