@@ -142,6 +142,14 @@ impl Host {
         Self { answer_ticks: answer_ticks.max(1), patience: PATIENCE_TICKS, ..Self::default() }
     }
 
+    /// Forget the counters, and the report that is no candidate any more. It goes on as before.
+    pub fn forget_past(&mut self) {
+        self.counters = LinkCounters::default();
+        if !self.has_candidate {
+            self.candidate = Plate::default();
+        }
+    }
+
     /// Set the number of ticks with DTR on to wait for a report, or for the answer to a cancel, before the link counts
     /// as failed; initially [`PATIENCE_TICKS`].
     pub const fn set_patience(&mut self, ticks: u16) {

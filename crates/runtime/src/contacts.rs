@@ -23,7 +23,7 @@ pub const DEEPEST: f64 = 1.0;
 /// Distances greater than this are no near miss, in.
 const MARGIN: f64 = 2.0;
 /// A permitted contact has ended at this distance, in.
-const FREE: f64 = 0.05;
+pub const FREE: f64 = 0.05;
 /// Least increase of depth that counts as deeper, in.
 const DEEPER: f64 = 0.001;
 
@@ -174,7 +174,7 @@ impl ContactCheck {
 
     /// The state on which later checks depend.
     pub fn state(&self) -> impl fmt::Debug {
-        (&self.allowed, &self.open, &self.commands, self.margin())
+        (&self.allowed, &self.open, &self.commands)
     }
 
     /// Distance within which the cell must report pairs, in: that of the nearest miss so far, and enough to detect the

@@ -42,11 +42,12 @@ use taskdata::{
 
 use runtime::{
     StartError,
-    contacts::ContactCheck,
+    contacts::{ContactCheck, FREE},
     neighbours::task_state,
     workstation::{SimulatedWorkstation, WorkstationState},
 };
 
+use super::past;
 use crate::error::Error;
 
 /// Ticks of delay of a late answer: more than the three ticks for which the host waits.
@@ -292,7 +293,8 @@ impl<'f> Branch<'f> {
         self.events = self.workstation.events(tick);
         let commands = control.check.commands(control.course.memory());
         control.check.look(tick, self.workstation.cell.contacts(), commands);
-        self.workstation.cell.watch_clearance(control.check.margin());
+        // What passes by without a touch is of no interest here.
+        self.workstation.cell.watch_clearance(FREE);
     }
 
     fn tell_data_system(&mut self) {
@@ -405,7 +407,8 @@ impl<'f> Branch<'f> {
         line.answer.take_if(|injector| injector.is_over(tick));
     }
 
-    /// Digest of everything on which the next ticks depend, and of `beside`.
+    /// Digest of everything on which the next ticks depend, but for numbers and times that make no difference
+    /// ([`past`]), and of `beside`.
     ///
     /// # Errors
     /// [`Error::Fork`] if the cell cannot be saved.
@@ -413,16 +416,23 @@ impl<'f> Branch<'f> {
         let cell = self.workstation.cell.save().map_err(|error| Error::Fork(error.to_string()))?;
         let Control { course, gate, command_box, check, inputs, line, generation, asked, told, .. } =
             &self.control;
+        let (mut memory, mut ladder) = (*course.memory(), course.levels().ladder.state());
+        let command = gate.command();
+        past::forget(&mut memory, &mut ladder, self.at());
+        for echo in [&mut memory.task.status.echo, &mut ladder.task.execution.receiver.echo] {
+            *echo = echo.wrapping_sub(command.number);
+        }
         let mut digest = Digest::new();
         digest.add(&cell);
         let mut scratch = vec![0; CommonMemory::SIZE.max(LadderState::SIZE)];
-        digest.add_record(course.memory(), &mut scratch);
-        digest.add_record(&course.levels().ladder.state(), &mut scratch);
+        digest.add_record(&memory, &mut scratch);
+        digest.add_record(&ladder, &mut scratch);
         digest.add_record(inputs, &mut scratch);
         // An older statement has been answered.
         let age = told.last().map(|(tick, _)| self.at().since(*tick).min(ANSWER_TICKS + 1));
         let statements: Vec<_> = told.iter().map(|(_, command)| command).collect();
-        let mailboxes = (gate, command_box, line, &course.levels().processes);
+        let command = HwsCommand { number: 0, ..*command };
+        let mailboxes = (command, gate.refused(), gate.unread(command_box), line, &course.levels().processes);
         let data = (generation, asked, statements, age, self.data_system.status());
         let all = (mailboxes, data, check.state(), self.workstation.state(), beside);
         // Writing into a digest cannot fail.

@@ -24,6 +24,7 @@ mod markdown;
 mod motion;
 mod operator;
 mod parent;
+mod past;
 mod pool;
 mod random;
 mod report;

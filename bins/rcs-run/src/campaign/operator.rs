@@ -205,12 +205,25 @@ impl<'f> Operator<'f> {
         matches!(self.doing, Doing::Own(Then::SameCommand))
     }
 
-    /// The state on which what the operator does next depends.
-    pub fn state(&self) -> impl fmt::Debug {
-        let place = (self.current, &self.doing, self.began, self.number, &self.outgoing);
-        let replaced = (self.replaced, self.has_finished, self.is_waiting);
+    /// The state after tick `now` on which what the operator does next depends. Commands are numbered from `newest`.
+    ///
+    /// The tick in which a command began does not belong to it once Task has had the time to echo it: see
+    /// [`Self::waits_until`].
+    pub fn state(&self, now: Tick, newest: u32) -> impl fmt::Debug {
+        let is_echoed = now.since(self.began) > ECHO_LIMIT.max(REST_LIMIT);
+        let is_timed = self.doing != Doing::Command || !is_echoed || self.second_pause.is_some();
+        let began = is_timed.then_some(self.began);
+        let since = |number: u32| number.wrapping_sub(newest);
+        let outgoing = self.outgoing.map(|command| HwsCommand { number: since(command.number), ..command });
+        let place = (self.current, &self.doing, began, since(self.number), outgoing);
+        let replaced = (self.replaced.map(since), self.has_finished, self.is_waiting);
         let tries = (self.recovery, self.tries, self.tried, self.second_pause, &self.reason);
         (place, replaced, tries, &self.later, &self.delayed)
+    }
+
+    /// True if the operator still waits for the end of the current command in this tick.
+    pub fn waits_until(&self, tick: Tick) -> bool {
+        tick.since(self.began) <= TIME_LIMIT
     }
 
     /// The commands and actions that have ended since the last call.
@@ -299,7 +312,7 @@ impl<'f> Operator<'f> {
     /// Begin the next line of the job.
     fn next(&mut self, tick: Tick, workstation: &mut SimulatedWorkstation) {
         self.current += 1;
-        self.tried = 0;
+        (self.tried, self.second_pause) = (0, None);
         self.began = tick;
         let lines = self.lines;
         let Some(line) = lines.get(self.current - 1) else {

@@ -282,13 +282,17 @@ impl Trial<'_, '_> {
     /// Digest of the state, with that of the operator and the line at whose end the branch is judged.
     fn state(&mut self) -> Result<Digest, Error> {
         self.branch.forget_past_faults();
-        self.branch.state(&(self.operator.state(), self.goal))
+        let operator = self.operator.state(self.branch.at(), self.branch.command().number);
+        self.branch.state(&(operator, self.goal))
     }
 
     /// The end of a branch that was in the same state.
     fn known_end(&mut self, known: &Known) -> Result<Option<Arc<End>>, Error> {
         let (now, state) = (self.branch.at(), self.state()?);
-        let end = known.end(now, state);
+        let end = known.end(now, state).filter(|end| {
+            let next = end.ended.iter().find(|(tick, _)| *tick > now);
+            next.is_none_or(|(tick, _)| self.operator.waits_until(*tick))
+        });
         if let Some(end) = &end {
             self.ended.extend(end.ended.iter().filter(|(tick, _)| *tick > now).cloned());
         }

@@ -77,7 +77,8 @@ pub struct State {
 
 impl State {
     /// A calibration, or an opening without one, is under way.
-    pub(super) fn is_calibrating(&self) -> bool {
+    #[must_use]
+    pub fn is_calibrating(&self) -> bool {
         matches!(self.phase, Phase::Closing | Phase::Opening | Phase::Venting | Phase::Widening)
     }
 }

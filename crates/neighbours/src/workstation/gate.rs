@@ -108,6 +108,18 @@ impl Gate {
         &self.command
     }
 
+    /// Why the last mailgram was refused, if it was.
+    #[must_use]
+    pub const fn refused(&self) -> Option<&Refusal> {
+        self.refused.as_ref()
+    }
+
+    /// The data of the mailbox, if they have not been read yet.
+    #[must_use]
+    pub fn unread<'b>(&self, command_box: &'b Mailbox) -> Option<&'b [u8]> {
+        (command_box.mailgram() != self.read).then(|| command_box.data())
+    }
+
     /// The mailbox to the workstation controller.
     #[must_use]
     pub const fn status_box(&self) -> &Mailbox {

@@ -1,0 +1,177 @@
+//! What the control processes keep of the past and no longer act on, removed from a copy of their state.
+//!
+//! Two states that differ in nothing else go on alike, but for these same values:
+//!
+//! - the numbers of commands and pose records: they are only compared with each other, so they are counted anew, from
+//!   the newest one;
+//! - the rows in the headers, and the counters of the line: no process acts on them;
+//! - times that are over: of a command that is echoed, of an old RESTART, of a table that stands;
+//! - readings of a calibration that has ended: the next one takes them anew.
+
+use std::collections::BTreeSet;
+
+use depc::link::LinkCounters;
+use interfaces::{CommonMemory, ProcessId, pose_range};
+use levels::{
+    execution::{Execution, Outcome},
+    grip::calibration::{Readings, Steady},
+    ladder::LadderState,
+    pedestal::table::tables::Phase,
+    prim::state::RESTART_TICKS,
+    rows::Rows,
+};
+use rcs_core::{Plain as _, handshake::Commander, header::Header, tick::Tick};
+
+/// Remove the past from common memory and state after tick `now`.
+pub fn forget(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick) {
+    count_poses(memory, ladder);
+    count_commands(memory, ladder, now);
+    forget_rows(memory, ladder);
+    memory.t3i.status.counters = LinkCounters::default();
+    ladder.t3i.host.forget_past();
+    for time in &mut ladder.prim.restarts.ticks {
+        time.take_if(|time| now.since(*time) > RESTART_TICKS);
+    }
+    let data_system = &mut ladder.task.data_system;
+    if data_system.commander.number == 0 {
+        data_system.commander.sent = Tick(0);
+    }
+    let table = &mut ladder.table;
+    table.motor.sent = Tick(0);
+    if table.phase == Phase::Valid && table.execution.outcome != Outcome::Executing {
+        table.since = Tick(0);
+    }
+    for gripper in [&mut ladder.grip, &mut ladder.hand] {
+        if !gripper.is_calibrating() {
+            (gripper.closed, gripper.open) = (Readings::default(), Readings::default());
+            gripper.steady = Steady::default();
+        }
+    }
+}
+
+/// Number the commands of each process from the newest one: it becomes [`NEWEST`], the one before it one less.
+fn count_commands(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick) {
+    // A commander, the number in its buffer, and the echoes of the process below in its state and its status.
+    macro_rules! count {
+        ($($above:ident: $commander:ident $(. $of:ident)?, $command:ident => $below:ident $(. $execution:ident)?;)*) => {$(
+            settle(
+                &mut ladder.$above.$commander $(. $of)?,
+                [
+                    &mut memory.$above.$command.number,
+                    &mut ladder.$below $(. $execution)? .receiver.echo,
+                    &mut memory.$below.status.echo,
+                ],
+                now,
+            );
+        )*};
+    }
+    count! {
+        task: subtask, subtask => subtask.execution;
+        subtask: emove, emove => emove.execution;
+        subtask: pedestal, pedestal => pedestal.execution;
+        emove: prim, prim => prim.execution;
+        emove: quick_change, quick_change => quick_change.execution;
+        emove: grippers.parts, grip => grip.execution;
+        emove: grippers.v, v_grip => v_grip.execution;
+        emove: grippers.tool, tool_grip => tool_grip.execution;
+        prim: t3i, t3i => t3i;
+        pedestal: hand, hand => hand.execution;
+        pedestal: table, table => table.execution;
+    }
+}
+
+/// The number that the newest command gets; 0 means none.
+const NEWEST: u32 = 1000;
+
+fn settle(commander: &mut Commander, numbers: [&mut u32; 3], now: Tick) {
+    let newest = commander.number;
+    if numbers.iter().all(|number| **number == newest) && commander.sent != now {
+        commander.sent = Tick(0);
+    }
+    for number in [&mut commander.number].into_iter().chain(numbers) {
+        if newest != 0 && *number != 0 {
+            *number = number.wrapping_sub(newest).wrapping_add(NEWEST);
+        }
+    }
+}
+
+/// Number the pose records that are in use, for each process from its newest one, which becomes 0.
+fn count_poses(memory: &mut CommonMemory, ladder: &mut LadderState) {
+    let newest = [
+        (pose_range::TASK, ladder.task.last_pose),
+        (pose_range::SUBTASK, ladder.subtask.last_pose),
+        (pose_range::EMOVE, ladder.emove.last_pose),
+        (pose_range::PRIM, ladder.prim.newest_pose),
+    ];
+    let mut numbers = pose_numbers(memory, ladder);
+    for (writer, newest) in newest {
+        let age = |number: u32| newest.wrapping_sub(number) & !pose_range::WRITER;
+        let of_writer = |number: u32| number & pose_range::WRITER == writer;
+        let used: BTreeSet<u32> =
+            numbers.iter().map(|number| **number).filter(|number| of_writer(*number)).map(age).collect();
+        for number in numbers.iter_mut().filter(|number| of_writer(***number)) {
+            let place = used.range(..age(**number)).count();
+            **number = writer | u32::try_from(place).unwrap_or(u32::MAX);
+        }
+    }
+}
+
+/// All fields that hold the number of a pose record.
+fn pose_numbers<'a>(memory: &'a mut CommonMemory, ladder: &'a mut LadderState) -> Vec<&'a mut u32> {
+    let (task, subtask, emove, prim) =
+        (&mut memory.task, &mut memory.subtask, &mut memory.emove, &mut memory.prim);
+    let plan = &mut ladder.task.plan;
+    let sites = [&mut plan.source, &mut plan.destination, &mut plan.end_at];
+    let records =
+        task.poses.iter_mut().chain(&mut subtask.poses).chain(&mut emove.poses).chain(&mut prim.poses);
+    let records = records.chain(sites.into_iter().filter_map(|site| Some(&mut site.location.as_mut()?.pose)));
+    let aims = &mut ladder.subtask.aims;
+    let status = &mut prim.status;
+    let optional = [
+        &mut task.subtask.pose,
+        &mut subtask.emove.pose,
+        &mut subtask.status.reference_pose,
+        &mut emove.status.reference_pose,
+        &mut status.present_pose,
+        &mut status.sensor_pose,
+        &mut status.detected_pose,
+        &mut status.recorded_pose,
+        &mut aims.first.pose,
+        &mut aims.second.pose,
+        &mut aims.third.pose,
+    ];
+    let route = ladder.emove.route.iter_mut().flat_map(|route| [&mut route.departure, &mut route.goal]);
+    let last = [
+        &mut emove.prim.pose,
+        &mut ladder.task.last_pose,
+        &mut ladder.subtask.last_pose,
+        &mut ladder.emove.last_pose,
+        &mut ladder.prim.newest_pose,
+    ];
+    let optional = records.map(|record| &mut record.number).chain(optional);
+    optional.flatten().chain(route).chain(last).collect()
+}
+
+/// Remove the rows from all headers, and from the states that they are written from.
+fn forget_rows(memory: &mut CommonMemory, ladder: &mut LadderState) {
+    for process in ProcessId::ALL {
+        let header = memory.header_mut(*process);
+        *header = Header { stamp: header.stamp, republished: header.republished, ..Header::default() };
+    }
+    let executions: [&mut Execution; 11] = [
+        &mut ladder.task.execution,
+        &mut ladder.subtask.execution,
+        &mut ladder.emove.execution,
+        &mut ladder.prim.execution,
+        &mut ladder.quick_change.execution,
+        &mut ladder.grip.execution,
+        &mut ladder.v_grip.execution,
+        &mut ladder.tool_grip.execution,
+        &mut ladder.pedestal.execution,
+        &mut ladder.hand.execution,
+        &mut ladder.table.execution,
+    ];
+    for rows in executions.into_iter().map(|execution| &mut execution.rows).chain([&mut ladder.t3i.rows]) {
+        *rows = Rows::ZERO;
+    }
+}
