@@ -54,6 +54,9 @@ struct Arguments {
     /// Only tables in files whose path contains TEXT
     #[arg(long, value_name = "TEXT", default_value = "")]
     only: String,
+    /// Only this row, as `"QC-LOCK 3"`; may be repeated
+    #[arg(long, value_name = "TABLE ROW")]
+    row: Vec<String>,
     /// Run only the tests of the process whose table is changed: survivors may be killed by others
     #[arg(long)]
     own: bool,
@@ -256,10 +259,16 @@ fn judge(tests: &[Test<'_>], (number, mutant): &(usize, Mutant), own: bool) -> i
 fn run(arguments: &Arguments) -> Result<(), String> {
     let said = |error: io::Error| error.to_string();
     let copied = Copied::new(root());
-    let mutants = mutate::drawn(root(), arguments.seed, &arguments.only).map_err(said)?;
+    let mut mutants = mutate::drawn(root(), arguments.seed, &arguments.only).map_err(said)?;
     if mutants.is_empty() {
         return Err(format!("no file with a table has {:?} in its path", arguments.only));
     }
+    if let Some(unknown) = arguments.row.iter().find(|row| !mutants.iter().any(|mutant| mutant.is_of(row))) {
+        return Err(format!(
+            "expected a table and the number of a row, such as \"QC-LOCK 3\", found {unknown:?}"
+        ));
+    }
+    mutants.retain(|mutant| arguments.row.is_empty() || arguments.row.iter().any(|row| mutant.is_of(row)));
     eprintln!("{} changes of rows are known", mutants.len());
     let began = Instant::now();
     let (compiled, refused) = copied.compile(&mutants, arguments.number)?;

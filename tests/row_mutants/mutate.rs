@@ -54,6 +54,12 @@ impl Mutant {
         }
     }
 
+    /// Is it a change of this row, given as `"QC-LOCK 3"`?
+    pub fn is_of(&self, row: &str) -> bool {
+        row.rsplit_once(' ')
+            .is_some_and(|(table, number)| table.replace('-', "_") == self.table && number == self.row)
+    }
+
     /// The table passes on instead of deciding, by a row that is changed or with the change.
     pub fn passes(&self) -> bool {
         let other = self.other.as_ref().map(|(_, after)| after);

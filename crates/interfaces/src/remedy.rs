@@ -45,7 +45,6 @@ impl Reason {
             Self::UnknownCommand
             | Self::NoDestination
             | Self::NoObjectNamed
-            | Self::NotPrepared
             | Self::EqualGrips
             | Self::NotNearDrum
             | Self::HolsterOnly
@@ -67,6 +66,7 @@ impl Reason {
             | Self::PedestalCannot
             | Self::TableLimit
             | Self::InterfaceRefused => "correct the command in the job, or the task data",
+            Self::NotPrepared => "send the commands before it in the job again",
             Self::NeighbourLost | Self::InterfaceSilent => "restart the lost process",
             Self::JoystickOn => "switch the frame at the joystick box off",
             Self::UnknownStart => "move the robot to one of the known places with the joystick box",

@@ -387,6 +387,12 @@ impl<'f> Branch<'f> {
         self.control.course.memory()
     }
 
+    /// The state of the control processes after the last tick.
+    #[must_use]
+    pub fn ladder(&self) -> LadderState {
+        self.control.course.levels().ladder.state()
+    }
+
     /// The inputs from outside for the last tick.
     #[must_use]
     pub const fn external(&self) -> &ExternalInputs {
@@ -416,7 +422,7 @@ impl<'f> Branch<'f> {
         let cell = self.workstation.cell.save().map_err(|error| Error::Fork(error.to_string()))?;
         let Control { course, gate, command_box, check, inputs, line, generation, asked, told, .. } =
             &self.control;
-        let (mut memory, mut ladder) = (*course.memory(), course.levels().ladder.state());
+        let (mut memory, mut ladder) = (*course.memory(), self.ladder());
         let command = gate.command();
         past::forget(&mut memory, &mut ladder, self.at());
         for echo in [&mut memory.task.status.echo, &mut ladder.task.execution.receiver.echo] {

@@ -175,3 +175,84 @@ fn forget_rows(memory: &mut CommonMemory, ladder: &mut LadderState) {
         *rows = Rows::ZERO;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use levels::prim::state::RestartTimes;
+
+    use super::{
+        super::{branch::Branch, parent::emulator, tests::facility},
+        *,
+    };
+
+    /// Common memory and state while a gripper is fetched: all four processes with pose records use them.
+    fn fetching() -> (CommonMemory, LadderState, Tick) {
+        let facility = facility("turned-part");
+        let mut branch = Branch::start(&facility).expect("the cell is sound");
+        let mut hwsc = emulator(&facility);
+        while branch.at() < Tick(1401) {
+            branch.tick(&mut hwsc);
+        }
+        (*branch.memory(), branch.ladder(), branch.at())
+    }
+
+    fn forgotten(
+        (mut memory, mut ladder, now): (CommonMemory, LadderState, Tick),
+    ) -> (CommonMemory, LadderState) {
+        forget(&mut memory, &mut ladder, now);
+        (memory, ladder)
+    }
+
+    #[test]
+    fn no_other_field_holds_the_number_of_a_pose_record() {
+        let (mut memory, mut ladder, now) = fetching();
+        let numbers: BTreeSet<u32> =
+            pose_numbers(&mut memory, &mut ladder).into_iter().map(|one| *one).collect();
+        let numbers: Vec<u32> = numbers.into_iter().filter(|one| *one > pose_range::CHANGING).collect();
+        for writer in [pose_range::TASK, pose_range::SUBTASK, pose_range::EMOVE, pose_range::PRIM] {
+            assert!(numbers.iter().any(|one| one & pose_range::WRITER == writer), "none of {writer:x}");
+        }
+        // Each number is one that no place among those in use has.
+        for number in pose_numbers(&mut memory, &mut ladder).into_iter().filter(|one| numbers.contains(one)) {
+            *number += 1_000_000;
+        }
+        let text = format!("{:?}", forgotten((memory, ladder, now)));
+        let left = numbers.iter().map(|one| one + 1_000_000).find(|one| text.contains(&one.to_string()));
+        assert_eq!(left, None);
+        let left =
+            numbers.iter().filter(|one| *one & 0xFF_FFFF > 100).find(|one| text.contains(&one.to_string()));
+        assert_eq!(left, None);
+    }
+
+    #[test]
+    fn states_that_differ_in_the_past_are_the_same() {
+        let (mut memory, mut ladder, now) = fetching();
+        let expected = forgotten((memory, ladder, now));
+        for number in pose_numbers(&mut memory, &mut ladder) {
+            *number += u32::from(*number > pose_range::CHANGING) * 12;
+        }
+        let echoes = [&mut memory.prim.status.echo, &mut ladder.prim.execution.receiver.echo];
+        for number in [&mut memory.emove.prim.number, &mut ladder.emove.prim.number].into_iter().chain(echoes)
+        {
+            *number += 3;
+        }
+        ladder.prim.restarts = RestartTimes { ticks: [Some(Tick(700)); _] };
+        memory.grip.header.decided = None;
+        memory.t3i.status.counters.naks += 1;
+        assert_eq!(forgotten((memory, ladder, now)), expected);
+        ladder.prim.restarts = RestartTimes { ticks: [Some(now); _] };
+        assert_ne!(forgotten((memory, ladder, now)), expected, "recent restarts count");
+    }
+
+    #[test]
+    fn a_command_that_is_not_echoed_is_none_of_the_past() {
+        let (mut memory, mut ladder, now) = fetching();
+        let expected = forgotten((memory, ladder, now));
+        (memory.emove.prim.number, ladder.emove.prim.number) =
+            (memory.emove.prim.number + 1, ladder.emove.prim.number + 1);
+        let sent = forgotten((memory, ladder, now));
+        assert_ne!(sent, expected);
+        ladder.emove.prim.sent = now;
+        assert_ne!(forgotten((memory, ladder, now)), sent, "it is lost later");
+    }
+}

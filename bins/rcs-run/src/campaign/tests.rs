@@ -30,7 +30,7 @@ use runtime::{
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
 const PROCEDURE: Procedure = Procedure { recovery: Recovery::Pause, tries: 3, until: Until::Next };
 
-fn facility(job: &str) -> Facility {
+pub(super) fn facility(job: &str) -> Facility {
     let data = Path::new(DATA);
     let TaskFiles { store, job, job_path, .. } =
         TaskFiles::load(data, Some(job)).expect("the job is shipped");
@@ -236,8 +236,9 @@ fn all_threads_give_the_same_judgements_in_the_same_order() {
 #[test]
 fn a_branch_in_a_known_state_ends_as_if_it_went_on() {
     let (facility, parent, _) = empty_move();
-    let texts = ["fault:camera-blind", "fault:bytes-lost", "restart:tool_grip", "held:task", "pause+9:hold"];
-    let plans = plans(&facility, &parent, &texts, 30);
+    let quiet = ["fault:camera-blind", "fault:bytes-lost", "restart:tool_grip", "held:task"];
+    let delayed = ["hold", "answer-lost", "restart:prim", "restart:table", "pause", "pause+9:hold"];
+    let plans = plans(&facility, &parent, &[&quiet[..], &delayed].concat(), 30);
     let campaign = |known: Option<&Known>| {
         let run = pool::run(&facility, &parent, &plans, 1, known, &|result, met| Ok((result, met)));
         let (mut all, mut states) = (Coverage::default(), 0);
