@@ -132,9 +132,11 @@ fn detaching_begins_only_when_it_can() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(detach(&mut bench, 1), error(Reason::NotPrepared), "the robot is elsewhere");
     assert_eq!(detach(&mut bench, 2), error(Reason::WrongGripper));
-    let mut bench = Bench::ready("HOLSTER-R", 0);
-    bench.world.holsters[0] = 0;
-    assert_eq!(detach(&mut bench, 1), error(Reason::WrongGripper), "it is neither on nor in its holster");
+    for bits in [0, 0b0001, 0b0011] {
+        let mut bench = Bench::ready("HOLSTER-R", 0);
+        bench.world.holsters[0] = bits;
+        assert_eq!(detach(&mut bench, 1), error(Reason::WrongGripper), "it is neither on nor in its holster");
+    }
     let mut bench = above(1);
     bench.hold("BLOCK", 75, 1);
     assert_eq!(detach(&mut bench, 1), error(Reason::AlreadyHolding));

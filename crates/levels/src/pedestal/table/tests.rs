@@ -318,6 +318,23 @@ fn a_calibration_that_fails_fails_the_command_that_needs_it_and_no_other() {
 }
 
 #[test]
+fn a_calibration_that_fails_does_not_count_for_a_refused_command_nor_for_none() {
+    for refused in [false, true] {
+        let mut bench = Bench::new(Rotary { blocked: true, ..Rotary::new(-1200) });
+        if refused {
+            assert_eq!(bench.execute(TableVerb::Turn, 0), (PedestalReport::CannotDo, Reason::TableLimit));
+        }
+        let before = bench.wait(1).status;
+        while bench.process.state.phase != Phase::Failed {
+            bench.wait(1);
+        }
+        let outputs = bench.wait(1);
+        assert_eq!((outputs.status.report, outputs.status.reason), (before.report, before.reason));
+        assert_eq!(outputs.motor.order, MotorOrder::Stop);
+    }
+}
+
+#[test]
 fn a_restarted_process_stops_the_table_and_adopts_its_calibration() {
     let mut bench = Bench::calibrated();
     bench.execute(TableVerb::Turn, -1000);

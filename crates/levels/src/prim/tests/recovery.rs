@@ -229,6 +229,39 @@ fn robot_init_restarts_a_link_that_fails_after_its_report() {
 }
 
 #[test]
+fn robot_init_says_what_is_wrong_with_the_link() {
+    for (broken, dtr_off, reason) in [
+        (LinkFault::InvalidCommand, false, Reason::InterfaceRefused),
+        (LinkFault::DepcError, false, Reason::LinkError),
+        (LinkFault::NotResponding, true, Reason::LinkOff),
+    ] {
+        let mut rig = Rig::new();
+        rig.steps(3);
+        (rig.t3i.broken, rig.t3i.dtr_off) = (broken, dtr_off);
+        assert_ne!(rig.run(PrimVerb::RobotInit, 0), PrimReport::Done);
+        assert_eq!(rig.memory.prim.status.reason, reason, "{broken:?}");
+    }
+}
+
+#[test]
+fn a_link_that_fails_leaves_no_motion_behind() {
+    for (fault, dtr_off) in [
+        (LinkFault::NotResponding, true),
+        (LinkFault::NotResponding, false),
+        (LinkFault::DepcError, false),
+        (LinkFault::InvalidCommand, false),
+    ] {
+        let mut rig = Rig::initialized();
+        rig.command(PrimVerb::GotoPt, 3);
+        rig.steps(30);
+        assert!(rig.prim.state().motion.is_some());
+        (rig.t3i.fault, rig.t3i.dtr_off) = (fault, dtr_off);
+        rig.steps(3);
+        assert_eq!(rig.prim.state().motion, None, "{fault:?}, DTR off: {dtr_off}");
+    }
+}
+
+#[test]
 fn a_restarted_prim_goes_on_where_the_robot_stands() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);

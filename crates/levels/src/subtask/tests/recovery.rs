@@ -529,7 +529,13 @@ fn tools(rows: &mut Coverage) {
                 let end = bench.run(verb, "TOOL-1", (1, 1), "");
                 if verb == SubtaskVerb::ReleaseTool {
                     let led_out = (drum && held != "other") || (held.is_empty() && at.is_none());
-                    assert_eq!(end == DONE, led_out, "{held}, {drum}, {at:?}: {end:?}");
+                    let hindered = match held {
+                        "something" => Reason::UnknownHeld,
+                        "not known" => Reason::HeldNotKnown,
+                        _ => Reason::NothingHeld,
+                    };
+                    let expected = if led_out { DONE } else { error(hindered) };
+                    assert_eq!(end, expected, "{held}, {drum}, {at:?}");
                 }
                 rows.append(&mut bench.rows);
             }

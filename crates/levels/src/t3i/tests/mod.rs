@@ -505,6 +505,24 @@ fn a_robot_that_took_the_last_words_or_not_or_is_between_is_where_it_was_sent() 
     }
 }
 
+/// Between the last words and those before the robot stands at neither; from then on it is sent where it stands.
+#[test]
+fn where_the_robot_stands_after_a_report_counts_for_the_next_one() {
+    for (words, expected) in
+        [(2, ReportCheck::AsSent), (15, ReportCheck::Elsewhere), (-15, ReportCheck::Elsewhere)]
+    {
+        let mut bench = restarted(led(cut_off(true), -15));
+        assert_eq!(check(&bench), ReportCheck::AsSent);
+        bench.connected = false;
+        bench.external.devices.link_rx = LinkBytes::default();
+        for _ in 0..4 {
+            bench.tick();
+        }
+        let bench = restarted(led(bench, words));
+        assert_eq!(check(&bench), expected, "{words}");
+    }
+}
+
 #[test]
 fn a_robot_that_is_elsewhere_stays_so_until_it_is_sent_on() {
     let mut bench = restarted(led(cut_off(true), 100));
