@@ -4,7 +4,7 @@ use std::{
     os::unix::process::ExitStatusExt as _,
     path::{Path, PathBuf},
     process::{Child, Command, Output, Stdio},
-    sync::Mutex,
+    sync::RwLock,
     thread,
     time::{Duration, Instant},
 };
@@ -15,8 +15,8 @@ use serde_json::Value;
 
 use crate::{rcs_run, root};
 
-/// Runs of these tests one after the other: several in real time would disturb each other.
-pub static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+/// Held for writing by a test that counts what a busy machine does to the grid, and for reading by the others.
+pub static ALONE: RwLock<()> = RwLock::new(());
 
 /// How long something may take that takes milliseconds.
 const PATIENCE: Duration = Duration::from_secs(120);

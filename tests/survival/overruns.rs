@@ -7,7 +7,7 @@ use record::replay;
 use rustix::process::{Signal, WaitOptions, waitpid};
 use whole_system_tests::{
     Scratch,
-    bench::{Ended, ONE_AT_A_TIME, Running},
+    bench::{ALONE, Ended, Running},
 };
 
 /// Ticks of a run that is stopped.
@@ -35,7 +35,7 @@ fn stopped_for_a_second(directory: &Path, more: &[&str]) -> Ended {
 
 #[test]
 fn skipped_slots_are_counted_and_change_nothing() {
-    let _alone = ONE_AT_A_TIME.lock();
+    let _alone = ALONE.write();
     let scratch = Scratch::new("stopped");
     let ended = stopped_for_a_second(&scratch.file(""), &["--log", "none"]);
     assert_eq!(ended.status, Some(0), "{}", ended.said);
@@ -56,7 +56,7 @@ fn skipped_slots_are_counted_and_change_nothing() {
 
 #[test]
 fn the_robot_holds_and_goes_on_and_the_log_replays() {
-    let _alone = ONE_AT_A_TIME.lock();
+    let _alone = ALONE.write();
     let scratch = Scratch::new("holds");
     let ended = stopped_for_a_second(&scratch.file(""), &["--overrun", "hold:5", "--log", "held.mcap"]);
     assert_eq!(ended.status, Some(0), "{}", ended.said);
@@ -71,7 +71,7 @@ fn the_robot_holds_and_goes_on_and_the_log_replays() {
 
 #[test]
 fn a_run_that_is_to_stop_ends_with_status_3() {
-    let _alone = ONE_AT_A_TIME.lock();
+    let _alone = ALONE.write();
     let scratch = Scratch::new("stops");
     let ended = stopped_for_a_second(&scratch.file(""), &["--overrun", "stop:5", "--log", "none"]);
     assert_eq!(ended.status, Some(3), "{}", ended.said);
