@@ -325,11 +325,11 @@ fn a_calibration_that_fails_does_not_count_for_a_refused_command_nor_for_none() 
             assert_eq!(bench.execute(TableVerb::Turn, 0), (PedestalReport::CannotDo, Reason::TableLimit));
         }
         let before = bench.wait(1).status;
+        let mut outputs = bench.wait(1);
         while bench.process.state.phase != Phase::Failed {
-            bench.wait(1);
+            outputs = bench.wait(1);
+            assert_eq!((outputs.status.report, outputs.status.reason), (before.report, before.reason));
         }
-        let outputs = bench.wait(1);
-        assert_eq!((outputs.status.report, outputs.status.reason), (before.report, before.reason));
         assert_eq!(outputs.motor.order, MotorOrder::Stop);
     }
 }
