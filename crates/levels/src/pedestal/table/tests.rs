@@ -334,6 +334,22 @@ fn a_calibration_that_fails_does_not_count_for_a_refused_command_nor_for_none() 
     }
 }
 
+/// Whatever the tick in which the calibration is given up.
+#[test]
+fn a_command_that_is_refused_while_a_calibration_fails_keeps_its_reason() {
+    let astray = || Bench::new(Rotary { wrong: 500.0, ..Rotary::new(-1200) });
+    let mut bench = astray();
+    let failed = (1_u32..).find(|_| {
+        bench.wait(1);
+        bench.process.state.phase == Phase::Failed
+    });
+    for ticks in (0..4).filter_map(|before| failed?.checked_sub(before)) {
+        let mut bench = astray();
+        bench.wait(ticks);
+        assert_eq!(bench.execute(TableVerb::Turn, 0), (PedestalReport::CannotDo, Reason::TableLimit));
+    }
+}
+
 #[test]
 fn a_restarted_process_stops_the_table_and_adopts_its_calibration() {
     let mut bench = Bench::calibrated();
