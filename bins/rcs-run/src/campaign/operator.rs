@@ -102,7 +102,8 @@ pub struct Operator<'f> {
     number: u32,
     /// Number of the job's command that a command of the operator replaces.
     replaced: Option<u32>,
-    /// True if that command finished before Task accepted the operator's command; it is not sent again.
+    /// True if the command of the job finished meanwhile, or before Task accepted the operator's command: it is not sent
+    /// again.
     has_finished: bool,
     outgoing: Option<HwsCommand>,
     /// True while the interruption continues: the operator waits.
@@ -155,7 +156,7 @@ impl<'f> Operator<'f> {
     /// Note an interruption, the first or another one: all tries are left again. The first command that is sent again
     /// gets a PAUSE after `second_pause` ticks.
     pub const fn interrupt(&mut self, second_pause: Option<u64>) {
-        self.tried = 0;
+        (self.tried, self.has_finished) = (0, false);
         self.second_pause = second_pause;
     }
 
@@ -312,7 +313,7 @@ impl<'f> Operator<'f> {
     /// Begin the next line of the job.
     fn next(&mut self, tick: Tick, workstation: &mut SimulatedWorkstation) {
         self.current += 1;
-        (self.tried, self.second_pause) = (0, None);
+        (self.tried, self.second_pause, self.has_finished) = (0, None, false);
         self.began = tick;
         let lines = self.lines;
         let Some(line) = lines.get(self.current - 1) else {
@@ -390,7 +391,11 @@ impl Commander for Operator<'_> {
             Doing::Pause => {
                 if let Some(end) = self.end(tick, status) {
                     self.note(tick, &pause(), false, &end);
-                    self.same(tick);
+                    if self.has_finished {
+                        self.next(tick, workstation);
+                    } else {
+                        self.same(tick);
+                    }
                 }
             }
             Doing::Command => self.follow(tick, status, workstation),
@@ -426,11 +431,14 @@ impl Operator<'_> {
     }
 }
 
-/// A commander that sends nothing: Task continues its command.
-pub struct Silent;
+/// An operator at joystick box or panel, who sends nothing: Task continues its command, and may finish it.
+pub struct Watching<'o, 'f>(pub &'o mut Operator<'f>);
 
-impl Commander for Silent {
-    fn step(&mut self, _: Tick, _: &Status<'_>, _: &mut SimulatedWorkstation) -> Option<HwsCommand> {
+impl Commander for Watching<'_, '_> {
+    fn step(&mut self, _: Tick, status: &Status<'_>, _: &mut SimulatedWorkstation) -> Option<HwsCommand> {
+        let Self(operator) = self;
+        let is_current = operator.doing == Doing::Command && u32::from(status.echo) == operator.number;
+        operator.has_finished |= is_current && status.report == HwsReport::Finished;
         None
     }
 }

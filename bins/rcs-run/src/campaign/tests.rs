@@ -136,17 +136,19 @@ fn an_undisturbed_branch_is_done() {
 }
 
 #[test]
-fn a_command_that_finishes_while_it_is_replaced_is_not_sent_again() {
+fn a_command_that_finishes_while_it_is_replaced_or_the_box_is_on_is_not_sent_again() {
     let (facility, parent, fork) = empty_move();
     let last =
         (1..parent.ticks).rfind(|tick| parent.line_at(Tick(*tick)).0 == 1).expect("it has a first line");
     let at_end = pool::fork_at(&facility, last).expect("the run can be forked");
-    let sent_again = |fork: &Fork| {
-        let result = judged(&facility, &parent, fork, "replaced");
+    let sent_again = |fork: &Fork, interruption: &str| {
+        let result = judged(&facility, &parent, fork, interruption);
         assert_eq!((result.verdict, result.detail.as_str()), (Verdict::Done, ""));
         result.ended.iter().any(|ended| ended.contains("SAFE"))
     };
-    assert!(sent_again(&fork) && !sent_again(&at_end));
+    for interruption in ["replaced", "nudge"] {
+        assert!(sent_again(&fork, interruption) && !sent_again(&at_end, interruption), "{interruption}");
+    }
 }
 
 /// A part in the path of the hand: the report names the contact, the tick and the command.

@@ -16,7 +16,7 @@ use super::{
     invariants::Invariants,
     known::{End, Known},
     motion::Motion,
-    operator::{Operator, Recovery, Silent, Then},
+    operator::{Operator, Recovery, Then, Watching},
     parent::Parent,
     series::Series,
 };
@@ -233,7 +233,7 @@ impl Trial<'_, '_> {
             if self.following {
                 self.branch.tick(&mut self.operator);
             } else {
-                self.branch.tick(&mut Silent);
+                self.branch.tick(&mut Watching(&mut self.operator));
             }
             let at_box = !over && matches!(self.kind(), Kind::Nudge | Kind::Away);
             self.tears |= self.takes_from_vise();
