@@ -79,8 +79,8 @@ pub struct Route {
     pub from: RobotPlace,
     /// The goal.
     pub to: RobotPlace,
-    /// Depart points, relative to the pose departed from; from where an object was brought to the approach points,
-    /// which are passed in reverse.
+    /// Depart points, relative to the pose departed from; from where an object was brought to, or where none are written,
+    /// the approach points, which are passed in reverse.
     pub depart: PathId,
     /// Intermediate trajectory.
     pub between: PathId,
@@ -206,6 +206,16 @@ pub fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
     norm(&(present.position - foot(present, start, end).position))
 }
 
+/// Does the robot leave a place by the approach path, which is passed in reverse? It does with an object that it has
+/// brought, and where no depart path is written.
+fn takes_out(from: &RobotPlace, data: &TaskData<'_>) -> bool {
+    match from.gone_to {
+        GoneTo::Brought(_) => true,
+        GoneTo::Object(ObjectGrip { object, grip }) => data.depart(&object, grip, &place(from)).is_none(),
+        GoneTo::Location | GoneTo::View(_) | GoneTo::Drum => false,
+    }
+}
+
 impl Route {
     /// Plan the way from where the robot is to the goal of a command.
     ///
@@ -241,10 +251,16 @@ impl Route {
         let depart = match from.gone_to {
             GoneTo::Drum => return Err(Planning::InDrum),
             GoneTo::Location => data.depart_location(&start),
-            GoneTo::Object(ObjectGrip { object, grip }) => data.depart(&object, grip, &start),
+            // With the object the robot goes out as it came in, since the depart path may be that of empty fingers; and so
+            // it does where none is written, as above a holster.
+            GoneTo::Object(ObjectGrip { object, grip }) | GoneTo::Brought(ObjectGrip { object, grip }) => {
+                if takes_out(from, data) {
+                    data.approach(&object, grip, &start)
+                } else {
+                    data.depart(&object, grip, &start)
+                }
+            }
             GoneTo::View(ObjectGrip { object, grip }) => data.view_depart(&object, grip, &start),
-            // The depart path may be that of empty fingers: with the object the robot goes out as it came in.
-            GoneTo::Brought(ObjectGrip { object, grip }) => data.approach(&object, grip, &start),
         };
         let approach = match to.gone_to {
             GoneTo::Location | GoneTo::Drum => data.approach_location(&end),
@@ -275,16 +291,11 @@ impl Route {
             .find_map(|path| Some(data.path(path).last()?.para))
     }
 
-    /// Does the robot leave with an object by the approach path, which is passed in reverse?
-    const fn takes_out(&self) -> bool {
-        matches!(self.from.gone_to, GoneTo::Brought(_))
-    }
-
     /// The points to go through, in the direction of the goal.
     fn points<'a>(&self, data: &TaskData<'a>) -> impl Iterator<Item = (Part, &'a PathPoint)> + use<'a> {
         let part = |part, path| data.path(path).iter().map(move |point| (part, point));
         let (depart, none): (&[PathPoint], &[PathPoint]) = (data.path(self.depart), &[]);
-        let (written, reversed) = if self.takes_out() { (none, depart) } else { (depart, none) };
+        let (written, reversed) = if takes_out(&self.from, data) { (none, depart) } else { (depart, none) };
         let depart = written.iter().chain(reversed.iter().rev());
         depart
             .map(|point| (Part::Depart, point))
@@ -378,7 +389,7 @@ impl Route {
             }
             (Target::Stop, _) => return None,
         };
-        let reversed = part == Part::Depart && self.takes_out();
+        let reversed = part == Part::Depart && takes_out(&self.from, data);
         let parameters = if reversed { slower(point.para, self.behind(data)?, data) } else { point.para };
         Some(Leg { at, parameters })
     }

@@ -16,6 +16,7 @@ use super::{
 pub const SCENARIOS: &[fn()] = &[
     grippers_are_exchanged_in_the_manuals_order,
     the_gripper_closes_on_the_way_to_its_holster,
+    a_robot_that_is_sent_away_from_above_a_holster_leaves_upward,
     detaching_begins_only_when_it_can,
     attaching_begins_only_when_it_can,
     what_is_done_already_is_done_at_once,
@@ -125,6 +126,15 @@ fn the_gripper_closes_on_the_way_to_its_holster() {
     bench.command(MovToHol, "GRIPPER-1", 1, "HOLSTER-R", 1);
     bench.steps(100);
     assert_eq!(bench.log(), ["POSITION", "GO-THRU", "GO-THRU A/D-5"], "the final motion waits");
+}
+
+/// No depart path is written for a gripper: the exchange leads the robot up. Sent elsewhere before that it goes out as it
+/// came in, not straight to the first point of the trajectory.
+#[test]
+fn a_robot_that_is_sent_away_from_above_a_holster_leaves_upward() {
+    let mut bench = above(1);
+    assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
+    assert_eq!(bench.log()[0], "GO-THRU A/D-5");
 }
 
 #[test]
