@@ -66,7 +66,7 @@ impl Reason {
             | Self::PedestalCannot
             | Self::TableLimit
             | Self::InterfaceRefused => "correct the command in the job, or the task data",
-            Self::NotPrepared => "send the commands before it in the job again",
+            Self::NotPrepared => "send the commands that must precede it again, or correct the job",
             Self::NeighbourLost | Self::InterfaceSilent => "restart the lost process",
             Self::JoystickOn => "switch the frame at the joystick box off",
             Self::UnknownStart => "move the robot to one of the known places with the joystick box",

@@ -1,8 +1,9 @@
 //! States of branches that are done: a branch that comes to one of them is done, too.
 //!
 //! A tick depends on nothing but the state. Two branches that are in the same state in the same tick, but for what
-//! [`past`](super::past) forgets, go on alike, and the second one need not be run to its end. Many interruptions leave nothing behind, such as the fault
-//! of a sensor that is not read, or leave the same behind as at another tick, such as a process that has restarted.
+//! [`past`](super::past) forgets, go on alike, and the second one need not be run to its end. Many interruptions leave
+//! nothing behind, such as the fault of a sensor that is not read, or leave the same behind as at another tick, such as
+//! a process that has restarted.
 //!
 //! ```text
 //!   branch 1  --x----------+-----------+-----------+------- done     x  interrupted

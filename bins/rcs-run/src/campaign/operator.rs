@@ -102,8 +102,8 @@ pub struct Operator<'f> {
     number: u32,
     /// Number of the job's command that a command of the operator replaces.
     replaced: Option<u32>,
-    /// True if the command of the job finished meanwhile, or before Task accepted the operator's command: it is not sent
-    /// again.
+    /// True if the command of the job finished during the interruption, or before Task accepted the operator's
+    /// command: it is not sent again.
     has_finished: bool,
     outgoing: Option<HwsCommand>,
     /// True while the interruption continues: the operator waits.

@@ -53,7 +53,9 @@ pub fn forget(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick) {
 fn count_commands(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick) {
     // A commander, the number in its buffer, and the echoes of the process below in its state and its status.
     macro_rules! count {
-        ($($above:ident: $commander:ident $(. $of:ident)?, $command:ident => $below:ident $(. $execution:ident)?;)*) => {$(
+        ($(
+            $above:ident: $commander:ident $(. $of:ident)?, $command:ident => $below:ident $(. $execution:ident)?;
+        )*) => {$(
             settle(
                 &mut ladder.$above.$commander $(. $of)?,
                 [
@@ -83,6 +85,7 @@ fn count_commands(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick
 /// The number that the newest command gets; 0 means none.
 const NEWEST: u32 = 1000;
 
+/// Number a commander's commands. When the last one was sent counts as long as it is not echoed everywhere.
 fn settle(commander: &mut Commander, numbers: [&mut u32; 3], now: Tick) {
     let newest = commander.number;
     if numbers.iter().all(|number| **number == newest) && commander.sent != now {

@@ -79,8 +79,8 @@ pub struct Route {
     pub from: RobotPlace,
     /// The goal.
     pub to: RobotPlace,
-    /// Depart points, relative to the pose departed from; from where an object was brought to, or where none are written,
-    /// the approach points, which are passed in reverse.
+    /// Depart points, relative to the pose departed from; from where an object was brought to, or where none are
+    /// written, the approach points, which are passed in reverse.
     pub depart: PathId,
     /// Intermediate trajectory.
     pub between: PathId,
@@ -251,8 +251,8 @@ impl Route {
         let depart = match from.gone_to {
             GoneTo::Drum => return Err(Planning::InDrum),
             GoneTo::Location => data.depart_location(&start),
-            // With the object the robot goes out as it came in, since the depart path may be that of empty fingers; and so
-            // it does where none is written, as above a holster.
+            // With the object the robot goes out as it came in, since the depart path may be that of empty fingers; and
+            // so it does where none is written, as above a holster.
             GoneTo::Object(ObjectGrip { object, grip }) | GoneTo::Brought(ObjectGrip { object, grip }) => {
                 if takes_out(from, data) {
                     data.approach(&object, grip, &start)

@@ -128,8 +128,8 @@ fn the_gripper_closes_on_the_way_to_its_holster() {
     assert_eq!(bench.log(), ["POSITION", "GO-THRU", "GO-THRU A/D-5"], "the final motion waits");
 }
 
-/// No depart path is written for a gripper: the exchange leads the robot up. Sent elsewhere before that it goes out as it
-/// came in, not straight to the first point of the trajectory.
+/// No depart path is written for a gripper: the exchange leads the robot up. Sent elsewhere before that it goes out as
+/// it came in, not straight to the first point of the trajectory.
 #[test]
 fn a_robot_that_is_sent_away_from_above_a_holster_leaves_upward() {
     let mut bench = above(1);
