@@ -24,7 +24,7 @@ use super::{
     },
     way::Flight,
 };
-use crate::execution::Asked;
+use crate::{execution::Asked, halt::BoxState};
 
 /// The gripper on the robot, seen from the command.
 fn attached(command: &EmoveCommand, memory: &CommonMemory) -> Attached {
@@ -72,7 +72,12 @@ const fn record(found: bool) -> Record {
 
 impl State {
     /// A new command: look up all that it needs. What is found is kept.
-    pub(super) fn look_up(&mut self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
+    pub(super) fn look_up(
+        &mut self,
+        command: &EmoveCommand,
+        joystick: BoxState,
+        inputs: &Inputs<'_, TaskData<'_>>,
+    ) -> Request {
         let (memory, data) = (inputs.memory, inputs.data);
         let planned = self.plan(command, inputs);
         Flight { route: self.route, back: self.back, rejoin: self.rejoin } = planned.unwrap_or_default();
@@ -96,6 +101,7 @@ impl State {
             holster: holster(command, data),
             moves: relative::look_up(command, memory, data),
             route: planned.err().unwrap_or(Planning::Planned),
+            joystick,
         }
     }
 

@@ -89,7 +89,7 @@ impl State {
         let replaced = self.replaced(&watch, inputs);
         let at_rest = replaced.below == Below::AtRest || replaced.joystick == BoxState::On;
         let request = if asked == Asked::Now && (at_rest || replaced.kind == Kind::Pause) {
-            self.look_up(command, inputs)
+            self.look_up(command, replaced.joystick, inputs)
         } else {
             Request::default()
         };

@@ -7,7 +7,8 @@ decision_table! {
     /// missing; nothing has been ordered then, since HALT has stopped what was under way. A robot that
     /// changes a gripper, is half way at the tool drum, or whose gripper is not locked, goes nowhere; one
     /// whose id pins fail only to a plain location. Quick change commands have rows of their own for the
-    /// gripper.
+    /// gripper. While the operator has the robot only E-PAUSE is accepted: fingers and ring must not move
+    /// where the commander does not know the robot to be.
     pub ACCEPT: fn accept(super::Request) -> super::Action or () {
         1:  asked: Before                                              => consult;
         2:  verb: None                                                 => Refuse(UnknownCommand);
@@ -53,6 +54,8 @@ decision_table! {
         42: route: ForwardOnly                                         => Refuse(ForwardOnly);
         43: route: InDrum                                              => Refuse(NotPrepared);
         44: route: NoTrajectory                                        => Refuse(NoTrajectory);
-        45: route: Planned                                             => consult;
+        45: route: Planned, joystick: Off                              => consult;
+        46: route: Planned, joystick: On, verb: Pause                  => consult;
+        47: route: Planned, joystick: On                               => Manual;
     }
 }

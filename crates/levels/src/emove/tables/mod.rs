@@ -45,7 +45,7 @@ use super::{
 pub use crate::held::Held;
 use crate::{
     execution::{Asked, EXECUTE, Orders as Commander, Outcome, Work},
-    halt::{EFFECT, HALT, Replaced},
+    halt::{BoxState, EFFECT, HALT, Replaced},
 };
 
 /// What a new command needs, for [`accept::ACCEPT`].
@@ -77,6 +77,8 @@ pub struct Request {
     pub moves: RelativeMoves,
     /// The way to its goal.
     pub route: Planning,
+    /// The joystick box.
+    pub joystick: BoxState,
 }
 
 /// What goes on whatever the command, for [`attend::ATTEND`] and [`search::SEARCH`].

@@ -4,7 +4,7 @@ use interfaces::{
     Reason, StatusReport,
     emove::{
         Dormancy,
-        EmoveVerb::{GraspObj, MovToLoc, Pause},
+        EmoveVerb::{GraspObj, LocateObj, MovToLoc, Pause, QcDetach, Release},
     },
     jaws::JawsReport,
     prim::{JoystickGrip, PrimReport},
@@ -36,6 +36,7 @@ pub const SCENARIOS: &[fn()] = &[
     the_robot_is_found_where_it_stands,
     the_operator_moves_the_robot_and_the_fingers,
     the_operator_interrupts_a_command,
+    nothing_begins_while_the_operator_has_the_robot,
     a_restarted_e_move_executes_nothing,
     a_link_that_fails_in_a_pause_is_initialized_again_or_reported,
 ];
@@ -335,6 +336,36 @@ fn the_operator_interrupts_a_command() {
     bench.steps(2);
     let status = bench.memory.emove.status;
     assert_eq!((status.report, status.reason), error(Reason::JoystickOn));
+}
+
+/// A command that comes in the tick in which the operator takes the robot: fingers and ring stay as they are.
+#[test]
+fn nothing_begins_while_the_operator_has_the_robot() {
+    for (holds, verb, object, location) in [
+        (true, Release, "BLOCK", ""),
+        (true, MovToLoc, "", "VISE"),
+        (true, QcDetach, "GRIPPER-1", "HOLSTER-R"),
+        (false, GraspObj, "BLOCK", ""),
+        (false, LocateObj, "BLOCK", "BENCH"),
+    ] {
+        let mut bench = Bench::ready("HOME", 1);
+        if holds {
+            bench.hold("BLOCK", 75, 1);
+        }
+        bench.world.log.clear();
+        bench.world.joystick = true;
+        assert_eq!(
+            bench.run(verb, object, 1, location, 1),
+            (StatusReport::JoystickOn, Reason::JoystickOn),
+            "{verb}"
+        );
+        bench.world.joystick = false;
+        bench.steps(5);
+        let status = bench.memory.emove.status;
+        assert_eq!((status.report, status.reason), error(Reason::JoystickOn), "{verb}");
+        assert_eq!(status.held.is_held(), holds, "{verb}");
+        assert!(bench.log().is_empty(), "{verb}: {:?}", bench.log());
+    }
 }
 
 #[test]
