@@ -110,17 +110,14 @@ fn the_same_seed_is_the_same_run_and_its_log_replays_to_the_bit() {
     assert!(replay.status.success(), "{}", String::from_utf8_lossy(&replay.stdout));
 }
 
-/// A peer that shares no code with the project follows the first seconds of a job.
-#[test]
-fn a_robot_written_from_the_schema_alone_is_driven() {
-    let python = Command::new("python3").arg("--version").output();
-    if !python.is_ok_and(|output| output.status.success()) {
-        eprintln!("left out: python3 is not there");
-        return;
-    }
+/// How often a run in real time is begun. A machine that has other things to do may hold up the peer for longer than the
+/// link bears.
+const ATTEMPTS: u32 = 3;
+
+/// The first seconds of the linkbar with a peer that shares no code with the project: exit status and result of the
+/// run, and what the peer says.
+fn drive_peer() -> (i32, Value, Value) {
     let port = UdpSocket::bind("127.0.0.1:0").and_then(|socket| socket.local_addr()).expect("a port").port();
-    // It is built before the peer begins to send.
-    let _ = rcs_run();
     // The T3's end plate at HOME, mm, and its orientation.
     let home = ["0", "-1598.4", "-161.6", "0.653281", "0.270598", "0.270598", "-0.653281"];
     let peer = Command::new("python3")
@@ -136,7 +133,20 @@ fn a_robot_written_from_the_schema_alone_is_driven() {
     ]);
     let output = peer.wait_with_output().expect("it ends");
     assert!(output.status.success(), "the peer refuses what it got");
-    let peer: Value = serde_json::from_slice(&output.stdout).expect("one line of JSON");
+    (status, result, serde_json::from_slice(&output.stdout).expect("one line of JSON"))
+}
+
+#[test]
+fn a_robot_written_from_the_schema_alone_is_driven() {
+    let python = Command::new("python3").arg("--version").output();
+    if !python.is_ok_and(|output| output.status.success()) {
+        eprintln!("left out: python3 is not there");
+        return;
+    }
+    // It is built before the peer begins to send.
+    let _ = rcs_run();
+    let driven = (1..ATTEMPTS).map(|_| drive_peer()).find(|(status, ..)| *status == 0);
+    let (status, result, peer) = driven.unwrap_or_else(drive_peer);
     assert_eq!((status, &result["egm"]["refused"]), (0, &Value::from(0)), "{}", result["failure"]);
     assert_eq!(result["allocations_after_start"], 0);
     assert!(peer["answered"].as_f64() > Some(1000.0), "{peer}");
