@@ -1,11 +1,12 @@
 //! E-move and the process of a gripper. Around them: Subtask, the fingers with a part or without, Prim, Quick Change.
-//! The robot stands at an object and does not move.
+//! The robot stands at an object first. It goes to another location and back, if a search has such commands.
 
 mod judge;
 mod states;
 
 use std::fmt::Debug;
 
+use geometry::pose::Pose;
 use interfaces::{
     CommonMemory, EmoveOutputs, ExternalInputs, StatusReport,
     device::GripSensors,
@@ -21,11 +22,14 @@ use levels::{
 use rcs_core::{handshake::Commander, tick::Tick};
 
 use crate::{
-    data::{data, emove_command, place},
+    data::{data, emove_command, place, pose_of_point},
     image::Image,
-    robot::{PrimDoes, Robot},
+    robot::{self, PrimDoes, Robot, is_at},
     search::{World, Wrong},
 };
+
+/// A command of Subtask, and the location to which it goes if that is not the object's.
+pub type Line = (EmoveVerb, Option<&'static str>);
 
 /// Longer than the time limit of a gripper's command.
 const LONG: u64 = 200;
@@ -55,6 +59,8 @@ pub trait Fingered: Clone {
     fn are_around(fingers: Self::Fingers) -> bool;
     /// They hold the part.
     fn hold(fingers: Self::Fingers) -> bool;
+    /// They touch the part, or hold it.
+    fn touch(fingers: Self::Fingers) -> bool;
     fn are_open(fingers: Self::Fingers) -> bool;
 
     fn write(&self, memory: &mut CommonMemory, stamp: Tick);
@@ -106,7 +112,7 @@ pub enum Restarted {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event<Fingers> {
-    pub told: Option<EmoveVerb>,
+    pub told: Option<Line>,
     pub fingers: Fingers,
     pub prim: PrimDoes,
     pub restarted: Restarted,
@@ -117,7 +123,9 @@ pub struct Event<Fingers> {
 #[derive(Clone)]
 pub struct Pair<G: Fingered> {
     tick: Tick,
-    commands: &'static [EmoveVerb],
+    commands: &'static [Line],
+    /// Where the robot is at the object.
+    object_at: Pose,
     /// Commands that may still come before the last one has ended (any number if none is given), and restarts that may.
     left: (Option<u8>, u8),
     command: EmoveCommand,
@@ -135,14 +143,17 @@ impl<G: Fingered> Pair<G> {
     /// The first tick of a system that is booted, with a gripper that is calibrated and open around the object. These
     /// commands can come, `early` of them before the last one has ended (any number if none is given), and so many
     /// `restarts`.
-    pub fn first(commands: &'static [EmoveVerb], early: Option<u8>, restarts: u8) -> Self {
+    pub fn first(commands: &'static [Line], early: Option<u8>, restarts: u8) -> Self {
         let (object, grip, location) = G::OBJECT;
         let at = place(location);
         let object = emove_command(EmoveVerb::None, object, grip, location).object.unwrap_or_default();
-        let stands = robot_at(GoneTo::Object(ObjectGrip { object, grip }), &at, &at.frame);
+        let there = data().grip_movetable(&object, grip, &at.place);
+        let there = there.map_or(at.frame, |there| data().moved(&at.frame, there));
+        let stands = robot_at(GoneTo::Object(ObjectGrip { object, grip }), &at, &there);
         let mut pair = Self {
             tick: Tick(10_000),
             commands,
+            object_at: stands.pose,
             left: (early, restarts),
             command: EmoveCommand::default(),
             emove: emove::state::State {
@@ -165,12 +176,18 @@ impl<G: Fingered> Pair<G> {
         pair
     }
 
-    fn tell(&mut self, verb: EmoveVerb) {
+    fn tell(&mut self, (verb, to): Line) {
         let (object, grip, location) = G::OBJECT;
-        let number = self.command.number + 1;
-        let end_effector_id = G::GRIPPER.id();
+        let location = to.unwrap_or(location);
+        let pose = robot::goes(verb).then(|| pose_of_point(location));
+        let (number, end_effector_id) = (self.command.number + 1, G::GRIPPER.id());
         self.command =
-            EmoveCommand { number, end_effector_id, ..emove_command(verb, object, grip, location) };
+            EmoveCommand { number, end_effector_id, pose, ..emove_command(verb, object, grip, location) };
+    }
+
+    /// The robot stands at the object.
+    fn is_at_object(&self) -> bool {
+        is_at(&self.object_at, &self.robot.at)
     }
 
     /// What the processes read.
@@ -204,7 +221,7 @@ impl<G: Fingered> World for Pair<G> {
         let mut events = Vec::new();
         for told in self.commands() {
             for &prim in prim {
-                for (fingers, arrive) in self.gripper.next(self.fingers) {
+                for (fingers, arrive) in self.next() {
                     for &restarted in restarts {
                         let event = Event { told, fingers, prim, restarted, long: false };
                         let quiet = told.is_none() && restarted == Restarted::None;
@@ -231,11 +248,11 @@ impl<G: Fingered> World for Pair<G> {
             self.gripper.restart();
         }
         self.left.1 -= u8::from(event.restarted != Restarted::None);
-        if let Some(verb) = event.told {
+        if let Some(line) = event.told {
             if !self.has_ended() {
                 self.left.0 = self.left.0.map(|early| early - 1);
             }
-            self.tell(verb);
+            self.tell(line);
         }
         let memory = self.memory();
         let mut external = ExternalInputs::default();
@@ -281,11 +298,24 @@ impl<G: Fingered> Pair<G> {
         status.echo == self.command.number && status.report != StatusReport::Executing
     }
 
-    /// Any command can come when the last one has ended, and another one than it before.
-    fn commands(&self) -> Vec<Option<EmoveVerb>> {
+    /// Where the fingers can be in the next tick. A part is only at the object's place, or between them.
+    fn next(&self) -> Vec<(G::Fingers, bool)> {
+        let mut next = self.gripper.next(self.fingers);
+        if !self.is_at_object() && !G::touch(self.fingers) {
+            next.retain(|(fingers, _)| !G::touch(*fingers));
+        }
+        next
+    }
+
+    /// Any command can come when the last one has ended, and another one than it before. RELEASE comes only where
+    /// E-move says that the robot is at a place.
+    fn commands(&self) -> Vec<Option<Line>> {
         let (ended, early) = (self.has_ended(), self.left.0 != Some(0));
-        let may = |verb: &&EmoveVerb| ended || (early && **verb != self.command.command);
-        core::iter::once(None).chain(self.commands.iter().filter(may).map(|verb| Some(*verb))).collect()
+        let at_place = self.emove_out.status.at.is_some();
+        let may = |line: &&Line| {
+            (ended || (early && line.0 != self.command.command)) && (at_place || line.0 != EmoveVerb::Release)
+        };
+        core::iter::once(None).chain(self.commands.iter().filter(may).map(|line| Some(*line))).collect()
     }
 
     /// The gripper's process has read its last command, and E-move its echo.

@@ -28,6 +28,8 @@ pub struct Grip {
     outputs: GripOutputs,
     /// Fingers that stand open do so at the last opening for which air has opened them.
     sizes: Sizes,
+    /// Air brings them to an opening that is wider than the part.
+    positions: bool,
 }
 
 impl Fingered for Grip {
@@ -51,11 +53,15 @@ impl Fingered for Grip {
             state: grip::state::State { phase: Phase::Valid, calibration, ..grip::state::State::default() },
             outputs,
             sizes: SIZES,
+            positions: false,
         }
     }
 
     /// Fingers that let go may stop while one of them touches the part.
     fn next(&self, fingers: Fingers) -> Vec<(Fingers, bool)> {
+        if self.positions {
+            return vec![(fingers, false), (Fingers::Open, true)];
+        }
         let bits = self.outputs.valves.bits;
         let mut next = fingers.next(bits);
         if fingers == Fingers::Holding && flow(bits).0 {
@@ -83,6 +89,10 @@ impl Fingered for Grip {
         fingers == Fingers::Holding
     }
 
+    fn touch(fingers: Fingers) -> bool {
+        matches!(fingers, Fingers::Touching | Fingers::Holding)
+    }
+
     fn are_open(fingers: Fingers) -> bool {
         matches!(fingers, Fingers::Open | Fingers::Drifted)
     }
@@ -94,9 +104,11 @@ impl Fingered for Grip {
 
     fn step(&mut self, inputs: &Inputs<'_, ()>) {
         run::<grip::Grip>(&mut self.state, inputs, &mut self.outputs);
-        let order = &inputs.memory.emove.grip;
-        if flow(self.outputs.valves.bits).0 && order.command == GripVerb::OpenGrip {
-            self.sizes.open = u16::try_from(order.position).unwrap_or_default();
+        let GripCommand { command, position, .. } = inputs.memory.emove.grip;
+        let (opens, closes) = flow(self.outputs.valves.bits);
+        self.positions = command == GripVerb::Position && (opens || closes);
+        if self.positions || (opens && command == GripVerb::OpenGrip) {
+            self.sizes.open = u16::try_from(position).unwrap_or_default();
         }
     }
 
@@ -164,6 +176,6 @@ impl Fingered for Grip {
         image.add(&status.left_force);
         image.add(&status.right_force);
         image.add(&status.velocity);
-        image.bytes.push(self.outputs.valves.bits);
+        image.bytes.extend([self.outputs.valves.bits, self.positions.into()]);
     }
 }

@@ -163,6 +163,10 @@ impl<S: Side> Fingered for Jaws<S> {
         Self::are_around(fingers)
     }
 
+    fn touch(fingers: Fingers) -> bool {
+        Self::are_around(fingers)
+    }
+
     fn are_open(fingers: Fingers) -> bool {
         fingers == Fingers::Open
     }

@@ -128,17 +128,18 @@ fn task_and_subtask_transfer_with_a_mishap() {
     tasks("task and subtask, TRANSFER with a mishap", 1, &HANDLING[..2], 25);
 }
 
-const GRASPING: &[EmoveVerb] = &[EmoveVerb::GraspObj, EmoveVerb::Release, EmoveVerb::Pause];
+const GRASPING: &[emove::Line] =
+    &[(EmoveVerb::GraspObj, None), (EmoveVerb::Release, None), (EmoveVerb::Pause, None)];
 
 /// E-move and the process of a gripper: `early` commands come before the last one has ended (any number if none is
 /// given), and so many `restarts`; a pair that rests takes `pause` and `any` ticks at most.
 fn grasping<G: emove::Fingered>(
     name: &str,
-    commands: &'static [EmoveVerb],
+    commands: &'static [emove::Line],
     (early, restarts): (Option<u8>, u8),
     (pause, any): (u32, u32),
 ) {
-    let found = is_sound(name, emove::Pair::<G>::first(commands, early, restarts), 1_000_000);
+    let found = is_sound(name, emove::Pair::<G>::first(commands, early, restarts), 2_500_000);
     assert!(found.states > 1000, "{} states", found.states);
     assert!(found.pause <= pause && found.any <= any, "{} and {}", found.pause, found.any);
 }
@@ -178,6 +179,37 @@ fn emove_and_tool_grip() {
 fn emove_and_tool_grip_with_a_restart() {
     let (commands, early) = if is_full() { (&GRASPING[..2], 1) } else { (&GRASPING[..1], 0) };
     grasping::<ToolGrip>("E-move and Tool-Grip, a restart", commands, (Some(early), 1), (67, 76));
+}
+
+/// The robot goes elsewhere with what it holds, and back, with it or with open fingers.
+const AWAY: emove::Line = (EmoveVerb::MovToLoc, Some("SAFE"));
+const BRING_BACK: emove::Line = (EmoveVerb::MovObjTo, None);
+const BACK: emove::Line = (EmoveVerb::MovToObj, None);
+const CARRYING: &[emove::Line] = &[GRASPING[0], AWAY, BRING_BACK, GRASPING[1]];
+const GOING_BACK: &[emove::Line] = &[GRASPING[0], AWAY, BACK, GRASPING[2]];
+
+#[test]
+fn emove_and_grip_carry_an_object() {
+    let early = u8::from(is_full());
+    grasping::<grip::Grip>("E-move and Grip, carrying", CARRYING, (Some(early), 0), (25, 35));
+}
+
+#[test]
+fn emove_and_grip_go_back_to_an_object() {
+    let (some, early) = if is_full() { (4, 1) } else { (3, 0) };
+    grasping::<grip::Grip>("E-move and Grip, going back", &GOING_BACK[..some], (Some(early), 0), (25, 35));
+}
+
+#[test]
+fn emove_and_grip_carry_an_object_with_a_restart() {
+    let some = if is_full() { 4 } else { 2 };
+    grasping::<grip::Grip>("E-move and Grip, carrying, a restart", &CARRYING[..some], (Some(0), 1), (25, 32));
+}
+
+#[test]
+fn emove_and_v_grip_go_back_to_an_object() {
+    let some = if is_full() { 3 } else { 2 };
+    grasping::<VGrip>("E-move and V-Grip, going back", &GOING_BACK[..some], (Some(0), 0), (67, 76));
 }
 
 /// E-move and Prim: `motions` commands interrupt a motion, and as many `faults` come.

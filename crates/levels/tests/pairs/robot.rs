@@ -3,7 +3,9 @@
 
 use geometry::pose::Pose;
 use interfaces::{
-    ChangingPose, CommonMemory, Reason, pose_range,
+    ChangingPose, CommonMemory, Reason,
+    emove::EmoveVerb,
+    pose_range,
     prim::{PrimCommand, PrimReport, PrimVerb},
 };
 use levels::places::pose_of;
@@ -37,6 +39,19 @@ pub const fn moves(verb: PrimVerb) -> bool {
         verb,
         PrimVerb::GoThru | PrimVerb::GotoPt | PrimVerb::GoUntil | PrimVerb::GoWhile | PrimVerb::DeltaMove
     )
+}
+
+/// Is a command of E-move a motion to a location?
+pub const fn goes(verb: EmoveVerb) -> bool {
+    matches!(verb, EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo)
+}
+
+/// The robot is where it was sent within this, in.
+const THERE: f64 = 0.021;
+
+/// Is a robot at this pose?
+pub fn is_at(goal: &Pose, at: &Pose) -> bool {
+    goal.to_frame().is_ok_and(|goal| at.to_frame().is_ok_and(|at| goal.distance(&at).inches <= THERE))
 }
 
 /// Half-way from one pose to another of the same orientation.

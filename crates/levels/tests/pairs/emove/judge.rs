@@ -6,17 +6,28 @@ use interfaces::{
     prim::PrimReport,
 };
 
+use geometry::pose::Pose;
+use levels::emove::order::FingerVerb;
+
 use super::{Event, Fingered, Pair, Restarted, is_done};
-use crate::search::{World as _, Wrong};
+use crate::{
+    data::place,
+    robot::{self, is_at},
+    search::{World as _, Wrong},
+};
 
 impl<G: Fingered> Pair<G> {
+    /// Something that counts as held has been let go, or half of it.
+    const fn lets_go(&self) -> bool {
+        self.emove.releasing && self.emove.beliefs.held.is_some()
+    }
+
     /// What is reported done is done.
     ///
     /// `before` is the pair as it was when the processes read it.
     pub(super) fn judge(&self, before: &Self, event: &Event<G::Fingers>) -> Result<(), Wrong> {
-        let lets_go = |it: &Self| it.emove.releasing && it.emove.beliefs.held.is_some();
         let open = G::are_open(before.fingers);
-        if event.restarted == Restarted::Emove && lets_go(before) && !lets_go(self) && !open {
+        if event.restarted == Restarted::Emove && before.lets_go() && !self.lets_go() && !open {
             return Err("a restarted E-move does not know that it lets go");
         }
         let status = &self.emove_out.status;
@@ -26,6 +37,7 @@ impl<G: Fingered> Pair<G> {
         if refused && (fingers_move || robot_moves) {
             return Err("restarted is reported before what was ordered is at rest");
         }
+        self.judge_motion(before)?;
         let number = self.command.number;
         if !is_done(&self.emove_out, number) || is_done(&before.emove_out, number) {
             return Ok(());
@@ -40,7 +52,61 @@ impl<G: Fingered> Pair<G> {
             EmoveVerb::Release if status.held != Holding::Nothing => Err("done, and something is held"),
             EmoveVerb::Pause if fingers_move => Err("done, and the fingers move"),
             EmoveVerb::Pause if robot_moves => Err("done, and the robot moves"),
+            verb if robot::goes(verb) => self.judge_arrival(before),
             EmoveVerb::None => Err("an unknown command is done"),
+            _ => Ok(()),
+        }
+    }
+
+    /// The robot does not leave the object before the fingers have let go, if they were told to, and MOV-TO-OBJ comes to
+    /// it with open fingers. It stands still while they close or let go. What they hold is not brought to an opening.
+    fn judge_motion(&self, before: &Self) -> Result<(), Wrong> {
+        let (now, then) = (&self.emove_out, &before.emove_out);
+        let sends = now.prim.number != then.prim.number && robot::moves(now.prim.command);
+        let orders = *G::number(&mut { *now }) != *G::number(&mut { *then });
+        let order = before.emove.grippers.order;
+        let opens = G::are_open(before.fingers);
+        let grasps = matches!(order, FingerVerb::Grasp | FingerVerb::Release);
+        if sends && grasps && before.gripper.reports_executing() {
+            return Err("the robot is moved while the fingers close or let go");
+        }
+        if orders && self.emove.grippers.order == FingerVerb::Stand && G::hold(before.fingers) {
+            return Err("what is held is brought to an opening");
+        }
+        match (before.is_at_object(), self.is_at_object()) {
+            (true, false) if before.lets_go() && G::touch(before.fingers) => {
+                Err("the robot leaves while the fingers have not let go")
+            }
+            (false, true) if self.command.command == EmoveVerb::MovToObj && !opens => {
+                Err("the robot comes to the object with fingers that are not open")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A motion is done: the robot is there, and E-move knows that.
+    fn judge_arrival(&self, before: &Self) -> Result<(), Wrong> {
+        let named = place(self.command.location.as_str());
+        let at_object = matches!(self.command.command, EmoveVerb::MovToObj | EmoveVerb::MovObjTo);
+        let goal = if at_object { self.object_at } else { Pose::from_frame(&named.frame) };
+        let status = &self.emove_out.status;
+        // An object that is held is not gone to.
+        if self.command.command == EmoveVerb::MovToObj && status.held.object() == self.command.object {
+            return Ok(());
+        }
+        if !is_at(&goal, &before.robot.at) {
+            return Err("done, and the robot is not there");
+        }
+        if status.at.is_none_or(|at| at.location != self.command.location) {
+            return Err("done, and E-move does not know that the robot is there");
+        }
+        match self.command.command {
+            EmoveVerb::MovToObj if !G::are_open(before.fingers) && before.apart > G::LATE => {
+                Err("done, and the fingers are not open")
+            }
+            EmoveVerb::MovObjTo if before.apart > G::LATE && !before.lets_go() => {
+                Err("done, and nothing is between the fingers")
+            }
             _ => Ok(()),
         }
     }

@@ -1,9 +1,9 @@
 //! Which states of E-move and the process of a gripper are alike.
 
-use interfaces::Reason;
+use interfaces::{Reason, prim::PrimCommand};
 
 use super::{Fingered, Pair};
-use crate::image::{Image, forget, rebase, rebase_echoes};
+use crate::image::{Image, forget, rebase, rebase_echoes, renumber_poses};
 
 impl<G: Fingered> Pair<G> {
     /// Without what no row asks for any more: reasons; what a process that executes nothing has of its command.
@@ -17,10 +17,18 @@ impl<G: Fingered> Pair<G> {
         if it.is_settled() {
             G::forget_order(&mut it.emove_out);
         }
+        let PrimCommand { number, command, .. } = it.emove_out.prim;
+        if it.robot.echo == number || number == 0 {
+            it.emove_out.prim = PrimCommand { number, command, ..PrimCommand::default() };
+            if it.emove.route.is_none() {
+                it.emove_out.poses = Default::default();
+            }
+        }
         it.gripper.forget(it.tick);
         image.add(&it.command);
         image.add(&it.emove);
         image.add(&it.emove_out.prim);
+        image.add(&it.emove_out.poses);
         image.add(&it.emove_out.quick_change);
         image.add(&it.emove_out.status.echo);
         image.add(&it.emove_out.status.report);
@@ -35,6 +43,7 @@ impl<G: Fingered> Pair<G> {
     /// What does not count any more begins again.
     pub(super) fn renumber(&mut self) {
         let (emove, out) = (&mut self.emove, &mut self.emove_out);
+        renumber_poses(emove, out);
         let echo = &mut emove.execution.receiver.echo;
         rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
         self.gripper.renumber(G::commander(emove), G::number(out));

@@ -11,9 +11,6 @@ use levels::{execution::Outcome, places::place_of};
 use super::{Event, LATE, Mishap, Pair};
 use crate::{data::data, parts_gripper, robot, search::Wrong};
 
-/// The robot is where it was sent within this, in.
-const THERE: f64 = 0.021;
-
 impl Pair {
     /// Is it where the robot is to stand for a command?
     fn is_goal(&self, command: &SubtaskCommand, at: &Pose) -> bool {
@@ -25,7 +22,7 @@ impl Pair {
         let grip =
             command.object.and_then(|object| data().grip_movetable(&object, command.source_grip, &place));
         let goal = grip.map_or(base, |grip| data().moved(&base, grip));
-        at.to_frame().is_ok_and(|at| goal.distance(&at).inches <= THERE)
+        robot::is_at(&Pose::from_frame(&goal), at)
     }
 
     pub(super) fn is_destination(&self, at: &Pose) -> bool {
