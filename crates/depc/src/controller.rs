@@ -307,7 +307,7 @@ impl Controller {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limit::Exceeded;
+    use crate::{limit::Exceeded, link::LINK_BYTES};
     use geometry::kinematics::{HOME_JOINTS, Joints, T3};
 
     const HOME: Plate = Plate { words: [0, -6293, -636, -9000, 13500, 0] };
@@ -458,6 +458,20 @@ mod tests {
             (Controller::new(Limits::NBS), Exact { joints: HOME_JOINTS, at: HOME });
         let out = controller.step(&ControllerInputs { start: true, board: false, ..well() }, &mut robot);
         assert_eq!((controller.warning(), out.dtr), (Warning::BoardMissing, false));
+    }
+
+    #[test]
+    fn bytes_that_do_not_fit_into_a_tick_are_a_fault_of_the_transmitter() {
+        let (mut controller, _) = running();
+        let mut out = ControllerOutputs::default();
+        let full = [0x06; LINK_BYTES];
+        controller.send(&well(), &full, &mut out);
+        assert_eq!((controller.state(), out.tx.as_slice()), (ControllerState::Running, &full[..]));
+        controller.send(&well(), &[0x06], &mut out);
+        assert_eq!(
+            (controller.state(), controller.warning()),
+            (ControllerState::Warning, Warning::Transmitter)
+        );
     }
 
     #[test]

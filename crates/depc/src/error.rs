@@ -63,3 +63,23 @@ impl fmt::Display for Error {
 }
 
 impl core::error::Error for Error {}
+
+#[cfg(test)]
+mod tests {
+    use super::Error;
+
+    #[test]
+    fn each_error_says_what_was_expected_and_what_was_found() {
+        for (error, words) in [
+            (Error::OutOfRange { axis: 1, inches: 400.0 }, ["Y", "400.00", "327.67"]),
+            (Error::NotFinite, ["not", "a", "position"]),
+            (Error::BadPeriod { milliseconds: 1001 }, ["10 ms", "1000", "1001"]),
+            (Error::BadLength { expected: 16, found: 15 }, ["frame", "16", "15"]),
+            (Error::BadHead { expected: 1, found: 0xAB }, ["byte", "01", "AB"]),
+            (Error::BadChecksum { expected: 0x73, found: 0xCD }, ["checksum", "73", "CD"]),
+        ] {
+            let text = error.to_string();
+            assert!(words.iter().all(|word| text.contains(word)), "{text}");
+        }
+    }
+}

@@ -127,6 +127,17 @@ mod tests {
     }
 
     #[test]
+    fn a_frame_that_is_offered_again_takes_the_place_of_no_other() {
+        let mut exact = ExactFrames::default();
+        for part in [1.0, 2.0].into_iter().chain([2.0; MOST_FRAMES]) {
+            exact.offer(&WireFrame::from_frame(&tool(part)), &tool(part));
+        }
+        let found =
+            exact.plate_frame(&words(&tool(1.0)), &T3).shifted(Vector::new(T3.plate_to_tool, 0.0, 0.0));
+        assert!(found.distance(&tool(1.0)).inches < 1e-12);
+    }
+
+    #[test]
     fn other_words_are_their_own_frame_and_what_does_not_fit_is_not_kept() {
         let mut exact = ExactFrames::default();
         exact.offer(&WireFrame::from_frame(&tool(1.0)), &tool(3.0));

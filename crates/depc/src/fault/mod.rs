@@ -459,6 +459,12 @@ mod tests {
         assert_eq!(plan.add(flip), Ok(()));
         assert_eq!(plan.add(cut), Err(Refusal::Hides { kind: Flip, number: 1 }));
         assert_eq!(plan.add(cut.only(Direction::ToController)), Ok(()));
+        for direction in [Direction::ToController, Direction::ToHost] {
+            let mut plan = Plan::new(1);
+            assert_eq!(plan.add(cut.only(direction)), Ok(()));
+            let flip = Rule::new(Flip).at(12).only(direction);
+            assert_eq!(plan.add(flip), Err(Refusal::Hidden { kind: Flip, by: 1 }));
+        }
     }
 
     #[test]

@@ -453,3 +453,15 @@ fn a_function_that_begins_again_after_a_cancel_is_asked_for_its_report() {
     }
     assert_eq!((tick(&mut host, &[], &Intent::Idle).1, host.state()), (vec![0x05], HostState::Starting));
 }
+
+#[test]
+fn what_a_host_forgets_makes_no_difference() {
+    let mut host = running();
+    tick(&mut host, &[], &position(NO_FUNCTION));
+    for (has_candidate, candidate) in [(true, HOME), (false, Plate::default())] {
+        let mut forgets = Host { has_candidate, candidate: HOME, ..host };
+        forgets.forget_past();
+        let counters = LinkCounters::default();
+        assert_eq!(forgets, Host { has_candidate, candidate, counters, ..host });
+    }
+}
