@@ -243,7 +243,7 @@ fn start_pedestal(program: &Path, controller: &Controller) -> (Child, Arc<Atomic
 #[test]
 fn a_pedestal_in_another_process_changes_not_a_bit() {
     // Brought up to date before the controller waits for it.
-    let (program, alone) = (rcs_neighbour(), computed_alone("clevis"));
+    let (program, alone) = (rcs_neighbour(), computed_alone("clevis", &[]));
     for boards in ["one", "split"] {
         let scratch = Scratch::new(&format!("turned-log-{boards}"));
         let log = scratch.file("run.mcap");

@@ -9,19 +9,19 @@ use std::{
 use neighbours::data_system::{Item, Store};
 use whole_system_tests::{Scratch, rcs_neighbour, root};
 
-use crate::bench::{Controller, computed, computed_alone, run_alone};
+use crate::bench::{Controller, computed, computed_alone};
 
 /// The items in a data base.
 fn items(file: &Path) -> Vec<Item> {
     Store::open(file).expect("a data base").items().expect("items")
 }
 
-/// What the Data System in the controller's own process knows after a shift.
-fn known_after_a_shift() -> Vec<Item> {
+/// [`computed`] of a shift with all neighbours in the controller's own process, and what the Data System knows then.
+fn shift_alone() -> (u64, Vec<Item>) {
     let scratch = Scratch::new("inside");
     let file = scratch.file("items.db");
-    run_alone(&["shift", "--data-base", &file.display().to_string()]);
-    items(&file)
+    let bits = computed_alone("shift", &["--data-base", &file.display().to_string()]);
+    (bits, items(&file))
 }
 
 fn start(program: &Path, address: &str, words: &[&str]) -> Child {
@@ -36,7 +36,7 @@ fn start(program: &Path, address: &str, words: &[&str]) -> Child {
 
 #[test]
 fn a_shift_with_everybody_elsewhere_has_the_same_bits_and_items() {
-    let (known, program) = (known_after_a_shift(), rcs_neighbour());
+    let ((bits, known), program) = (shift_alone(), rcs_neighbour());
     assert!(!known.is_empty(), "a shift has items");
     let scratch = Scratch::new("everybody");
     let (outbox, file) = (scratch.file("outbox").display().to_string(), scratch.file("items.db"));
@@ -58,7 +58,7 @@ fn a_shift_with_everybody_elsewhere_has_the_same_bits_and_items() {
         told = items(&file);
     });
     assert_eq!(ended.status, Some(0), "{}", ended.said);
-    assert_eq!(computed(&log), computed_alone("shift"));
+    assert_eq!(computed(&log), bits);
     assert_eq!(ended.result["allocations_after_start"], 0);
     assert_eq!(told, known);
 }

@@ -11,7 +11,7 @@ use whole_system_tests::{
 };
 
 /// Ticks of a run that is stopped.
-const TICKS: &str = "400";
+const TICKS: &str = "200";
 /// How long it is stopped.
 const STOPPED: Duration = Duration::from_millis(1_000);
 /// Slots that are skipped then, at least: the one that is being waited for may still come in time.
