@@ -265,18 +265,19 @@ mod tests {
 
     #[test]
     fn a_line_is_over_when_its_rules_are_past_and_it_holds_nothing() {
-        let mut plan = Plan::new(1);
-        plan.add(Rule::new(FaultKind::Delay).at(5).ticks(4).only(Direction::ToHost)).unwrap();
-        plan.add(Rule::new(FaultKind::CtsLow).at(6).ticks(3)).unwrap();
-        let mut injector = Injector::new(&plan);
-        let over: Vec<u64> = (1..12)
-            .filter(|tick| {
-                injector.carry(Direction::ToHost, Tick(*tick), &bytes(ABC), true);
-                injector.carry(Direction::ToController, Tick(*tick), &bytes(ABC), true);
-                injector.is_over(Tick(*tick))
-            })
-            .collect();
-        assert_eq!(over, [9, 10, 11]);
+        let late = Rule::new(FaultKind::Delay).at(5).ticks(4).only(Direction::ToHost);
+        let low = Rule::new(FaultKind::CtsLow).at(6).ticks(3);
+        for rules in [&[late, low][..], &[late]] {
+            let mut injector = injector(rules);
+            let over: Vec<u64> = (1..12)
+                .filter(|tick| {
+                    injector.carry(Direction::ToHost, Tick(*tick), &bytes(ABC), true);
+                    injector.carry(Direction::ToController, Tick(*tick), &bytes(ABC), true);
+                    injector.is_over(Tick(*tick))
+                })
+                .collect();
+            assert_eq!(over, [9, 10, 11]);
+        }
         let mut endless = Plan::new(1);
         endless.add(Rule::new(FaultKind::Drop).rate(1)).unwrap();
         assert!(!Injector::new(&endless).is_over(Tick(100)));
