@@ -301,14 +301,14 @@ pub fn computed(log: &Path) -> u64 {
     digest.value()
 }
 
-/// [`computed`] of a shipped job, all of whose neighbours are in the controller's own process.
-pub fn computed_alone(job: &str, more: &[&str]) -> u64 {
+/// [`computed`] of a shipped job, with options of the run, all of whose neighbours are in the controller's own process.
+pub fn computed_alone(job: &str, options: &[&str]) -> u64 {
     let scratch = Scratch::new(&format!("alone-{job}"));
     let log = scratch.file("alone.mcap");
     let run = Command::new(rcs_run())
         .args([job, "--shared-memory", "off", "--log"])
         .arg(&log)
-        .args(more)
+        .args(options)
         .current_dir(root())
         .output()
         .expect("rcs-run can be started");

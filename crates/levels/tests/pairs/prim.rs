@@ -25,6 +25,7 @@ use crate::{
     data::{data, emove_command, place, pose_of_point},
     emove::is_done,
     image::{Image, rebase, rebase_echoes, renumber_poses},
+    robot::THERE,
     search::{World, Wrong},
 };
 
@@ -34,8 +35,6 @@ const LONG: u32 = 2_000;
 const LIMIT: u64 = 250;
 /// The farthest that the commanded pose moves in a tick, in.
 const STEP: f64 = 0.6;
-/// The robot is where it was sent within this, in.
-const THERE: f64 = 0.021;
 /// Ticks for which a process above need not know that the robot stands elsewhere.
 const LATE: u8 = 4;
 /// How far a robot stands elsewhere, in.

@@ -3,7 +3,7 @@
 
 use geometry::pose::Pose;
 use interfaces::{
-    ChangingPose, CommonMemory, Reason,
+    ChangingPose, CommonMemory, EmoveOutputs, Reason,
     emove::EmoveVerb,
     pose_range,
     prim::{PrimCommand, PrimReport, PrimVerb},
@@ -47,7 +47,7 @@ pub const fn goes(verb: EmoveVerb) -> bool {
 }
 
 /// The robot is where it was sent within this, in.
-const THERE: f64 = 0.021;
+pub const THERE: f64 = 0.021;
 
 /// Is a robot at this pose?
 pub fn is_at(goal: &Pose, at: &Pose) -> bool {
@@ -145,6 +145,17 @@ impl Robot {
             PrimDoes::LinkFails => (self.report, self.link) = (PrimReport::T3LinkOff, false),
         }
         (self.goal, self.far, self.there) = (None, self.at, 0);
+    }
+
+    /// Take away the text of an order that Prim has taken, and the poses of E-move if `over`: no order leads to them.
+    pub fn forget_order(&self, out: &mut EmoveOutputs, over: bool) {
+        let PrimCommand { number, command, .. } = out.prim;
+        if self.echo == number || number == 0 {
+            out.prim = PrimCommand { number, command, ..PrimCommand::default() };
+            if over {
+                out.poses = Default::default();
+            }
+        }
     }
 
     /// What E-move reads.

@@ -1,12 +1,11 @@
 //! What must hold of E-move and the process of a gripper in each tick.
 
+use geometry::pose::Pose;
 use interfaces::{
     StatusReport,
     emove::{EmoveVerb, Holding},
     prim::PrimReport,
 };
-
-use geometry::pose::Pose;
 use levels::emove::order::FingerVerb;
 
 use super::{Event, Fingered, Pair, Restarted, is_done};
@@ -58,8 +57,9 @@ impl<G: Fingered> Pair<G> {
         }
     }
 
-    /// The robot does not leave the object before the fingers have let go, if they were told to, and MOV-TO-OBJ comes to
-    /// it with open fingers. It stands still while they close or let go. What they hold is not brought to an opening.
+    /// The robot does not leave the object before the fingers have let go, if they were told to, and MOV-TO-OBJ comes
+    /// to it with open fingers. It stands still while they close or let go. What they hold is not brought to an
+    /// opening.
     fn judge_motion(&self, before: &Self) -> Result<(), Wrong> {
         let (now, then) = (&self.emove_out, &before.emove_out);
         let sends = now.prim.number != then.prim.number && robot::moves(now.prim.command);

@@ -1,6 +1,6 @@
 //! Which states of E-move and the process of a gripper are alike.
 
-use interfaces::{Reason, prim::PrimCommand};
+use interfaces::Reason;
 
 use super::{Fingered, Pair};
 use crate::image::{Image, forget, rebase, rebase_echoes, renumber_poses};
@@ -17,13 +17,7 @@ impl<G: Fingered> Pair<G> {
         if it.is_settled() {
             G::forget_order(&mut it.emove_out);
         }
-        let PrimCommand { number, command, .. } = it.emove_out.prim;
-        if it.robot.echo == number || number == 0 {
-            it.emove_out.prim = PrimCommand { number, command, ..PrimCommand::default() };
-            if it.emove.route.is_none() {
-                it.emove_out.poses = Default::default();
-            }
-        }
+        it.robot.forget_order(&mut it.emove_out, it.emove.route.is_none());
         it.gripper.forget(it.tick);
         image.add(&it.command);
         image.add(&it.emove);

@@ -5,7 +5,6 @@ use interfaces::{
     device::{VisionRequest, VisionResponse},
     emove::EmoveCommand,
     grip::GripCommand,
-    prim::PrimCommand,
     subtask::SubtaskCommand,
 };
 use levels::execution::Outcome;
@@ -42,13 +41,7 @@ impl Pair {
             self.emove_out.vision = VisionRequest { number: vision, ..VisionRequest::default() };
             self.vision = VisionResponse { echo: vision, ..VisionResponse::default() };
         }
-        let PrimCommand { number, command, .. } = self.emove_out.prim;
-        if self.robot.echo == number || number == 0 {
-            self.emove_out.prim = PrimCommand { number, command, ..PrimCommand::default() };
-            if emove_over {
-                self.emove_out.poses = Default::default();
-            }
-        }
+        self.robot.forget_order(&mut self.emove_out, emove_over);
         if !self.grip.is_busy(&self.emove_out.grip) {
             let GripCommand { number, command, .. } = self.emove_out.grip;
             self.emove_out.grip = GripCommand { number, command, ..GripCommand::default() };
