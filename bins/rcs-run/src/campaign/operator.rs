@@ -188,16 +188,21 @@ impl<'f> Operator<'f> {
 
     /// Send a PAUSE; the current line follows it.
     pub fn pause(&mut self, tick: Tick) {
-        self.doing = Doing::Pause;
+        self.replace(Doing::Pause);
         self.send(tick, &pause());
     }
 
     /// Send a command that is not one of the job.
     pub fn interject(&mut self, tick: Tick, command: &HwsCommand, then: Then) {
-        self.replaced = (self.doing == Doing::Command).then_some(self.number);
         self.has_finished = false;
-        self.doing = Doing::Own(then);
+        self.replace(Doing::Own(then));
         self.send(tick, command);
+    }
+
+    /// The next command of the operator replaces that of the job, which may finish before Task accepts it.
+    fn replace(&mut self, doing: Doing) {
+        self.replaced = (self.doing == Doing::Command).then_some(self.number);
+        self.doing = doing;
     }
 
     /// Note that the operator has sent the robot elsewhere, instead of the command of the job.
@@ -366,13 +371,14 @@ impl Commander for Operator<'_> {
         if let Some(fault) = workstation.fault() {
             self.strand(format!("workstation: {fault}"));
         }
+        let echo = u32::from(status.echo);
+        self.has_finished |= self.replaced == Some(echo) && status.report == HwsReport::Finished;
+        self.replaced = self.replaced.filter(|_| echo != self.number);
         match self.doing.clone() {
             Doing::Over | Doing::Stranded => {}
             Doing::Failed if self.is_waiting => {}
             Doing::Failed => self.recover(tick),
             Doing::Own(then) => {
-                let echoes_replaced = self.replaced == Some(u32::from(status.echo));
-                self.has_finished |= echoes_replaced && status.report == HwsReport::Finished;
                 if let Some(end) = self.end(tick, status) {
                     self.note(
                         tick,

@@ -146,7 +146,7 @@ fn a_command_that_finishes_while_it_is_replaced_or_the_box_is_on_is_not_sent_aga
         assert_eq!((result.verdict, result.detail.as_str()), (Verdict::Done, ""));
         result.ended.iter().any(|ended| ended.contains("SAFE"))
     };
-    for interruption in ["replaced", "nudge"] {
+    for interruption in ["pause", "replaced", "nudge"] {
         assert!(sent_again(&fork, interruption) && !sent_again(&at_end, interruption), "{interruption}");
     }
 }

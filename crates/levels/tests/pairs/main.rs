@@ -212,9 +212,12 @@ fn emove_and_v_grip_go_back_to_an_object() {
     grasping::<VGrip>("E-move and V-Grip, going back", &GOING_BACK[..some], (Some(0), 0), (67, 76));
 }
 
+const THERE_AND_BACK: &[prim::Line] =
+    &[(EmoveVerb::Pause, ""), (EmoveVerb::MovToLoc, "HOME"), (EmoveVerb::MovToLoc, "SAFE")];
+
 /// E-move and Prim: `motions` commands interrupt a motion, and as many `faults` come.
 fn moves(name: &str, motions: u8, faults: u8) {
-    let found = is_sound(name, prim::Pair::first(&["HOME", "SAFE"], motions, faults), 1_000_000);
+    let found = is_sound(name, prim::Pair::first("HOME", THERE_AND_BACK, motions, faults), 1_000_000);
     assert!(found.states > 1000, "{} states", found.states);
     assert!(found.pause <= 9 && found.any <= 26, "{} and {}", found.pause, found.any);
 }
@@ -227,6 +230,41 @@ fn emove_and_prim() {
 #[test]
 fn emove_and_prim_with_a_fault() {
     moves("E-move and Prim, a fault", u8::from(is_full()), 1);
+}
+
+const CHANGING_TOOLS: &[prim::Line] = &[
+    (EmoveVerb::AcquireTool, prim::DRUM),
+    (EmoveVerb::RemoveTool, prim::DRUM),
+    (EmoveVerb::InsertTool, prim::DRUM),
+    (EmoveVerb::ReleaseTool, prim::DRUM),
+    (EmoveVerb::Pause, ""),
+];
+
+/// E-move and Prim at the drum, with guarded moves: so many things are unusual, so many commands interrupt a motion, and
+/// so many `faults` come. A pair that rests takes `any` ticks at most.
+fn guards(name: &str, commands: usize, (unusual, motions, faults): (u8, u8, u8), any: u32) {
+    let first = prim::Pair::at_drum(&CHANGING_TOOLS[..commands], unusual, motions, faults);
+    let found = is_sound(name, first, 1_000_000);
+    assert!(found.states > 10_000, "{} states", found.states);
+    assert!(found.pause <= 8 && found.any <= any, "{} and {}", found.pause, found.any);
+}
+
+#[test]
+fn emove_and_prim_change_tools() {
+    let (unusual, any) = if is_full() { (2, 82) } else { (1, 61) };
+    guards("E-move and Prim, tools", 4, (unusual, 0, 0), any);
+}
+
+#[test]
+fn emove_and_prim_change_tools_with_an_interruption() {
+    let (unusual, any) = if is_full() { (1, 63) } else { (0, 32) };
+    guards("E-move and Prim, tools, an interruption", 5, (unusual, 1, 0), any);
+}
+
+#[test]
+fn emove_and_prim_change_tools_with_a_fault() {
+    let commands = if is_full() { 5 } else { 3 };
+    guards("E-move and Prim, tools, a fault", commands, (0, 0, 1), 34);
 }
 
 /// Subtask and E-move: `early` commands come before the last one has ended, and so many `mishaps`; a pair that rests

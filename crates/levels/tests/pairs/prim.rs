@@ -1,14 +1,18 @@
 //! E-move and Prim. Around them: Subtask, T3 Interface with the robot, Quick Change. The robot is bare, and goes from
-//! one known location to another, by their trajectory.
+//! one known location to another, by their trajectory; or it has the tool gripper, and takes a tool out of the drum and
+//! puts it in, by guarded moves.
 //!
 //! A motion is a single event: the ticks in which T3 Interface wants points, until a process says something new or half
 //! of the motion is over. While the robot is at rest T3 Interface may also want none.
 
+mod judge;
+mod states;
+mod tool;
+
 use geometry::{frame::Frame, pose::WireFrame};
 use interfaces::{
-    CommonMemory, EmoveOutputs, ExternalInputs, PrimOutputs, Reason, StatusReport,
+    CommonMemory, EmoveOutputs, ExternalInputs, PrimOutputs, StatusReport,
     emove::{EmoveCommand, EmoveVerb},
-    pose_range,
     prim::{PrimReport, PrimVerb},
     process::{Inputs, Process},
     quick_change::{QuickChangeReport, RingPosition},
@@ -23,22 +27,22 @@ use rcs_core::tick::Tick;
 
 use crate::{
     data::{data, emove_command, place, pose_of_point},
-    emove::is_done,
-    image::{Image, rebase, rebase_echoes, renumber_poses},
-    robot::THERE,
     search::{World, Wrong},
 };
+pub use tool::DRUM;
+use tool::{GRIPPER, Happens, TOOL, Tool};
 
 /// Ticks in which any motion of these commands ends.
 const LONG: u32 = 2_000;
-/// Longer than any time that counts but for that of an echo, ticks.
-const LIMIT: u64 = 250;
-/// The farthest that the commanded pose moves in a tick, in.
-const STEP: f64 = 0.6;
 /// Ticks for which a process above need not know that the robot stands elsewhere.
 const LATE: u8 = 4;
 /// How far a robot stands elsewhere, in.
 const ASIDE: f64 = 1.0;
+
+/// A command of Subtask, and its location; none for PAUSE.
+pub type Line = (EmoveVerb, &'static str);
+
+const PAUSE: Line = (EmoveVerb::Pause, "");
 
 /// What T3 Interface and the robot do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +51,7 @@ pub enum Link {
     Busy,
     /// It wants points, or comes up after RESTART: until a process says something new.
     Goes,
-    /// The same until half of the way to Prim's goal is left.
+    /// The same until half of the way to Prim's goal is left, and a quarter of a GO-UNTIL: the tool is there.
     Half,
     /// It reports an error: of the link, of the line, of a command; or the controller's DTR goes off.
     Fails(LinkFault, bool),
@@ -68,15 +72,15 @@ pub enum Restarted {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event {
-    /// A command of Subtask: MOV-TO-LOC to a location, or PAUSE where there is no name.
-    pub told: Option<&'static str>,
+    pub told: Option<Line>,
     pub link: Link,
+    pub happens: Happens,
 }
 
 #[derive(Clone)]
 pub struct Pair {
     tick: Tick,
-    places: &'static [&'static str],
+    commands: &'static [Line],
     /// Commands that may still interrupt a motion, and faults that may still come.
     left: (u8, u8),
     /// The way to Prim's goal has been halved.
@@ -94,18 +98,42 @@ pub struct Pair {
     aside: u8,
     /// Where it was sent last.
     robot: Frame,
+    /// Without it the robot is bare.
+    tool: Option<Tool>,
+    /// What is unusual but no fault can still happen so often: fingers that stick, and the condition of a GO-UNTIL that
+    /// comes elsewhere than half-way.
+    unusual: u8,
+    /// The condition of a guarded move has come since Prim took it, or since the robot rested.
+    contact: bool,
+    /// That, or its sensor could not tell.
+    stops: bool,
+    /// Ticks for which the robot has moved since.
+    brakes: u32,
 }
 
 /// What makes time go on singly again: what the processes say, and whether the robot is commanded to move.
 type Said = (u32, StatusReport, u32, PrimReport, u32, bool, bool);
 
 impl Pair {
-    /// A pair whose first PAUSE has found the robot at the first of these locations. So many commands may interrupt
-    /// a motion, and so many faults come.
-    pub fn first(places: &'static [&'static str], motions: u8, faults: u8) -> Self {
+    /// A pair that is booted, with a bare robot at a location that E-move has not found yet. Of these commands so many
+    /// may interrupt a motion, and so many faults come.
+    pub fn first(location: &'static str, commands: &'static [Line], motions: u8, faults: u8) -> Self {
+        Self { commands, left: (motions, faults), ..Self::at(location, None) }
+    }
+
+    /// A pair that has gone before the drum, with open fingers.
+    pub fn at_drum(commands: &'static [Line], unusual: u8, motions: u8, faults: u8) -> Self {
+        let mut pair = Self::at("SAFE", Some(Tool::new()));
+        pair.runs(PAUSE);
+        pair.runs((EmoveVerb::MovToLoc, "TOOL-SAFE"));
+        Self { commands, left: (motions, faults), unusual, ..pair }
+    }
+
+    /// A system that is booted.
+    fn at(location: &str, tool: Option<Tool>) -> Self {
         let mut pair = Self {
             tick: Tick(10_000),
-            places,
+            commands: &[],
             left: (0, 0),
             halved: false,
             command: EmoveCommand::default(),
@@ -117,43 +145,62 @@ impl Pair {
             t3i: T3iStatus { controller_ready: true, ..T3iStatus::default() },
             silent: false,
             aside: 0,
-            robot: place(places[0]).frame,
+            robot: place(location).frame,
+            tool,
+            unusual: 0,
+            contact: false,
+            stops: false,
+            brakes: 0,
         };
-        let mut told = Some("");
-        for _ in 0..LONG {
-            pair.step(Event { told: told.take(), link: Link::Goes }).expect("nothing is wrong at the start");
-            if pair.rests() {
-                pair.left = (motions, faults);
-                return pair;
-            }
-        }
-        panic!("the first PAUSE never ends");
+        pair.tick(Link::Goes, Happens::Nothing).expect("nothing is wrong at the start");
+        pair
     }
 
-    fn tell(&mut self, location: &'static str) {
+    /// Execute a command in which nothing goes wrong.
+    fn runs(&mut self, line: Line) {
+        let mut told = Some(line);
+        for _ in 0..LONG {
+            let event = Event { told: told.take(), link: Link::Goes, happens: Happens::Nothing };
+            self.step(event).expect("nothing is wrong at the start");
+            if self.rests() {
+                assert_eq!(self.emove_out.status.report, StatusReport::Done, "{line:?}");
+                return;
+            }
+        }
+        panic!("{line:?} never ends");
+    }
+
+    fn tell(&mut self, (verb, location): Line) {
         let number = self.command.number + 1;
-        self.command = if location.is_empty() {
-            EmoveCommand { number, command: EmoveVerb::Pause, ..EmoveCommand::default() }
-        } else {
-            let pose = Some(pose_of_point(location));
-            let of_object = emove_command(EmoveVerb::MovToLoc, "LINKBAR1", 2, location);
-            let EmoveCommand { command, location, location_kind, location_record, .. } = of_object;
+        if verb == EmoveVerb::Pause {
+            self.command = EmoveCommand { number, command: verb, ..EmoveCommand::default() };
+            return;
+        }
+        let (object, grip, _) = TOOL;
+        let pose = Some(pose_of_point(location));
+        let of_object = EmoveCommand { number, pose, ..emove_command(verb, object, grip, location) };
+        let EmoveCommand { location, location_kind, location_record, .. } = of_object;
+        self.command = if verb == EmoveVerb::MovToLoc {
             EmoveCommand {
                 number,
-                command,
+                command: verb,
                 location,
                 location_kind,
                 location_record,
                 pose,
                 ..EmoveCommand::default()
             }
+        } else {
+            EmoveCommand { end_effector_id: Some(GRIPPER), ..of_object }
         };
     }
 
     /// What the processes read.
-    fn memory(&self) -> CommonMemory {
+    fn inputs(&self) -> (CommonMemory, ExternalInputs) {
         let before = self.tick.previous();
-        let mut memory = CommonMemory::default();
+        let (mut memory, mut external) = (CommonMemory::default(), ExternalInputs::default());
+        external.devices.quick_change.locked = true;
+        external.devices.joystick.velocity = 1000;
         memory.subtask.emove = self.command;
         (memory.emove, memory.prim, memory.t3i.status) = (self.emove_out, self.prim_out, self.t3i);
         let status = &mut memory.quick_change.status;
@@ -164,7 +211,10 @@ impl Pair {
         memory.prim.header.stamp = before;
         memory.quick_change.header.stamp = before;
         memory.t3i.header.stamp = if self.silent { Tick::BEFORE_START } else { before };
-        memory
+        if let Some(tool) = &self.tool {
+            tool.write(&mut memory, &mut external.devices, before);
+        }
+        (memory, external)
     }
 
     /// T3 Interface takes what Prim has written in the tick before.
@@ -226,7 +276,7 @@ impl Pair {
     /// Does a command interrupt a motion?
     fn interrupts(&self) -> bool {
         let goes = self.emove.execution.outcome == Outcome::Executing || self.emove.execution.waiting;
-        self.is_moving() || (goes && self.command.command == EmoveVerb::MovToLoc)
+        self.is_moving() || (goes && self.command.command != EmoveVerb::Pause)
     }
 
     fn said(&self) -> Said {
@@ -236,7 +286,7 @@ impl Pair {
     }
 
     /// One tick of both.
-    fn tick(&mut self, link: Link) -> Result<(), Wrong> {
+    fn tick(&mut self, link: Link, happens: Happens) -> Result<(), Wrong> {
         self.tick = self.tick.next();
         let mut process = (Emove::default(), Prim::default());
         process.0.restore(self.emove);
@@ -246,10 +296,7 @@ impl Pair {
             Link::Restart(Restarted::Prim) => process.1 = Prim::default(),
             _ => {}
         }
-        let memory = self.memory();
-        let mut external = ExternalInputs::default();
-        external.devices.quick_change.locked = true;
-        external.devices.joystick.velocity = 1000;
+        let (memory, external) = self.inputs();
         let data = data();
         let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &data };
         let old = self.clone();
@@ -259,73 +306,13 @@ impl Pair {
         (self.emove, self.prim) = (*process.0.state(), *process.1.state());
         self.quick_change = old.emove_out.quick_change.number;
         self.t3i_does(&old.prim_out.t3i, link);
+        if let Some(tool) = &mut self.tool {
+            tool.does(happens, &self.robot, &memory, &self.prim)?;
+        }
+        self.watch(&old);
         let wrong = self.judge(&old);
         self.renumber();
         wrong
-    }
-
-    /// No jump is commanded, and what is reported done is done.
-    fn judge(&self, before: &Self) -> Result<(), Wrong> {
-        if let (Some(now), Some(then)) = (&self.prim.motion, &before.prim.motion)
-            && now.frame().distance(&then.frame()).inches > STEP
-        {
-            return Err("a jump is commanded");
-        }
-        if matches!(before.aside, 1..=LATE) {
-            return Ok(());
-        }
-        let stands = before.stands();
-        let prim_done = |it: &Self| {
-            let status = &it.prim_out.status;
-            status.echo == it.emove_out.prim.number && status.report == PrimReport::Done
-        };
-        let goal = self.prim.target.goal.map(|goal| goal.frame.frame());
-        if prim_done(self)
-            && !prim_done(before)
-            && self.prim.target.verb == PrimVerb::GotoPt
-            && goal.is_none_or(|goal| goal.distance(&stands).inches > THERE)
-        {
-            return Err("Prim is done, and the robot is not at its goal");
-        }
-        let status = &self.emove_out.status;
-        let number = self.command.number;
-        if !is_done(&self.emove_out, number) || is_done(&before.emove_out, number) {
-            return Ok(());
-        }
-        match self.command.command {
-            _ if before.is_moving() => Err("done, and the robot moves"),
-            EmoveVerb::Pause => Ok(()),
-            EmoveVerb::MovToLoc => {
-                let goal = place(self.command.location.as_str()).frame;
-                let there = goal.distance(&stands).inches <= THERE;
-                let known = status.at.is_some_and(|at| at.location == self.command.location);
-                match (there, known) {
-                    (false, _) => Err("done, and the robot is not there"),
-                    (true, false) => Err("done, and E-move does not know that the robot is there"),
-                    (true, true) => Ok(()),
-                }
-            }
-            _ => Err("an unknown command is done"),
-        }
-    }
-
-    /// What does not count any more begins again.
-    fn renumber(&mut self) {
-        renumber_poses(&mut self.emove, &mut self.emove_out);
-        let (emove, out) = (&mut self.emove, &mut self.emove_out);
-        let (prim, below) = (&mut self.prim, &mut self.prim_out);
-        for (at, record) in (1..).zip(&mut below.poses) {
-            record.number = record.number.map(|_| pose_range::PRIM | at);
-        }
-        let [present, sensor, ..] = below.poses;
-        (below.status.present_pose, below.status.sensor_pose) = (present.number, sensor.number);
-        (out.status.reference_pose, prim.newest_pose) = (None, pose_range::PRIM | 9);
-        let echo = &mut emove.execution.receiver.echo;
-        rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
-        let echo = &mut prim.execution.receiver.echo;
-        rebase(&mut emove.prim, &mut [&mut out.prim.number, echo, &mut below.status.echo]);
-        rebase(&mut emove.quick_change, &mut [&mut out.quick_change.number, &mut self.quick_change]);
-        rebase(&mut prim.t3i, &mut [&mut below.t3i.number, &mut self.t3i.echo]);
     }
 }
 
@@ -335,8 +322,9 @@ impl World for Pair {
     fn events(&self) -> Vec<(Event, bool)> {
         let moving = self.is_moving();
         let (motions, faults) = self.left;
-        let mut links = if moving { vec![Link::Goes] } else { vec![Link::Busy, Link::Goes] };
-        if moving && !self.halved && (motions, faults) != (0, 0) {
+        let mut links =
+            if moving || self.tool.is_some() { vec![Link::Goes] } else { vec![Link::Busy, Link::Goes] };
+        if moving && !self.halved && (self.awaits() || (motions, faults) != (0, 0)) {
             links.push(Link::Half);
         }
         if faults > 0 {
@@ -350,37 +338,52 @@ impl World for Pair {
             links.extend([Link::Silent, Link::Aside]);
             links.extend([Restarted::Emove, Restarted::Prim].map(Link::Restart));
         }
-        let quiet = links.iter().map(|link| (Event { told: None, link: *link }, *link == Link::Goes));
-        let mut events: Vec<_> = quiet.collect();
+        let prompt = |link: Link| link == Link::Goes && !self.fingers_move();
+        let quiet = |link| Event { told: None, link, happens: Happens::Nothing };
+        let mut events: Vec<_> = links.iter().map(|link| (quiet(*link), prompt(*link))).collect();
+        events.extend(
+            self.happenings()
+                .into_iter()
+                .map(|(happens, prompt)| (Event { happens, ..quiet(Link::Goes) }, prompt)),
+        );
         let status = &self.emove_out.status;
         let ended = status.echo == self.command.number && status.report != StatusReport::Executing;
         if motions > 0 || !self.interrupts() {
-            let last =
-                if self.command.command == EmoveVerb::Pause { "" } else { self.command.location.as_str() };
-            let may = core::iter::once(&"").chain(self.places).filter(|told| ended || **told != last);
-            events.extend(may.map(|told| {
-                (Event { told: Some(told), link: if moving { Link::Goes } else { Link::Busy } }, false)
+            let last = (self.command.command, self.command.location);
+            let may = self
+                .commands
+                .iter()
+                .filter(|(verb, location)| ended || (*verb, *location) != (last.0, last.1.as_str()));
+            events.extend(may.map(|line| {
+                let link = if moving { Link::Goes } else { Link::Busy };
+                (Event { told: Some(*line), ..quiet(link) }, false)
             }));
         }
+        events.retain(|(event, _)| !self.is_unusual(event) || self.unusual > 0);
         events
     }
 
     fn step(&mut self, event: Event) -> Result<(), Wrong> {
-        if let Some(location) = event.told {
+        self.unusual -= u8::from(self.is_unusual(&event));
+        if let Some(line) = event.told {
             self.left.0 -= u8::from(self.interrupts());
-            self.tell(location);
+            self.tell(line);
         }
-        self.left.1 -= u8::from(!matches!(event.link, Link::Busy | Link::Goes | Link::Half));
+        let goes = matches!(event.link, Link::Busy | Link::Goes | Link::Half);
+        self.left.1 -= u8::from(!goes || !self.is_usual(event.happens));
+        let mut happens = event.happens;
         let (before, order) = (self.said(), self.emove_out.prim.number);
         self.halved |= event.link == Link::Half;
-        let half = self.prim.motion.map_or(0.0, |motion| motion.distance() / 2.0);
+        let part = if self.awaits() { 4.0 } else { 2.0 };
+        let left = self.prim.motion.map_or(0.0, |motion| motion.distance() / part);
         for _ in 0..LONG {
-            self.tick(event.link)?;
+            self.tick(event.link, happens)?;
+            happens = Happens::Nothing;
             let goes = match event.link {
                 Link::Goes => {
                     self.is_moving() || (self.aside > 0 && self.prim.execution.outcome == Outcome::Executing)
                 }
-                Link::Half => self.prim.motion.is_some_and(|motion| motion.distance() > half),
+                Link::Half => self.prim.motion.is_some_and(|motion| motion.distance() > left),
                 _ => false,
             };
             if !goes || self.said() != before {
@@ -391,49 +394,8 @@ impl World for Pair {
         Err("a motion that never ends")
     }
 
-    /// Without what no row asks for any more: reasons; the nearest places; how long the robot has stood beyond what
-    /// counts; when a link was restarted, since so many faults cannot come.
     fn image(&self) -> Vec<u8> {
-        let mut image = Image::new(self.tick, LIMIT, &[]);
-        let mut it = self.clone();
-        (it.emove.execution.reason, it.prim.execution.reason) = (Reason::None, Reason::None);
-        if it.emove.execution.outcome != Outcome::Executing {
-            it.emove.execution.last_order = None;
-            if it.command.command != EmoveVerb::Pause {
-                (it.emove.step, it.emove.ordered, it.emove.uses_prim) = Default::default();
-                (it.emove.route, it.emove.back, it.emove.rejoin) = Default::default();
-            }
-        }
-        it.emove.surroundings = Default::default();
-        it.emove.beliefs.placed = None;
-        it.prim.restarts = Default::default();
-        if it.prim.execution.outcome != Outcome::Executing {
-            it.prim.standstill = Default::default();
-        }
-        let ended = &mut it.prim.standstill;
-        ended.finished = ended.finished.min(50);
-        ended.settled = ended.settled.min(3);
-        ended.still = ended.still.min(3);
-        image.add(&it.command);
-        image.add(&it.emove);
-        image.add(&it.emove_out.prim);
-        image.add(&it.emove_out.poses);
-        image.add(&it.emove_out.quick_change);
-        image.add(&it.emove_out.status.echo);
-        image.add(&it.emove_out.status.report);
-        image.add(&it.prim);
-        image.add(&it.prim_out.poses);
-        image.add(&it.prim_out.t3i);
-        let status = &it.prim_out.status;
-        image.add(&status.echo);
-        image.add(&status.report);
-        image.add(&status.restarting);
-        image.add(&status.link_running);
-        image.add(&it.quick_change);
-        image.add(&it.t3i);
-        image.bytes.extend([u8::from(it.silent), it.aside, u8::from(it.halved), it.left.0, it.left.1]);
-        image.add(&WireFrame::from_frame(&it.robot));
-        image.bytes
+        self.alike()
     }
 
     fn rests(&self) -> bool {
@@ -451,5 +413,54 @@ impl World for Pair {
 
     fn pauses(&self) -> bool {
         self.command.command == EmoveVerb::Pause
+    }
+}
+
+impl Pair {
+    fn fingers_move(&self) -> bool {
+        self.tool.is_some_and(|tool| tool.moves())
+    }
+
+    /// The condition of a GO-UNTIL can come at any time. It is a fault if that of a GO-WHILE does.
+    fn is_usual(&self, happens: Happens) -> bool {
+        match happens {
+            Happens::Nothing | Happens::Arrive | Happens::Stick => true,
+            Happens::Contact => self.prim.target.verb == PrimVerb::GoUntil,
+            Happens::Free | Happens::Dead => false,
+        }
+    }
+
+    /// The condition of a GO-UNTIL has not come yet.
+    fn awaits(&self) -> bool {
+        let executes = self.prim.execution.outcome == Outcome::Executing;
+        executes && self.prim.target.verb == PrimVerb::GoUntil && !self.contact
+    }
+
+    fn is_unusual(&self, event: &Event) -> bool {
+        let awaits = self.tool.is_some() && self.awaits();
+        match event.happens {
+            Happens::Stick => true,
+            Happens::Contact => awaits && !self.halved,
+            Happens::Nothing => {
+                awaits && self.is_moving() && event.link == Link::Goes && event.told.is_none()
+            }
+            Happens::Arrive | Happens::Free | Happens::Dead => false,
+        }
+    }
+
+    /// What can happen at the gripper, and whether that is prompt.
+    fn happenings(&self) -> Vec<(Happens, bool)> {
+        let Some(tool) = &self.tool else { return Vec::new() };
+        if tool.moves() {
+            return vec![(Happens::Arrive, true), (Happens::Stick, true)];
+        }
+        let executes = self.prim.execution.outcome == Outcome::Executing;
+        let watches = executes && self.prim.target.sensor.is_some() && !self.contact;
+        let mut all = Vec::new();
+        all.extend(watches.then_some((Happens::Contact, true)));
+        all.extend(executes.then_some((Happens::Dead, false)));
+        all.extend((tool.is_loaded() && executes).then_some((Happens::Free, false)));
+        all.retain(|(happens, _)| self.left.1 > 0 || self.is_usual(*happens));
+        all
     }
 }

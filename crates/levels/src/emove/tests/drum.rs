@@ -221,8 +221,14 @@ fn a_failing_gripper_ends_the_command() {
     let mut bench = inserted();
     bench.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::JawsStuck));
-    // What was half let go is grasped anew.
+    // What was half let go is not pulled out, and does not count as inserted.
     bench.world.mishaps.clear();
+    bench.world.log.clear();
+    for verb in [InsertTool, RemoveTool] {
+        assert_eq!(run(&mut bench, verb), error(Reason::ReleaseNotEnded), "{verb}");
+    }
+    assert!(bench.log().is_empty());
+    // It is grasped anew.
     bench.tool_grip.opening = SIZE + 50;
     bench.world.log.clear();
     assert_eq!(run(&mut bench, AcquireTool), DONE);

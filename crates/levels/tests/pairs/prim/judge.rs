@@ -1,0 +1,146 @@
+//! What must hold of E-move and Prim in each tick.
+
+use geometry::frame::Frame;
+use interfaces::{
+    emove::{EmoveVerb, Holding},
+    prim::{PrimReport, PrimVerb},
+};
+use levels::{emove::relative::Relative, execution::Outcome};
+
+use super::{LATE, Pair};
+use crate::{
+    data::{data, place},
+    emove::is_done,
+    robot::THERE,
+    search::Wrong,
+};
+
+/// The farthest that the commanded pose moves in a tick, in.
+const STEP: f64 = 0.6;
+/// Ticks in which a guarded move is at rest after its condition has come.
+const BRAKES: u32 = 12;
+/// ACQUIRE-TOOL takes the tool as far before or behind its place, in: ACQ-NEAR and ACQ-STRIKE.
+const DEEP: f64 = 0.3;
+
+impl Pair {
+    /// Note whether the condition of a guarded move comes, by what Prim has read in this tick.
+    pub(super) fn watch(&mut self, before: &Self) {
+        let Some(tool) = &before.tool else { return };
+        let executes = |it: &Self| it.prim.execution.outcome == Outcome::Executing;
+        let taken = self.prim.execution.receiver.echo != before.prim.execution.receiver.echo;
+        if taken || (!executes(before) && !self.is_moving()) {
+            (self.contact, self.stops) = (false, false);
+        }
+        let executes = executes(self) || executes(before);
+        self.contact |= executes && tool.is_pressed(&self.prim);
+        self.stops |= self.contact || (executes && tool.is_blind(&self.prim));
+        self.brakes = if self.stops && self.is_moving() { self.brakes + 1 } else { 0 };
+    }
+
+    /// No jump is commanded, and what is reported done is done.
+    pub(super) fn judge(&self, before: &Self) -> Result<(), Wrong> {
+        if let (Some(now), Some(then)) = (&self.prim.motion, &before.prim.motion)
+            && now.frame().distance(&then.frame()).inches > STEP
+        {
+            return Err("a jump is commanded");
+        }
+        if self.brakes > BRAKES {
+            return Err("the robot goes on although the sensor of its guarded move says stop, or nothing");
+        }
+        if self.prim.calibration.samples > before.prim.calibration.samples && before.is_moving() {
+            return Err("the force sensor is calibrated while the robot moves");
+        }
+        if matches!(before.aside, 1..=LATE) {
+            return Ok(());
+        }
+        let stands = before.stands();
+        self.judge_prim(before, &stands)?;
+        let status = &self.emove_out.status;
+        let number = self.command.number;
+        if !is_done(&self.emove_out, number) || is_done(&before.emove_out, number) {
+            return Ok(());
+        }
+        match self.command.command {
+            _ if before.is_moving() => Err("done, and the robot moves"),
+            _ if before.fingers_move() => Err("done, and the fingers move"),
+            EmoveVerb::Pause => Ok(()),
+            EmoveVerb::MovToLoc => {
+                let goal = place(self.command.location.as_str()).frame;
+                let there = goal.distance(&stands).inches <= THERE;
+                let known = status.at.is_some_and(|at| at.location == self.command.location);
+                match (there, known) {
+                    (false, _) => Err("done, and the robot is not there"),
+                    (true, false) => Err("done, and E-move does not know that the robot is there"),
+                    (true, true) => Ok(()),
+                }
+            }
+            _ => self.judge_tool(before, &stands),
+        }
+    }
+
+    /// What Prim reports done is done.
+    fn judge_prim(&self, before: &Self, stands: &Frame) -> Result<(), Wrong> {
+        let done = |it: &Self| {
+            let status = &it.prim_out.status;
+            status.echo == it.emove_out.prim.number && status.report == PrimReport::Done
+        };
+        if !done(self) || done(before) {
+            return Ok(());
+        }
+        let goal = self.prim.target.goal.map(|goal| goal.frame.frame());
+        let there = goal.is_some_and(|goal| goal.distance(stands).inches <= THERE);
+        match self.prim.target.verb {
+            PrimVerb::GotoPt | PrimVerb::GoWhile | PrimVerb::DeltaMove if !there => {
+                Err("Prim is done, and the robot is not at its goal")
+            }
+            PrimVerb::GoWhile if self.contact => Err("GO-WHILE is done, and its condition has come"),
+            PrimVerb::GoUntil if !self.contact => Err("GO-UNTIL is done, and its condition has not come"),
+            PrimVerb::GoUntil | PrimVerb::CalSensor if before.is_moving() => {
+                Err("Prim is done, and the robot moves")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What the commands at the drum report done is done.
+    fn judge_tool(&self, before: &Self, stands: &Frame) -> Result<(), Wrong> {
+        let base = place(super::DRUM).frame;
+        let moved = |from: &Frame, relative: Relative| {
+            let record = relative.record(&self.command, &data()).expect("the data have the move");
+            data().moved(from, record.movetable)
+        };
+        let seat = moved(&base, Relative::InsIn);
+        // How far the robot is out of the drum, and how far a move leads out, in.
+        let out = (moved(&seat, Relative::RemOut).position - seat.position).normalize();
+        let is_out = (stands.position - seat.position).dot(&out);
+        let leads = |relative| (moved(&seat, relative).position - seat.position).dot(&out);
+        let (status, tool) = (&self.emove_out.status, before.tool.unwrap_or_else(super::Tool::new));
+        let at_drum = status.at.is_some_and(|at| at.location == self.command.location);
+        let holds = tool.holds() && status.held.object() == self.command.object;
+        match self.command.command {
+            EmoveVerb::InsertTool | EmoveVerb::AcquireTool if is_out > DEEP + THERE => {
+                Err("done, and the tool is not in the drum")
+            }
+            EmoveVerb::InsertTool | EmoveVerb::AcquireTool if !at_drum => {
+                Err("done, and E-move does not know that the tool is in the drum")
+            }
+            EmoveVerb::RemoveTool if is_out < leads(Relative::RemOut) - DEEP - THERE => {
+                Err("done, and the tool is not out of the drum")
+            }
+            EmoveVerb::InsertTool | EmoveVerb::AcquireTool | EmoveVerb::RemoveTool if !holds => {
+                Err("done, and the tool is not held")
+            }
+            EmoveVerb::ReleaseTool if !tool.is_open() || status.held != Holding::Nothing => {
+                Err("done, and the tool is not let go")
+            }
+            EmoveVerb::ReleaseTool if is_out < leads(Relative::RelBack) - DEEP - THERE => {
+                Err("done, and the robot has not left the drum")
+            }
+            EmoveVerb::InsertTool
+            | EmoveVerb::AcquireTool
+            | EmoveVerb::RemoveTool
+            | EmoveVerb::ReleaseTool => Ok(()),
+            _ => Err("an unknown command is done"),
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Which states of E-move and Prim are alike.
+
+use geometry::pose::WireFrame;
+use interfaces::{Reason, emove::EmoveVerb, pose_range};
+use levels::execution::Outcome;
+
+use super::Pair;
+use crate::image::{Image, rebase, rebase_echoes, renumber_poses};
+
+/// Longer than any time that counts but for that of an echo, ticks.
+const LIMIT: u64 = 250;
+
+impl Pair {
+    /// Without what no row asks for any more: reasons; the nearest places; how long the robot has stood beyond what
+    /// counts; when a link was restarted, since so many faults cannot come.
+    pub(super) fn alike(&self) -> Vec<u8> {
+        let mut image = Image::new(self.tick, LIMIT, &[]);
+        let mut it = self.clone();
+        (it.emove.execution.reason, it.prim.execution.reason) = (Reason::None, Reason::None);
+        if it.emove.execution.outcome != Outcome::Executing {
+            it.emove.execution.last_order = None;
+            if it.command.command != EmoveVerb::Pause {
+                (it.emove.step, it.emove.ordered, it.emove.uses_prim) = Default::default();
+                (it.emove.route, it.emove.back, it.emove.rejoin) = Default::default();
+            }
+        }
+        it.emove.surroundings = Default::default();
+        it.emove.beliefs.placed = None;
+        it.prim.restarts = Default::default();
+        if it.prim.execution.outcome != Outcome::Executing {
+            it.prim.standstill = Default::default();
+        }
+        let ended = &mut it.prim.standstill;
+        ended.finished = ended.finished.min(50);
+        ended.settled = ended.settled.min(3);
+        ended.still = ended.still.min(3);
+        image.add(&it.command);
+        image.add(&it.emove);
+        image.add(&it.emove_out.prim);
+        image.add(&it.emove_out.poses);
+        image.add(&it.emove_out.quick_change);
+        image.add(&it.emove_out.status.echo);
+        image.add(&it.emove_out.status.report);
+        image.add(&it.prim);
+        image.add(&it.prim_out.poses);
+        image.add(&it.prim_out.t3i);
+        let status = &it.prim_out.status;
+        image.add(&status.echo);
+        image.add(&status.report);
+        image.add(&status.restarting);
+        image.add(&status.link_running);
+        image.add(&it.quick_change);
+        image.add(&it.t3i);
+        image.bytes.extend([u8::from(it.silent), it.aside, u8::from(it.halved), it.left.0, it.left.1]);
+        image.add(&WireFrame::from_frame(&it.robot));
+        if let Some(tool) = &it.tool {
+            tool.add_to(&mut image);
+            image.add(&it.emove_out.tool_grip);
+            image.bytes.extend([u8::from(it.contact), u8::from(it.stops), it.unusual]);
+            image.add(&it.brakes);
+        }
+        image.bytes
+    }
+
+    /// What does not count any more begins again.
+    pub(super) fn renumber(&mut self) {
+        renumber_poses(&mut self.emove, &mut self.emove_out);
+        let (emove, out) = (&mut self.emove, &mut self.emove_out);
+        let (prim, below) = (&mut self.prim, &mut self.prim_out);
+        for (at, record) in (1..).zip(&mut below.poses) {
+            record.number = record.number.map(|_| pose_range::PRIM | at);
+        }
+        let [present, sensor, ..] = below.poses;
+        (below.status.present_pose, below.status.sensor_pose) = (present.number, sensor.number);
+        (out.status.reference_pose, prim.newest_pose) = (None, pose_range::PRIM | 9);
+        let echo = &mut emove.execution.receiver.echo;
+        rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
+        let echo = &mut prim.execution.receiver.echo;
+        rebase(&mut emove.prim, &mut [&mut out.prim.number, echo, &mut below.status.echo]);
+        if let Some(tool) = &mut self.tool {
+            rebase(&mut emove.grippers.tool, &mut [&mut out.tool_grip.number, tool.echo()]);
+        }
+        rebase(&mut emove.quick_change, &mut [&mut out.quick_change.number, &mut self.quick_change]);
+        rebase(&mut prim.t3i, &mut [&mut below.t3i.number, &mut self.t3i.echo]);
+    }
+}
