@@ -9,8 +9,8 @@ use std::ops::Range;
 use mcap::{
     MAGIC, McapError, McapResult, parse_record,
     records::{Record, op},
-    sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions},
 };
+use zstd::bulk::Decompressor;
 
 use crate::writer::{END, RUN};
 
@@ -27,8 +27,8 @@ const LEAST: u64 = 64 << 20;
 pub enum Piece<'a> {
     /// A record outside the chunks.
     Record(Record<'a>),
-    /// A readable chunk, including its record header.
-    Chunk(Range<usize>),
+    /// A readable chunk, including its record header, and the channels and schemas in it.
+    Chunk(Range<usize>, Vec<Record<'static>>),
     /// Unreadable bytes.
     Damaged(Range<usize>),
 }
@@ -39,6 +39,7 @@ pub struct Pieces<'a> {
     at: usize,
     /// Number of bytes that may still be decompressed or checksummed.
     left: u64,
+    decoder: Decoder,
 }
 
 impl<'a> Pieces<'a> {
@@ -51,7 +52,8 @@ impl<'a> Pieces<'a> {
             return Err(McapError::BadMagic);
         }
         let size = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
-        Ok(Self { bytes, at: MAGIC.len(), left: size.saturating_mul(EXPANSION).saturating_add(LEAST) })
+        let left = size.saturating_mul(EXPANSION).saturating_add(LEAST);
+        Ok(Self { bytes, at: MAGIC.len(), left, decoder: Decoder::default() })
     }
 
     /// The record that begins at a position, and its end; `None` if it is unreadable.
@@ -62,8 +64,13 @@ impl<'a> Pieces<'a> {
             op::CHUNK => {
                 let size = body.get(16..24)?.try_into().map(u64::from_le_bytes).ok()?;
                 self.spend(size)?;
-                decode(self.bytes.get(at..end)?, |_| ()).ok()?;
-                Piece::Chunk(at..end)
+                let mut described = Vec::new();
+                self.decoder.decode(self.bytes.get(at..end)?, |record| {
+                    if !matches!(record, Record::Message { .. }) {
+                        described.push(record.into_owned());
+                    }
+                })?;
+                Piece::Chunk(at..end, described)
             }
             op::ATTACHMENT => {
                 self.spend(u64::try_from(body.len()).ok()?)?;
@@ -85,7 +92,7 @@ impl<'a> Pieces<'a> {
     /// The next position from `from` at which a record certainly begins; the end of the file if there is none.
     fn next_good(&mut self, from: usize) -> usize {
         let surely = |piece: &Piece<'_>| match piece {
-            Piece::Chunk(_) => true,
+            Piece::Chunk(..) => true,
             Piece::Record(Record::Attachment { crc, .. }) => *crc != 0,
             Piece::Record(Record::Metadata(metadata)) => metadata.name == RUN || metadata.name == END,
             Piece::Record(_) | Piece::Damaged(_) => false,
@@ -161,40 +168,45 @@ fn texts(body: &[u8], from: usize) -> Option<usize> {
     (at == end).then_some(end)
 }
 
-/// Pass each channel and message of a chunk, given with its record header, to `each`.
-///
-/// # Errors
-/// [`McapError`] if the chunk is too large, has no checksum or a wrong one, or contains an unreadable record.
-pub fn decode<'a>(chunk: &'a [u8], mut each: impl FnMut(Record<'_>)) -> McapResult<()> {
-    let number = |range: Range<usize>| chunk.get(range).map(<[u8]>::to_vec).unwrap_or_default();
-    let size = number(HEAD + 16..HEAD + 24).try_into().map_or(u64::MAX, u64::from_le_bytes);
-    if size > CHUNK {
-        return Err(McapError::ChunkTooLarge(size));
-    }
-    if number(HEAD + 24..HEAD + 28) == [0; 4] {
-        return Err(McapError::BadChunkCrc { saved: 0, calculated: 0 });
-    }
-    let limit = usize::try_from(CHUNK).unwrap_or(usize::MAX).max(chunk.len());
-    let options = LinearReaderOptions::default()
-        .with_skip_start_magic(true)
-        .with_skip_end_magic(true)
-        .with_validate_chunk_crcs(true)
-        .with_prevalidate_chunk_crcs(true)
-        .with_record_length_limit(limit);
-    let mut reader = LinearReader::new_with_options(options);
-    let mut rest: &'a [u8] = chunk;
-    while let Some(event) = reader.next_event() {
-        match event? {
-            LinearReadEvent::ReadRequest(wanted) => {
-                let (now, later) = rest.split_at(wanted.min(rest.len()));
-                reader.insert(now.len()).copy_from_slice(now);
-                reader.notify_read(now.len());
-                rest = later;
+/// Decompresses chunks, one after the other, into the same memory.
+#[derive(Default)]
+pub struct Decoder {
+    zstd: Decompressor<'static>,
+    records: Vec<u8>,
+}
+
+impl Decoder {
+    /// Pass each channel and message of a chunk, given with its record header, to `each`.
+    ///
+    /// `None` if the chunk is too large, has no checksum or a wrong one, or contains an unreadable record.
+    pub fn decode(&mut self, chunk: &[u8], mut each: impl FnMut(Record<'_>)) -> Option<()> {
+        // Two times, size, checksum, compression, length of the records, records.
+        let body = chunk.get(HEAD..)?;
+        let size = body.get(16..24)?.try_into().map(u64::from_le_bytes).ok()?;
+        let checksum = body.get(24..28)?.try_into().map(u32::from_le_bytes).ok()?;
+        let name = text(body, 28)?;
+        let (length, packed) = body.get(name..)?.split_first_chunk()?;
+        let packed = packed.get(..usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
+        let size = usize::try_from(size).ok().filter(|_| size <= CHUNK && checksum != 0)?;
+        let records = match body.get(32..name)? {
+            b"" => packed,
+            b"zstd" => {
+                self.records.clear();
+                self.records.reserve(size);
+                self.zstd.decompress_to_buffer(packed, &mut self.records).ok()?;
+                &self.records
             }
-            LinearReadEvent::Record { data, opcode } => {
-                each(parse(opcode, data).ok_or(McapError::UnexpectedEoc)?)
-            }
+            _ => return None,
+        };
+        if records.len() != size || crc32fast::hash(records) != checksum {
+            return None;
         }
+        let mut at = 0;
+        while at < size {
+            let (opcode, end) = frame(records, at)?;
+            each(parse(opcode, records.get(at.checked_add(HEAD)?..end)?)?);
+            at = end;
+        }
+        Some(())
     }
-    Ok(())
 }

@@ -23,7 +23,7 @@ use crate::{
     input::{Attachment, Link},
     layout,
     operator::{OPERATOR, OperatorLine},
-    pieces::{Piece, Pieces, decode},
+    pieces::{Decoder, Piece, Pieces},
     proto::{
         foxglove::{self, Level, Transform},
         wire::{Fields, Value},
@@ -132,9 +132,8 @@ impl Log {
         let pieces = Pieces::new(&bytes).map_err(|source| log.not_mcap(source))?;
         for piece in pieces {
             match piece {
-                Piece::Chunk(range) => {
-                    // It has been decoded once without an error.
-                    let _ = decode(bytes.get(range.clone()).unwrap_or_default(), |record| log.note(&record));
+                Piece::Chunk(range, described) => {
+                    described.iter().for_each(|record| log.note(record));
                     log.segments.push(Segment::Chunk(range));
                 }
                 Piece::Damaged(range) => log.segments.push(Segment::Damaged(range)),
@@ -302,10 +301,11 @@ impl Log {
     /// Pass all messages to a tap, in the order of the file. `before` gets the time of each message before it is
     /// passed, nanoseconds since 1970, and may wait. Only one chunk is decompressed at a time.
     pub fn play(&self, tap: &mut dyn Tap, mut before: impl FnMut(u64)) {
+        let mut decoder = Decoder::default();
         for segment in &self.segments {
             let Segment::Chunk(range) = segment else { continue };
             // `from_bytes` has decoded it without an error.
-            let _ = decode(self.bytes.get(range.clone()).unwrap_or_default(), |record| {
+            let _ = decoder.decode(self.bytes.get(range.clone()).unwrap_or_default(), |record| {
                 if let Record::Message { header, data } = record {
                     before(header.log_time);
                     tap.message(header.channel_id, header.log_time, &data);
@@ -322,16 +322,18 @@ impl Log {
     /// The messages of a topic with their ticks, and `None` where the file is damaged.
     fn items(&self, topic: &str) -> impl Iterator<Item = Option<(Tick, Vec<u8>)>> {
         let id = self.channels.get(topic).copied();
+        let mut decoder = Decoder::default();
         self.segments.iter().flat_map(move |segment| {
             let Segment::Chunk(range) = segment else { return vec![None] };
             let mut found = Vec::new();
             // `from_bytes` has decoded it without an error.
-            let _ = decode(self.bytes.get(range.clone()).unwrap_or_default(), |record| match record {
-                Record::Message { header, data } if Some(header.channel_id) == id => {
-                    found.push(Some((Tick(u64::from(header.sequence)), data.into_owned())));
-                }
-                _ => {}
-            });
+            let _ =
+                decoder.decode(self.bytes.get(range.clone()).unwrap_or_default(), |record| match record {
+                    Record::Message { header, data } if Some(header.channel_id) == id => {
+                        found.push(Some((Tick(u64::from(header.sequence)), data.into_owned())));
+                    }
+                    _ => {}
+                });
             found
         })
     }

@@ -11,6 +11,8 @@
 use std::{
     collections::BTreeMap,
     path::Path,
+    sync::mpsc::sync_channel,
+    thread,
     time::{Duration, Instant},
 };
 
@@ -26,12 +28,16 @@ use taskdata::load::{Source, Store};
 
 use crate::{
     channels::{HeaderPlace, headers},
-    error::ReplayError,
+    error::{ReadError, ReplayError},
     input::Attachment,
     layout::{self, Leaf},
     reader::{Log, LoggedTick},
     remarks::row_text,
 };
+
+/// Ticks that are handed over at once, and how many times as many are read ahead.
+const AT_ONCE: usize = 64;
+const AHEAD: usize = 4;
 
 /// The first difference of a replay from the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -92,8 +98,6 @@ pub struct ReplayReport {
     pub complete: bool,
     /// The damaged parts of the log, as text.
     pub damage: Option<String>,
-    /// Time of the processes, without reading and comparing.
-    pub computing: Duration,
     /// Time of the whole replay.
     pub elapsed: Duration,
 }
@@ -149,7 +153,6 @@ pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, Repla
         recorded_digest: digest.and_then(|digest| u64::from_str_radix(digest, 16).ok()),
         complete: log.complete,
         damage: log.damage(),
-        computing: replayer.computing,
         elapsed: started.elapsed(),
     })
 }
@@ -219,7 +222,6 @@ struct Replayer {
     digest: Digest,
     ticks: u64,
     skipped: u64,
-    computing: Duration,
 }
 
 impl Replayer {
@@ -242,20 +244,41 @@ impl Replayer {
             digest: Digest::new(),
             ticks: 0,
             skipped: 0,
-            computing: Duration::ZERO,
         }
     }
 
-    /// Compute the ticks of a log up to the first difference.
+    /// Compute the ticks of a log up to the first difference. Another thread reads ahead.
     fn run(
         &mut self,
         log: &Log,
         options: &Options,
         generations: &[Store],
     ) -> Result<Option<Difference>, ReplayError> {
+        thread::scope(|scope| {
+            let (sender, receiver) = sync_channel(AHEAD);
+            scope.spawn(move || {
+                let mut ticks = log.ticks();
+                loop {
+                    let some: Vec<_> = ticks.by_ref().take(AT_ONCE).collect();
+                    // The replay may have ended before the log.
+                    if some.is_empty() || sender.send(some).is_err() {
+                        break;
+                    }
+                }
+            });
+            self.compute(receiver.into_iter().flatten(), options, generations)
+        })
+    }
+
+    fn compute(
+        &mut self,
+        ticks: impl Iterator<Item = Result<LoggedTick, ReadError>>,
+        options: &Options,
+        generations: &[Store],
+    ) -> Result<Option<Difference>, ReplayError> {
         // Ticks from the last recorded states to the beginning of the replay.
         let mut run_up: Vec<LoggedTick> = Vec::new();
-        for logged in log.ticks() {
+        for logged in ticks {
             let logged = logged?;
             if options.until.is_some_and(|until| logged.tick > until) {
                 break;
@@ -303,9 +326,7 @@ impl Replayer {
         let store = usize::try_from(external.generation).ok().and_then(|at| generations.get(at));
         let data = store.ok_or(missing)?.view();
         let mut after = before;
-        let started = Instant::now();
         self.ladder.step(tick, &before, &external, &data, &mut after);
-        self.computing += started.elapsed();
         self.ticks += 1;
         after.encode(&mut Writer::new(&mut self.image));
         self.digest.add(&self.image);
