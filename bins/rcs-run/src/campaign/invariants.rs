@@ -2,26 +2,36 @@
 //!
 //! * each process that runs has stamped its outputs with this tick;
 //! * nothing was allocated in the tick of the control processes;
-//! * T3 Interface has limited no point: Prim keeps the limits itself;
+//! * Prim's point is no farther from the one before than the link permits (14 in/s, 1 rad/s). Near the poles of the T3's
+//!   wrist, where its D and R turn faster than the tool, T3 Interface takes longer for a point; that is no fault;
 //! * what E-move says of the gripper is true: it holds an object, or nothing.
 //!
 //! The first three hold at once. Sensors say late, and during a fault wrongly, what is between the fingers: E-move may
 //! be wrong for [`PATIENCE`] ticks after an interruption is over.
 
 use executive::alloc;
-use interfaces::emove::Holding;
+use geometry::pose::WireFrame;
+use interfaces::{
+    emove::Holding,
+    t3i::{T3iCommand, T3iVerb},
+};
 use levels::ladder::{Ladder, ProcessId};
 
 use super::branch::Branch;
 
 /// Ticks for which E-move may be wrong about what is held: 5 s, longer than fingers take for their travel.
 const PATIENCE: u32 = 125;
+/// Longest step from a point to the next, in: 14 in/s (A 2.3) for a tick, and the rounding of two points.
+const STEP_INCHES: f64 = 0.56 + 0.02;
+/// The same for 1 rad/s, radians.
+const STEP_RADIANS: f64 = 0.04 + 0.002;
 
 /// Watches the invariants of a branch.
 #[derive(Clone, Debug)]
 pub struct Invariants {
     allocations: u64,
-    limited: u32,
+    /// The last point that Prim has sent since it started the link.
+    point: Option<WireFrame>,
     /// Ticks for which E-move has been wrong.
     wrong: u32,
 }
@@ -30,8 +40,9 @@ impl Invariants {
     /// Watch from now on.
     #[must_use]
     pub fn from_now(branch: &Branch<'_>) -> Self {
-        let limited = branch.memory().t3i.status.counters.limited;
-        Self { allocations: alloc::allocations(), limited, wrong: 0 }
+        let mut point = None;
+        steps_too_far(&mut point, &branch.memory().prim.t3i);
+        Self { allocations: alloc::allocations(), point, wrong: 0 }
     }
 
     /// True if all held in the last tick.
@@ -45,15 +56,35 @@ impl Invariants {
         let unstamped = unstamped(branch);
         let allocated = alloc::allocations().saturating_sub(self.allocations);
         self.allocations += allocated;
-        // A restarted T3 Interface counts from 0 again.
-        let limited = branch.memory().t3i.status.counters.limited;
-        let more = limited > std::mem::replace(&mut self.limited, limited);
+        let too_far = steps_too_far(&mut self.point, &branch.memory().prim.t3i);
         let misled = misled(branch);
         self.wrong = if misled.is_some() && !disturbed { self.wrong + 1 } else { 0 };
         unstamped
             .or_else(|| (allocated > 0).then(|| "the control processes allocate memory".to_owned()))
-            .or_else(|| more.then(|| "T3 Interface limits a point of Prim".to_owned()))
+            .or_else(|| too_far.then(|| "Prim sends a point that is too far from the one before".to_owned()))
             .or_else(|| misled.filter(|_| self.wrong == PATIENCE))
+    }
+}
+
+/// Is a point of Prim too far from the `last` one, which it replaces?
+fn steps_too_far(last: &mut Option<WireFrame>, sent: &T3iCommand) -> bool {
+    match sent.command {
+        T3iVerb::Point => {}
+        T3iVerb::Pause => return false,
+        T3iVerb::None | T3iVerb::Restart => {
+            *last = None;
+            return false;
+        }
+    }
+    let before = last.replace(sent.frame).filter(|before| *before != sent.frame);
+    let frames = before.map(|before| (before.to_frame(), sent.frame.to_frame()));
+    match frames {
+        None => false,
+        Some((Ok(before), Ok(now))) => {
+            let step = before.distance(&now);
+            step.inches > STEP_INCHES || step.radians > STEP_RADIANS
+        }
+        Some(_) => true,
     }
 }
 
@@ -90,9 +121,34 @@ fn untrue(said: &Holding, held: Option<&str>) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use geometry::frame::{Frame, Vector, rotation_by};
     use interfaces::emove::ObjectGrip;
 
     use super::*;
+
+    #[test]
+    fn a_point_is_near_the_one_before_it() {
+        let at = |inches: f64, radians: f64| {
+            WireFrame::from_frame(&Frame {
+                position: Vector::new(60.0 + inches, 0.0, 0.0),
+                rotation: rotation_by(&Vector::new(0.0, radians, 0.0)),
+            })
+        };
+        let sent = |command, frame| T3iCommand { command, frame, ..T3iCommand::default() };
+        let mut last = None;
+        for (command, frame, too_far) in [
+            (T3iVerb::Point, at(0.0, 0.0), false),
+            (T3iVerb::Point, at(0.56, 0.04), false),
+            (T3iVerb::Point, at(1.15, 0.04), true),
+            (T3iVerb::Point, at(1.15, 0.09), true),
+            (T3iVerb::Pause, WireFrame::default(), false),
+            (T3iVerb::Point, at(9.0, 0.09), true),
+            (T3iVerb::Restart, WireFrame::default(), false),
+            (T3iVerb::Point, at(20.0, 0.0), false),
+        ] {
+            assert_eq!(steps_too_far(&mut last, &sent(command, frame)), too_far, "{command:?} {frame:?}");
+        }
+    }
 
     #[test]
     fn what_is_said_to_be_held_is_true_or_not_known() {
