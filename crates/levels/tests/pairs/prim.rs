@@ -51,7 +51,7 @@ pub enum Link {
     Busy,
     /// It wants points, or comes up after RESTART: until a process says something new.
     Goes,
-    /// The same until half of the way to Prim's goal is left, and a quarter of a GO-UNTIL: the tool is there.
+    /// The same until half of the way to Prim's goal is left, and a quarter of a GO-UNTIL, where its condition comes.
     Half,
     /// It reports an error: of the link, of the line, of a command; or the controller's DTR goes off.
     Fails(LinkFault, bool),
@@ -101,7 +101,7 @@ pub struct Pair {
     /// Without it the robot is bare.
     tool: Option<Tool>,
     /// What is unusual but no fault can still happen so often: fingers that stick, and the condition of a GO-UNTIL that
-    /// comes elsewhere than half-way.
+    /// does not come where most of the move is over.
     unusual: u8,
     /// The condition of a guarded move has come since Prim took it, or since the robot rested.
     contact: bool,
@@ -121,7 +121,8 @@ impl Pair {
         Self { commands, left: (motions, faults), ..Self::at(location, None) }
     }
 
-    /// A pair that has gone before the drum, with open fingers.
+    /// A pair that has gone before the drum, with open fingers. Of these commands so many may interrupt a motion, and so
+    /// many things are unusual, and so many faults come.
     pub fn at_drum(commands: &'static [Line], unusual: u8, motions: u8, faults: u8) -> Self {
         let mut pair = Self::at("SAFE", Some(Tool::new()));
         pair.runs(PAUSE);
@@ -370,7 +371,7 @@ impl World for Pair {
             self.tell(line);
         }
         let goes = matches!(event.link, Link::Busy | Link::Goes | Link::Half);
-        self.left.1 -= u8::from(!goes || !self.is_usual(event.happens));
+        self.left.1 -= u8::from(!goes || self.is_fault(event.happens));
         let mut happens = event.happens;
         let (before, order) = (self.said(), self.emove_out.prim.number);
         self.halved |= event.link == Link::Half;
@@ -421,12 +422,12 @@ impl Pair {
         self.tool.is_some_and(|tool| tool.moves())
     }
 
-    /// The condition of a GO-UNTIL can come at any time. It is a fault if that of a GO-WHILE does.
-    fn is_usual(&self, happens: Happens) -> bool {
+    /// The condition of a GO-UNTIL is to come, that of a GO-WHILE is not.
+    fn is_fault(&self, happens: Happens) -> bool {
         match happens {
-            Happens::Nothing | Happens::Arrive | Happens::Stick => true,
-            Happens::Contact => self.prim.target.verb == PrimVerb::GoUntil,
-            Happens::Free | Happens::Dead => false,
+            Happens::Nothing | Happens::Arrive | Happens::Stick => false,
+            Happens::Contact => self.prim.target.verb != PrimVerb::GoUntil,
+            Happens::Free | Happens::Dead => true,
         }
     }
 
@@ -460,7 +461,7 @@ impl Pair {
         all.extend(watches.then_some((Happens::Contact, true)));
         all.extend(executes.then_some((Happens::Dead, false)));
         all.extend((tool.is_loaded() && executes).then_some((Happens::Free, false)));
-        all.retain(|(happens, _)| self.left.1 > 0 || self.is_usual(*happens));
+        all.retain(|(happens, _)| self.left.1 > 0 || !self.is_fault(*happens));
         all
     }
 }

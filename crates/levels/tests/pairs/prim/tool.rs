@@ -1,8 +1,8 @@
 //! The tool gripper on the robot at the tool drum: its fingers as E-move sees them, and its force sensor as Prim reads
 //! it.
 //!
-//! The condition of a guarded move comes at its start, half-way, at its end, or not at all. The force is gone when the
-//! robot rests after it.
+//! The condition of a guarded move comes at its start, where most of it is over, at its end, or not at all. The force
+//! is gone when the robot rests after it.
 
 use geometry::{frame::Frame, pose::WireFrame};
 use interfaces::{
@@ -31,7 +31,6 @@ use crate::{
 pub const TOOL: (&str, i32, i32) = ("DRILL-2", 1, 175);
 /// The gripper.
 pub const GRIPPER: u8 = 3;
-
 /// The drum.
 pub const DRUM: &str = "TOOL-TRNS";
 /// The fingers are around a tool within this, in.
