@@ -2,29 +2,33 @@
 //!
 //! * each process that runs has stamped its outputs with this tick;
 //! * nothing was allocated in the tick of the control processes;
-//! * Prim's point is no farther from the one before than the link permits (14 in/s, 1 rad/s). Near the poles of the T3's
-//!   wrist, where its D and R turn faster than the tool, T3 Interface takes longer for a point; that is no fault;
+//! * Prim's point is no farther from the one before than the link permits (14 in/s, 1 rad/s). Near the poles of the
+//!   T3's wrist, where its D and R turn faster than the tool, T3 Interface takes longer for a point; that is no fault;
 //! * what E-move says of the gripper is true: it holds an object, or nothing.
 //!
 //! The first three hold at once. Sensors say late, and during a fault wrongly, what is between the fingers: E-move may
 //! be wrong for [`PATIENCE`] ticks after an interruption is over.
 
 use executive::alloc;
-use geometry::pose::WireFrame;
+use geometry::{frame::INCHES_PER_RADIAN, pose::WireFrame};
 use interfaces::{
     emove::Holding,
     t3i::{T3iCommand, T3iVerb},
 };
-use levels::ladder::{Ladder, ProcessId};
+use levels::{
+    ladder::{Ladder, ProcessId},
+    prim::motion::limits::LINK_VELOCITY,
+};
+use rcs_core::tick::TICK_S;
 
 use super::branch::Branch;
 
 /// Ticks for which E-move may be wrong about what is held: 5 s, longer than fingers take for their travel.
 const PATIENCE: u32 = 125;
 /// Longest step from a point to the next, in: 14 in/s (A 2.3) for a tick, and the rounding of two points.
-const STEP_INCHES: f64 = 0.56 + 0.02;
+const STEP_INCHES: f64 = LINK_VELOCITY * TICK_S + 0.02;
 /// The same for 1 rad/s, radians.
-const STEP_RADIANS: f64 = 0.04 + 0.002;
+const STEP_RADIANS: f64 = LINK_VELOCITY / INCHES_PER_RADIAN * TICK_S + 0.002;
 
 /// Watches the invariants of a branch.
 #[derive(Clone, Debug)]

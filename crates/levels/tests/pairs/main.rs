@@ -240,8 +240,8 @@ const CHANGING_TOOLS: &[prim::Line] = &[
     (EmoveVerb::Pause, ""),
 ];
 
-/// E-move and Prim at the drum, with guarded moves: so many things are unusual, so many commands interrupt a motion, and
-/// so many `faults` come. A pair that rests takes `any` ticks at most.
+/// E-move and Prim at the drum, with guarded moves: so many things are unusual, so many commands interrupt a motion,
+/// and so many `faults` come. A pair that rests takes `any` ticks at most.
 fn guards(name: &str, commands: usize, (unusual, motions, faults): (u8, u8, u8), any: u32) {
     let first = prim::Pair::at_drum(&CHANGING_TOOLS[..commands], unusual, motions, faults);
     let found = is_sound(name, first, 1_000_000);

@@ -100,8 +100,8 @@ pub struct Pair {
     robot: Frame,
     /// Without it the robot is bare.
     tool: Option<Tool>,
-    /// What is unusual but no fault can still happen so often: fingers that stick, and the condition of a GO-UNTIL that
-    /// does not come where most of the move is over.
+    /// What is unusual but no fault can still happen so often: fingers that stick, and the condition of a GO-UNTIL
+    /// that does not come where most of the move is over.
     unusual: u8,
     /// The condition of a guarded move has come since Prim took it, or since the robot rested.
     contact: bool,
@@ -121,8 +121,8 @@ impl Pair {
         Self { commands, left: (motions, faults), ..Self::at(location, None) }
     }
 
-    /// A pair that has gone before the drum, with open fingers. Of these commands so many may interrupt a motion, and so
-    /// many things are unusual, and so many faults come.
+    /// A pair whose robot stands before the drum, with open fingers. So many unusual things and faults may come, and
+    /// so many of these commands may interrupt a motion.
     pub fn at_drum(commands: &'static [Line], unusual: u8, motions: u8, faults: u8) -> Self {
         let mut pair = Self::at("SAFE", Some(Tool::new()));
         pair.runs(PAUSE);

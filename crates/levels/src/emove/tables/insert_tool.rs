@@ -4,9 +4,9 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// INSERT-TOOL (V.2.1): DELTA-MOVE, CAL-SENSOR, and a GO-WHILE that the insertion force ends. Done at
-    /// once if the tool is in the drum, and not half let go. The robot comes from before the drum: nothing else is known to be a
-    /// way. Sent again after an interruption it goes on from where the robot is at the drum
-    /// (docs/design/recovery.md "Drum"); the sensor is calibrated only where the tool touches nothing.
+    /// once if the tool is in the drum, and not half let go. The robot comes from before the drum: nothing
+    /// else is known to be a way. Sent again after an interruption it goes on from where the robot is at the
+    /// drum (docs/design/recovery.md "Drum"); the sensor is calibrated only where the tool touches nothing.
     pub INSERT_TOOL: fn insert_tool(enum InsertToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                 => Wait;

@@ -5,8 +5,9 @@ use rcs_core::decision_table;
 decision_table! {
     /// REMOVE-TOOL (V.2.1): CAL-SENSOR and a guarded move that the extraction force ends: a GO-WHILE, though
     /// the manual says GO-UNTIL, for the force is what must not come (SPECNOTES.md, contradiction 18). Done
-    /// at once if the tool is out. A tool that is half let go is not pulled. Sent again after an interruption it goes on pulling, without calibrating
-    /// the sensor against a tool that is half out (docs/design/recovery.md "Drum").
+    /// at once if the tool is out. A tool that is half let go is not pulled. Sent again after an interruption
+    /// it goes on pulling, without calibrating the sensor against a tool that is half out
+    /// (docs/design/recovery.md "Drum").
     pub REMOVE_TOOL: fn remove_tool(enum RemoveToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                 => Wait;

@@ -155,7 +155,7 @@ impl Tool {
         Ok(())
     }
 
-    /// Counts of an axis that is watched, counts of its zero, and counts for a pound or inch pound.
+    /// Counts of the axis that is watched, its bias in counts, and counts for a pound or an inch pound.
     fn axis(&mut self, sensor: &SensorPara, prim: &State) -> Option<(&mut u16, f64, i32)> {
         let bias = prim.calibration.bias?;
         match sensor.source {
@@ -165,7 +165,7 @@ impl Tool {
         }
     }
 
-    /// The least multiple of the threshold that is the condition of what Prim watches.
+    /// Bring the force to the least multiple of the threshold that is the condition of what Prim watches.
     fn press(&mut self, prim: &State) {
         let Some(sensor) = prim.target.sensor else { return };
         for times in 1..5 {
