@@ -2,15 +2,16 @@
 //!
 //! While no Data System is connected, Task sends no updates and does not wait. Once connected, Task sends an update
 //! after each completed move from or to the MBD, and after the release of an object that the data base has as held by
-//! the robot. An update that is not accepted is kept, also when another command replaces the one that sent it. It is
-//! sent again before the next object is moved, or at the end of the next STARTUP, so that the data base is never more
-//! than one command behind. With DB-DONE (Figure IV.1) each command is sent once and taken as done: the data base may
-//! lack it.
+//! the robot. An update that is not accepted is kept, also when another command replaces the one that sent it. So is
+//! one of an object whose release has outlived its command. What is kept is sent before the next object is moved, at
+//! the end of a POSITION or RELEASE-TOOL, or at the end of the next STARTUP, so that the data base is never more than
+//! one command behind. With DB-DONE (Figure IV.1) each command is sent once and taken as done: the data base may lack
+//! it.
 
 use interfaces::{
     DataBaseCommand, DataBaseStatus, ExternalInputs, TaskOutputs,
     data_base::{Carried, Connection, DataBaseBeliefs, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
-    emove::Standing,
+    emove::PlacedObject,
 };
 use rcs_core::{
     Plain,
@@ -104,10 +105,7 @@ impl DataSystem {
     pub fn update(&self, plan: &Plan) -> Update {
         let connecting = plan.verb == TaskVerb::Startup;
         let [owed, _] = self.beliefs.owed;
-        if plan.verb == TaskVerb::Position && self.beliefs.connected && plan.update_due {
-            // What is let go is let go whether or not an earlier update is taken.
-            Update::Due
-        } else if owed.is_some() && (self.beliefs.connected || connecting) {
+        if owed.is_some() && (self.beliefs.connected || connecting) {
             Update::Owed
         } else if self.beliefs.connected && plan.update_due {
             Update::Due
@@ -116,10 +114,11 @@ impl DataSystem {
         }
     }
 
-    /// Is the data base to be told where an object is let go?
+    /// Is the data base to be told where an object is that is let go, in the MBD or not?
     #[must_use]
-    pub fn is_to_be_told_of(&self, object: Option<Name16>, in_mbd: bool) -> bool {
-        self.beliefs.carried.is_some_and(|carried| Some(carried.item) == object && (carried.told || in_mbd))
+    pub fn follows(&self, object: Name16, in_mbd: bool) -> bool {
+        let in_mbd = self.beliefs.connected && in_mbd;
+        self.beliefs.carried.is_some_and(|carried| carried.item == object && (carried.told || in_mbd))
     }
 
     /// Write a command for the first time.
@@ -178,14 +177,12 @@ impl DataSystem {
         self.tell_owed(tick, outputs);
     }
 
-    /// REPORT-ITEM: write where the robot has let an object go, and keep it until it is taken.
-    pub fn tell_released(&mut self, at: Option<Standing>, tick: Tick, outputs: &mut TaskOutputs) {
-        let Some(Carried { item, serial, location, sector, .. }) = self.beliefs.carried.take() else {
-            return;
-        };
-        let position = at.map_or(location, |at| at.location);
-        self.owe(item, serial, position, if position == location { sector } else { None });
-        self.tell_owed(tick, outputs);
+    /// REPORT-ITEM: keep the update of what the robot carried and has let go, until it is taken.
+    pub fn owe_released(&mut self, placed: &PlacedObject) {
+        if let Some(Carried { item, serial, location, sector, .. }) = self.beliefs.carried.take() {
+            let position = placed.location;
+            self.owe(item, serial, position, if position == location { sector } else { None });
+        }
     }
 
     /// Keep an update. A full queue keeps the oldest and the newest.

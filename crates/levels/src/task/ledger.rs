@@ -12,9 +12,9 @@ use interfaces::{
     hws::{HwsCommand, Ledger},
     subtask::{SubtaskStatus, SubtaskVerb},
 };
-use rcs_core::Plain;
+use rcs_core::{Plain, name::Name16};
 
-use super::plan::{Plan, Resumed};
+use super::plan::{Plan, Resumed, TaskVerb};
 
 /// Has the command placed its object already?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -98,6 +98,18 @@ pub fn is_from_elsewhere(
                 && (carried.location, carried.sector) == (location.name, location.sector)
         }),
     }
+}
+
+/// Does the command in the ledger take an object?
+#[must_use]
+pub fn takes(ledger: Option<&Ledger>, object: &Name16) -> bool {
+    ledger.is_some_and(|Ledger { command, .. }| {
+        command.object.as_ref() == Some(object)
+            && matches!(
+                TaskVerb::of(&command.command),
+                Some(TaskVerb::Transfer | TaskVerb::Move | TaskVerb::Acquire | TaskVerb::Refixture)
+            )
+    })
 }
 
 /// The ledger when a command has been accepted. A command that is about no object says nothing of one that

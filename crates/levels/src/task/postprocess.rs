@@ -109,9 +109,8 @@ impl State {
                 self.tell(inputs, outputs);
                 self.send(SubtaskVerb::GotoEndpt, &plan.end_at, inputs, outputs);
             }
-            Action::UpdateAndPosition(goal) => {
-                self.plan.update_due = false;
-                self.data_system.tell_released(inputs.memory.subtask.status.at, tick, outputs);
+            Action::TellOwedAndPosition(goal) => {
+                self.data_system.tell_owed(tick, outputs);
                 self.send(SubtaskVerb::Position, site(&plan, goal), inputs, outputs);
             }
             Action::AwaitUpdate => self.ordered = Ordered::DataSystem,

@@ -9,7 +9,7 @@ use rcs_core::{handshake::Lower, name::Name10};
 use taskdata::files::TaskData;
 
 use super::{
-    ledger::{Part, is_from_elsewhere, placed, resumed},
+    ledger::{Part, is_from_elsewhere, opened, placed, resumed, takes},
     plan::{Found, Plan, Resumed, Site, TOOL_GRIPPER, TaskVerb, is_in_mbd},
     state::State,
     tables::{
@@ -41,6 +41,7 @@ impl State {
         } else {
             (self.plan, Request::default())
         };
+        self.follow_object(&plan, asked, inputs);
         let subtask = self.subtask(inputs);
         let pausing = inputs.memory.task.subtask.command == SubtaskVerb::Pause;
         Seen {
@@ -81,17 +82,30 @@ impl State {
         let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
         let resumed = resumed(&inputs.external.hws, ledger);
         let told = resumed != Resumed::Not && ledger.is_some_and(|ledger| ledger.told);
-        let in_mbd = below.at.is_some_and(|at| is_in_mbd(at.record, inputs.data));
         let is_held = plan.object.is_some() && plan.object == below.held.object();
         let carried = self.data_system.beliefs.carried.as_ref();
         let from_elsewhere = plan.verb == TaskVerb::Acquire
             && is_held
             && is_from_elsewhere(&inputs.external.hws, plan, ledger, carried);
-        let update_due = match plan.verb {
-            TaskVerb::Position => self.data_system.is_to_be_told_of(below.held.object(), in_mbd),
-            _ => plan.update_due && !told && !from_elsewhere,
-        };
+        let is_known_in_hand = plan.verb == TaskVerb::Transfer
+            && plan.object.is_some_and(|object| self.data_system.follows(object, false));
+        let update_due = (plan.update_due || is_known_in_hand) && !told && !from_elsewhere;
         Plan { resumed, update_due, from_elsewhere, ..*plan }
+    }
+
+    /// The data base is owed where the robot has let go what it carried, but for an object that the command in the
+    /// ledger takes: it will be taken again, or that command tells where it is. POSITION takes nothing.
+    fn follow_object(&mut self, plan: &Plan, asked: Asked, inputs: &Inputs<'_, TaskData<'_>>) {
+        let (memory, data_system) = (inputs.memory, &mut self.data_system);
+        let Some(placed) = memory.subtask.status.placed else { return };
+        let ledger = match asked {
+            Asked::Now => opened(memory.task.ledger, &inputs.external.hws, plan),
+            _ => memory.task.ledger,
+        };
+        let taken = plan.verb != TaskVerb::Position && takes(ledger.as_ref(), &placed.object);
+        if !taken && data_system.follows(placed.object, is_in_mbd(placed.record, inputs.data)) {
+            data_system.owe_released(&placed);
+        }
     }
 
     /// Status of Subtask.

@@ -119,6 +119,16 @@ fn task_and_subtask_tell_the_data_system() {
 }
 
 #[test]
+fn task_and_subtask_let_an_object_go() {
+    let mut commands = data::commands(&[HANDLING[0], HANDLING[2], HANDLING[1]]);
+    commands.truncate(if is_full() { 3 } else { 2 });
+    let pair = task::Pair::first(0, commands.clone()).carrying(&commands[1]);
+    let found = is_sound("task and subtask, an object that the data base follows", pair, 4_000_000);
+    assert!(found.states > 1000, "{} states", found.states);
+    assert!(found.pause <= 14 && found.any <= 28, "{} and {}", found.pause, found.any);
+}
+
+#[test]
 fn task_and_subtask_with_a_mishap() {
     tasks("task and subtask, a mishap", 1, &["PAUSE", "MOVE -- +0 -- 0 +0 HOME 0 -- 0"], 14);
 }

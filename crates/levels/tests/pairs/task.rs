@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use interfaces::{
     CommonMemory, ExternalInputs, HwsCommand, Reason, StatusReport, SubtaskOutputs, TaskOutputs,
-    data_base::{DataBaseCommand, DataBaseReport, DataBaseStatus, DataBaseVerb},
+    data_base::{Carried, DataBaseCommand, DataBaseReport, DataBaseStatus, DataBaseVerb},
     emove::{EmoveCommand, EmoveStatus, EmoveVerb, Holding, ObjectGrip, PlacedObject, Standing},
     hws::HwsReport,
     process::{Inputs, Process},
@@ -23,7 +23,7 @@ use levels::{
 use rcs_core::tick::Tick;
 
 use crate::{
-    data::data,
+    data::{data, emove_command},
     image::{Image, rebase, rebase_echoes},
     search::{World, Wrong},
 };
@@ -44,6 +44,8 @@ pub enum EmoveDoes {
     Fails,
     /// The order fails. What is held is lost, and a grasp has closed on nothing.
     Loses,
+    /// It ends a pause, and the fingers have finished a release that came before it.
+    LetsGo,
     /// It writes nothing.
     Silent,
 }
@@ -74,6 +76,8 @@ pub struct Event {
 pub struct Pair {
     tick: Tick,
     mishaps: u8,
+    /// The fingers can finish a release in a pause.
+    lets_go: bool,
     commands: Arc<[HwsCommand]>,
     hws: HwsCommand,
     task: task::state::State,
@@ -104,6 +108,7 @@ impl Pair {
         let mut pair = Self {
             tick: Tick(10_000),
             mishaps,
+            lets_go: false,
             commands: commands.into(),
             hws: HwsCommand::default(),
             task: task::state::State::default(),
@@ -123,6 +128,24 @@ impl Pair {
             *stamp = pair.tick;
         }
         pair
+    }
+
+    /// The robot stands at PFIXTURE and holds the object of a command there, and the Data System has been told so.
+    pub fn carrying(mut self, command: &HwsCommand) -> Self {
+        let object = command.object.expect("a command about an object");
+        let place = emove_command(EmoveVerb::Release, object.as_str(), command.source_grip, "PFIXTURE");
+        self.emove.held = Holding::Object(ObjectGrip { object, grip: place.grip });
+        self.emove.at = Some(Standing {
+            location: place.location,
+            record: place.location_record,
+            array: place.location_array,
+            grip: Some(place.grip),
+        });
+        let beliefs = &mut self.task.data_system.beliefs;
+        (self.lets_go, beliefs.connected) = (true, true);
+        beliefs.carried = Some(Carried { item: object, told: true, ..Carried::default() });
+        self.task_out.beliefs = *beliefs;
+        self
     }
 
     fn tell(&mut self, nth: usize) {
@@ -166,6 +189,13 @@ impl Pair {
                     self.reached = order.command;
                 }
             }
+            EmoveDoes::LetsGo => {
+                self.emove.report = StatusReport::Done;
+                self.let_go();
+                if self.own {
+                    self.reached = order.command;
+                }
+            }
             EmoveDoes::Fails | EmoveDoes::Loses => {
                 self.emove.report = StatusReport::Error;
                 match (order.command, does) {
@@ -185,18 +215,7 @@ impl Pair {
                 emove.held = Holding::Object(ObjectGrip { object, grip: order.grip });
                 emove.placed = None;
             }
-            EmoveVerb::Release => {
-                if let Holding::Object(held) = emove.held {
-                    emove.placed = Some(PlacedObject {
-                        object: held.object,
-                        grip: held.grip,
-                        location: emove.at.map(|at| at.location).unwrap_or_default(),
-                        record: emove.at.and_then(|at| at.record),
-                        array: emove.at.and_then(|at| at.array),
-                    });
-                }
-                emove.held = Holding::Nothing;
-            }
+            EmoveVerb::Release => self.let_go(),
             verb if moves(verb) => {
                 emove.at = Some(Standing {
                     location: order.location,
@@ -207,6 +226,16 @@ impl Pair {
             }
             _ => {}
         }
+    }
+
+    /// The fingers let go of what they hold.
+    fn let_go(&mut self) {
+        let (at, emove) = (self.emove.at.unwrap_or_default(), &mut self.emove);
+        if let Holding::Object(ObjectGrip { object, grip }) = emove.held {
+            let Standing { location, record, array, .. } = at;
+            emove.placed = Some(PlacedObject { object, grip, location, record, array });
+        }
+        emove.held = Holding::Nothing;
     }
 
     /// What is reported finished is done, by the orders of this command; and what a command has replaced stops.
@@ -242,6 +271,9 @@ impl Pair {
                 Err("finished, and this command has not moved the robot")
             }
             Some(TaskVerb::Position) if emove.held.is_held() => Err("finished, and something is held"),
+            Some(TaskVerb::Position | TaskVerb::Transfer) if self.is_owing() => {
+                Err("finished, and the data base has an object elsewhere")
+            }
             Some(TaskVerb::Acquire) if emove.held.object() != self.hws.object => {
                 Err("finished, and the object is not held")
             }
@@ -284,6 +316,9 @@ impl World for Pair {
             emove.extend([EmoveDoes::Ends, EmoveDoes::Fails]);
             if matches!(self.subtask_out.emove.command, EmoveVerb::GraspObj | EmoveVerb::MovObjTo) {
                 emove.push(EmoveDoes::Loses);
+            }
+            if self.lets_go && self.subtask_out.emove.command == EmoveVerb::Pause {
+                emove.push(EmoveDoes::LetsGo);
             }
         }
         if self.mishaps > 0 {
@@ -462,6 +497,15 @@ impl Pair {
         self.task_out.status.echo == self.hws.number
             && self.subtask_out.status.echo == number
             && self.subtask.execution.receiver.echo == number
+    }
+
+    /// Has the Data System not been told of an object that was let go?
+    fn is_owing(&self) -> bool {
+        let beliefs = &self.task.data_system.beliefs;
+        let placed = self.subtask_out.status.placed.map(|placed| placed.object);
+        let is_carried = |carried: &Carried| carried.told && Some(carried.item) == placed;
+        beliefs.connected
+            && (beliefs.owed.iter().any(Option::is_some) || beliefs.carried.as_ref().is_some_and(is_carried))
     }
 
     /// Task waits for the Data System.

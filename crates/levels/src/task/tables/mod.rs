@@ -217,8 +217,8 @@ pub enum Action {
     Update,
     /// Tell the Data System where the object now is, and GOTO-ENDPT to Subtask.
     UpdateAndGotoEndpt,
-    /// Tell the Data System where the object now is, and >POSITION to Subtask.
-    UpdateAndPosition(Goal),
+    /// Tell the Data System the update that it has not taken, and >POSITION to Subtask.
+    TellOwedAndPosition(Goal),
     /// Wait for the Data System, which has been told.
     AwaitUpdate,
     /// Report finished.

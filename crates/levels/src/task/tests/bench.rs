@@ -35,6 +35,7 @@ pub enum Mishap {
 pub struct SubtaskDouble {
     receiver: Receiver,
     left: u32,
+    last: SubtaskCommand,
     pub outputs: SubtaskOutputs,
     pub received: Vec<SubtaskCommand>,
     pub mishap: Option<(SubtaskVerb, Mishap)>,
@@ -51,11 +52,18 @@ impl SubtaskDouble {
         if mishap == Some(Mishap::Silence) {
             return;
         }
+        let arrival = self.receiver.observe(command.number);
+        // Fingers that open finish that, whatever comes.
+        let last = self.last;
+        let opens = matches!(last.command, SubtaskVerb::Release | SubtaskVerb::ReleaseTool);
+        if arrival == Arrival::New && self.left > 0 && opens {
+            self.effect(&last);
+        }
         let status = &mut self.outputs.status;
-        match self.receiver.observe(command.number) {
+        match arrival {
             Arrival::New => {
                 self.received.push(*command);
-                self.left = WORK;
+                (self.left, self.last) = (WORK, *command);
                 let stands = matches!(
                     command.command,
                     SubtaskVerb::Pause | SubtaskVerb::GetEndeff | SubtaskVerb::Release
@@ -101,9 +109,9 @@ impl SubtaskDouble {
                 self.stand("TOOL-TRNS");
             }
             SubtaskVerb::InsertTool => self.stand("TOOL-TRNS"),
-            SubtaskVerb::Release => self.hold(""),
+            SubtaskVerb::Release => self.let_go(),
             SubtaskVerb::ReleaseTool => {
-                self.hold("");
+                self.let_go();
                 self.outputs.status.drum = false;
             }
             SubtaskVerb::RemoveTool => self.outputs.status.drum = false,
@@ -124,6 +132,16 @@ impl SubtaskDouble {
             SubtaskVerb::Position => self.stand_at(command, Some(command.source_grip)),
             SubtaskVerb::FixGrip => status.pedestal_part = false,
             _ => {}
+        }
+    }
+
+    /// The gripper lets go of what it holds where the robot stands.
+    fn let_go(&mut self) {
+        let (held, at) = (self.outputs.status.held, self.outputs.status.at.unwrap_or_default());
+        self.hold("");
+        if let Holding::Object(ObjectGrip { object, grip }) = held {
+            let Standing { location, record, array, .. } = at;
+            self.outputs.status.placed = Some(PlacedObject { object, grip, location, record, array });
         }
     }
 

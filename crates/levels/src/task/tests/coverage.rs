@@ -118,6 +118,20 @@ fn with_data_system(rows: &mut Coverage) {
             rows.append(&mut bench.rows);
         }
     }
+    // The Data System begins to answer when it has been told the first of two updates of a tool again.
+    let mut bench = Bench::connected();
+    bench.set(3, "TOOL-1", "HOME");
+    bench.data_system.answer = Answer::Absent;
+    bench.run("MOVE TOOL-1 +1 UNIT_1 2 +1 TOOL-SAFE 0 -- 0");
+    bench.set(3, "TOOL-1", "TOOL-TRNS");
+    bench.data_system.received.clear();
+    bench.command(RELEASE);
+    while bench.data_system.received.is_empty() {
+        bench.step();
+    }
+    bench.data_system.answer = Answer::After(1);
+    bench.finish();
+    rows.append(&mut bench.rows);
 }
 
 /// The operator takes the robot before, after and from a command, and gives it back.

@@ -233,7 +233,6 @@ fn an_object_that_was_taken_elsewhere_is_not_told_as_taken_from_the_mbd() {
     const FROM_FIXTURE: &str = "ACQUIRE PART +1 PFIXTURE 0 0 -- 0 -- 0";
     const FROM_SECTOR_2: &str = "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0";
     const FROM_SECTOR_1: &str = "ACQUIRE PART +1 UNIT_1 1 0 -- 0 -- 0";
-    const PAUSE: &str = "PAUSE -- 0 -- 0 0 -- 0 -- 0";
     // Taken elsewhere, by a command that has finished; by an ACQUIRE of another sector; and as often as it is sent.
     for first in [FROM_FIXTURE, "MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0", FROM_SECTOR_1] {
         let mut bench = Bench::connected();
@@ -274,4 +273,128 @@ fn an_object_that_was_taken_elsewhere_is_not_told_as_taken_from_the_mbd() {
     assert!(told(&mut bench, FROM_SECTOR_2).is_empty());
     assert_eq!(bench.run(STARTUP), FINISHED);
     assert_eq!(told(&mut bench, FROM_SECTOR_2), ["H_ROBOT"]);
+}
+
+const LET_GO: &str = "POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0";
+const LET_GO_WITHOUT_NAME: &str = "POSITION -- 0 -- 0 0 PFIXTURE 0 -- 0";
+const TO_FIXTURE: &str = "TRANSFER PART +1 SAFE 0 +1 PFIXTURE 0 -- 0";
+const PAUSE: &str = "PAUSE -- 0 -- 0 0 -- 0 -- 0";
+const NOWHERE: &str = "MOVE -- 0 -- 0 0 NOWHERE 0 -- 0";
+const HOME: &str = "MOVE -- 0 -- 0 0 HOME 0 -- 0";
+const OTHER: &str = "TRANSFER BAR +1 PFIXTURE 0 +1 UNIT_1 1 SAFE 0";
+
+/// The positions that the Data System was told since the bench was asked last.
+fn positions(bench: &mut Bench<'_>) -> Vec<String> {
+    let updates = bench.data_system.received.drain(..).filter(|told| told.command == DataBaseVerb::Update);
+    updates.map(|told| told.position.to_string()).collect()
+}
+
+/// What becomes of a part that the data base has as the robot's when `line`, which lets it go, is replaced by `by`
+/// after each number of ticks: the benches in which the part lies in the fixture, and where it is said to be by then.
+fn let_go_while_replaced(line: &str, by: &str) -> Vec<(Bench<'static>, Vec<String>)> {
+    let mut benches = Vec::new();
+    for ticks in 1.. {
+        let mut bench = Bench::connected();
+        assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
+        bench.data_system.received.clear();
+        bench.command(line);
+        bench.wait(ticks);
+        if bench.memory.task.status.report != HwsReport::Executing {
+            return benches;
+        }
+        bench.command(by);
+        bench.finish();
+        bench.wait(5);
+        if bench.memory.subtask.status.placed.is_some() {
+            let told = positions(&mut bench);
+            benches.push((bench, told));
+        }
+    }
+    benches
+}
+
+/// The fingers have let the part go when the POSITION comes again. It has nothing to release, and tells of the part
+/// all the same.
+#[test]
+fn a_position_tells_what_was_let_go_before_it_was_replaced() {
+    for line in [LET_GO, LET_GO_WITHOUT_NAME] {
+        for by in [PAUSE, NOWHERE, HOME] {
+            let mut untold = 0;
+            for (mut bench, mut positions) in let_go_while_replaced(line, by) {
+                untold += u32::from(positions.is_empty());
+                positions.extend(told(&mut bench, line));
+                assert_eq!(positions, ["PFIXTURE"], "{line}, {by}");
+                assert!(told(&mut bench, line).is_empty(), "{line}, {by}");
+            }
+            assert!(untold > 1, "{line}, {by}");
+        }
+    }
+}
+
+/// The command is not sent again: the next one about another object, or a STARTUP, tells first where the part is.
+#[test]
+fn the_next_command_tells_what_was_let_go_before_another_was_replaced() {
+    for line in [LET_GO, LET_GO_WITHOUT_NAME, TO_FIXTURE] {
+        for (next, then) in [(OTHER, &["UNIT_1"][..]), (STARTUP, &[])] {
+            let mut untold = 0;
+            for (mut bench, mut positions) in let_go_while_replaced(line, PAUSE) {
+                untold += u32::from(positions.is_empty());
+                positions.extend(told(&mut bench, next));
+                // An unfinished TRANSFER can be sent again after a STARTUP: it tells then.
+                if (line, next) == (TO_FIXTURE, STARTUP) {
+                    positions.extend(told(&mut bench, line));
+                }
+                assert_eq!(positions, [&["PFIXTURE"], then].concat(), "{line}, {next}");
+            }
+            assert!(untold > 1, "{line}, {next}");
+        }
+    }
+}
+
+/// A tool that the drum gets from the robot is the robot's no longer, with an end-at location or without.
+#[test]
+fn release_tool_tells_where_the_tool_is() {
+    for end_at in ["TOOL-SAFE", "--"] {
+        let release = format!("RELEASE-TOOL TOOL-1 +1 -- 0 +1 -- 0 {end_at} 0");
+        let bench = || {
+            let mut bench = Bench::connected();
+            bench.set(3, "", "HOME");
+            assert_eq!(told(&mut bench, "MOVE TOOL-1 +1 UNIT_1 2 +1 TOOL-SAFE 0 -- 0"), ["H_ROBOT"]);
+            bench.set(3, "TOOL-1", "TOOL-TRNS");
+            bench.data_system.received.clear();
+            bench
+        };
+        assert_eq!(told(&mut bench(), &release), ["TOOL-TRNS"], "{end_at}");
+        // Replaced at any tick after the fingers have let go, and sent again.
+        for ticks in 1.. {
+            let mut bench = bench();
+            bench.command(&release);
+            bench.wait(ticks);
+            if bench.memory.task.status.report != HwsReport::Executing {
+                break;
+            }
+            bench.command(PAUSE);
+            bench.finish();
+            let mut positions = positions(&mut bench);
+            positions.extend(told(&mut bench, &release));
+            assert_eq!(positions, ["TOOL-TRNS"], "{end_at}, tick {ticks}");
+        }
+    }
+}
+
+/// V.4.1 has updates of moves from and to the MBD; a part that the data base has as the robot's is told of, too.
+#[test]
+fn a_transfer_tells_where_it_puts_what_the_robot_had() {
+    let mut bench = Bench::connected();
+    assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
+    assert_eq!(told(&mut bench, TO_FIXTURE), ["PFIXTURE"]);
+    bench.subtask.hold("PART");
+    assert!(told(&mut bench, TO_FIXTURE).is_empty(), "the data base has it elsewhere");
+    // Replaced at any tick and sent again it tells once.
+    for by in [PAUSE, NOWHERE, HOME] {
+        for (mut bench, mut positions) in let_go_while_replaced(TO_FIXTURE, by) {
+            positions.extend(told(&mut bench, TO_FIXTURE));
+            assert_eq!(positions, ["PFIXTURE"], "{by}");
+        }
+    }
 }
