@@ -18,6 +18,7 @@ mod emove;
 mod fingers;
 mod grip;
 mod hand;
+mod holster;
 mod image;
 mod jaws;
 mod parts_gripper;
@@ -275,6 +276,35 @@ fn emove_and_prim_change_tools_with_an_interruption() {
 fn emove_and_prim_change_tools_with_a_fault() {
     let commands = if is_full() { 5 } else { 3 };
     guards("E-move and Prim, tools, a fault", commands, (0, 0, 1), 34);
+}
+
+const CHANGING_GRIPPERS: &[prim::Line] =
+    &[(EmoveVerb::QcAttach, prim::HOLSTER), (EmoveVerb::QcDetach, prim::HOLSTER), (EmoveVerb::Pause, "")];
+
+/// E-move and Prim at a holster, with guarded moves, as at the drum.
+fn exchanges(name: &str, commands: usize, (unusual, motions, faults): (u8, u8, u8), any: u32) {
+    let first = prim::Pair::at_holster(&CHANGING_GRIPPERS[..commands], unusual, motions, faults);
+    let found = is_sound(name, first, 1_000_000);
+    assert!(found.states > 100, "{} states", found.states);
+    assert!(found.pause <= 8 && found.any <= any, "{} and {}", found.pause, found.any);
+}
+
+#[test]
+fn emove_and_prim_change_grippers() {
+    let unusual = if is_full() { 3 } else { 1 };
+    exchanges("E-move and Prim, grippers", 2, (unusual, 0, 0), 38);
+}
+
+#[test]
+fn emove_and_prim_change_grippers_with_an_interruption() {
+    let (unusual, motions) = if is_full() { (1, 2) } else { (0, 1) };
+    exchanges("E-move and Prim, grippers, an interruption", 3, (unusual, motions, 0), 44);
+}
+
+#[test]
+fn emove_and_prim_change_grippers_with_a_fault() {
+    let (commands, unusual) = if is_full() { (3, 1) } else { (2, 0) };
+    exchanges("E-move and Prim, grippers, a fault", commands, (unusual, 0, 1), 44);
 }
 
 /// Subtask and E-move: `early` commands come before the last one has ended, and so many `mishaps`; a pair that rests

@@ -1,10 +1,11 @@
 //! E-move and Prim. Around them: Subtask, T3 Interface with the robot, Quick Change. The robot is bare, and goes from
-//! one known location to another, by their trajectory; or it has the tool gripper, and takes a tool out of the drum and
-//! puts it in, by guarded moves.
+//! one known location to another, by their trajectory; or it goes by guarded moves: with the tool gripper, to take a
+//! tool out of the drum and to put it in, or to take the parts gripper from its holster and to leave it there.
 //!
 //! A motion is a single event: the ticks in which T3 Interface wants points, until a process says something new or half
 //! of the motion is over. While the robot is at rest T3 Interface may also want none.
 
+mod change;
 mod judge;
 mod states;
 mod tool;
@@ -27,8 +28,10 @@ use rcs_core::tick::Tick;
 
 use crate::{
     data::{data, emove_command, place, pose_of_point},
+    holster,
     search::{World, Wrong},
 };
+use change::Change;
 pub use tool::DRUM;
 use tool::{GRIPPER, Happens, TOOL, Tool};
 
@@ -41,6 +44,9 @@ const ASIDE: f64 = 1.0;
 
 /// A command of Subtask, and its location; none for PAUSE.
 pub type Line = (EmoveVerb, &'static str);
+
+/// The location of commands about the parts gripper in its holster.
+pub const HOLSTER: &str = holster::GRIPPER.2;
 
 const PAUSE: Line = (EmoveVerb::Pause, "");
 
@@ -90,6 +96,7 @@ pub struct Pair {
     emove_out: EmoveOutputs,
     prim: prim::state::State,
     prim_out: PrimOutputs,
+    /// What Quick Change has echoed, where it is not part of the scene.
     quick_change: u32,
     t3i: T3iStatus,
     /// It has not written in the last tick.
@@ -98,8 +105,10 @@ pub struct Pair {
     aside: u8,
     /// Where it was sent last.
     robot: Frame,
-    /// Without it the robot is bare.
+    /// The tool gripper at the drum.
     tool: Option<Tool>,
+    /// The parts gripper and its holster. Without it and a tool gripper the robot is bare.
+    change: Option<Change>,
     /// What is unusual but no fault can still happen so often: fingers that stick, and the condition of a GO-UNTIL
     /// that does not come where most of the move is over.
     unusual: u8,
@@ -118,20 +127,29 @@ impl Pair {
     /// A pair that is booted, with a bare robot at a location that E-move has not found yet. Of these commands so many
     /// may interrupt a motion, and so many faults come.
     pub fn first(location: &'static str, commands: &'static [Line], motions: u8, faults: u8) -> Self {
-        Self { commands, left: (motions, faults), ..Self::at(location, None) }
+        Self { commands, left: (motions, faults), ..Self::at(location, None, None) }
     }
 
     /// A pair whose robot stands before the drum, with open fingers. So many unusual things and faults may come, and
     /// so many of these commands may interrupt a motion.
     pub fn at_drum(commands: &'static [Line], unusual: u8, motions: u8, faults: u8) -> Self {
-        let mut pair = Self::at("SAFE", Some(Tool::new()));
+        let mut pair = Self::at("SAFE", Some(Tool::new()), None);
         pair.runs(PAUSE);
         pair.runs((EmoveVerb::MovToLoc, "TOOL-SAFE"));
         Self { commands, left: (motions, faults), unusual, ..pair }
     }
 
+    /// A pair whose bare robot stands above the parts gripper in its holster. So many unusual things and faults may
+    /// come, and so many of these commands may interrupt a motion.
+    pub fn at_holster(commands: &'static [Line], unusual: u8, motions: u8, faults: u8) -> Self {
+        let mut pair = Self::at("SAFE", None, Some(Change::new()));
+        pair.runs(PAUSE);
+        pair.runs((EmoveVerb::MovToHol, HOLSTER));
+        Self { commands, left: (motions, faults), unusual, ..pair }
+    }
+
     /// A system that is booted.
-    fn at(location: &str, tool: Option<Tool>) -> Self {
+    fn at(location: &str, tool: Option<Tool>, change: Option<Change>) -> Self {
         let mut pair = Self {
             tick: Tick(10_000),
             commands: &[],
@@ -148,6 +166,7 @@ impl Pair {
             aside: 0,
             robot: place(location).frame,
             tool,
+            change,
             unusual: 0,
             contact: false,
             stops: false,
@@ -173,6 +192,10 @@ impl Pair {
 
     fn tell(&mut self, (verb, location): Line) {
         let number = self.command.number + 1;
+        if location == HOLSTER {
+            self.command = holster::command(number, verb);
+            return;
+        }
         if verb == EmoveVerb::Pause {
             self.command = EmoveCommand { number, command: verb, ..EmoveCommand::default() };
             return;
@@ -211,9 +234,13 @@ impl Pair {
         memory.emove.header.stamp = before;
         memory.prim.header.stamp = before;
         memory.quick_change.header.stamp = before;
+        memory.grip.header.stamp = before;
         memory.t3i.header.stamp = if self.silent { Tick::BEFORE_START } else { before };
         if let Some(tool) = &self.tool {
             tool.write(&mut memory, &mut external.devices, before);
+        }
+        if let Some(change) = &self.change {
+            change.write(&self.robot, &mut memory, &mut external.devices, before);
         }
         (memory, external)
     }
@@ -310,6 +337,9 @@ impl Pair {
         if let Some(tool) = &mut self.tool {
             tool.does(happens, &self.robot, &memory, &self.prim)?;
         }
+        if let Some(change) = &mut self.change {
+            change.does(happens, &self.robot, &memory, &self.prim)?;
+        }
         self.watch(&old);
         let wrong = self.judge(&old);
         self.renumber();
@@ -324,7 +354,7 @@ impl World for Pair {
         let moving = self.is_moving();
         let (motions, faults) = self.left;
         let mut links =
-            if moving || self.tool.is_some() { vec![Link::Goes] } else { vec![Link::Busy, Link::Goes] };
+            if moving || self.is_guarded() { vec![Link::Goes] } else { vec![Link::Busy, Link::Goes] };
         if moving && !self.halved && (self.awaits() || (motions, faults) != (0, 0)) {
             links.push(Link::Half);
         }
@@ -339,7 +369,7 @@ impl World for Pair {
             links.extend([Link::Silent, Link::Aside]);
             links.extend([Restarted::Emove, Restarted::Prim].map(Link::Restart));
         }
-        let prompt = |link: Link| link == Link::Goes && !self.fingers_move();
+        let prompt = |link: Link| link == Link::Goes && !self.awaits_arrival();
         let quiet = |link| Event { told: None, link, happens: Happens::Nothing };
         let mut events: Vec<_> = links.iter().map(|link| (quiet(*link), prompt(*link))).collect();
         events.extend(
@@ -418,8 +448,14 @@ impl World for Pair {
 }
 
 impl Pair {
-    fn fingers_move(&self) -> bool {
-        self.tool.is_some_and(|tool| tool.moves())
+    /// The robot goes by guarded moves.
+    const fn is_guarded(&self) -> bool {
+        self.tool.is_some() || self.change.is_some()
+    }
+
+    /// Fingers move, or the ring turns.
+    fn awaits_arrival(&self) -> bool {
+        self.tool.is_some_and(|tool| tool.moves()) || self.change.is_some_and(|change| change.turns())
     }
 
     /// The condition of a GO-UNTIL is to come, that of a GO-WHILE is not.
@@ -451,16 +487,19 @@ impl Pair {
 
     /// What can happen at the gripper, and whether that is prompt.
     fn happenings(&self) -> Vec<(Happens, bool)> {
-        let Some(tool) = &self.tool else { return Vec::new() };
-        if tool.moves() {
+        if self.awaits_arrival() {
             return vec![(Happens::Arrive, true), (Happens::Stick, true)];
         }
         let executes = self.prim.execution.outcome == Outcome::Executing;
         let watches = executes && self.prim.target.sensor.is_some() && !self.contact;
         let mut all = Vec::new();
-        all.extend(watches.then_some((Happens::Contact, true)));
-        all.extend(executes.then_some((Happens::Dead, false)));
-        all.extend((tool.is_loaded() && executes).then_some((Happens::Free, false)));
+        if let Some(tool) = &self.tool {
+            all.extend(watches.then_some((Happens::Contact, true)));
+            all.extend(executes.then_some((Happens::Dead, false)));
+            all.extend((tool.is_loaded() && executes).then_some((Happens::Free, false)));
+        }
+        let sees = self.change.is_some_and(|change| !change.is_dark());
+        all.extend((sees && watches).then_some((Happens::Dead, false)));
         all.retain(|(happens, _)| self.left.1 > 0 || !self.is_fault(*happens));
         all
     }

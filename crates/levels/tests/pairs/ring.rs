@@ -26,8 +26,9 @@ use levels::{
 use rcs_core::tick::Tick;
 
 use crate::{
-    data::{data, emove_command, place, pose_of_point},
+    data::{data, emove_command, place},
     emove::{Restarted, run},
+    holster::{self, GRIPPER, Ring, SEAT, holster},
     parts_gripper::{GripDoes, PartsGripper},
     robot::{PrimDoes, Robot, SETTLED},
     search::{World, Wrong},
@@ -37,18 +38,8 @@ use crate::{
 const LONG: u64 = 50;
 /// Ticks for which a reading counts at most.
 const STEADY: u8 = 12;
-/// The gripper, what it is called in its holster, and the holster.
-const GRIPPER: (u8, &str, &str) = (1, "GRIPPER-1", "HOLSTER-R");
 /// Opening of the fingers at the start, 0.01 in.
 const OPENING: i32 = 300;
-
-/// Where the ring stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ring {
-    Locked,
-    Unlocked,
-    Between,
-}
 
 /// What the sensors say instead of the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,13 +86,6 @@ pub struct Pair {
     mated: bool,
 }
 
-/// The pose of the holster.
-fn holster() -> Frame {
-    place(GRIPPER.2).frame
-}
-
-/// Where the gripper is seated, and where it is before it: in the axes of the holster, in.
-const SEAT: f64 = 1.5;
 /// A gripper is seated within this, in.
 const SEATED: f64 = 0.06;
 
@@ -146,31 +130,17 @@ impl Pair {
     }
 
     fn tell(&mut self, verb: EmoveVerb) {
-        let (id, object, location) = GRIPPER;
-        let number = self.command.number + 1;
-        let grip = if verb == EmoveVerb::QcAttach { 2 } else { 1 };
-        self.command = if verb == EmoveVerb::Pause {
-            EmoveCommand { number, command: verb, ..EmoveCommand::default() }
-        } else {
-            EmoveCommand {
-                number,
-                pose: Some(pose_of_point(location)),
-                end_effector_id: Some(id),
-                ..emove_command(verb, object, grip, location)
-            }
-        };
+        self.command = holster::command(self.command.number + 1, verb);
     }
 
-    /// The robot in the axes of the holster: X down into it, Z to the seat, in.
-    fn at(&self) -> (f64, f64) {
-        let at = self.robot.at.to_frame().expect("the robot stands at frames");
-        let at = holster().inverse().compose(&at).position;
-        (at.x, at.z)
+    /// Where the robot stands.
+    fn stands(&self) -> Frame {
+        self.robot.at.to_frame().expect("the robot stands at frames")
     }
 
     /// Something mates at the seat, or stays there.
     fn mate(&mut self) {
-        let (x, z) = self.at();
+        let (x, z) = holster::within(&self.stands());
         let seated = (z - SEAT).abs() < SEATED;
         if seated && x > -0.05 {
             self.mated = true;
@@ -181,7 +151,7 @@ impl Pair {
 
     /// What the sensors of the holster see.
     fn holster_sensors(&self) -> u8 {
-        let (x, z) = self.at();
+        let (x, z) = holster::within(&self.stands());
         match self.mated {
             false => 0b1111,
             true if (z - SEAT).abs() < SEATED && x > -0.05 => 0b1111,

@@ -11,6 +11,7 @@ use super::{LATE, Pair};
 use crate::{
     data::{data, place},
     emove::is_done,
+    holster,
     robot::THERE,
     search::Wrong,
 };
@@ -25,15 +26,20 @@ const DEEP: f64 = 0.3;
 impl Pair {
     /// Note whether the condition of a guarded move comes, by what Prim has read in this tick.
     pub(super) fn watch(&mut self, before: &Self) {
-        let Some(tool) = &before.tool else { return };
+        if !before.is_guarded() {
+            return;
+        }
         let executes = |it: &Self| it.prim.execution.outcome == Outcome::Executing;
         let taken = self.prim.execution.receiver.echo != before.prim.execution.receiver.echo;
         if taken || (!executes(before) && !self.is_moving()) {
             (self.contact, self.stops) = (false, false);
         }
         let executes = executes(self) || executes(before);
-        self.contact |= executes && tool.is_pressed(&self.prim);
-        self.stops |= self.contact || (executes && tool.is_blind(&self.prim));
+        let met = before.tool.is_some_and(|tool| tool.is_pressed(&self.prim))
+            || before.change.is_some_and(|change| change.is_met(&before.robot, &self.prim));
+        let blind = before.tool.is_some_and(|tool| tool.is_blind(&self.prim));
+        self.contact |= executes && met;
+        self.stops |= self.contact || (executes && blind);
         self.brakes = if self.stops && self.is_moving() { self.brakes + 1 } else { 0 };
     }
 
@@ -53,6 +59,12 @@ impl Pair {
         if matches!(before.aside, 1..=LATE) {
             return Ok(());
         }
+        let order = &self.emove_out.prim;
+        if let Some(change) = before.change.filter(|change| change.is_mated(&before.robot))
+            && order.number != before.emove_out.prim.number
+        {
+            holster::judge_order(&self.command, order, change.ring())?;
+        }
         let stands = before.stands();
         self.judge_prim(before, &stands)?;
         let status = &self.emove_out.status;
@@ -62,7 +74,7 @@ impl Pair {
         }
         match self.command.command {
             _ if before.is_moving() => Err("done, and the robot moves"),
-            _ if before.fingers_move() => Err("done, and the fingers move"),
+            _ if before.awaits_arrival() => Err("done, and the fingers move, or the ring turns"),
             EmoveVerb::Pause => Ok(()),
             EmoveVerb::MovToLoc => {
                 let goal = place(self.command.location.as_str()).frame;
@@ -74,7 +86,13 @@ impl Pair {
                     (true, true) => Ok(()),
                 }
             }
-            _ => self.judge_tool(before, &stands),
+            _ => match before.change {
+                Some(change) => {
+                    let state = (change.is_mated(&before.robot), change.ring());
+                    holster::judge_done(&self.command, &self.emove_out, &stands, state)
+                }
+                None => self.judge_tool(before, &stands),
+            },
         }
     }
 

@@ -56,6 +56,13 @@ impl Pair {
         if let Some(tool) = &it.tool {
             tool.add_to(&mut image);
             image.add(&it.emove_out.tool_grip);
+        }
+        if let Some(change) = &it.change {
+            change.add_to(&mut image);
+            image.add(&it.emove_out.grip);
+            image.add(&it.emove_out.dormant);
+        }
+        if it.is_guarded() {
             image.bytes.extend([u8::from(it.contact), u8::from(it.stops), it.unusual]);
             image.add(&it.brakes);
         }
@@ -80,7 +87,14 @@ impl Pair {
         if let Some(tool) = &mut self.tool {
             rebase(&mut emove.grippers.tool, &mut [&mut out.tool_grip.number, tool.echo()]);
         }
-        rebase(&mut emove.quick_change, &mut [&mut out.quick_change.number, &mut self.quick_change]);
+        let echo = match &mut self.change {
+            Some(change) => {
+                rebase(&mut emove.grippers.parts, &mut [&mut out.grip.number, change.grip_echo()]);
+                change.echo()
+            }
+            None => &mut self.quick_change,
+        };
+        rebase(&mut emove.quick_change, &mut [&mut out.quick_change.number, echo]);
         rebase(&mut prim.t3i, &mut [&mut below.t3i.number, &mut self.t3i.echo]);
     }
 }

@@ -3,7 +3,7 @@
 use interfaces::{Reason, grip::GripCommand, prim::PrimCommand};
 use levels::execution::Outcome;
 
-use super::{Fault, Pair, Ring, STEADY};
+use super::{Fault, Pair, STEADY};
 use crate::image::{Image, forget, rebase, rebase_echoes, renumber_poses};
 
 /// Ticks in which the ring must arrive.
@@ -45,17 +45,12 @@ impl Pair {
         image.add(&it.quick_change_out.valves);
         it.robot.add_to(&mut image);
         it.grip.add_to(&mut image);
-        let ring = match it.ring {
-            Ring::Locked => 0,
-            Ring::Unlocked => 1,
-            Ring::Between => 2,
-        };
         let fault = match it.fault {
             Fault::None => 255,
             Fault::Both => 254,
             Fault::Pins(id) => id,
         };
-        image.bytes.extend([ring, fault, u8::from(it.mated), it.left.0, it.left.1]);
+        image.bytes.extend([it.ring.code(), fault, u8::from(it.mated), it.left.0, it.left.1]);
         image.bytes
     }
 
