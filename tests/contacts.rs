@@ -149,3 +149,17 @@ fn the_nearest_miss_of_a_good_run_is_told() {
     assert!(nearest["distance_in"].as_f64().is_some_and(|inches| inches > 0.1 && inches < 2.0), "{nearest}");
     assert!(nearest["mover"].is_string() && nearest["command"]["emove"].is_string(), "{nearest}");
 }
+
+/// A sensor of the holster sees nothing. The guarded move then ends where the gripper rests on the holster, or at its
+/// seat, and presses it into nothing.
+#[test]
+fn a_gripper_is_not_pressed_into_a_holster_that_does_not_see_it() {
+    for sensor in ["large-1", "small-2"] {
+        let fault = format!("[[fault]]\nkind = \"off\"\nsensor = \"holster.right.{sensor}\"\n");
+        let name = format!("unseen-{sensor}");
+        let outcome = run("tool-change", 1, &name, |scratch| scratch.faults(&fault));
+        assert_eq!(outcome.status, Some(1), "{sensor}: {}", outcome.last_words);
+        assert!(outcome.last_words.contains("the sensor condition did not come"), "{}", outcome.last_words);
+        assert!(contacts(&outcome).is_empty(), "{sensor}: {:?}", contacts(&outcome));
+    }
+}

@@ -27,8 +27,8 @@ pub struct Runner<L> {
     /// The copy of the ladder for warm-ups; the first warm-up creates it.
     shadow: Option<Box<L>>,
     publisher: Option<Publisher>,
-    /// The data published last, for warm-ups.
-    published: Box<(ExternalInputs, Pulse)>,
+    /// The external inputs published last, for warm-ups.
+    published: Box<ExternalInputs>,
     allocations_at_start: u64,
     /// Allocations by processes that run elsewhere.
     elsewhere: u64,
@@ -56,7 +56,8 @@ impl<L> Runner<L> {
     /// it is published, and has no other effect.
     ///
     /// Allocations are counted from here to the end of the call. The controller's time includes the processes and
-    /// publishing; it excludes the digest and the watch for failures, which belong to the bookkeeping of a run.
+    /// publishing; it excludes the digest, the watch for failures and the copies for the status and for warm-ups, which
+    /// belong to the bookkeeping of a run.
     ///
     /// # Errors
     /// Errors of the levels. The tick does not count then, and common memory stays as after the previous tick.
@@ -87,11 +88,16 @@ impl<L> Runner<L> {
                 over: false,
             };
             publisher.publish(external, self.course.memory(), pulse);
-            *self.published = (*external, pulse);
         }
         self.last_ns = controller_ns + self.stage_times.mark(Stage::Buffers);
         self.times.add(self.last_ns);
         self.course.sum_up(external);
+        if let Some(publisher) = &self.publisher {
+            publisher.show(external, self.course.memory());
+            if self.shadow.is_some() {
+                *self.published = *external;
+            }
+        }
         self.stage_times.mark(Stage::Bookkeeping);
         Ok(self.course.memory())
     }
@@ -116,7 +122,7 @@ impl<L> Runner<L> {
         let _section = Section::enter();
         self.course.warm_up(shadow, external, data);
         if let Some(publisher) = &mut self.publisher {
-            publisher.publish(&self.published.0, self.course.memory(), self.published.1);
+            publisher.publish_again(&self.published, self.course.memory());
         }
     }
 

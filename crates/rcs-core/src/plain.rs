@@ -239,9 +239,11 @@ impl<'a> Writer<'a> {
     /// Append so many zeros.
     #[inline]
     pub fn zeros(&mut self, count: usize) {
-        for _ in 0..count {
-            self.put(&[0]);
-        }
+        let fitting = count.min(self.rest.len());
+        let (here, rest) = core::mem::take(&mut self.rest).split_at_mut(fitting);
+        here.fill(0);
+        self.rest = rest;
+        self.missing = self.missing.saturating_add(count - fitting);
     }
 
     /// Bytes that did not fit.
@@ -282,13 +284,12 @@ impl<'a> Reader<'a> {
     /// [`DecodeError::BadFill`] if one of them is not zero, [`DecodeError::TooShort`] if fewer are left.
     #[inline]
     pub fn zeros(&mut self, count: usize) -> Result<(), DecodeError> {
-        for _ in 0..count {
-            let [found] = self.take()?;
-            if found != 0 {
-                return Err(DecodeError::BadFill(found));
-            }
+        let (here, rest) = self.rest.split_at(count.min(self.rest.len()));
+        if let Some(found) = here.iter().find(|byte| **byte != 0) {
+            return Err(DecodeError::BadFill(*found));
         }
-        Ok(())
+        self.rest = rest;
+        if here.len() < count { Err(DecodeError::TooShort) } else { Ok(()) }
     }
 }
 
@@ -463,6 +464,8 @@ mod tests {
         assert_eq!(to_bytes::<3, _>(&Some(0x1234_u16)), [1, 0x34, 0x12]);
         assert_eq!(to_bytes::<3, _>(&None::<u16>), [0, 0, 0]);
         assert_eq!(from_bytes::<Option<u16>>(&[0, 0, 9]), Err(DecodeError::BadFill(9)));
+        assert_eq!(from_bytes::<Option<u16>>(&[0, 0]), Err(DecodeError::TooShort));
+        assert_eq!(from_bytes::<Option<u16>>(&[0, 7]), Err(DecodeError::BadFill(7)));
         assert_eq!(from_bytes::<Option<u16>>(&[2, 0, 0]), Err(DecodeError::BadFlag(2)));
         assert_eq!(Fixture::SIZE, 12);
         let image: [u8; 12] = to_bytes(&Fixture::Candle(7));

@@ -97,6 +97,16 @@ impl Publisher {
         let Some(ports) = &self.ports else { return };
         ports.writers.write(external, memory, &pulse);
         self.pulse = pulse;
+    }
+
+    /// Write the buffers of the last tick once more. Does not allocate.
+    pub fn publish_again(&mut self, external: &ExternalInputs, memory: &CommonMemory) {
+        self.publish(external, memory, self.pulse);
+    }
+
+    /// Copy what was published for the other threads of this program. Does not allocate.
+    pub fn show(&self, external: &ExternalInputs, memory: &CommonMemory) {
+        let pulse = self.pulse;
         // If the other side is reading it, the next tick comes soon.
         let _ = self.window.with(|seen| *seen = Published { external: *external, memory: *memory, pulse });
     }

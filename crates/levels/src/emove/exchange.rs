@@ -33,7 +33,7 @@ use crate::places::pose_of;
 
 /// The robot is at the seat within this, in: much less than a relative move is long.
 const AT_POINT: f64 = 0.12;
-/// It is at the low point within this, in: QCD-DOWN may go a little further until the sensors see the ears.
+/// It is at the low point within this, in: QCD-DOWN may end a little above or below it.
 const AT_LOW: f64 = 0.3;
 /// It is clear of the holster within this of the upper points, or beyond them, in.
 const CLEAR: f64 = 0.3;

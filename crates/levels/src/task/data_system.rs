@@ -177,11 +177,13 @@ impl DataSystem {
         self.tell_owed(tick, outputs);
     }
 
-    /// REPORT-ITEM: keep the update of what the robot carried and has let go, until it is taken.
-    pub fn owe_released(&mut self, placed: &PlacedObject) {
+    /// REPORT-ITEM: keep the update of what the robot carried and has let go, until it is taken. `bound_for` is the
+    /// destination of the command that did, and its sector.
+    pub fn owe_released(&mut self, placed: &PlacedObject, bound_for: Option<(Name10, Option<i32>)>) {
         if let Some(Carried { item, serial, location, sector, .. }) = self.beliefs.carried.take() {
-            let position = placed.location;
-            self.owe(item, serial, position, if position == location { sector } else { None });
+            let known = bound_for.into_iter().chain([(location, sector)]);
+            let sector = known.filter(|(name, _)| *name == placed.location).find_map(|(_, sector)| sector);
+            self.owe(item, serial, placed.location, sector);
         }
     }
 

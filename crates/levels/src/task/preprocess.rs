@@ -2,6 +2,7 @@
 
 use interfaces::{
     emove::{Holding, Standing},
+    hws::HwsCommand,
     process::Inputs,
     subtask::SubtaskVerb,
 };
@@ -104,7 +105,8 @@ impl State {
         };
         let taken = plan.verb != TaskVerb::Position && takes(ledger.as_ref(), &placed.object);
         if !taken && data_system.follows(placed.object, is_in_mbd(placed.record, inputs.data)) {
-            data_system.owe_released(&placed);
+            let bound_for = memory.task.ledger.filter(|last| last.command.object == Some(placed.object));
+            data_system.owe_released(&placed, bound_for.and_then(|last| destination(&last.command)));
         }
     }
 
@@ -140,6 +142,11 @@ impl State {
             part: if below.pedestal_part { Part::InPedestal } else { Part::Elsewhere },
         }
     }
+}
+
+/// Destination of a command as it is known below, and its sector.
+fn destination(command: &HwsCommand) -> Option<(Name10, Option<i32>)> {
+    command.destination.map(|name| (Name10::clipped(name.as_str()), command.destination_sector))
 }
 
 /// What a new command needs.

@@ -382,6 +382,21 @@ fn release_tool_tells_where_the_tool_is() {
     }
 }
 
+/// A part that an abandoned TRANSFER has put into a tray is told with its sector.
+#[test]
+fn what_was_put_into_a_tray_is_told_with_its_sector() {
+    let mut untold = 0;
+    for (mut bench, positions) in let_go_while_replaced(TO_TRAY, PAUSE) {
+        if positions.is_empty() {
+            untold += 1;
+            assert_eq!(told(&mut bench, OTHER), ["UNIT_1", "UNIT_1"]);
+            let first = bench.data_system.received[0];
+            assert_eq!((first.item.as_str(), first.sector), ("PART", Some(2)));
+        }
+    }
+    assert!(untold > 0);
+}
+
 /// V.4.1 has updates of moves from and to the MBD; a part that the data base has as the robot's is told of, too.
 #[test]
 fn a_transfer_tells_where_it_puts_what_the_robot_had() {
