@@ -119,7 +119,7 @@ fn a_condition_that_never_comes() {
             "E-move reports error-state",
             "Prim reports not-detected",
             "E-move commands Prim: GO-UNTIL HOL-R-SEAT",
-            "\"HOL-R-SEAT\" (beam 8 between the fingers) never came true in the 2.00 in that the tool went",
+            "\"HOL-R-SEAT\" (beam 8 between the fingers) never came true in the 1.50 in that the tool went",
         ],
     );
 }

@@ -182,7 +182,8 @@ impl Pair {
     fn runs(&mut self, line: Line) {
         let mut told = Some(line);
         for _ in 0..LONG {
-            let event = Event { told: told.take(), link: Link::Goes, happens: Happens::Nothing };
+            let happens = if self.awaits_arrival() { Happens::Arrive } else { Happens::Nothing };
+            let event = Event { told: told.take(), link: Link::Goes, happens };
             self.step(event).expect("nothing is wrong at the start");
             if self.rests() {
                 assert_eq!(self.emove_out.status.report, StatusReport::Done, "{line:?}");
