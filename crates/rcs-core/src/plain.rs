@@ -243,7 +243,7 @@ impl<'a> Writer<'a> {
         let (here, rest) = core::mem::take(&mut self.rest).split_at_mut(fitting);
         here.fill(0);
         self.rest = rest;
-        self.missing = self.missing.saturating_add(count - fitting);
+        self.missing = self.missing.saturating_add(count.saturating_sub(fitting));
     }
 
     /// Bytes that did not fit.
