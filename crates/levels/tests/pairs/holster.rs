@@ -1,5 +1,5 @@
-//! The right holster with the parts gripper: where the robot is in it, the commands of Subtask there, and what must hold
-//! of them.
+//! The right holster with the parts gripper: where the robot is in it, the commands of Subtask there, and what must
+//! hold of them.
 
 use geometry::frame::Frame;
 use interfaces::{

@@ -139,8 +139,8 @@ impl Pair {
         Self { commands, left: (motions, faults), unusual, ..pair }
     }
 
-    /// A pair whose bare robot stands above the parts gripper in its holster, where it has just left it. So many unusual things and faults may
-    /// come, and so many of these commands may interrupt a motion.
+    /// A pair whose bare robot stands above the parts gripper in its holster, where it has just left it. So many
+    /// unusual things and faults may come, and so many of these commands may interrupt a motion.
     pub fn at_holster(commands: &'static [Line], unusual: u8, motions: u8, faults: u8) -> Self {
         let mut pair = Self::at("SAFE", None, Some(Change::new()));
         pair.runs(PAUSE);

@@ -182,16 +182,12 @@ impl Pair {
         match does {
             EmoveDoes::Goes | EmoveDoes::Silent => {}
             EmoveDoes::Ends if self.box_on => self.emove.report = StatusReport::JoystickOn,
-            EmoveDoes::Ends => {
+            EmoveDoes::Ends | EmoveDoes::LetsGo => {
                 self.emove.report = StatusReport::Done;
                 self.effect(&order);
-                if self.own {
-                    self.reached = order.command;
+                if does == EmoveDoes::LetsGo {
+                    self.let_go();
                 }
-            }
-            EmoveDoes::LetsGo => {
-                self.emove.report = StatusReport::Done;
-                self.let_go();
                 if self.own {
                     self.reached = order.command;
                 }

@@ -1,8 +1,9 @@
 //! The quick change at the right holster: the ring as E-move sees it, the gripper on the robot or in the holster, and
 //! the sensors of the holster as Prim reads them.
 //!
-//! A gripper that the ring lets go rests on the holster, and is pushed along it by a robot whose pins reach it. One that
-//! lies together with the robot is caught when the ring locks. Its fingers stand as they are to go through the holster.
+//! A gripper that the ring lets go rests on the holster, and is pushed along it by a robot whose pins reach it. One
+//! that lies together with the robot is caught when the ring locks. Its fingers stand as they are to go through the
+//! holster.
 
 use geometry::frame::Frame;
 use interfaces::{
