@@ -267,6 +267,8 @@ pub enum Reason {
     HeldElsewhere,
     /// The fingers have not let go of an object whose release was begun: send the command that releases it again.
     ReleaseNotEnded,
+    /// The object lies too near to the edge of its tray for the open fingers.
+    AtTrayEdge,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

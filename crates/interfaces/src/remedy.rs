@@ -85,6 +85,7 @@ impl Reason {
             Self::InHolster | Self::RingNotLocked => "send the command that changes the gripper again",
             Self::InDrum => "send the interrupted tool command again",
             Self::ReleaseNotEnded => "send the command that releases the object again",
+            Self::AtTrayEdge => "put the object farther from the edge of its tray",
             Self::SentAway => "send the next command",
             Self::ForwardOnly => "send the interrupted command again",
             Self::NotDetected | Self::Detected => {

@@ -236,6 +236,21 @@ impl<'a> Writer<'a> {
         }
     }
 
+    /// The next `N` bytes, to be written; `None` if they do not fit, which counts them.
+    #[inline]
+    pub fn chunk<const N: usize>(&mut self) -> Option<&'a mut [u8; N]> {
+        match core::mem::take(&mut self.rest).split_first_chunk_mut::<N>() {
+            Some((here, rest)) => {
+                self.rest = rest;
+                Some(here)
+            }
+            None => {
+                self.missing = self.missing.saturating_add(N);
+                None
+            }
+        }
+    }
+
     /// Append so many zeros.
     #[inline]
     pub fn zeros(&mut self, count: usize) {
@@ -273,9 +288,18 @@ impl<'a> Reader<'a> {
     /// [`DecodeError::TooShort`] if fewer are left.
     #[inline]
     pub fn take<const N: usize>(&mut self) -> Result<[u8; N], DecodeError> {
+        self.chunk().copied()
+    }
+
+    /// The next `N` bytes, where they are.
+    ///
+    /// # Errors
+    /// [`DecodeError::TooShort`] if fewer are left.
+    #[inline]
+    pub fn chunk<const N: usize>(&mut self) -> Result<&'a [u8; N], DecodeError> {
         let (here, rest) = self.rest.split_first_chunk::<N>().ok_or(DecodeError::TooShort)?;
         self.rest = rest;
-        Ok(*here)
+        Ok(here)
     }
 
     /// Skip so many zeros.

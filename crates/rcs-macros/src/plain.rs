@@ -57,11 +57,15 @@ fn of_struct(name: &Ident, data: &DataStruct) -> Result<TokenStream> {
             const SCHEMA: ::rcs_core::plain::Schema = ::rcs_core::plain::Schema::Struct(Self::STRUCT);
             const ZERO: Self = Self { #( #names: <#types as ::rcs_core::Plain>::ZERO, )* };
 
+            // One check of the length for all fields: the compiler knows the place of each in the chunk.
             fn encode(&self, w: &mut ::rcs_core::plain::Writer<'_>) {
+                let Some(chunk) = w.chunk::<{ <#name as ::rcs_core::Plain>::SIZE }>() else { return };
+                let w = &mut ::rcs_core::plain::Writer::new(chunk);
                 #( ::rcs_core::Plain::encode(&self.#names, w); )*
             }
 
             fn decode(r: &mut ::rcs_core::plain::Reader<'_>) -> Result<Self, ::rcs_core::plain::DecodeError> {
+                let r = &mut ::rcs_core::plain::Reader::new(r.chunk::<{ <#name as ::rcs_core::Plain>::SIZE }>()?);
                 Ok(Self { #( #names: ::rcs_core::Plain::decode(r)?, )* })
             }
         }
@@ -202,10 +206,18 @@ fn of_union(name: &Ident, data: &DataEnum) -> Result<TokenStream> {
             ::rcs_core::plain::UnionVariant { code: #code, text: #label, payload: #schema }
         });
         encode.push(quote! {
-            #pattern => { w.put(&[#code]); #written w.zeros(Self::UNION.payload_size().saturating_sub(#size)); }
+            #pattern => {
+                w.put(&[#code]);
+                #written
+                w.zeros(const { Self::UNION.payload_size().saturating_sub(#size) });
+            }
         });
         decode.push(quote! {
-            #code => { let value = #read; r.zeros(Self::UNION.payload_size().saturating_sub(#size))?; Ok(value) }
+            #code => {
+                let value = #read;
+                r.zeros(const { Self::UNION.payload_size().saturating_sub(#size) })?;
+                Ok(value)
+            }
         });
     }
     Ok(quote! {

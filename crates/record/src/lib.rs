@@ -25,6 +25,7 @@
 )]
 
 pub mod channels;
+mod comparison;
 pub mod contacts;
 pub mod delta;
 mod described;

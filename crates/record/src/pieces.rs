@@ -3,8 +3,11 @@
 //! Every length in the file is checked against the size of the file before it is used. An unreadable piece ends at the
 //! next readable record: a chunk or an attachment with the right checksum, or metadata of this program. The total of
 //! decompressed bytes is limited in proportion to the size of the file, and with it memory and time of reading.
+//!
+//! Most of the time of reading is decompression. All processors decompress the first chunks ahead, as many as are kept
+//! in memory, so that nothing decompresses them again.
 
-use std::ops::Range;
+use std::{collections::BTreeMap, ops::Range, thread};
 
 use mcap::{
     MAGIC, McapError, McapResult, parse_record,
@@ -22,15 +25,25 @@ const CHUNK: u64 = 16 << 20;
 const EXPANSION: u64 = 64;
 /// Limit of decompressed bytes for small files.
 const LEAST: u64 = 64 << 20;
+/// Limit of decompressed bytes that are kept, so that nothing decompresses them again: of about half an hour.
+const KEPT: u64 = 64 << 20;
 
 /// A piece of the file.
 pub enum Piece<'a> {
     /// A record outside the chunks.
     Record(Record<'a>),
-    /// A readable chunk, including its record header, and the channels and schemas in it.
-    Chunk(Range<usize>, Vec<Record<'static>>),
+    /// A readable chunk, including its record header, and what is in it.
+    Chunk(Range<usize>, Chunk),
     /// Unreadable bytes.
     Damaged(Range<usize>),
+}
+
+/// What is in a chunk.
+pub struct Chunk {
+    /// The channels and schemas.
+    pub described: Vec<Record<'static>>,
+    /// All records, decompressed; `None` if so many are kept already.
+    pub records: Option<Vec<u8>>,
 }
 
 /// The pieces of a file, in order.
@@ -40,6 +53,8 @@ pub struct Pieces<'a> {
     /// Number of bytes that may still be decompressed or checksummed.
     left: u64,
     decoder: Decoder,
+    /// Chunks that were decompressed ahead, by their positions; `None` for an unreadable one.
+    ahead: BTreeMap<usize, Option<Chunk>>,
 }
 
 impl<'a> Pieces<'a> {
@@ -53,7 +68,7 @@ impl<'a> Pieces<'a> {
         }
         let size = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
         let left = size.saturating_mul(EXPANSION).saturating_add(LEAST);
-        Ok(Self { bytes, at: MAGIC.len(), left, decoder: Decoder::default() })
+        Ok(Self { bytes, at: MAGIC.len(), left, decoder: Decoder::default(), ahead: ahead(bytes) })
     }
 
     /// The record that begins at a position, and its end; `None` if it is unreadable.
@@ -62,15 +77,15 @@ impl<'a> Pieces<'a> {
         let body = self.bytes.get(at.checked_add(HEAD)?..end)?;
         let piece = match opcode {
             op::CHUNK => {
-                let size = body.get(16..24)?.try_into().map(u64::from_le_bytes).ok()?;
-                self.spend(size)?;
-                let mut described = Vec::new();
-                self.decoder.decode(self.bytes.get(at..end)?, |record| {
-                    if !matches!(record, Record::Message { .. }) {
-                        described.push(record.into_owned());
+                self.spend(chunk_size(self.bytes.get(at..end)?)?)?;
+                let chunk = match self.ahead.remove(&at) {
+                    Some(chunk) => chunk?,
+                    None => {
+                        let described = described(self.decoder.unpack(self.bytes.get(at..end)?)?)?;
+                        Chunk { described, records: None }
                     }
-                })?;
-                Piece::Chunk(at..end, described)
+                };
+                Piece::Chunk(at..end, chunk)
             }
             op::ATTACHMENT => {
                 self.spend(u64::try_from(body.len()).ok()?)?;
@@ -125,6 +140,52 @@ impl<'a> Iterator for Pieces<'a> {
     }
 }
 
+/// The chunks of a sound file up to the limit of what is kept, decompressed by all processors.
+fn ahead(bytes: &[u8]) -> BTreeMap<usize, Option<Chunk>> {
+    let (mut at, mut left, mut chunks) = (MAGIC.len(), KEPT, Vec::new());
+    while let Some((opcode, end)) = frame(bytes, at) {
+        let chunk = bytes.get(at..end).filter(|_| opcode == op::CHUNK);
+        if let Some(chunk) = chunk {
+            let Some(rest) = chunk_size(chunk).and_then(|size| left.checked_sub(size)) else { break };
+            left = rest;
+            chunks.push((at, chunk));
+        }
+        at = end;
+    }
+    let unpack_some = |first: usize, step: usize| {
+        let mut decoder = Decoder::default();
+        let mut unpack = |chunk: &[u8]| {
+            let records = decoder.unpack(chunk)?.to_vec();
+            Some(Chunk { described: described(&records)?, records: Some(records) })
+        };
+        chunks.iter().skip(first).step_by(step).map(|(at, chunk)| (*at, unpack(chunk))).collect::<Vec<_>>()
+    };
+    let threads = thread::available_parallelism().map_or(1, usize::from).min(chunks.len().max(1));
+    thread::scope(|scope| {
+        let others: Vec<_> =
+            (1..threads).map(|first| scope.spawn(move || unpack_some(first, threads))).collect();
+        let own = unpack_some(0, threads);
+        // A thread that has panicked leaves its chunks to the reader.
+        own.into_iter().chain(others.into_iter().flat_map(|other| other.join().unwrap_or_default())).collect()
+    })
+}
+
+/// Decompressed size of a chunk, given with its record header, as it says.
+fn chunk_size(chunk: &[u8]) -> Option<u64> {
+    chunk.get(HEAD..)?.get(16..24)?.try_into().map(u64::from_le_bytes).ok()
+}
+
+/// The channels and schemas among the records of a chunk; `None` if one of them is unreadable.
+fn described(records: &[u8]) -> Option<Vec<Record<'static>>> {
+    let mut described = Vec::new();
+    for_each(records, |record| {
+        if !matches!(record, Record::Message { .. }) {
+            described.push(record.into_owned());
+        }
+    })?;
+    Some(described)
+}
+
 /// Operation code and end of a record that would begin at a position; `None` if it would be longer than the file.
 fn frame(bytes: &[u8], at: usize) -> Option<(u8, usize)> {
     let head = bytes.get(at..at.checked_add(HEAD)?)?;
@@ -176,13 +237,13 @@ pub struct Decoder {
 }
 
 impl Decoder {
-    /// Pass each channel and message of a chunk, given with its record header, to `each`.
+    /// The records of a chunk, which is given with its record header.
     ///
-    /// `None` if the chunk is too large, has no checksum or a wrong one, or contains an unreadable record.
-    pub fn decode(&mut self, chunk: &[u8], mut each: impl FnMut(Record<'_>)) -> Option<()> {
+    /// `None` if the chunk is too large, or has no checksum or a wrong one.
+    pub fn unpack<'a>(&'a mut self, chunk: &'a [u8]) -> Option<&'a [u8]> {
         // Two times, size, checksum, compression, length of the records, records.
         let body = chunk.get(HEAD..)?;
-        let size = body.get(16..24)?.try_into().map(u64::from_le_bytes).ok()?;
+        let size = chunk_size(chunk)?;
         let checksum = body.get(24..28)?.try_into().map(u32::from_le_bytes).ok()?;
         let name = text(body, 28)?;
         let (length, packed) = body.get(name..)?.split_first_chunk()?;
@@ -198,15 +259,17 @@ impl Decoder {
             }
             _ => return None,
         };
-        if records.len() != size || crc32fast::hash(records) != checksum {
-            return None;
-        }
-        let mut at = 0;
-        while at < size {
-            let (opcode, end) = frame(records, at)?;
-            each(parse(opcode, records.get(at.checked_add(HEAD)?..end)?)?);
-            at = end;
-        }
-        Some(())
+        (records.len() == size && crc32fast::hash(records) == checksum).then_some(records)
     }
+}
+
+/// Pass each of the records of a chunk to `each`; `None` if one is unreadable.
+pub fn for_each<'a>(records: &'a [u8], mut each: impl FnMut(Record<'a>)) -> Option<()> {
+    let mut at = 0;
+    while at < records.len() {
+        let (opcode, end) = frame(records, at)?;
+        each(parse(opcode, records.get(at.checked_add(HEAD)?..end)?)?);
+        at = end;
+    }
+    Some(())
 }

@@ -23,7 +23,7 @@ use crate::{
     input::{Attachment, Link},
     layout,
     operator::{OPERATOR, OperatorLine},
-    pieces::{Decoder, Piece, Pieces},
+    pieces::{self, Decoder, Piece, Pieces},
     proto::{
         foxglove::{self, Level, Transform},
         wire::{Fields, Value},
@@ -57,7 +57,8 @@ pub struct Log {
 
 /// A part of the file with messages.
 enum Segment {
-    Chunk(Range<usize>),
+    /// With its records, if they are kept.
+    Chunk(Range<usize>, Option<Vec<u8>>),
     Damaged(Range<usize>),
 }
 
@@ -132,9 +133,9 @@ impl Log {
         let pieces = Pieces::new(&bytes).map_err(|source| log.not_mcap(source))?;
         for piece in pieces {
             match piece {
-                Piece::Chunk(range, described) => {
-                    described.iter().for_each(|record| log.note(record));
-                    log.segments.push(Segment::Chunk(range));
+                Piece::Chunk(range, chunk) => {
+                    chunk.described.iter().for_each(|record| log.note(record));
+                    log.segments.push(Segment::Chunk(range, chunk.records));
                 }
                 Piece::Damaged(range) => log.segments.push(Segment::Damaged(range)),
                 Piece::Record(Record::Metadata(metadata)) if metadata.name == RUN => {
@@ -185,7 +186,7 @@ impl Log {
     pub fn damage(&self) -> Option<String> {
         let damaged = |segment: &Segment| match segment {
             Segment::Damaged(range) => Some(format!("{} bytes from byte {} on", range.len(), range.start)),
-            Segment::Chunk(_) => None,
+            Segment::Chunk(..) => None,
         };
         let places: Vec<String> = self.segments.iter().filter_map(damaged).collect();
         let (first, more) = (places.first()?, places.len().saturating_sub(1));
@@ -299,13 +300,11 @@ impl Log {
     }
 
     /// Pass all messages to a tap, in the order of the file. `before` gets the time of each message before it is
-    /// passed, nanoseconds since 1970, and may wait. Only one chunk is decompressed at a time.
+    /// passed, nanoseconds since 1970, and may wait.
     pub fn play(&self, tap: &mut dyn Tap, mut before: impl FnMut(u64)) {
         let mut decoder = Decoder::default();
         for segment in &self.segments {
-            let Segment::Chunk(range) = segment else { continue };
-            // `from_bytes` has decoded it without an error.
-            let _ = decoder.decode(self.bytes.get(range.clone()).unwrap_or_default(), |record| {
+            self.for_each_record(segment, &mut decoder, |record| {
                 if let Record::Message { header, data } = record {
                     before(header.log_time);
                     tap.message(header.channel_id, header.log_time, &data);
@@ -324,18 +323,31 @@ impl Log {
         let id = self.channels.get(topic).copied();
         let mut decoder = Decoder::default();
         self.segments.iter().flat_map(move |segment| {
-            let Segment::Chunk(range) = segment else { return vec![None] };
+            if matches!(segment, Segment::Damaged(_)) {
+                return vec![None];
+            }
             let mut found = Vec::new();
-            // `from_bytes` has decoded it without an error.
-            let _ =
-                decoder.decode(self.bytes.get(range.clone()).unwrap_or_default(), |record| match record {
-                    Record::Message { header, data } if Some(header.channel_id) == id => {
-                        found.push(Some((Tick(u64::from(header.sequence)), data.into_owned())));
-                    }
-                    _ => {}
-                });
+            self.for_each_record(segment, &mut decoder, |record| match record {
+                Record::Message { header, data } if Some(header.channel_id) == id => {
+                    found.push(Some((Tick(u64::from(header.sequence)), data.into_owned())));
+                }
+                _ => {}
+            });
             found
         })
+    }
+
+    /// Pass the records of a chunk to `each`; a damaged part has none.
+    fn for_each_record(&self, segment: &Segment, decoder: &mut Decoder, each: impl FnMut(Record<'_>)) {
+        let records = match segment {
+            Segment::Chunk(_, Some(records)) => records,
+            Segment::Chunk(range, None) => {
+                decoder.unpack(self.bytes.get(range.clone()).unwrap_or_default()).unwrap_or_default()
+            }
+            Segment::Damaged(_) => return,
+        };
+        // `from_bytes` has read them without an error.
+        let _ = pieces::for_each(records, each);
     }
 }
 

@@ -10,8 +10,10 @@
 
 use std::{
     collections::BTreeMap,
+    mem,
+    panic::resume_unwind,
     path::Path,
-    sync::mpsc::sync_channel,
+    sync::mpsc::{SyncSender, sync_channel},
     thread,
     time::{Duration, Instant},
 };
@@ -27,41 +29,17 @@ use rcs_core::{
 use taskdata::load::{Source, Store};
 
 use crate::{
-    channels::{HeaderPlace, headers},
+    comparison::Comparison,
     error::{ReadError, ReplayError},
     input::Attachment,
-    layout::{self, Leaf},
     reader::{Log, LoggedTick},
-    remarks::row_text,
 };
 
-/// Ticks that are handed over at once, and how many times as many are read ahead.
-const AT_ONCE: usize = 64;
-const AHEAD: usize = 4;
+pub use crate::comparison::Difference;
 
-/// The first difference of a replay from the run.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Difference {
-    /// The tick.
-    pub tick: Tick,
-    /// The process and the buffer: `prim.status`; `state.prim` for the state of a process.
-    pub buffer: String,
-    /// The field of the buffer.
-    pub field: String,
-    /// The recorded value.
-    pub was: String,
-    /// The computed value.
-    pub is: String,
-    /// The row by which the process decided in the replay.
-    pub row: String,
-}
-
-impl std::fmt::Display for Difference {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { tick, buffer, field, was, is, row } = self;
-        write!(f, "tick {tick}, buffer {buffer}, field {field}: was {was}, is {is}; {row}")
-    }
-}
+/// Ticks that one thread hands to the next at once, and how many times as many may wait there.
+const AT_ONCE: usize = 32;
+const WAITING: usize = 4;
 
 /// The part of a log to replay, and the task data.
 #[derive(Clone, Debug, Default)]
@@ -139,17 +117,16 @@ pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, Repla
         Some(data) => grown(data.clone(), &log.attachments)?,
         None => generations(&log)?,
     };
-    let mut replayer = Replayer::new(options.data.is_some());
-    let first_difference = replayer.run(&log, options, &generations)?;
-    if replayer.ticks == 0 {
+    let comparison = compute_and_compare(&log, options, &generations)?;
+    if comparison.ticks == 0 {
         return Err(ReplayError::Empty);
     }
     let digest = log.end.as_ref().filter(|_| options.has_digest()).and_then(|end| end.get("digest"));
     Ok(ReplayReport {
-        ticks: replayer.ticks,
-        skipped: replayer.skipped,
-        first_difference,
-        digest: replayer.digest,
+        ticks: comparison.ticks,
+        skipped: comparison.skipped,
+        first_difference: comparison.first_difference,
+        digest: comparison.digest,
         recorded_digest: digest.and_then(|digest| u64::from_str_radix(digest, 16).ok()),
         complete: log.complete,
         damage: log.damage(),
@@ -209,73 +186,109 @@ pub(crate) fn grown(first: Store, attachments: &[Attachment]) -> Result<Vec<Stor
     Ok(generations)
 }
 
+/// Compute the ticks of a log, and compare them up to the first difference. One thread reads the ticks, one computes
+/// them, and this one compares.
+fn compute_and_compare(
+    log: &Log,
+    options: &Options,
+    generations: &[Store],
+) -> Result<Comparison, ReplayError> {
+    thread::scope(|scope| {
+        let (to_compute, logged) = sync_channel(WAITING);
+        let (to_compare, computed) = sync_channel(WAITING);
+        scope.spawn(move || {
+            let mut to_compute = HandOver::new(to_compute);
+            log.ticks().all(|tick| to_compute.give(tick))
+        });
+        let computing = scope.spawn(move || {
+            let mut to_compare = HandOver::new(to_compare);
+            let give = |computed| to_compare.give(computed);
+            Replayer::default().compute(logged.into_iter().flatten(), options, generations, give)
+        });
+        let mut comparison = Comparison::new(options.data.is_some());
+        // After the first difference the other threads find the channel closed, and end.
+        let differs = computed.into_iter().flatten().any(|computed| comparison.differs(&computed));
+        match computing.join() {
+            // A failure behind the first difference does not count.
+            Ok(ended) => ended.or_else(|failure| if differs { Ok(()) } else { Err(failure) })?,
+            Err(panic) => resume_unwind(panic),
+        }
+        Ok(comparison)
+    })
+}
+
+/// Hands items to another thread, some at a time; the last ones when it is dropped.
+struct HandOver<T> {
+    to: SyncSender<Vec<T>>,
+    some: Vec<T>,
+}
+
+impl<T> HandOver<T> {
+    const fn new(to: SyncSender<Vec<T>>) -> Self {
+        Self { to, some: Vec::new() }
+    }
+
+    /// Give an item; false if the other thread takes no more.
+    fn give(&mut self, item: T) -> bool {
+        self.some.push(item);
+        self.some.len() < AT_ONCE || self.to.send(mem::take(&mut self.some)).is_ok()
+    }
+}
+
+impl<T> Drop for HandOver<T> {
+    fn drop(&mut self) {
+        // A thread that takes no more does not need them.
+        let _ = self.to.send(mem::take(&mut self.some));
+    }
+}
+
+/// A recorded tick, and what became of it in the replay.
+pub struct Computed {
+    /// The recorded tick.
+    pub logged: LoggedTick,
+    /// Byte image of common memory after the tick, and of the states of the processes if the log has them; `None` if
+    /// the recorded ones were taken over.
+    pub result: Option<(Vec<u8>, Option<Vec<u8>>)>,
+    /// Ticks that were computed, up to this one.
+    pub ticks: u64,
+    /// Ticks that could not be computed, up to this one.
+    pub skipped: u64,
+}
+
+/// Computes recorded ticks again.
 struct Replayer {
     ladder: Ladder,
-    /// Common memory after the tick before; `None` if the replay needs recorded states to continue.
-    before: Option<CommonMemory>,
+    /// Common memory after the tick before, and of the one before that, which the next tick overwrites.
+    halves: [CommonMemory; 2],
+    /// False if the replay needs recorded states to continue.
+    has_states: bool,
     last: Tick,
-    image: Vec<u8>,
-    state: Vec<u8>,
-    memory_leaves: Vec<Leaf>,
-    state_leaves: Vec<Leaf>,
-    headers: Vec<HeaderPlace>,
-    digest: Digest,
     ticks: u64,
     skipped: u64,
 }
 
-impl Replayer {
-    /// `by_name`: compare records by name instead of number, for other task data than those of the log.
-    fn new(by_name: bool) -> Self {
-        let leaves = |record| {
-            let mut leaves = layout::leaves(record);
-            leaves.retain(|leaf| !by_name || !leaf.is_record_number());
-            leaves
-        };
+impl Default for Replayer {
+    fn default() -> Self {
         Self {
             ladder: Ladder::default(),
-            before: Some(CommonMemory::default()),
+            halves: [CommonMemory::ZERO; 2],
+            has_states: true,
             last: Tick::BEFORE_START,
-            image: vec![0; CommonMemory::SIZE],
-            state: vec![0; LadderState::SIZE],
-            memory_leaves: leaves(CommonMemory::STRUCT),
-            state_leaves: leaves(LadderState::STRUCT),
-            headers: headers(),
-            digest: Digest::new(),
             ticks: 0,
             skipped: 0,
         }
     }
+}
 
-    /// Compute the ticks of a log up to the first difference. Another thread reads ahead.
-    fn run(
-        &mut self,
-        log: &Log,
-        options: &Options,
-        generations: &[Store],
-    ) -> Result<Option<Difference>, ReplayError> {
-        thread::scope(|scope| {
-            let (sender, receiver) = sync_channel(AHEAD);
-            scope.spawn(move || {
-                let mut ticks = log.ticks();
-                loop {
-                    let some: Vec<_> = ticks.by_ref().take(AT_ONCE).collect();
-                    // The replay may have ended before the log.
-                    if some.is_empty() || sender.send(some).is_err() {
-                        break;
-                    }
-                }
-            });
-            self.compute(receiver.into_iter().flatten(), options, generations)
-        })
-    }
-
+impl Replayer {
+    /// Compute ticks, and give each result to the comparison until it takes no more.
     fn compute(
-        &mut self,
+        mut self,
         ticks: impl Iterator<Item = Result<LoggedTick, ReadError>>,
         options: &Options,
         generations: &[Store],
-    ) -> Result<Option<Difference>, ReplayError> {
+        mut give: impl FnMut(Computed) -> bool,
+    ) -> Result<(), ReplayError> {
         // Ticks from the last recorded states to the beginning of the replay.
         let mut run_up: Vec<LoggedTick> = Vec::new();
         for logged in ticks {
@@ -283,108 +296,69 @@ impl Replayer {
             if options.until.is_some_and(|until| logged.tick > until) {
                 break;
             }
-            if options.from.is_some_and(|from| logged.tick < from) {
-                if logged.state.is_some() {
-                    run_up.clear();
-                }
-                run_up.push(logged);
+            let is_early = options.from.is_some_and(|from| logged.tick < from);
+            if is_early && logged.state.is_some() {
+                run_up.clear();
+            }
+            run_up.push(logged);
+            if is_early {
                 continue;
             }
-            for earlier in run_up.drain(..) {
-                if self.ticks == 0 && self.before.is_some() && earlier.state.is_some() {
-                    self.take_over(&earlier)?;
-                    self.last = earlier.tick;
-                } else if let Some(difference) = self.tick(&earlier, generations)? {
-                    return Ok(Some(difference));
+            for logged in run_up.drain(..) {
+                let is_first = self.ticks == 0 && self.has_states;
+                if is_first && options.from.is_some_and(|from| logged.tick < from) && logged.state.is_some() {
+                    self.take_over(&logged)?;
+                    self.last = logged.tick;
+                } else if !give(self.tick(logged, generations)?) {
+                    return Ok(());
                 }
             }
-            if let Some(difference) = self.tick(&logged, generations)? {
-                return Ok(Some(difference));
-            }
         }
-        Ok(None)
+        Ok(())
     }
 
     /// Compute a tick again, or take the recorded values after a gap.
-    fn tick(
-        &mut self,
-        logged: &LoggedTick,
-        generations: &[Store],
-    ) -> Result<Option<Difference>, ReplayError> {
+    fn tick(&mut self, logged: LoggedTick, generations: &[Store]) -> Result<Computed, ReplayError> {
         let tick = logged.tick;
-        let before = self.before.filter(|_| tick == self.last.next());
+        let follows = self.has_states && tick == self.last.next();
         self.skipped += tick.since(self.last.next());
         self.last = tick;
-        let Some(before) = before else {
+        let result = if follows {
+            let bad = |source| ReplayError::Inputs { tick: tick.0, source };
+            let external: ExternalInputs = from_bytes(&logged.external).map_err(bad)?;
+            let missing = ReplayError::Generation { tick: tick.0, generation: external.generation };
+            let store = usize::try_from(external.generation).ok().and_then(|at| generations.get(at));
+            let data = store.ok_or(missing)?.view();
+            let [before, after] = &mut self.halves;
+            self.ladder.step(tick, before, &external, &data, after);
+            self.ticks += 1;
+            self.halves.swap(0, 1);
+            let [after, _] = &self.halves;
+            Some((image(after), logged.state.is_some().then(|| image(&self.ladder.state()))))
+        } else {
             self.skipped += 1;
-            self.take_over(logged)?;
-            return Ok(None);
+            self.take_over(&logged)?;
+            None
         };
-        let bad = |source| ReplayError::Inputs { tick: tick.0, source };
-        let external: ExternalInputs = from_bytes(&logged.external).map_err(bad)?;
-        let missing = ReplayError::Generation { tick: tick.0, generation: external.generation };
-        let store = usize::try_from(external.generation).ok().and_then(|at| generations.get(at));
-        let data = store.ok_or(missing)?.view();
-        let mut after = before;
-        self.ladder.step(tick, &before, &external, &data, &mut after);
-        self.ticks += 1;
-        after.encode(&mut Writer::new(&mut self.image));
-        self.digest.add(&self.image);
-        self.before = Some(after);
-        Ok(self.compare(logged))
+        Ok(Computed { logged, result, ticks: self.ticks, skipped: self.skipped })
     }
 
     /// Continue from the recorded values; without states the replay waits for the next tick that has them.
     fn take_over(&mut self, logged: &LoggedTick) -> Result<(), ReplayError> {
         let bad = |source| ReplayError::Inputs { tick: logged.tick.0, source };
-        self.before = None;
+        self.has_states = logged.state.is_some();
         if let Some(image) = &logged.state {
             let state: LadderState = from_bytes(image).map_err(bad)?;
             self.ladder.restore(&state);
-            self.before = Some(from_bytes(&logged.memory).map_err(bad)?);
+            self.halves = [from_bytes(&logged.memory).map_err(bad)?, CommonMemory::ZERO];
         }
         Ok(())
     }
-
-    fn compare(&mut self, logged: &LoggedTick) -> Option<Difference> {
-        let tick = logged.tick;
-        if let Some(leaf) = layout::first_difference(&self.memory_leaves, &logged.memory, &self.image) {
-            let (buffer, field) = split(&leaf.path);
-            return Some(self.difference(tick, leaf, buffer, field, &logged.memory, &self.image));
-        }
-        let recorded = logged.state.as_ref()?;
-        self.ladder.state().encode(&mut Writer::new(&mut self.state));
-        let leaf = layout::first_difference(&self.state_leaves, recorded, &self.state)?;
-        let (process, field) = leaf.path.split_once('.').unwrap_or((&leaf.path, ""));
-        Some(self.difference(tick, leaf, format!("state.{process}"), field.to_owned(), recorded, &self.state))
-    }
-
-    fn difference(
-        &self,
-        tick: Tick,
-        leaf: &Leaf,
-        buffer: String,
-        field: String,
-        was: &[u8],
-        is: &[u8],
-    ) -> Difference {
-        let process = leaf.path.split('.').next().unwrap_or_default();
-        let row =
-            self.headers.iter().find(|place| place.field == process).map_or_else(String::new, |place| {
-                match place.row(&place.read(&self.image)) {
-                    Some((table, row)) => {
-                        format!("{} decided by {}", place.process.name, row_text(table, row))
-                    }
-                    None => format!("{} decided by no row", place.process.name),
-                }
-            });
-        Difference { tick, buffer, field, was: leaf.text(was), is: leaf.text(is), row }
-    }
 }
 
-/// The first two names of a path, and the rest: `prim.status`, `distance`.
-fn split(path: &str) -> (String, String) {
-    let mut parts = path.splitn(3, '.');
-    let buffer: Vec<&str> = parts.by_ref().take(2).collect();
-    (buffer.join("."), parts.next().unwrap_or_default().to_owned())
+/// The byte image of a record.
+fn image<T: Plain>(record: &T) -> Vec<u8> {
+    let mut image = vec![0; T::SIZE];
+    record.encode(&mut Writer::new(&mut image));
+    image
 }

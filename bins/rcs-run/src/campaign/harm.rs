@@ -59,9 +59,10 @@ impl World {
         Self { parts: parts.collect(), gripper: cell.gripper(), hand: cell.tool().position.into(), items }
     }
 
-    /// The first difference from the undisturbed run, as text; `None` if there is none.
+    /// The first difference from the undisturbed run, as text; `None` if there is none. Where the hand is counts only if
+    /// the command `moves` the robot: STARTUP and SHUTDOWN leave it where the command before has brought it.
     #[must_use]
-    pub fn unlike(&self, undisturbed: &Self) -> Option<String> {
+    pub fn unlike(&self, undisturbed: &Self, moves: bool) -> Option<String> {
         if self.gripper != undisturbed.gripper {
             let worn = |gripper: Option<u8>| gripper.map_or("none".to_owned(), |id| id.to_string());
             let (is, was) = (worn(self.gripper), worn(undisturbed.gripper));
@@ -74,7 +75,8 @@ impl World {
         let part = parts.filter_map(|(one, other)| one.unlike(other)).next();
         let away = distance(&self.hand, &undisturbed.hand);
         let moved = part.or_else(|| {
-            (away > HAND).then(|| format!("the hand is {away:.2} in from where the command leaves it"))
+            (moves && away > HAND)
+                .then(|| format!("the hand is {away:.2} in from where the command leaves it"))
         });
         moved.or_else(|| {
             (self.items != undisturbed.items).then(|| {

@@ -151,6 +151,19 @@ fn a_command_that_finishes_while_it_is_replaced_or_the_box_is_on_is_not_sent_aga
     }
 }
 
+/// SHUTDOWN moves nothing: after a MOVE elsewhere the hand stays there.
+#[test]
+fn a_shutdown_that_is_replaced_by_a_move_is_done() {
+    let facility = with_job("== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n== SHUTDOWN -- +0 -- 0 +0 -- 0 -- 0\n");
+    let parent = Parent::run(&facility).expect("the job finishes");
+    let at = parent.ticks - 3;
+    assert_eq!(parent.line_at(Tick(at)).0, 2, "SHUTDOWN is under way");
+    let fork = pool::fork_at(&facility, at).expect("the run can be forked");
+    let result = judged(&facility, &parent, &fork, "replaced");
+    assert_eq!((result.verdict, result.detail.as_str()), (Verdict::Done, ""));
+    assert!(result.ended.iter().any(|ended| ended.contains("MOVE")), "{result:?}");
+}
+
 /// A part in the path of the hand: the report names the contact, the tick and the command.
 #[test]
 fn the_monitor_finds_a_contact_that_was_planted() {

@@ -411,11 +411,12 @@ impl Trial<'_, '_> {
         if self.monitor.worst().is_some() || !is_commanded(&self.branch) {
             return;
         }
-        if let Some(unlike) = World::of(&mut self.branch).unlike(world) {
+        let verb = command.split_whitespace().next().unwrap_or_default();
+        let moves = !matches!(verb, "STARTUP" | "SHUTDOWN");
+        if let Some(unlike) = World::of(&mut self.branch).unlike(world, moves) {
             if self.monitor.attribute_to_slide(&unlike) {
                 return;
             }
-            let verb = command.split_whitespace().next().unwrap_or_default();
             self.mismatch = Some((
                 format!("{verb} is finished, but {}", general(&unlike)),
                 format!("tick {}: {command} is finished, but {unlike}", self.branch.at().0),

@@ -1,21 +1,22 @@
 //! LOCATE-OBJ's outputs (V.2.1): pictures and the moves of the camera between them.
 
-use geometry::{frame::Frame, pose::Pose};
+use geometry::{frame::Frame, pose::Pose, units::inches};
 use interfaces::{
     CommonMemory, EmoveOutputs,
     device::Picture,
-    emove::{EmoveCommand, Located},
+    emove::{EmoveCommand, EmoveVerb, Located},
     prim::{PrimReport, PrimVerb},
     process::Inputs,
 };
 use taskdata::files::{MovtabId, TaskData, TrajParaId};
 
 use super::{
-    locate::{centred, looked_at, part_frame, request, view_of},
+    locate::{centred, looked_at, part_frame, request, stays_in_array, view_of},
     postprocess::Slot,
     robot_place::{gone_to, place_named, present_frame, robot_at},
+    route::Goal,
     state::State,
-    tables::Action,
+    tables::{Action, Reach},
 };
 
 /// From where the camera is moved next, and how.
@@ -37,8 +38,11 @@ impl State {
         }
     }
 
-    /// From where the camera is moved next, and how; `None` if the resolvers or the task data do not say.
+    /// From where LOCATE-OBJ moves the camera next, and how; `None` if the resolvers or the task data do not say.
     pub(super) fn aim(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Aim> {
+        if command.command != EmoveVerb::LocateObj {
+            return None;
+        }
         let data = inputs.data;
         let approach = data.view_approach(&command.object?, command.grip, &place_named(command))?;
         Some(Aim {
@@ -46,6 +50,26 @@ impl State {
             view: view_of(command, data)?.movetable,
             parameters: data.path(approach).last()?.para,
         })
+    }
+
+    /// Would the open fingers at the object that the second picture shows stay within its array? A place that is in none
+    /// has no edge, and what the task data lack is named by the motion to the object.
+    pub(super) fn reach(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Reach {
+        let data = inputs.data;
+        let inside = || {
+            let Aim { tool, view, .. } = self.aim(command, inputs)?;
+            let place = place_named(command);
+            let array = data.array(place.array)?;
+            let corner = data.locpt(place.locpt).map(|corner| corner.frame);
+            let base = corner.or_else(|| Some(data.pose(array.pose)?.frame))?;
+            let sector = self.base_frame(command, inputs).ok()?;
+            let out = data.steps_out(array, &base, &sector);
+            let part = part_frame(&looked_at(&tool, view, data), &inputs.external.devices.vision);
+            let command = EmoveCommand { command: EmoveVerb::MovToObj, ..*command };
+            let goal = Goal::new(&command, &part, data).ok()?;
+            Some(stays_in_array(&sector, &goal.frame, inches(goal.opening?), &out))
+        };
+        if inside() == Some(false) { Reach::Outside } else { Reach::Inside }
     }
 
     /// Ask vision for a picture.

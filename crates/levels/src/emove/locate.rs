@@ -55,6 +55,25 @@ pub fn is_plausible(request: &VisionRequest, answer: &VisionResponse) -> bool {
     inside(answer.y) && inside(answer.z) && answer.angle.unsigned_abs() <= QUARTER_TURN
 }
 
+/// A finger of any gripper: 0.50 in thick along the tool's Y (ASSUMED), and 1.50 in wide along its Z (VIII.9.5).
+const FINGER: [f64; 2] = [0.50, 1.50];
+
+/// True if the fingers, open by `opening` in at the tool frame `grip`, stay within the array of their `sector`: half a
+/// step from the middle of its outer sectors stands the wall of the tray (VIII.6). `out` are the steps out of the
+/// array, in, in the axes of the sector.
+#[must_use]
+pub fn stays_in_array(sector: &Frame, grip: &Frame, opening: f64, out: &[Option<Vector>]) -> bool {
+    let axes = sector.rotation.inverse();
+    let aside = axes * (grip.position - sector.position);
+    let [across, along] = [axes * grip.y(), axes * grip.z()];
+    let [thick, wide] = FINGER;
+    let [reach, half_wide] = [opening / 2.0 + thick, wide / 2.0];
+    out.iter().flatten().all(|step| {
+        let farthest = aside.dot(step) + reach * across.dot(step).abs() + half_wide * along.dot(step).abs();
+        farthest <= step.dot(step) / 2.0
+    })
+}
+
 /// True if vision has recognised another object than the requested one (V.2.1: recognition is part of the second
 /// picture).
 #[must_use]

@@ -126,7 +126,7 @@ impl State {
     }
 
     /// The pose of a command, or where vision has found the object.
-    fn base_frame(
+    pub(super) fn base_frame(
         &self,
         command: &EmoveCommand,
         inputs: &Inputs<'_, TaskData<'_>>,

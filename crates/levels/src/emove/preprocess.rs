@@ -272,6 +272,7 @@ impl State {
             drum: self.at_drum(command, inputs),
             sight: sight(self.beliefs.place.as_ref(), inputs),
             aim: known(self.aim(command, inputs).is_some()),
+            reach: self.reach(command, inputs),
             tries: if self.tries.saturating_add(1) < MAX_TRIES { Tries::Left } else { Tries::Spent },
             link: if memory.prim.status.link_running { Link::Up } else { Link::Down },
             prim,

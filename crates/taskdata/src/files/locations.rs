@@ -7,7 +7,7 @@
 
 use core::fmt;
 
-use geometry::frame::Frame;
+use geometry::frame::{Frame, Vector};
 use interfaces::subtask::LocationKind;
 use rcs_core::{
     Plain,
@@ -287,6 +287,25 @@ impl<'a> TaskData<'a> {
             |frame: Frame, step: MovtabId, times: i32| (0..times).fold(frame, |f, _| self.moved(&f, step));
         let first = self.moved(base, array.offset);
         Some(repeat(repeat(first, array.column_step, column), array.row_step, row))
+    }
+
+    /// The steps that lead from a sector out of its array, in the axes of the sector, in: to where a next column or row
+    /// would be. `None` where there is one. The base is that of [`sector_frame`](Self::sector_frame); columns and rows
+    /// stand across each other.
+    #[must_use]
+    pub fn steps_out(&self, array: &Array, base: &Frame, sector: &Frame) -> [Option<Vector>; 4] {
+        let first = self.moved(base, array.offset);
+        let from_first = first.rotation.inverse() * (sector.position - first.position);
+        let out = |step: MovtabId, count: i32| {
+            let step = self.moved(&Frame::identity(), step).position;
+            // NaN for a step of zero: no comparison holds then.
+            let steps = from_first.dot(&step) / step.dot(&step);
+            let last = f64::from(count.saturating_sub(1));
+            [(steps < 0.5).then_some(-step), (steps > last - 0.5).then_some(step)]
+        };
+        let [left, right] = out(array.column_step, array.columns);
+        let [top, bottom] = out(array.row_step, array.rows);
+        [left, right, top, bottom]
     }
 
     /// The place of a location and an object, for a process that gets both but not the sector: below Task the sector is

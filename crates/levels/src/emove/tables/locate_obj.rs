@@ -5,7 +5,8 @@ use rcs_core::decision_table;
 decision_table! {
     /// LOCATE-OBJ (V.2.1): a fast flood picture, centre the camera over it, a second picture with recognition
     /// and angle, align. It moves the robot straight, so that nothing may be held: a grasp that was interrupted
-    /// may have ended since, and the robot stands in the nest of the part then.
+    /// may have ended since, and the robot stands in the nest of the part then. An object so near to the edge of
+    /// its tray that the open fingers would meet the wall is not gone to.
     pub LOCATE_OBJ: fn locate_obj(enum LocateObjStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                                                => Wait;
@@ -31,7 +32,7 @@ decision_table! {
         }
         /// The second picture is being taken.
         Measuring {
-            10: sight: Seen, aim: Known                                  => Align   -> Aligning;
+            10: sight: Seen, aim: Known, reach: Inside                   => Align   -> Aligning;
             11: sight: Missing | Unrecognised | Implausible, tries: Left => PreciseAgain;
             12: sight: Unrecognised, tries: Spent                        => Fail(NotRecognised);
         }
@@ -42,6 +43,9 @@ decision_table! {
         Start {
             14: held: Right | Other | Something                          => Fail(AlreadyHolding);
             15: held: NotKnown                                           => Fail(HeldNotKnown);
+        }
+        Measuring {
+            16: sight: Seen, aim: Known, reach: Outside                  => Fail(AtTrayEdge);
         }
     }
 }

@@ -34,8 +34,8 @@ use rcs_core::{
 
 pub use self::variables::{
     Along, At, AtDrum, Attached, Contact, Coupling, Exchange, Fingers, Holster, HolsterData, Initialization,
-    Knowledge, Link, Load, Lock, Mate, Motion, Opening, Ordered, Pause, Readiness, Record, Ring, Shut, Sight,
-    Spread, Target, ToolWork, Tooling, Tries, Vision, Whereabouts,
+    Knowledge, Link, Load, Lock, Mate, Motion, Opening, Ordered, Pause, Reach, Readiness, Record, Ring, Shut,
+    Sight, Spread, Target, ToolWork, Tooling, Tries, Vision, Whereabouts,
 };
 use self::{accept::accept, carried::carried, ordered::ordered};
 use super::{
@@ -154,6 +154,8 @@ pub struct Situation {
     pub sight: Sight,
     /// Where the camera is to go next.
     pub aim: Knowledge,
+    /// Do the open fingers stay within the object's array?
+    pub reach: Reach,
     /// May a picture be taken again?
     pub tries: Tries,
     /// The link.

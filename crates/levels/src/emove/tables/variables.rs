@@ -379,6 +379,15 @@ pub enum Sight {
     Implausible,
 }
 
+/// Where the open fingers would be at the object that vision has found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Reach {
+    /// Within the array of the object's sector, or at a place that is no sector.
+    Inside,
+    /// Beyond the edge of the array.
+    Outside,
+}
+
 /// May a picture be taken again?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Tries {

@@ -9,7 +9,7 @@ use crate::{
         route::Ahead,
         tables::{
             Action, Along, At, AtDrum, Fingers, Held, Holster, Knowledge, Link, Lock, Mate, Motion, Opening,
-            Readiness, Shut, Sight, Situation, Spread, Tooling, Tries, Whereabouts,
+            Reach, Readiness, Shut, Sight, Situation, Spread, Tooling, Tries, Whereabouts,
             qc_attach::{QcAttachStep, qc_attach},
             qc_detach::{QcDetachStep, qc_detach},
         },
@@ -47,6 +47,7 @@ fn situations() -> impl Iterator<Item = Situation> {
                         drum: AtDrum::Off,
                         sight: Sight::Missing,
                         aim: Knowledge::Unknown,
+                        reach: Reach::Inside,
                         tries: Tries::Left,
                         link: Link::Up,
                         prim: Lower::Done,

@@ -12,7 +12,7 @@ use interfaces::{
     prim::PrimReport,
 };
 use rcs_core::name::Name16;
-use taskdata::files::{LocptId, PathPoint, Target};
+use taskdata::files::{ArrayId, LocptId, PathPoint, Target};
 
 use super::{
     bench::{Bench, DONE, data, error, frame_of, moved},
@@ -35,6 +35,7 @@ pub const SCENARIOS: &[fn()] = &[
     what_is_not_gripped_is_reported,
     a_release_of_nothing_opens_or_is_done,
     an_object_is_located,
+    an_object_at_the_edge_of_its_tray_is_not_gone_to,
     vision_that_fails_is_asked_again_and_given_up,
     what_no_picture_can_show_moves_nothing,
     the_robot_withdraws,
@@ -338,6 +339,42 @@ fn an_object_is_located() {
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), error(Reason::AlreadyHolding));
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::AlreadyHolding));
     assert!(!bench.log().iter().any(|word| word.starts_with("GO")), "{:?}", bench.log());
+}
+
+/// A slot is 8.00 in by 9.00 in, and the open fingers are 4.00 in by 1.50 in. SLOT is a tray of one; SLOTS has three more
+/// at -Y, -Z of the robot's.
+#[test]
+fn an_object_at_the_edge_of_its_tray_is_not_gone_to() {
+    let outside = error(Reason::AtTrayEdge);
+    // The block lies twice as far from the middle as each of the two pictures says.
+    for (array, (y, z, angle), end) in [
+        ("SLOT", (98, 0, 0), DONE),
+        ("SLOT", (102, 0, 0), outside),
+        ("SLOT", (-98, 0, 0), DONE),
+        ("SLOT", (-102, 0, 0), outside),
+        ("SLOT", (0, 186, 0), DONE),
+        ("SLOT", (0, 189, 0), outside),
+        ("SLOT", (0, -189, 0), outside),
+        // Turned by a quarter the fingers open along the longer side.
+        ("SLOT", (161, 0, 9_000), DONE),
+        ("SLOT", (164, 0, 9_000), outside),
+        ("SLOT", (0, -124, -9_000), DONE),
+        ("SLOT", (0, -126, -9_000), outside),
+        ("SLOTS", (98, 186, 0), DONE),
+        ("SLOTS", (102, 0, 0), outside),
+        ("SLOTS", (0, 189, 0), outside),
+        ("SLOTS", (-102, -189, 0), DONE),
+        ("", (200, 200, 0), DONE),
+    ] {
+        let mut bench = Bench::ready("HOME", 1);
+        assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
+        bench.world.claims = vec![(y, z, 0, 0), (y, z, angle, 17)];
+        bench.command(LocateObj, "BLOCK", 1, "BENCH", 1);
+        let array_id = data().array_named(&Name16::clipped(array));
+        bench.memory.subtask.emove.location_array = array_id.map(ArrayId::number);
+        assert_eq!(bench.finish(), end, "{array} {y} {z} {angle}");
+        assert_eq!(bench.memory.emove.beliefs.located.is_some(), end == DONE, "the next command looks again");
+    }
 }
 
 #[test]

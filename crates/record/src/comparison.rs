@@ -1,0 +1,123 @@
+//! Compares the ticks of a replay with those of the log, up to the first difference.
+
+use interfaces::CommonMemory;
+use levels::ladder::LadderState;
+use rcs_core::{digest::Digest, tick::Tick};
+
+use crate::{
+    channels::{HeaderPlace, headers},
+    layout::{self, Leaf},
+    reader::LoggedTick,
+    remarks::row_text,
+    replay::Computed,
+};
+
+/// The first difference of a replay from the run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// The tick.
+    pub tick: Tick,
+    /// The process and the buffer: `prim.status`; `state.prim` for the state of a process.
+    pub buffer: String,
+    /// The field of the buffer.
+    pub field: String,
+    /// The recorded value.
+    pub was: String,
+    /// The computed value.
+    pub is: String,
+    /// The row by which the process decided in the replay.
+    pub row: String,
+}
+
+impl std::fmt::Display for Difference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { tick, buffer, field, was, is, row } = self;
+        write!(f, "tick {tick}, buffer {buffer}, field {field}: was {was}, is {is}; {row}")
+    }
+}
+
+/// What the comparison of a replay with its log has come to.
+pub struct Comparison {
+    memory_leaves: Vec<Leaf>,
+    state_leaves: Vec<Leaf>,
+    headers: Vec<HeaderPlace>,
+    /// Digest of the output buffers of the computed ticks.
+    pub digest: Digest,
+    /// Ticks that were computed, up to the first difference.
+    pub ticks: u64,
+    /// Ticks that could not be computed, up to the first difference.
+    pub skipped: u64,
+    /// The first difference; `None` if there is none.
+    pub first_difference: Option<Difference>,
+}
+
+impl Comparison {
+    /// `by_name`: compare records by name instead of number, for other task data than those of the log.
+    pub fn new(by_name: bool) -> Self {
+        let leaves = |record| {
+            let mut leaves = layout::leaves(record);
+            leaves.retain(|leaf| !by_name || !leaf.is_record_number());
+            leaves
+        };
+        Self {
+            memory_leaves: leaves(CommonMemory::STRUCT),
+            state_leaves: leaves(LadderState::STRUCT),
+            headers: headers(),
+            digest: Digest::new(),
+            ticks: 0,
+            skipped: 0,
+            first_difference: None,
+        }
+    }
+
+    /// Compare the next tick; true if it differs.
+    pub fn differs(&mut self, computed: &Computed) -> bool {
+        (self.ticks, self.skipped) = (computed.ticks, computed.skipped);
+        let Some((memory, states)) = &computed.result else { return false };
+        self.digest.add(memory);
+        self.first_difference = self.difference_of(&computed.logged, memory, states.as_deref());
+        self.first_difference.is_some()
+    }
+
+    /// The first difference of the recorded buffers and states from the computed ones.
+    fn difference_of(&self, logged: &LoggedTick, memory: &[u8], states: Option<&[u8]>) -> Option<Difference> {
+        let difference = |leaf: &Leaf, buffer: String, field: &str, was: &[u8], is: &[u8]| {
+            let (tick, field) = (logged.tick, field.to_owned());
+            Difference {
+                tick,
+                buffer,
+                field,
+                was: leaf.text(was),
+                is: leaf.text(is),
+                row: self.row(leaf, memory),
+            }
+        };
+        if let Some(leaf) = layout::first_difference(&self.memory_leaves, &logged.memory, memory) {
+            let (buffer, field) = split(&leaf.path);
+            return Some(difference(leaf, buffer, &field, &logged.memory, memory));
+        }
+        let (recorded, states) = logged.state.as_deref().zip(states)?;
+        let leaf = layout::first_difference(&self.state_leaves, recorded, states)?;
+        let (process, field) = leaf.path.split_once('.').unwrap_or((&leaf.path, ""));
+        Some(difference(leaf, format!("state.{process}"), field, recorded, states))
+    }
+
+    /// The row by which the process of a field has decided in the replay.
+    fn row(&self, leaf: &Leaf, memory: &[u8]) -> String {
+        let process = leaf.path.split('.').next().unwrap_or_default();
+        let Some(place) = self.headers.iter().find(|place| place.field == process) else {
+            return String::new();
+        };
+        match place.row(&place.read(memory)) {
+            Some((table, row)) => format!("{} decided by {}", place.process.name, row_text(table, row)),
+            None => format!("{} decided by no row", place.process.name),
+        }
+    }
+}
+
+/// The first two names of a path, and the rest: `prim.status`, `distance`.
+fn split(path: &str) -> (String, String) {
+    let mut parts = path.splitn(3, '.');
+    let buffer: Vec<&str> = parts.by_ref().take(2).collect();
+    (buffer.join("."), parts.next().unwrap_or_default().to_owned())
+}
