@@ -8,6 +8,8 @@ use std::{
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     sync::OnceLock,
+    thread,
+    time::{Duration, Instant},
 };
 
 use neighbours::network::{Address, NeighbourKeys, Peer, Role};
@@ -201,8 +203,12 @@ fn without_it_nothing_of_zenoh_is_started() {
     let fronts = ["app-", "acc-", "net-", "rx-", "tx-"];
     let of_zenoh = |name: &String| fronts.iter().any(|front| name.starts_with(front));
     let (with, _) = controller(9, "workstation", &["--clock", "real"]);
-    let threads_with = threads(&with.child);
-    assert!(threads_with.iter().any(of_zenoh), "{threads_with:?}");
+    // A thread gives itself its name, which takes a while on a busy machine.
+    let deadline = Instant::now() + Duration::from_secs(30);
+    while !threads(&with.child).iter().any(of_zenoh) {
+        assert!(Instant::now() < deadline, "{:?}", threads(&with.child));
+        thread::sleep(Duration::from_millis(20));
+    }
     let without = Controller::start("zenoh-without", "workstation", &["--clock", "real"]);
     let threads_without = threads(&without.child);
     assert!(!threads_without.iter().any(of_zenoh), "{threads_without:?}");

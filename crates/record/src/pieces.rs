@@ -25,7 +25,7 @@ const CHUNK: u64 = 16 << 20;
 const EXPANSION: u64 = 64;
 /// Limit of decompressed bytes for small files.
 const LEAST: u64 = 64 << 20;
-/// Limit of decompressed bytes that are kept, so that nothing decompresses them again: of about half an hour.
+/// Limit of decompressed bytes that are kept, so that nothing decompresses them again: those of a quarter of an hour.
 const KEPT: u64 = 64 << 20;
 
 /// A piece of the file.
