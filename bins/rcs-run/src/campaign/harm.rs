@@ -59,8 +59,8 @@ impl World {
         Self { parts: parts.collect(), gripper: cell.gripper(), hand: cell.tool().position.into(), items }
     }
 
-    /// The first difference from the undisturbed run, as text; `None` if there is none. Where the hand is counts only if
-    /// the command `moves` the robot: STARTUP and SHUTDOWN leave it where the command before has brought it.
+    /// The first difference from the undisturbed run, as text; `None` if there is none. Where the hand is counts
+    /// only if the command `moves` the robot: STARTUP and SHUTDOWN leave it where the command before has brought it.
     #[must_use]
     pub fn unlike(&self, undisturbed: &Self, moves: bool) -> Option<String> {
         if self.gripper != undisturbed.gripper {

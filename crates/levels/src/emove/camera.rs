@@ -52,8 +52,8 @@ impl State {
         })
     }
 
-    /// Would the open fingers at the object that the second picture shows stay within its array? A place that is in none
-    /// has no edge, and what the task data lack is named by the motion to the object.
+    /// Would the open fingers at the object that the second picture shows stay within its array? A place that is in
+    /// none has no edge, and what the task data lack is named by the motion to the object.
     pub(super) fn reach(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Reach {
         let data = inputs.data;
         let inside = || {

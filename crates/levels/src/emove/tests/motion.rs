@@ -341,8 +341,8 @@ fn an_object_is_located() {
     assert!(!bench.log().iter().any(|word| word.starts_with("GO")), "{:?}", bench.log());
 }
 
-/// A slot is 8.00 in by 9.00 in, and the open fingers are 4.00 in by 1.50 in. SLOT is a tray of one; SLOTS has three more
-/// at -Y, -Z of the robot's.
+/// A slot is 8.00 in by 9.00 in, and the open fingers are 4.00 in by 1.50 in. SLOT is a tray of one; SLOTS has three
+/// more towards -Y and -Z of the tool.
 #[test]
 fn an_object_at_the_edge_of_its_tray_is_not_gone_to() {
     let outside = error(Reason::AtTrayEdge);
