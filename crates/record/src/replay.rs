@@ -243,7 +243,7 @@ impl<T> Drop for HandOver<T> {
 }
 
 /// A recorded tick, and what became of it in the replay.
-pub struct Computed {
+pub(crate) struct Computed {
     /// The recorded tick.
     pub logged: LoggedTick,
     /// Byte image of common memory after the tick, and of the states of the processes if the log has them; `None` if
@@ -289,6 +289,7 @@ impl Replayer {
         generations: &[Store],
         mut give: impl FnMut(Computed) -> bool,
     ) -> Result<(), ReplayError> {
+        let is_early = |logged: &LoggedTick| options.from.is_some_and(|from| logged.tick < from);
         // Ticks from the last recorded states to the beginning of the replay.
         let mut run_up: Vec<LoggedTick> = Vec::new();
         for logged in ticks {
@@ -296,17 +297,17 @@ impl Replayer {
             if options.until.is_some_and(|until| logged.tick > until) {
                 break;
             }
-            let is_early = options.from.is_some_and(|from| logged.tick < from);
-            if is_early && logged.state.is_some() {
+            let early = is_early(&logged);
+            if early && logged.state.is_some() {
                 run_up.clear();
             }
             run_up.push(logged);
-            if is_early {
+            if early {
                 continue;
             }
             for logged in run_up.drain(..) {
                 let is_first = self.ticks == 0 && self.has_states;
-                if is_first && options.from.is_some_and(|from| logged.tick < from) && logged.state.is_some() {
+                if is_first && is_early(&logged) && logged.state.is_some() {
                     self.take_over(&logged)?;
                     self.last = logged.tick;
                 } else if !give(self.tick(logged, generations)?) {
