@@ -34,10 +34,11 @@ use crate::{
     writer::{FULL_SET, LogWriter, TickRecord, Timing, Written},
 };
 
-/// Capacity of the ring, ticks: ten seconds of real time.
-const RING: usize = 256;
-/// Capacity of the ring of states, of which there is one per second.
-const STATE_RING: usize = 32;
+/// Capacity of the ring, ticks: 40 s of real time. In fast clock a cell at rest takes less time for a tick than the
+/// writer; a run that waits for it goes on with cold caches.
+const RING: usize = 1024;
+/// Capacity of the ring of states, which are written once a second.
+const STATE_RING: usize = 64;
 /// Capacity of the ring of notes.
 const NOTE_RING: usize = 1024;
 /// Sleep of the writer when there is nothing to write: an eighth of a tick.

@@ -57,9 +57,9 @@ const REPETITION: u64 = 10;
 /// Uncompressed size at which a chunk is closed before its second is over, bytes: three times what a second
 /// of a moving cell takes.
 const CHUNK: u64 = 256 * 1024;
-/// Level of the compression: a fourteenth less than level 3, at 2 ms a second of a moving cell. Level 19 would
-/// take another sixteenth, and forty times as long.
-const COMPRESSION: u32 = 9;
+/// Level of the compression: a twenty-sixth less than level 3. Level 9 would take another five hundredth, and a
+/// writer that a run in fast clock has to wait for.
+const COMPRESSION: u32 = 6;
 /// Name of the metadata written at the start.
 pub const RUN: &str = "rcs-run";
 /// Name of the metadata written at the end.

@@ -127,11 +127,8 @@ impl State {
     /// What a new command replaces: motion, ring or fingers that are under way.
     fn replaced(&self, watch: &Watch, inputs: &Inputs<'_, TaskData<'_>>) -> Replaced {
         let (tick, memory) = (inputs.tick, inputs.memory);
-        let (prim, written) = (&memory.prim, &memory.emove);
-        let robot = self.prim.read(tick, &prim.header, prim.status.echo, prim.status.report.lower());
-        // A robot that has passed a through point flies on to it.
-        let flies_on = written.prim.command == PrimVerb::GoThru && robot == Lower::Done;
-        let robot = if flies_on { Lower::Executing } else { robot };
+        let written = &memory.emove;
+        let robot = self.robot(inputs);
         let fingers = self.grippers.status(tick, memory);
         let below = Below::of(robot, written.prim.command == PrimVerb::Pause)
             .and(Below::of(fingers, self.grippers.order == FingerVerb::Pause))

@@ -3,6 +3,7 @@
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
     emove::{GoneTo, RobotPlace},
+    prim::PrimVerb,
     process::Inputs,
     subtask::LocationKind,
 };
@@ -68,11 +69,18 @@ impl State {
         self.beliefs.place.filter(|_| !self.away)
     }
 
+    /// What Prim makes of its command. A robot that has passed a through point flies on to it: it executes.
+    pub(super) fn robot(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lower {
+        let (prim, order) = (&inputs.memory.prim, inputs.memory.emove.prim.command);
+        match self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower()) {
+            Lower::Done if order == PrimVerb::GoThru => Lower::Executing,
+            lower => lower,
+        }
+    }
+
     /// Is it known where the robot is? A way that it has left says nothing any more, once it is at rest.
     pub(super) fn whereabouts(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Whereabouts {
-        let prim = &inputs.memory.prim;
-        let prim = self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
-        let moving = matches!(prim, Lower::Pending | Lower::Executing);
+        let moving = matches!(self.robot(inputs), Lower::Pending | Lower::Executing);
         let on_way = self.beliefs.way.is_some() && (moving || self.on_way(inputs).is_some());
         let half_way = self.beliefs.exchange.is_some() || self.beliefs.drum.is_some();
         if self.place().is_some() || half_way || on_way {

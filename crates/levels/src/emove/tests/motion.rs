@@ -1,5 +1,6 @@
 //! MOV-…, GRASP-OBJ, RELEASE, LOCATE-OBJ and WITHDRAW with each gripper.
 
+use geometry::frame::Vector;
 use interfaces::{
     Reason, StatusReport,
     device::VisionStatus,
@@ -9,7 +10,8 @@ use interfaces::{
     },
     jaws::JawsReport,
     pose_range,
-    prim::PrimReport,
+    prim::{PrimReport, PrimVerb},
+    process::Process as _,
 };
 use rcs_core::name::Name16;
 use taskdata::files::{ArrayId, LocptId, PathPoint, Target};
@@ -18,10 +20,12 @@ use super::{
     bench::{Bench, DONE, data, error, frame_of, moved},
     doubles::Mishap,
 };
+use crate::emove::surroundings::Surroundings;
 
 pub const SCENARIOS: &[fn()] = &[
     a_robot_moves_with_any_gripper_and_with_none,
     a_move_to_where_the_robot_is_is_done_at_once,
+    a_robot_that_flies_past_a_point_is_on_its_way,
     a_pose_may_be_a_static_record,
     a_part_is_taken_placed_and_left,
     jaws_take_and_leave_their_parts,
@@ -63,6 +67,28 @@ fn a_move_to_where_the_robot_is_is_done_at_once() {
     let mut bench = Bench::ready("HOME", 0);
     assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
     assert!(bench.log().is_empty());
+}
+
+#[test]
+fn a_robot_that_flies_past_a_point_is_on_its_way() {
+    let mut bench = Bench::ready("HOME", 0);
+    bench.prim.by_steps = true;
+    bench.command(MovToLoc, "", 0, "VISE", 0);
+    let mut passed = 0;
+    for _ in 0..1000 {
+        bench.step();
+        let moves = matches!(bench.memory.emove.prim.command, PrimVerb::GoThru | PrimVerb::GotoPt);
+        // While it moves, the arm is farther behind than where a robot at rest still is on its way.
+        bench.prim.sag = Vector::new(if moves { 1.0 } else { 0.0 }, 0.0, 0.0);
+        if bench.memory.emove.prim.command == PrimVerb::GotoPt {
+            assert!(passed > 1, "{:?}", bench.world.log);
+            return;
+        }
+        passed += u32::from(moves && bench.memory.prim.status.report == PrimReport::Done);
+        let around = bench.process.state().surroundings;
+        assert_eq!(around, Surroundings::default(), "no places are looked for: {:?}", bench.world.log);
+    }
+    panic!("never there: {:?}", bench.world.log);
 }
 
 #[test]
