@@ -227,8 +227,8 @@ mod tests {
 
     /// The controller's side on the 40 ms grid, and a pedestal that writes what the test specifies.
     struct Bench {
-        agent: Agent,
         session: TestSession,
+        agent: Agent,
         tick: u64,
         status_box: Mailbox,
     }

@@ -271,8 +271,8 @@ mod tests {
 
     /// A port, and the session at its other end.
     struct Bench {
-        port: Port,
         session: Option<TestSession>,
+        port: Port,
         response_box: Mailbox,
         tick: u64,
         wanted: VisionRequest,

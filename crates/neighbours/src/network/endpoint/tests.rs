@@ -28,6 +28,15 @@ pub(crate) struct TestSession {
     unread: std::collections::VecDeque<Sent>,
 }
 
+impl Drop for TestSession {
+    fn drop(&mut self) {
+        // An endpoint whose session goes on waits for its disconnect reason.
+        if self.link.handle.is_connected() {
+            self.link.handle.detach(Disconnect::Closed);
+        }
+    }
+}
+
 impl TestSession {
     pub fn begin(handle: &EndpointHandle) -> Self {
         Self { link: handle.attach().unwrap(), unread: Default::default() }
