@@ -71,11 +71,11 @@ impl Comparison {
     }
 
     /// Compare the next tick; true if it differs.
-    pub fn differs(&mut self, computed: &Computed) -> bool {
+    pub fn differs(&mut self, computed: &Computed<'_>) -> bool {
         (self.ticks, self.skipped) = (computed.ticks, computed.skipped);
         let Some((memory, states)) = &computed.result else { return false };
         self.digest.add(memory);
-        self.first_difference = self.difference_of(&computed.logged, memory, states.as_deref());
+        self.first_difference = self.difference_of(computed.logged, memory, states.as_deref());
         self.first_difference.is_some()
     }
 

@@ -4,10 +4,10 @@
 //! next readable record: a chunk or an attachment with the right checksum, or metadata of this program. The total of
 //! decompressed bytes is limited in proportion to the size of the file, and with it memory and time of reading.
 //!
-//! Most of the time of reading is decompression. All processors decompress the first chunks ahead, as many as are kept
-//! in memory, so that nothing decompresses them again.
+//! All processors check the first chunks of a sound file ahead. What they decompress for it is not kept: to decompress it
+//! again takes less time than to fetch it from memory that is not in the caches.
 
-use std::{collections::BTreeMap, ops::Range, thread};
+use std::{collections::BTreeMap, iter, ops::Range, thread};
 
 use mcap::{
     MAGIC, McapError, McapResult, parse_record,
@@ -25,25 +25,20 @@ const CHUNK: u64 = 16 << 20;
 const EXPANSION: u64 = 64;
 /// Limit of decompressed bytes for small files.
 const LEAST: u64 = 64 << 20;
-/// Limit of decompressed bytes that are kept, so that nothing decompresses them again: those of a quarter of an hour.
-const KEPT: u64 = 64 << 20;
+/// Limit of decompressed bytes that are checked ahead: those of a quarter of an hour. It bounds the memory for channels
+/// and schemas.
+const AHEAD: u64 = 64 << 20;
+/// Size of what stands before the data of a message, bytes: channel, number, and two times.
+const MESSAGE_HEAD: usize = 22;
 
 /// A piece of the file.
 pub enum Piece<'a> {
     /// A record outside the chunks.
     Record(Record<'a>),
-    /// A readable chunk, including its record header, and what is in it.
-    Chunk(Range<usize>, Chunk),
+    /// A readable chunk, including its record header, and the channels and schemas in it.
+    Chunk(Range<usize>, Vec<Record<'static>>),
     /// Unreadable bytes.
     Damaged(Range<usize>),
-}
-
-/// What is in a chunk.
-pub struct Chunk {
-    /// The channels and schemas.
-    pub described: Vec<Record<'static>>,
-    /// All records, decompressed; `None` if so many are kept already.
-    pub records: Option<Vec<u8>>,
 }
 
 /// The pieces of a file, in order.
@@ -53,8 +48,8 @@ pub struct Pieces<'a> {
     /// Number of bytes that may still be decompressed or checksummed.
     left: u64,
     decoder: Decoder,
-    /// Chunks that were decompressed ahead, by their positions; `None` for an unreadable one.
-    ahead: BTreeMap<usize, Option<Chunk>>,
+    /// Channels and schemas of the chunks that were checked ahead, by their positions; `None` for an unreadable one.
+    ahead: BTreeMap<usize, Option<Vec<Record<'static>>>>,
 }
 
 impl<'a> Pieces<'a> {
@@ -78,14 +73,11 @@ impl<'a> Pieces<'a> {
         let piece = match opcode {
             op::CHUNK => {
                 self.spend(chunk_size(self.bytes.get(at..end)?)?)?;
-                let chunk = match self.ahead.remove(&at) {
-                    Some(chunk) => chunk?,
-                    None => {
-                        let described = described(self.decoder.unpack(self.bytes.get(at..end)?)?)?;
-                        Chunk { described, records: None }
-                    }
+                let described = match self.ahead.remove(&at) {
+                    Some(described) => described?,
+                    None => described(self.decoder.unpack(self.bytes.get(at..end)?)?)?,
                 };
-                Piece::Chunk(at..end, chunk)
+                Piece::Chunk(at..end, described)
             }
             op::ATTACHMENT => {
                 self.spend(u64::try_from(body.len()).ok()?)?;
@@ -140,9 +132,9 @@ impl<'a> Iterator for Pieces<'a> {
     }
 }
 
-/// The chunks of a sound file up to the limit of what is kept, decompressed by all processors.
-fn ahead(bytes: &[u8]) -> BTreeMap<usize, Option<Chunk>> {
-    let (mut at, mut left, mut chunks) = (MAGIC.len(), KEPT, Vec::new());
+/// The channels and schemas of the first chunks of a sound file, checked by all processors.
+fn ahead(bytes: &[u8]) -> BTreeMap<usize, Option<Vec<Record<'static>>>> {
+    let (mut at, mut left, mut chunks) = (MAGIC.len(), AHEAD, Vec::new());
     while let Some((opcode, end)) = frame(bytes, at) {
         let chunk = bytes.get(at..end).filter(|_| opcode == op::CHUNK);
         if let Some(chunk) = chunk {
@@ -152,19 +144,16 @@ fn ahead(bytes: &[u8]) -> BTreeMap<usize, Option<Chunk>> {
         }
         at = end;
     }
-    let unpack_some = |first: usize, step: usize| {
+    let check_some = |first: usize, step: usize| {
         let mut decoder = Decoder::default();
-        let mut unpack = |chunk: &[u8]| {
-            let records = decoder.unpack(chunk)?.to_vec();
-            Some(Chunk { described: described(&records)?, records: Some(records) })
-        };
-        chunks.iter().skip(first).step_by(step).map(|(at, chunk)| (*at, unpack(chunk))).collect::<Vec<_>>()
+        let mut check = |chunk: &[u8]| described(decoder.unpack(chunk)?);
+        chunks.iter().skip(first).step_by(step).map(|(at, chunk)| (*at, check(chunk))).collect::<Vec<_>>()
     };
     let threads = thread::available_parallelism().map_or(1, usize::from).min(chunks.len().max(1));
     thread::scope(|scope| {
         let others: Vec<_> =
-            (1..threads).map(|first| scope.spawn(move || unpack_some(first, threads))).collect();
-        let own = unpack_some(0, threads);
+            (1..threads).map(|first| scope.spawn(move || check_some(first, threads))).collect();
+        let own = check_some(0, threads);
         // A thread that has panicked leaves its chunks to the reader.
         own.into_iter().chain(others.into_iter().flat_map(|other| other.join().unwrap_or_default())).collect()
     })
@@ -175,15 +164,59 @@ fn chunk_size(chunk: &[u8]) -> Option<u64> {
     chunk.get(HEAD..)?.get(16..24)?.try_into().map(u64::from_le_bytes).ok()
 }
 
-/// The channels and schemas among the records of a chunk; `None` if one of them is unreadable.
+/// The channels and schemas among the records of a chunk; `None` if a record is unreadable.
 fn described(records: &[u8]) -> Option<Vec<Record<'static>>> {
-    let mut described = Vec::new();
-    for_each(records, |record| {
-        if !matches!(record, Record::Message { .. }) {
-            described.push(record.into_owned());
+    let (mut at, mut described) = (0, Vec::new());
+    while at < records.len() {
+        let (opcode, end) = frame(records, at)?;
+        let body = records.get(at.checked_add(HEAD)?..end)?;
+        if opcode == op::MESSAGE {
+            Message::of(body)?;
+        } else {
+            described.push(parse(opcode, body)?.into_owned());
         }
-    })?;
+        at = end;
+    }
     Some(described)
+}
+
+/// A message in a chunk.
+#[derive(Clone, Copy)]
+pub struct Message<'a> {
+    /// Number of its channel.
+    pub channel: u16,
+    /// Its number in the channel: the tick.
+    pub sequence: u32,
+    /// Time of the log, nanoseconds since 1970.
+    pub log_time: u64,
+    /// What it says.
+    pub data: &'a [u8],
+}
+
+impl<'a> Message<'a> {
+    fn of(body: &'a [u8]) -> Option<Self> {
+        let (head, data) = body.split_first_chunk::<MESSAGE_HEAD>()?;
+        let (channel, head) = head.split_first_chunk()?;
+        let (sequence, head) = head.split_first_chunk()?;
+        let (log_time, _) = head.split_first_chunk()?;
+        let (channel, sequence) = (u16::from_le_bytes(*channel), u32::from_le_bytes(*sequence));
+        Some(Self { channel, sequence, log_time: u64::from_le_bytes(*log_time), data })
+    }
+}
+
+/// The messages among the records of a readable chunk.
+pub fn messages(records: &[u8]) -> impl Iterator<Item = Message<'_>> {
+    let mut at = 0;
+    iter::from_fn(move || {
+        loop {
+            let (opcode, end) = frame(records, at)?;
+            let body = records.get(at.checked_add(HEAD)?..end)?;
+            at = end;
+            if opcode == op::MESSAGE {
+                return Message::of(body);
+            }
+        }
+    })
 }
 
 /// Operation code and end of a record that would begin at a position; `None` if it would be longer than the file.
@@ -261,15 +294,4 @@ impl Decoder {
         };
         (records.len() == size && crc32fast::hash(records) == checksum).then_some(records)
     }
-}
-
-/// Pass each of the records of a chunk to `each`; `None` if one is unreadable.
-pub fn for_each<'a>(records: &'a [u8], mut each: impl FnMut(Record<'a>)) -> Option<()> {
-    let mut at = 0;
-    while at < records.len() {
-        let (opcode, end) = frame(records, at)?;
-        each(parse(opcode, records.get(at.checked_add(HEAD)?..end)?)?);
-        at = end;
-    }
-    Some(())
 }

@@ -23,7 +23,7 @@ use crate::{
     input::{Attachment, Link},
     layout,
     operator::{OPERATOR, OperatorLine},
-    pieces::{self, Decoder, Piece, Pieces},
+    pieces::{self, Decoder, Message, Piece, Pieces},
     proto::{
         foxglove::{self, Level, Transform},
         wire::{Fields, Value},
@@ -57,8 +57,7 @@ pub struct Log {
 
 /// A part of the file with messages.
 enum Segment {
-    /// With its records, if they are kept.
-    Chunk(Range<usize>, Option<Vec<u8>>),
+    Chunk(Range<usize>),
     Damaged(Range<usize>),
 }
 
@@ -133,9 +132,9 @@ impl Log {
         let pieces = Pieces::new(&bytes).map_err(|source| log.not_mcap(source))?;
         for piece in pieces {
             match piece {
-                Piece::Chunk(range, chunk) => {
-                    chunk.described.iter().for_each(|record| log.note(record));
-                    log.segments.push(Segment::Chunk(range, chunk.records));
+                Piece::Chunk(range, described) => {
+                    described.iter().for_each(|record| log.note(record));
+                    log.segments.push(Segment::Chunk(range));
                 }
                 Piece::Damaged(range) => log.segments.push(Segment::Damaged(range)),
                 Piece::Record(Record::Metadata(metadata)) if metadata.name == RUN => {
@@ -186,7 +185,7 @@ impl Log {
     pub fn damage(&self) -> Option<String> {
         let damaged = |segment: &Segment| match segment {
             Segment::Damaged(range) => Some(format!("{} bytes from byte {} on", range.len(), range.start)),
-            Segment::Chunk(..) => None,
+            Segment::Chunk(_) => None,
         };
         let places: Vec<String> = self.segments.iter().filter_map(damaged).collect();
         let (first, more) = (places.first()?, places.len().saturating_sub(1));
@@ -304,12 +303,10 @@ impl Log {
     pub fn play(&self, tap: &mut dyn Tap, mut before: impl FnMut(u64)) {
         let mut decoder = Decoder::default();
         for segment in &self.segments {
-            self.for_each_record(segment, &mut decoder, |record| {
-                if let Record::Message { header, data } = record {
-                    before(header.log_time);
-                    tap.message(header.channel_id, header.log_time, &data);
-                }
-            });
+            for Message { channel, log_time, data, .. } in self.messages_in(segment, &mut decoder) {
+                before(log_time);
+                tap.message(channel, log_time, data);
+            }
         }
     }
 
@@ -326,28 +323,24 @@ impl Log {
             if matches!(segment, Segment::Damaged(_)) {
                 return vec![None];
             }
-            let mut found = Vec::new();
-            self.for_each_record(segment, &mut decoder, |record| match record {
-                Record::Message { header, data } if Some(header.channel_id) == id => {
-                    found.push(Some((Tick(u64::from(header.sequence)), data.into_owned())));
-                }
-                _ => {}
-            });
-            found
+            let messages = self.messages_in(segment, &mut decoder);
+            let of_topic = messages.filter(|message| Some(message.channel) == id);
+            of_topic.map(|message| Some((Tick(u64::from(message.sequence)), message.data.to_vec()))).collect()
         })
     }
 
-    /// Pass the records of a chunk to `each`; a damaged part has none.
-    fn for_each_record(&self, segment: &Segment, decoder: &mut Decoder, each: impl FnMut(Record<'_>)) {
-        let records = match segment {
-            Segment::Chunk(_, Some(records)) => records,
-            Segment::Chunk(range, None) => {
-                decoder.unpack(self.bytes.get(range.clone()).unwrap_or_default()).unwrap_or_default()
-            }
-            Segment::Damaged(_) => return,
+    /// The messages of a chunk; a damaged part has none.
+    fn messages_in<'a>(
+        &'a self,
+        segment: &Segment,
+        decoder: &'a mut Decoder,
+    ) -> impl Iterator<Item = Message<'a>> + use<'a> {
+        let chunk = match segment {
+            Segment::Chunk(range) => self.bytes.get(range.clone()),
+            Segment::Damaged(_) => None,
         };
         // `from_bytes` has read them without an error.
-        let _ = pieces::for_each(records, each);
+        pieces::messages(chunk.and_then(|chunk| decoder.unpack(chunk)).unwrap_or_default())
     }
 }
 

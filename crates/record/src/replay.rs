@@ -11,7 +11,6 @@
 use std::{
     collections::BTreeMap,
     mem,
-    panic::resume_unwind,
     path::Path,
     sync::mpsc::{SyncSender, sync_channel},
     thread,
@@ -186,8 +185,7 @@ pub(crate) fn grown(first: Store, attachments: &[Attachment]) -> Result<Vec<Stor
     Ok(generations)
 }
 
-/// Compute the ticks of a log, and compare them up to the first difference. One thread reads the ticks, one computes
-/// them, and this one compares.
+/// Compute the ticks of a log, and compare them up to the first difference, while another thread reads them.
 fn compute_and_compare(
     log: &Log,
     options: &Options,
@@ -195,24 +193,15 @@ fn compute_and_compare(
 ) -> Result<Comparison, ReplayError> {
     thread::scope(|scope| {
         let (to_compute, logged) = sync_channel(WAITING);
-        let (to_compare, computed) = sync_channel(WAITING);
         scope.spawn(move || {
             let mut to_compute = HandOver::new(to_compute);
             log.ticks().all(|tick| to_compute.give(tick))
         });
-        let computing = scope.spawn(move || {
-            let mut to_compare = HandOver::new(to_compare);
-            let give = |computed| to_compare.give(computed);
-            Replayer::default().compute(logged.into_iter().flatten(), options, generations, give)
-        });
         let mut comparison = Comparison::new(options.data.is_some());
-        // After the first difference the other threads find the channel closed, and end.
-        let differs = computed.into_iter().flatten().any(|computed| comparison.differs(&computed));
-        match computing.join() {
-            // A failure behind the first difference does not count.
-            Ok(ended) => ended.or_else(|failure| if differs { Ok(()) } else { Err(failure) })?,
-            Err(panic) => resume_unwind(panic),
-        }
+        // After the first difference the other thread finds the channel closed, and ends.
+        let logged = logged.into_iter().flatten();
+        Replayer::default()
+            .compute(logged, options, generations, |computed| !comparison.differs(&computed))?;
         Ok(comparison)
     })
 }
@@ -243,12 +232,12 @@ impl<T> Drop for HandOver<T> {
 }
 
 /// A recorded tick, and what became of it in the replay.
-pub(crate) struct Computed {
+pub(crate) struct Computed<'a> {
     /// The recorded tick.
-    pub logged: LoggedTick,
+    pub logged: &'a LoggedTick,
     /// Byte image of common memory after the tick, and of the states of the processes if the log has them; `None` if
     /// the recorded ones were taken over.
-    pub result: Option<(Vec<u8>, Option<Vec<u8>>)>,
+    pub result: Option<(&'a [u8], Option<Vec<u8>>)>,
     /// Ticks that were computed, up to this one.
     pub ticks: u64,
     /// Ticks that could not be computed, up to this one.
@@ -260,6 +249,8 @@ struct Replayer {
     ladder: Ladder,
     /// Common memory after the tick before, and of the one before that, which the next tick overwrites.
     halves: [CommonMemory; 2],
+    /// Byte image of common memory after the last tick.
+    image: Vec<u8>,
     /// False if the replay needs recorded states to continue.
     has_states: bool,
     last: Tick,
@@ -272,6 +263,7 @@ impl Default for Replayer {
         Self {
             ladder: Ladder::default(),
             halves: [CommonMemory::ZERO; 2],
+            image: vec![0; CommonMemory::SIZE],
             has_states: true,
             last: Tick::BEFORE_START,
             ticks: 0,
@@ -287,7 +279,7 @@ impl Replayer {
         ticks: impl Iterator<Item = Result<LoggedTick, ReadError>>,
         options: &Options,
         generations: &[Store],
-        mut give: impl FnMut(Computed) -> bool,
+        mut give: impl FnMut(Computed<'_>) -> bool,
     ) -> Result<(), ReplayError> {
         let is_early = |logged: &LoggedTick| options.from.is_some_and(|from| logged.tick < from);
         // Ticks from the last recorded states to the beginning of the replay.
@@ -310,7 +302,7 @@ impl Replayer {
                 if is_first && is_early(&logged) && logged.state.is_some() {
                     self.take_over(&logged)?;
                     self.last = logged.tick;
-                } else if !give(self.tick(logged, generations)?) {
+                } else if !give(self.tick(&logged, generations)?) {
                     return Ok(());
                 }
             }
@@ -319,7 +311,11 @@ impl Replayer {
     }
 
     /// Compute a tick again, or take the recorded values after a gap.
-    fn tick(&mut self, logged: LoggedTick, generations: &[Store]) -> Result<Computed, ReplayError> {
+    fn tick<'a>(
+        &'a mut self,
+        logged: &'a LoggedTick,
+        generations: &[Store],
+    ) -> Result<Computed<'a>, ReplayError> {
         let tick = logged.tick;
         let follows = self.has_states && tick == self.last.next();
         self.skipped += tick.since(self.last.next());
@@ -335,10 +331,12 @@ impl Replayer {
             self.ticks += 1;
             self.halves.swap(0, 1);
             let [after, _] = &self.halves;
-            Some((image(after), logged.state.is_some().then(|| image(&self.ladder.state()))))
+            after.encode(&mut Writer::new(&mut self.image));
+            let states = logged.state.is_some().then(|| image(&self.ladder.state()));
+            Some((self.image.as_slice(), states))
         } else {
             self.skipped += 1;
-            self.take_over(&logged)?;
+            self.take_over(logged)?;
             None
         };
         Ok(Computed { logged, result, ticks: self.ticks, skipped: self.skipped })
