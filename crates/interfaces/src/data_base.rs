@@ -70,7 +70,7 @@ pub enum Connection {
 /// go.
 pub const KEPT_UPDATES: usize = 2;
 
-/// An item that the robot holds, or has been sent to take: what the data base is told when it is let go.
+/// An item that the robot holds: what the data base is told when it is let go.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Carried {
     /// The object.
@@ -81,7 +81,7 @@ pub struct Carried {
     pub location: Name10,
     /// Sector there, if it has one.
     pub sector: Option<i32>,
-    /// The data base is told wherever it is let go: it knows it as the robot's, or where the robot takes it.
+    /// The data base knows it as the robot's.
     pub told: bool,
 }
 

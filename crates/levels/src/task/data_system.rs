@@ -146,16 +146,6 @@ impl DataSystem {
         (self.beliefs.connected, self.beliefs.connecting) = (true, false);
     }
 
-    /// The robot is sent to take an object of whose move the data base is told. If the command is never finished, the
-    /// data base is told all the same where the object is let go.
-    pub fn take(&mut self, plan: &Plan) {
-        if self.beliefs.connected && plan.update_due {
-            let (item, site) = (plan.object.unwrap_or_default(), plan.source.location.unwrap_or_default());
-            let (location, sector) = (site.name, site.sector);
-            self.beliefs.carried = Some(Carried { item, serial: plan.serial, location, sector, told: true });
-        }
-    }
-
     /// The robot holds the object of a MOVE or an ACQUIRE. An ACQUIRE that found it in the hand, taken elsewhere,
     /// leaves where that was.
     pub fn carry(&mut self, plan: &Plan, told: bool) {

@@ -3,7 +3,6 @@
 use interfaces::{
     ChangingPose, Reason, TaskOutputs,
     data_base::DataBaseVerb,
-    emove::Holding,
     hws::{HwsReport, HwsStatus},
     pose_range,
     process::Inputs,
@@ -70,13 +69,7 @@ impl State {
             Action::Wait => {}
             Action::Pause => self.send(SubtaskVerb::Pause, &Site::default(), inputs, outputs),
             Action::GetEndeff => self.send(SubtaskVerb::GetEndeff, &plan.source, inputs, outputs),
-            Action::GetObject => {
-                let held = &inputs.memory.subtask.status.held;
-                if *held == Holding::Nothing || plan.object == held.object() {
-                    self.data_system.take(&plan);
-                }
-                self.send(SubtaskVerb::GetObject, &plan.source, inputs, outputs);
-            }
+            Action::GetObject => self.send(SubtaskVerb::GetObject, &plan.source, inputs, outputs),
             Action::FixGrip => self.send(SubtaskVerb::FixGrip, &plan.source, inputs, outputs),
             Action::PlaceObj => self.send(SubtaskVerb::PlaceObj, &plan.destination, inputs, outputs),
             Action::MoveObjToDest => {

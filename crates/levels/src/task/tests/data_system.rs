@@ -1,6 +1,6 @@
 //! Scenarios of Task and the Data System (IV.4.2, IX.2).
 
-use interfaces::{Reason, data_base::DataBaseVerb, hws::HwsReport, subtask::SubtaskVerb};
+use interfaces::{Reason, data_base::DataBaseVerb, hws::HwsReport};
 use rcs_core::name::Name16;
 
 use super::{
@@ -395,58 +395,6 @@ fn what_was_put_into_a_tray_is_told_with_its_sector() {
         }
     }
     assert!(untold > 0);
-}
-
-/// A command that takes a part out of the MBD is replaced and never sent again: the command that lets the part go, or
-/// the next one about an object, tells where it is.
-#[test]
-fn what_an_abandoned_command_has_taken_out_of_a_tray_is_told() {
-    const OUT: &str = "TRANSFER PART +1 UNIT_1 2 +1 PFIXTURE 0 SAFE 0";
-    for line in [OUT, FROM_TRAY, "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0"] {
-        for by in [PAUSE, NOWHERE, HOME] {
-            let (mut placed, mut held) = (0, 0);
-            for ticks in 1.. {
-                let mut bench = Bench::connected();
-                bench.command(line);
-                bench.wait(ticks);
-                if bench.memory.task.status.report != HwsReport::Executing {
-                    break;
-                }
-                bench.command(by);
-                bench.finish();
-                bench.wait(5);
-                let mut positions = positions(&mut bench);
-                let below = bench.memory.subtask.status;
-                if below.placed.is_some() {
-                    placed += u32::from(positions.is_empty());
-                    positions.extend(told(&mut bench, OTHER));
-                    assert_eq!(positions, ["PFIXTURE", "UNIT_1"], "{line}, {by}, tick {ticks}");
-                } else if below.held.object().is_some() {
-                    held += 1;
-                    bench.set(1, "PART", "PFIXTURE");
-                    positions.extend(told(&mut bench, LET_GO));
-                    positions.retain(|position| position != "H_ROBOT");
-                    assert_eq!(positions, ["PFIXTURE"], "{line}, {by}, tick {ticks}");
-                }
-            }
-            assert_eq!((placed > 0, held > 0), (line == OUT, true), "{line}, {by}");
-        }
-    }
-}
-
-/// The robot holds a part that is told of when it is let go, also if it is sent for another one meanwhile.
-#[test]
-fn what_the_robot_holds_is_not_forgotten_for_what_it_cannot_take() {
-    let mut bench = Bench::connected();
-    assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
-    bench.data_system.received.clear();
-    bench.command(OTHER);
-    while bench.memory.task.subtask.command != SubtaskVerb::GetObject {
-        bench.step();
-    }
-    assert_eq!(bench.run(PAUSE), FINISHED);
-    bench.set(1, "PART", "PFIXTURE");
-    assert_eq!(told(&mut bench, LET_GO), ["PFIXTURE"]);
 }
 
 /// V.4.1 has updates of moves from and to the MBD; a part that the data base has as the robot's is told of, too.
