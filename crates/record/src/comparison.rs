@@ -9,7 +9,6 @@ use crate::{
     layout::{self, Leaf},
     reader::LoggedTick,
     remarks::row_text,
-    replay::Computed,
 };
 
 /// The first difference of a replay from the run.
@@ -43,10 +42,6 @@ pub struct Comparison {
     headers: Vec<HeaderPlace>,
     /// Digest of the output buffers of the computed ticks.
     pub digest: Digest,
-    /// Ticks that were computed, up to the first difference.
-    pub ticks: u64,
-    /// Ticks that could not be computed, up to the first difference.
-    pub skipped: u64,
     /// The first difference; `None` if there is none.
     pub first_difference: Option<Difference>,
 }
@@ -64,18 +59,15 @@ impl Comparison {
             state_leaves: leaves(LadderState::STRUCT),
             headers: headers(),
             digest: Digest::new(),
-            ticks: 0,
-            skipped: 0,
             first_difference: None,
         }
     }
 
-    /// Compare the next tick; true if it differs.
-    pub fn differs(&mut self, computed: &Computed<'_>) -> bool {
-        (self.ticks, self.skipped) = (computed.ticks, computed.skipped);
-        let Some((memory, states)) = &computed.result else { return false };
+    /// Compare the next tick with the byte images of common memory and of the states of the processes, if the log has
+    /// those; true if it differs.
+    pub fn differs(&mut self, logged: &LoggedTick, memory: &[u8], states: Option<&[u8]>) -> bool {
         self.digest.add(memory);
-        self.first_difference = self.difference_of(computed.logged, memory, states.as_deref());
+        self.first_difference = self.difference_of(logged, memory, states);
         self.first_difference.is_some()
     }
 

@@ -4,8 +4,8 @@
 //! next readable record: a chunk or an attachment with the right checksum, or metadata of this program. The total of
 //! decompressed bytes is limited in proportion to the size of the file, and with it memory and time of reading.
 //!
-//! All processors check the first chunks of a sound file ahead. What they decompress for it is not kept: to decompress it
-//! again takes less time than to fetch it from memory that is not in the caches.
+//! All processors check the first chunks of a sound file ahead. What they decompress for it is not kept: decompressing
+//! it again takes no longer than fetching it from memory that is not in the caches.
 
 use std::{collections::BTreeMap, iter, ops::Range, thread};
 

@@ -34,8 +34,8 @@ use crate::{
     writer::{FULL_SET, LogWriter, TickRecord, Timing, Written},
 };
 
-/// Capacity of the ring, ticks: 40 s of real time. In fast clock a cell at rest takes less time for a tick than the
-/// writer; a run that waits for it goes on with cold caches.
+/// Capacity of the ring, ticks: 40 s of real time. In fast clock, while the cell is at rest, a tick is shorter than the
+/// time that the writer takes for it; a run that has to wait for the writer goes on with cold caches.
 const RING: usize = 1024;
 /// Capacity of the ring of states, which are written once a second.
 const STATE_RING: usize = 64;

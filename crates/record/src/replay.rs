@@ -10,9 +10,8 @@
 
 use std::{
     collections::BTreeMap,
-    mem,
     path::Path,
-    sync::mpsc::{SyncSender, sync_channel},
+    sync::mpsc::sync_channel,
     thread,
     time::{Duration, Instant},
 };
@@ -116,14 +115,14 @@ pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, Repla
         Some(data) => grown(data.clone(), &log.attachments)?,
         None => generations(&log)?,
     };
-    let comparison = compute_and_compare(&log, options, &generations)?;
-    if comparison.ticks == 0 {
+    let Replayer { ticks, skipped, comparison, .. } = compute_and_compare(&log, options, &generations)?;
+    if ticks == 0 {
         return Err(ReplayError::Empty);
     }
     let digest = log.end.as_ref().filter(|_| options.has_digest()).and_then(|end| end.get("digest"));
     Ok(ReplayReport {
-        ticks: comparison.ticks,
-        skipped: comparison.skipped,
+        ticks,
+        skipped,
         first_difference: comparison.first_difference,
         digest: comparison.digest,
         recorded_digest: digest.and_then(|digest| u64::from_str_radix(digest, 16).ok()),
@@ -186,65 +185,26 @@ pub(crate) fn grown(first: Store, attachments: &[Attachment]) -> Result<Vec<Stor
 }
 
 /// Compute the ticks of a log, and compare them up to the first difference, while another thread reads them.
-fn compute_and_compare(
-    log: &Log,
-    options: &Options,
-    generations: &[Store],
-) -> Result<Comparison, ReplayError> {
+fn compute_and_compare(log: &Log, options: &Options, generations: &[Store]) -> Result<Replayer, ReplayError> {
     thread::scope(|scope| {
         let (to_compute, logged) = sync_channel(WAITING);
         scope.spawn(move || {
-            let mut to_compute = HandOver::new(to_compute);
-            log.ticks().all(|tick| to_compute.give(tick))
+            let mut ticks = log.ticks();
+            loop {
+                let some: Vec<_> = ticks.by_ref().take(AT_ONCE).collect();
+                // After the first difference the receiver is gone.
+                if some.is_empty() || to_compute.send(some).is_err() {
+                    break;
+                }
+            }
         });
-        let mut comparison = Comparison::new(options.data.is_some());
-        // After the first difference the other thread finds the channel closed, and ends.
-        let logged = logged.into_iter().flatten();
-        Replayer::default()
-            .compute(logged, options, generations, |computed| !comparison.differs(&computed))?;
-        Ok(comparison)
+        let mut replayer = Replayer::new(options.data.is_some());
+        replayer.compute(logged.into_iter().flatten(), options, generations)?;
+        Ok(replayer)
     })
 }
 
-/// Hands items to another thread, some at a time; the last ones when it is dropped.
-struct HandOver<T> {
-    to: SyncSender<Vec<T>>,
-    some: Vec<T>,
-}
-
-impl<T> HandOver<T> {
-    const fn new(to: SyncSender<Vec<T>>) -> Self {
-        Self { to, some: Vec::new() }
-    }
-
-    /// Give an item; false if the other thread takes no more.
-    fn give(&mut self, item: T) -> bool {
-        self.some.push(item);
-        self.some.len() < AT_ONCE || self.to.send(mem::take(&mut self.some)).is_ok()
-    }
-}
-
-impl<T> Drop for HandOver<T> {
-    fn drop(&mut self) {
-        // A thread that takes no more does not need them.
-        let _ = self.to.send(mem::take(&mut self.some));
-    }
-}
-
-/// A recorded tick, and what became of it in the replay.
-pub(crate) struct Computed<'a> {
-    /// The recorded tick.
-    pub logged: &'a LoggedTick,
-    /// Byte image of common memory after the tick, and of the states of the processes if the log has them; `None` if
-    /// the recorded ones were taken over.
-    pub result: Option<(&'a [u8], Option<Vec<u8>>)>,
-    /// Ticks that were computed, up to this one.
-    pub ticks: u64,
-    /// Ticks that could not be computed, up to this one.
-    pub skipped: u64,
-}
-
-/// Computes recorded ticks again.
+/// Computes recorded ticks again, and compares them.
 struct Replayer {
     ladder: Ladder,
     /// Common memory after the tick before, and of the one before that, which the next tick overwrites.
@@ -256,10 +216,12 @@ struct Replayer {
     last: Tick,
     ticks: u64,
     skipped: u64,
+    comparison: Comparison,
 }
 
-impl Default for Replayer {
-    fn default() -> Self {
+impl Replayer {
+    /// `by_name`: compare records by name instead of number, for other task data than those of the log.
+    fn new(by_name: bool) -> Self {
         Self {
             ladder: Ladder::default(),
             halves: [CommonMemory::ZERO; 2],
@@ -268,18 +230,16 @@ impl Default for Replayer {
             last: Tick::BEFORE_START,
             ticks: 0,
             skipped: 0,
+            comparison: Comparison::new(by_name),
         }
     }
-}
 
-impl Replayer {
-    /// Compute ticks, and give each result to the comparison until it takes no more.
+    /// Compute ticks up to the first that differs.
     fn compute(
-        mut self,
+        &mut self,
         ticks: impl Iterator<Item = Result<LoggedTick, ReadError>>,
         options: &Options,
         generations: &[Store],
-        mut give: impl FnMut(Computed<'_>) -> bool,
     ) -> Result<(), ReplayError> {
         let is_early = |logged: &LoggedTick| options.from.is_some_and(|from| logged.tick < from);
         // Ticks from the last recorded states to the beginning of the replay.
@@ -302,7 +262,7 @@ impl Replayer {
                 if is_first && is_early(&logged) && logged.state.is_some() {
                     self.take_over(&logged)?;
                     self.last = logged.tick;
-                } else if !give(self.tick(&logged, generations)?) {
+                } else if self.differs(&logged, generations)? {
                     return Ok(());
                 }
             }
@@ -310,36 +270,30 @@ impl Replayer {
         Ok(())
     }
 
-    /// Compute a tick again, or take the recorded values after a gap.
-    fn tick<'a>(
-        &'a mut self,
-        logged: &'a LoggedTick,
-        generations: &[Store],
-    ) -> Result<Computed<'a>, ReplayError> {
+    /// Compute a tick again, or take the recorded values after a gap. True if the tick differs from the log.
+    fn differs(&mut self, logged: &LoggedTick, generations: &[Store]) -> Result<bool, ReplayError> {
         let tick = logged.tick;
         let follows = self.has_states && tick == self.last.next();
         self.skipped += tick.since(self.last.next());
         self.last = tick;
-        let result = if follows {
-            let bad = |source| ReplayError::Inputs { tick: tick.0, source };
-            let external: ExternalInputs = from_bytes(&logged.external).map_err(bad)?;
-            let missing = ReplayError::Generation { tick: tick.0, generation: external.generation };
-            let store = usize::try_from(external.generation).ok().and_then(|at| generations.get(at));
-            let data = store.ok_or(missing)?.view();
-            let [before, after] = &mut self.halves;
-            self.ladder.step(tick, before, &external, &data, after);
-            self.ticks += 1;
-            self.halves.swap(0, 1);
-            let [after, _] = &self.halves;
-            after.encode(&mut Writer::new(&mut self.image));
-            let states = logged.state.is_some().then(|| image(&self.ladder.state()));
-            Some((self.image.as_slice(), states))
-        } else {
+        if !follows {
             self.skipped += 1;
             self.take_over(logged)?;
-            None
-        };
-        Ok(Computed { logged, result, ticks: self.ticks, skipped: self.skipped })
+            return Ok(false);
+        }
+        let bad = |source| ReplayError::Inputs { tick: tick.0, source };
+        let external: ExternalInputs = from_bytes(&logged.external).map_err(bad)?;
+        let missing = ReplayError::Generation { tick: tick.0, generation: external.generation };
+        let store = usize::try_from(external.generation).ok().and_then(|at| generations.get(at));
+        let data = store.ok_or(missing)?.view();
+        let [before, after] = &mut self.halves;
+        self.ladder.step(tick, before, &external, &data, after);
+        self.ticks += 1;
+        self.halves.swap(0, 1);
+        let [after, _] = &self.halves;
+        after.encode(&mut Writer::new(&mut self.image));
+        let states = logged.state.is_some().then(|| image(&self.ladder.state()));
+        Ok(self.comparison.differs(logged, &self.image, states.as_deref()))
     }
 
     /// Continue from the recorded values; without states the replay waits for the next tick that has them.

@@ -227,6 +227,7 @@ mod tests {
 
     /// The controller's side on the 40 ms grid, and a pedestal that writes what the test specifies.
     struct Bench {
+        /// Ends first, since an endpoint that is dropped waits for its session.
         session: TestSession,
         agent: Agent,
         tick: u64,

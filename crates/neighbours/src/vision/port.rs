@@ -271,6 +271,7 @@ mod tests {
 
     /// A port, and the session at its other end.
     struct Bench {
+        /// Ends first, since an endpoint that is dropped waits for its session.
         session: Option<TestSession>,
         port: Port,
         response_box: Mailbox,
