@@ -70,7 +70,7 @@ pub enum Connection {
 /// go.
 pub const KEPT_UPDATES: usize = 2;
 
-/// An item that the robot holds: what the data base is told when it is let go.
+/// An item that the robot holds or is to take: what the data base is told when it is let go.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Carried {
     /// The object.
@@ -81,7 +81,7 @@ pub struct Carried {
     pub location: Name10,
     /// Sector there, if it has one.
     pub sector: Option<i32>,
-    /// The data base knows it as the robot's.
+    /// The data base is told wherever it is let go: it has it as the robot's, or where the robot has taken it.
     pub told: bool,
 }
 
@@ -95,7 +95,9 @@ pub struct DataBaseBeliefs {
     pub connecting: bool,
     /// The updates that have not been taken, the oldest first.
     pub owed: [Option<DataBaseCommand>; KEPT_UPDATES],
-    /// What the robot holds after a MOVE or an ACQUIRE.
+    /// What the command in the ledger takes, until it is held; none if the data base is not told where it is let go.
+    pub taking: Option<Carried>,
+    /// What the robot holds: by a command that is told of, or after a MOVE or an ACQUIRE.
     pub carried: Option<Carried>,
 }
 

@@ -81,6 +81,8 @@ pub struct EmoveCommand {
     pub location_record: Option<u32>,
     /// Record of ARRAY-TABLE if the location is a sector (extension).
     pub location_array: Option<u32>,
+    /// The sector, from 1, if the location is one (extension).
+    pub location_sector: Option<i32>,
     /// `pose-^-in`: the goal pose, if a location is named.
     pub pose: Option<u32>,
     /// `endeff-id#-in`; none if any gripper will do.
@@ -139,6 +141,8 @@ pub struct PlacedObject {
     pub record: Option<u32>,
     /// Its record of ARRAY-TABLE if it is a sector.
     pub array: Option<u32>,
+    /// The sector, from 1, if it is one.
+    pub sector: Option<i32>,
 }
 
 /// An object that vision has found (extension).
@@ -161,6 +165,8 @@ pub struct Standing {
     pub record: Option<u32>,
     /// Its record of ARRAY-TABLE if it is a sector.
     pub array: Option<u32>,
+    /// The sector, from 1, if it is one.
+    pub sector: Option<i32>,
     /// Grip of the object that was gone to, for MOV-TO-OBJ, MOV-OBJ-TO and MOV-TO-HOL.
     pub grip: Option<i32>,
 }
@@ -222,6 +228,8 @@ pub struct RobotPlace {
     pub record: Option<u32>,
     /// Its record of ARRAY-TABLE if it is a sector.
     pub array: Option<u32>,
+    /// The sector, from 1, if it is one.
+    pub sector: Option<i32>,
     /// Where the tool is there.
     pub pose: Pose,
 }

@@ -81,6 +81,8 @@ pub struct SubtaskCommand {
     pub location_record: Option<u32>,
     /// Record of ARRAY-TABLE if the location is a sector (extension).
     pub location_array: Option<u32>,
+    /// The sector, from 1, if the location is one (extension).
+    pub location_sector: Option<i32>,
     /// `pose-^-in`: the goal, a T-POSE of Task, if a location is named.
     pub pose: Option<u32>,
 }

@@ -43,6 +43,7 @@ pub fn robot_at(gone_to: GoneTo, at: &Location, frame: &Frame) -> RobotPlace {
         kind: at.place.kind,
         record: at.place.locpt.to_option(),
         array: at.place.array.to_option(),
+        sector: at.sector,
         pose: Pose::from_frame(frame),
     }
 }

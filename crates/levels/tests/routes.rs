@@ -44,6 +44,7 @@ fn command(verb: EmoveVerb, object: &str, grip: i32, at: &Location) -> EmoveComm
         location_kind: at.place.kind,
         location_record: at.place.locpt.to_option(),
         location_array: at.place.array.to_option(),
+        location_sector: at.sector,
         ..EmoveCommand::default()
     }
 }

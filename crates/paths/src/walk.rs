@@ -187,6 +187,7 @@ impl<'a> Walk<'a> {
             location_kind: at.place.kind,
             location_record: at.place.locpt.to_option(),
             location_array: at.place.array.to_option(),
+            location_sector: at.sector,
             ..EmoveCommand::default()
         }
     }

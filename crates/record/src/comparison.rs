@@ -2,7 +2,7 @@
 
 use interfaces::CommonMemory;
 use levels::ladder::LadderState;
-use rcs_core::{digest::Digest, tick::Tick};
+use rcs_core::tick::Tick;
 
 use crate::{
     channels::{HeaderPlace, headers},
@@ -35,15 +35,11 @@ impl std::fmt::Display for Difference {
     }
 }
 
-/// What the comparison of a replay with its log has come to.
+/// Compares ticks with the log: the fields of the byte images.
 pub struct Comparison {
     memory_leaves: Vec<Leaf>,
     state_leaves: Vec<Leaf>,
     headers: Vec<HeaderPlace>,
-    /// Digest of the output buffers of the computed ticks.
-    pub digest: Digest,
-    /// The first difference; `None` if there is none.
-    pub first_difference: Option<Difference>,
 }
 
 impl Comparison {
@@ -58,21 +54,17 @@ impl Comparison {
             memory_leaves: leaves(CommonMemory::STRUCT),
             state_leaves: leaves(LadderState::STRUCT),
             headers: headers(),
-            digest: Digest::new(),
-            first_difference: None,
         }
     }
 
-    /// Compare the next tick with the byte images of common memory and of the states of the processes, if the log has
-    /// those; true if it differs.
-    pub fn differs(&mut self, logged: &LoggedTick, memory: &[u8], states: Option<&[u8]>) -> bool {
-        self.digest.add(memory);
-        self.first_difference = self.difference_of(logged, memory, states);
-        self.first_difference.is_some()
-    }
-
-    /// The first difference of the recorded buffers and states from the computed ones.
-    fn difference_of(&self, logged: &LoggedTick, memory: &[u8], states: Option<&[u8]>) -> Option<Difference> {
+    /// The first difference of a recorded tick from the byte images of common memory and of the states of the processes,
+    /// if the log has those.
+    pub fn difference(
+        &self,
+        logged: &LoggedTick,
+        memory: &[u8],
+        states: Option<&[u8]>,
+    ) -> Option<Difference> {
         let difference = |leaf: &Leaf, buffer: String, field: &str, was: &[u8], is: &[u8]| {
             let (tick, field) = (logged.tick, field.to_owned());
             Difference {

@@ -8,6 +8,7 @@
 use std::{
     collections::BTreeMap,
     io::Read,
+    iter,
     ops::Range,
     path::{Path, PathBuf},
 };
@@ -223,8 +224,22 @@ impl Log {
 
     /// The recorded ticks, in order, up to the end or the damage.
     pub fn ticks(&self) -> impl Iterator<Item = Result<LoggedTick, ReadError>> {
+        let mut ticks = self.ticks_from(0);
+        iter::from_fn(move || ticks.advance().map(|read| read.map(|(_, logged)| logged.clone())))
+    }
+
+    /// The number of parts of the file with messages, about one for a second of the run.
+    pub(crate) const fn parts(&self) -> usize {
+        self.segments.len()
+    }
+
+    /// The recorded ticks from a part of the file on: those from its first whole images on.
+    pub(crate) fn ticks_from(
+        &self,
+        first: usize,
+    ) -> Ticks<impl Iterator<Item = (usize, Option<(Tick, Vec<u8>)>)>> {
         let codecs = Codecs::new();
-        let mut last = LoggedTick {
+        let last = LoggedTick {
             tick: Tick::BEFORE_START,
             gap: 0,
             external: vec![0; codecs.external.size()],
@@ -233,24 +248,7 @@ impl Log {
             world: None,
             timing: None,
         };
-        let mut has_base = true;
-        self.items(REPLAY).filter_map(move |item| {
-            let Some((_, data)) = item else {
-                has_base = false;
-                return None;
-            };
-            has_base |= is_full(&data);
-            let before = last.tick;
-            if !has_base {
-                return None;
-            }
-            let sound = advance(&codecs, &mut last, &data);
-            if !sound || last.tick <= before || last.tick.0 > u64::from(u32::MAX) {
-                return Some(Err(ReadError::Damaged { tick: last.tick.0 }));
-            }
-            last.gap = last.tick.since(before).saturating_sub(1);
-            Some(Ok(last.clone()))
-        })
+        Ticks { items: self.items(REPLAY, first), codecs, last, has_base: first == 0 }
     }
 
     /// The lines on `/log`, in order.
@@ -312,20 +310,26 @@ impl Log {
 
     /// The messages of a topic with their ticks.
     pub fn messages(&self, topic: &str) -> impl Iterator<Item = (Tick, Vec<u8>)> {
-        self.items(topic).flatten()
+        self.items(topic, 0).filter_map(|(_, message)| message)
     }
 
-    /// The messages of a topic with their ticks, and `None` where the file is damaged.
-    fn items(&self, topic: &str) -> impl Iterator<Item = Option<(Tick, Vec<u8>)>> {
+    /// The messages of a topic from a part of the file on, with their ticks, and `None` where the file is damaged; each
+    /// with the number of its part.
+    fn items(
+        &self,
+        topic: &str,
+        first: usize,
+    ) -> impl Iterator<Item = (usize, Option<(Tick, Vec<u8>)>)> + use<'_> {
         let id = self.channels.get(topic).copied();
         let mut decoder = Decoder::default();
-        self.segments.iter().flat_map(move |segment| {
+        self.segments.iter().enumerate().skip(first).flat_map(move |(part, segment)| {
             if matches!(segment, Segment::Damaged(_)) {
-                return vec![None];
+                return vec![(part, None)];
             }
             let messages = self.messages_in(segment, &mut decoder);
             let of_topic = messages.filter(|message| Some(message.channel) == id);
-            of_topic.map(|message| Some((Tick(u64::from(message.sequence)), message.data.to_vec()))).collect()
+            let item = |message: Message<'_>| (Tick(u64::from(message.sequence)), message.data.to_vec());
+            of_topic.map(|message| (part, Some(item(message)))).collect()
         })
     }
 
@@ -341,6 +345,40 @@ impl Log {
         };
         // `from_bytes` has read them without an error.
         pieces::messages(chunk.and_then(|chunk| decoder.unpack(chunk)).unwrap_or_default())
+    }
+}
+
+/// Reads the recorded ticks of a log.
+pub struct Ticks<I> {
+    items: I,
+    codecs: Codecs,
+    last: LoggedTick,
+    /// The differences of the next message are to the last tick.
+    has_base: bool,
+}
+
+impl<I: Iterator<Item = (usize, Option<(Tick, Vec<u8>)>)>> Ticks<I> {
+    /// The next tick, with the number of its part of the file.
+    pub(crate) fn advance(&mut self) -> Option<Result<(usize, &LoggedTick), ReadError>> {
+        loop {
+            let (part, item) = self.items.next()?;
+            let Some((_, data)) = item else {
+                self.has_base = false;
+                continue;
+            };
+            self.has_base |= is_full(&data);
+            if !self.has_base {
+                continue;
+            }
+            let before = self.last.tick;
+            let sound = advance(&self.codecs, &mut self.last, &data);
+            let tick = self.last.tick;
+            if !sound || tick <= before || tick.0 > u64::from(u32::MAX) {
+                return Some(Err(ReadError::Damaged { tick: tick.0 }));
+            }
+            self.last.gap = tick.since(before).saturating_sub(1);
+            return Some(Ok((part, &self.last)));
+        }
     }
 }
 

@@ -5,13 +5,16 @@
 //! comparison, because later differences follow from it.
 //!
 //! Missing ticks cannot be computed; the replay continues with the states recorded with the first tick after the gap.
-//! In the same way a replay can begin in the middle: states are recorded once a second. A replay with other task data
-//! shows what they would have changed; it does not compare record numbers.
+//! In the same way a replay can begin in the middle: states are recorded once a second. So all processors replay, each
+//! another stretch of the log: it begins with recorded states, and ends with the states with which the next one begins,
+//! which are compared like all others. A replay with other task data shows what they would have changed; it does not
+//! compare record numbers.
 
 use std::{
     collections::BTreeMap,
+    panic::resume_unwind,
     path::Path,
-    sync::mpsc::sync_channel,
+    sync::atomic::{AtomicUsize, Ordering},
     thread,
     time::{Duration, Instant},
 };
@@ -20,7 +23,7 @@ use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::{Ladder, LadderState};
 use rcs_core::{
     Plain,
-    digest::Digest,
+    digest::{Digest, hash},
     plain::{Writer, from_bytes},
     tick::{TICK_MS, Tick},
 };
@@ -28,16 +31,15 @@ use taskdata::load::{Source, Store};
 
 use crate::{
     comparison::Comparison,
-    error::{ReadError, ReplayError},
+    error::ReplayError,
     input::Attachment,
     reader::{Log, LoggedTick},
 };
 
 pub use crate::comparison::Difference;
 
-/// Ticks that one thread hands to the next at once, and how many times as many may wait there.
-const AT_ONCE: usize = 32;
-const WAITING: usize = 4;
+/// Parts of a log that a processor replays at once, of a second each.
+const STRETCH: usize = 8;
 
 /// The part of a log to replay, and the task data.
 #[derive(Clone, Debug, Default)]
@@ -115,7 +117,9 @@ pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, Repla
         Some(data) => grown(data.clone(), &log.attachments)?,
         None => generations(&log)?,
     };
-    let Replayer { ticks, skipped, comparison, .. } = compute_and_compare(&log, options, &generations)?;
+    let comparison = Comparison::new(options.data.is_some());
+    let stretches = Stretches { log: &log, options, generations: &generations, comparison, length: STRETCH };
+    let Replayed { ticks, skipped, digest: computed, first_difference } = stretches.replay()?;
     if ticks == 0 {
         return Err(ReplayError::Empty);
     }
@@ -123,8 +127,8 @@ pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, Repla
     Ok(ReplayReport {
         ticks,
         skipped,
-        first_difference: comparison.first_difference,
-        digest: comparison.digest,
+        first_difference,
+        digest: computed,
         recorded_digest: digest.and_then(|digest| u64::from_str_radix(digest, 16).ok()),
         complete: log.complete,
         damage: log.damage(),
@@ -184,24 +188,110 @@ pub(crate) fn grown(first: Store, attachments: &[Attachment]) -> Result<Vec<Stor
     Ok(generations)
 }
 
-/// Compute the ticks of a log, and compare them up to the first difference, while another thread reads them.
-fn compute_and_compare(log: &Log, options: &Options, generations: &[Store]) -> Result<Replayer, ReplayError> {
-    thread::scope(|scope| {
-        let (to_compute, logged) = sync_channel(WAITING);
-        scope.spawn(move || {
-            let mut ticks = log.ticks();
-            loop {
-                let some: Vec<_> = ticks.by_ref().take(AT_ONCE).collect();
-                // After the first difference the receiver is gone.
-                if some.is_empty() || to_compute.send(some).is_err() {
-                    break;
-                }
+/// What a replay has come to, up to the first difference.
+#[derive(Debug, PartialEq)]
+struct Replayed {
+    ticks: u64,
+    skipped: u64,
+    digest: Digest,
+    first_difference: Option<Difference>,
+}
+
+/// A log that is replayed in stretches.
+struct Stretches<'a> {
+    log: &'a Log,
+    options: &'a Options,
+    generations: &'a [Store],
+    comparison: Comparison,
+    /// Parts of the log in a stretch.
+    length: usize,
+}
+
+impl Stretches<'_> {
+    /// Replay all stretches up to the first that differs, or cannot be computed.
+    fn replay(&self) -> Result<Replayed, ReplayError> {
+        let mut all = Replayed { ticks: 0, skipped: 0, digest: Digest::new(), first_difference: None };
+        for stretch in self.in_all_processors() {
+            let Replayer { hashes, skipped, first_difference, .. } = stretch?;
+            all.ticks += hashes.len() as u64;
+            all.skipped += skipped;
+            hashes.iter().for_each(|hash| all.digest.add_hash(*hash));
+            all.first_difference = first_difference;
+            if all.first_difference.is_some() {
+                break;
             }
+        }
+        Ok(all)
+    }
+
+    /// The stretches in order, each replayed in the next processor that was free. At least those up to the first that
+    /// differs or cannot be computed.
+    fn in_all_processors(&self) -> Vec<Result<Replayer, ReplayError>> {
+        let count = self.log.parts().div_ceil(self.length);
+        let next = AtomicUsize::new(0);
+        let replay_some = || {
+            let mut some = Vec::new();
+            loop {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                if number >= count {
+                    return some;
+                }
+                let stretch = self.stretch(number);
+                if !stretch.as_ref().is_ok_and(|replayer| replayer.first_difference.is_none()) {
+                    // None is begun after it, and all before it have been.
+                    next.store(count, Ordering::Relaxed);
+                }
+                some.push((number, stretch));
+            }
+        };
+        let threads = thread::available_parallelism().map_or(1, usize::from).min(count);
+        let mut stretches: Vec<_> = thread::scope(|scope| {
+            let all: Vec<_> = (0..threads).map(|_| scope.spawn(replay_some)).collect();
+            all.into_iter()
+                .flat_map(|some| some.join().unwrap_or_else(|panic| resume_unwind(panic)))
+                .collect()
         });
-        let mut replayer = Replayer::new(options.data.is_some());
-        replayer.compute(logged.into_iter().flatten(), options, generations)?;
+        stretches.sort_by_key(|(number, _)| *number);
+        stretches.into_iter().map(|(_, stretch)| stretch).collect()
+    }
+
+    /// Compute the ticks of a stretch up to the first that differs. It goes from the first recorded states in its parts of
+    /// the file to the first ones after them; the first stretch goes from the start of the run.
+    fn stretch(&self, number: usize) -> Result<Replayer, ReplayError> {
+        let first = number.saturating_mul(self.length);
+        let end = first.saturating_add(self.length);
+        let mut ticks = self.log.ticks_from(first);
+        let (mut replayer, mut has_begun) = (Replayer::new(), number == 0);
+        // Ticks from the last recorded states to the beginning of the replay.
+        let mut run_up: Vec<LoggedTick> = Vec::new();
+        while let Some(read) = ticks.advance() {
+            let (part, logged) = read?;
+            let is_over = self.options.until.is_some_and(|until| logged.tick > until);
+            if is_over || (part >= end && !has_begun) {
+                break;
+            }
+            let is_early = self.options.from.is_some_and(|from| logged.tick < from);
+            if logged.state.is_some() && (is_early || !has_begun) {
+                replayer.take_over(logged)?;
+                run_up.clear();
+                has_begun = true;
+            } else if is_early && has_begun {
+                run_up.push(logged.clone());
+            } else if has_begun {
+                for logged in run_up.iter().chain([logged]) {
+                    replayer.step(logged, self)?;
+                    if replayer.first_difference.is_some() {
+                        return Ok(replayer);
+                    }
+                }
+                run_up.clear();
+            }
+            if part >= end && logged.state.is_some() {
+                break;
+            }
+        }
         Ok(replayer)
-    })
+    }
 }
 
 /// Computes recorded ticks again, and compares them.
@@ -214,92 +304,56 @@ struct Replayer {
     /// False if the replay needs recorded states to continue.
     has_states: bool,
     last: Tick,
-    ticks: u64,
+    /// Hashes of the output buffers of the computed ticks.
+    hashes: Vec<u64>,
     skipped: u64,
-    comparison: Comparison,
+    first_difference: Option<Difference>,
 }
 
 impl Replayer {
-    /// `by_name`: compare records by name instead of number, for other task data than those of the log.
-    fn new(by_name: bool) -> Self {
+    /// At the start of a run.
+    fn new() -> Self {
         Self {
             ladder: Ladder::default(),
             halves: [CommonMemory::ZERO; 2],
             image: vec![0; CommonMemory::SIZE],
             has_states: true,
             last: Tick::BEFORE_START,
-            ticks: 0,
+            hashes: Vec::new(),
             skipped: 0,
-            comparison: Comparison::new(by_name),
+            first_difference: None,
         }
     }
 
-    /// Compute ticks up to the first that differs.
-    fn compute(
-        &mut self,
-        ticks: impl Iterator<Item = Result<LoggedTick, ReadError>>,
-        options: &Options,
-        generations: &[Store],
-    ) -> Result<(), ReplayError> {
-        let is_early = |logged: &LoggedTick| options.from.is_some_and(|from| logged.tick < from);
-        // Ticks from the last recorded states to the beginning of the replay.
-        let mut run_up: Vec<LoggedTick> = Vec::new();
-        for logged in ticks {
-            let logged = logged?;
-            if options.until.is_some_and(|until| logged.tick > until) {
-                break;
-            }
-            let early = is_early(&logged);
-            if early && logged.state.is_some() {
-                run_up.clear();
-            }
-            run_up.push(logged);
-            if early {
-                continue;
-            }
-            for logged in run_up.drain(..) {
-                let is_first = self.ticks == 0 && self.has_states;
-                if is_first && is_early(&logged) && logged.state.is_some() {
-                    self.take_over(&logged)?;
-                    self.last = logged.tick;
-                } else if self.differs(&logged, generations)? {
-                    return Ok(());
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Compute a tick again, or take the recorded values after a gap. True if the tick differs from the log.
-    fn differs(&mut self, logged: &LoggedTick, generations: &[Store]) -> Result<bool, ReplayError> {
+    /// Compute a tick again and compare it, or take the recorded values after a gap.
+    fn step(&mut self, logged: &LoggedTick, stretches: &Stretches<'_>) -> Result<(), ReplayError> {
         let tick = logged.tick;
-        let follows = self.has_states && tick == self.last.next();
         self.skipped += tick.since(self.last.next());
-        self.last = tick;
-        if !follows {
+        if !self.has_states || tick != self.last.next() {
             self.skipped += 1;
-            self.take_over(logged)?;
-            return Ok(false);
+            return self.take_over(logged);
         }
+        self.last = tick;
         let bad = |source| ReplayError::Inputs { tick: tick.0, source };
         let external: ExternalInputs = from_bytes(&logged.external).map_err(bad)?;
         let missing = ReplayError::Generation { tick: tick.0, generation: external.generation };
-        let store = usize::try_from(external.generation).ok().and_then(|at| generations.get(at));
+        let store = usize::try_from(external.generation).ok().and_then(|at| stretches.generations.get(at));
         let data = store.ok_or(missing)?.view();
         let [before, after] = &mut self.halves;
         self.ladder.step(tick, before, &external, &data, after);
-        self.ticks += 1;
         self.halves.swap(0, 1);
         let [after, _] = &self.halves;
         after.encode(&mut Writer::new(&mut self.image));
+        self.hashes.push(hash(&self.image));
         let states = logged.state.is_some().then(|| image(&self.ladder.state()));
-        Ok(self.comparison.differs(logged, &self.image, states.as_deref()))
+        self.first_difference = stretches.comparison.difference(logged, &self.image, states.as_deref());
+        Ok(())
     }
 
     /// Continue from the recorded values; without states the replay waits for the next tick that has them.
     fn take_over(&mut self, logged: &LoggedTick) -> Result<(), ReplayError> {
         let bad = |source| ReplayError::Inputs { tick: logged.tick.0, source };
-        self.has_states = logged.state.is_some();
+        (self.last, self.has_states) = (logged.tick, logged.state.is_some());
         if let Some(image) = &logged.state {
             let state: LadderState = from_bytes(image).map_err(bad)?;
             self.ladder.restore(&state);
@@ -315,3 +369,6 @@ fn image<T: Plain>(record: &T) -> Vec<u8> {
     record.encode(&mut Writer::new(&mut image));
     image
 }
+
+#[cfg(test)]
+mod tests;

@@ -152,6 +152,7 @@ impl State {
                 location: at.location,
                 record: at.record,
                 array: at.array,
+                sector: at.sector,
             };
             self.beliefs.placed = self.place().filter(|_| has_let_go && !gone).map(let_go);
         }

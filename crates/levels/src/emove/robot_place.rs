@@ -43,6 +43,7 @@ pub const fn robot_at(command: &EmoveCommand, gone_to: GoneTo, pose: Pose) -> Ro
         kind: command.location_kind,
         record: command.location_record,
         array: command.location_array,
+        sector: command.location_sector,
         pose,
     }
 }
@@ -72,7 +73,7 @@ pub const fn standing(at: &RobotPlace) -> Standing {
         GoneTo::Object(ObjectGrip { grip, .. }) | GoneTo::Brought(ObjectGrip { grip, .. }) => Some(grip),
         GoneTo::Location | GoneTo::View(_) | GoneTo::Drum => None,
     };
-    Standing { location: at.location, record: at.record, array: at.array, grip }
+    Standing { location: at.location, record: at.record, array: at.array, sector: at.sector, grip }
 }
 
 /// Where the resolvers say that the robot is.

@@ -44,6 +44,7 @@ impl State {
                     kind: LocationKind::Point,
                     record: next.to_option(),
                     array: None,
+                    sector: None,
                     pose: Pose::from_frame(present),
                 });
                 (self.beliefs.way, self.away) = (None, false);

@@ -42,6 +42,8 @@ pub struct Aim {
     pub record: Option<u32>,
     /// Record of ARRAY-TABLE, if it is a sector.
     pub array: Option<u32>,
+    /// The sector, from 1, if it is one.
+    pub sector: Option<i32>,
     /// Record number of its pose, once it is given.
     pub pose: Option<u32>,
 }
@@ -79,6 +81,7 @@ impl Aim {
             kind: command.location_kind,
             record: command.location_record,
             array: command.location_array,
+            sector: command.location_sector,
             pose: command.pose,
         }
     }
@@ -94,6 +97,7 @@ impl Aim {
             kind: location.place.kind,
             record: location.place.locpt.to_option(),
             array: location.place.array.to_option(),
+            sector: location.sector,
             pose: None,
         }
     }
@@ -129,6 +133,7 @@ impl Aim {
             location_kind: self.kind,
             location_record: self.record,
             location_array: self.array,
+            location_sector: self.sector,
             pose: self.pose,
             end_effector_id: self.end_effector_id,
         }

@@ -200,20 +200,32 @@ fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &Tas
     }
 }
 
+/// The location of a command: records and sector.
+const fn site(command: &SubtaskCommand) -> (Option<u32>, Option<u32>, Option<i32>) {
+    (command.location_record, command.location_array, command.location_sector)
+}
+
 /// Does the robot stand at the object of a command?
 fn station(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
-    let there = (command.location_record, command.location_array, Some(command.source_grip));
     match emove.at {
-        Some(at) if (at.record, at.array, at.grip) == there => Where::There,
+        Some(at)
+            if at.grip == Some(command.source_grip) && (at.record, at.array, at.sector) == site(command) =>
+        {
+            Where::There
+        }
         _ => Where::Elsewhere,
     }
 }
 
 /// Whether the object of a command was released at its destination.
 fn placed(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
-    let there = (command.object, command.destination_grip, command.location_record, command.location_array);
+    let what = (command.object, command.destination_grip);
     match emove.placed {
-        Some(it) if (Some(it.object), it.grip, it.record, it.array) == there => Where::There,
+        Some(it)
+            if (Some(it.object), it.grip) == what && (it.record, it.array, it.sector) == site(command) =>
+        {
+            Where::There
+        }
         _ => Where::Elsewhere,
     }
 }

@@ -11,7 +11,7 @@
 use interfaces::{
     DataBaseCommand, DataBaseStatus, ExternalInputs, TaskOutputs,
     data_base::{Carried, Connection, DataBaseBeliefs, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
-    emove::PlacedObject,
+    emove::{Holding, PlacedObject},
 };
 use rcs_core::{
     Plain,
@@ -21,7 +21,7 @@ use rcs_core::{
 };
 
 use super::{
-    plan::{Plan, TaskVerb},
+    plan::{Plan, Resumed, TaskVerb},
     tables::{DataBase, Update},
 };
 
@@ -146,6 +146,40 @@ impl DataSystem {
         (self.beliefs.connected, self.beliefs.connecting) = (true, false);
     }
 
+    /// A command about an object or a tool is accepted. If it takes an object of which the data base is told, it is told
+    /// where that is let go, also if the command is never finished.
+    pub fn accept(&mut self, plan: &Plan, held: Holding) {
+        self.beliefs.taking = None;
+        let Some(item) = plan.object.filter(|_| plan.verb.takes()) else { return };
+        let is_followed =
+            self.beliefs.connected && !plan.from_elsewhere && (plan.update_due || self.follows(item, false));
+        let before = self.beliefs.carried.filter(|carried| carried.item == item);
+        let site = plan.source.location.unwrap_or_default();
+        let (location, sector) = (site.name, site.sector);
+        let taken = Carried { item, serial: plan.serial, location, sector, told: true };
+        match held {
+            Holding::Object(held) if held.object == item => {
+                if is_followed {
+                    self.beliefs.carried = Some(Carried { told: true, ..before.unwrap_or(taken) });
+                }
+                return;
+            }
+            // The robot has lost what it carried under that name: what it takes now is another one.
+            Holding::Nothing if before.is_some() && plan.resumed == Resumed::Not => {
+                self.beliefs.carried = None;
+            }
+            _ => {}
+        }
+        self.beliefs.taking = is_followed.then_some(taken);
+    }
+
+    /// Once a tick: what the robot was sent to take is what it holds.
+    pub fn hold(&mut self, held: Option<Name16>) {
+        if held.is_some() && held == self.beliefs.taking.map(|taking| taking.item) {
+            self.beliefs.carried = self.beliefs.taking.take();
+        }
+    }
+
     /// The robot holds the object of a MOVE or an ACQUIRE. An ACQUIRE that found it in the hand, taken elsewhere,
     /// leaves where that was.
     pub fn carry(&mut self, plan: &Plan, told: bool) {
@@ -177,13 +211,10 @@ impl DataSystem {
         self.tell_owed(tick, outputs);
     }
 
-    /// REPORT-ITEM: keep the update of what the robot carried and has let go, until it is taken. `bound_for` is the
-    /// destination of the command that did, and its sector.
-    pub fn owe_released(&mut self, placed: &PlacedObject, bound_for: Option<(Name10, Option<i32>)>) {
-        if let Some(Carried { item, serial, location, sector, .. }) = self.beliefs.carried.take() {
-            let known = bound_for.into_iter().chain([(location, sector)]);
-            let sector = known.filter(|(name, _)| *name == placed.location).find_map(|(_, sector)| sector);
-            self.owe(item, serial, placed.location, sector);
+    /// REPORT-ITEM: keep the update of what the robot carried and has let go, until it is taken.
+    pub fn owe_released(&mut self, placed: &PlacedObject) {
+        if let Some(Carried { item, serial, .. }) = self.beliefs.carried.take() {
+            self.owe(item, serial, placed.location, placed.sector);
         }
     }
 
@@ -207,7 +238,7 @@ impl DataSystem {
 
     /// The Data System is disconnected, and what was owed to it is dropped.
     pub fn disconnect(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
-        (self.beliefs.owed, self.beliefs.carried) = ([None; KEPT_UPDATES], None);
+        (self.beliefs.owed, self.beliefs.taking, self.beliefs.carried) = ([None; KEPT_UPDATES], None, None);
         self.reconfigure(DataBaseVerb::Abort, tick, outputs);
         self.beliefs.connecting = false;
     }

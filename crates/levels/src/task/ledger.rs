@@ -66,14 +66,16 @@ pub fn placed(plan: &Plan, below: &SubtaskStatus, ledger: Option<&Ledger>) -> Pl
         ledger.map(|ledger| ledger.last),
         Some(SubtaskVerb::PlaceObj | SubtaskVerb::Position | SubtaskVerb::GotoEndpt)
     );
-    let destination = plan.destination.location.map(|location| (location.record, location.array));
+    let destination =
+        plan.destination.location.map(|location| (location.record, location.array, location.sector));
     let at_destination = below.placed.is_some_and(|placed| {
         plan.object == Some(placed.object)
             && plan.destination.grip == placed.grip
-            && destination == Some((placed.record, placed.array))
+            && destination == Some((placed.record, placed.array, placed.sector))
     });
-    let stands =
-        |at: Standing| destination == Some((at.record, at.array)) && at.grip == Some(plan.destination.grip);
+    let stands = |at: Standing| {
+        destination == Some((at.record, at.array, at.sector)) && at.grip == Some(plan.destination.grip)
+    };
     match (at_destination && placing && plan.resumed != Resumed::Not, below.at.is_some_and(stands)) {
         (false, _) => Placed::Not,
         (true, true) => Placed::AtDestination,
@@ -102,22 +104,18 @@ pub fn is_from_elsewhere(
 
 /// Does the command in the ledger take an object?
 #[must_use]
-pub fn takes(ledger: Option<&Ledger>, object: &Name16) -> bool {
+pub fn is_taken(ledger: Option<&Ledger>, object: &Name16) -> bool {
     ledger.is_some_and(|Ledger { command, .. }| {
-        command.object.as_ref() == Some(object)
-            && matches!(
-                TaskVerb::of(&command.command),
-                Some(TaskVerb::Transfer | TaskVerb::Move | TaskVerb::Acquire | TaskVerb::Refixture)
-            )
+        command.object.as_ref() == Some(object) && TaskVerb::of(&command.command).is_some_and(TaskVerb::takes)
     })
 }
 
 /// The ledger when a command has been accepted. A command that is about no object says nothing of one that
-/// is.
+/// is. One that takes its object again has told nothing yet.
 #[must_use]
 pub fn opened(ledger: Option<Ledger>, command: &HwsCommand, plan: &Plan) -> Option<Ledger> {
     if !plan.is_about_something() || plan.resumed != Resumed::Not {
-        return ledger;
+        return ledger.map(|ledger| Ledger { told: ledger.told && !plan.update_due, ..ledger });
     }
     Some(Ledger { command: content(command), last: SubtaskVerb::None, told: plan.from_elsewhere })
 }

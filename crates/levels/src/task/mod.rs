@@ -119,7 +119,10 @@ impl<'d> Process<TaskData<'d>> for Task {
 
     fn write(&mut self, write: &Write, _: &Inputs<'_, TaskData<'d>>, outputs: &mut TaskOutputs) {
         match write.variable {
-            Variable::Ledger => outputs.ledger = None,
+            Variable::Ledger => {
+                (outputs.ledger, outputs.beliefs.taking) = (None, None);
+                self.state.data_system.beliefs = outputs.beliefs;
+            }
             Variable::Owed => {
                 outputs.beliefs.owed = [None; KEPT_UPDATES];
                 self.state.data_system.beliefs = outputs.beliefs;

@@ -214,6 +214,11 @@ impl TaskVerb {
         matches!(self, Self::None | Self::Pause | Self::Startup | Self::Shutdown)
     }
 
+    /// True for the commands that take an object from where it is.
+    pub(super) const fn takes(self) -> bool {
+        matches!(self, Self::Transfer | Self::Move | Self::Acquire | Self::Refixture)
+    }
+
     /// True for the four tool commands.
     const fn is_for_tools(self) -> bool {
         matches!(self, Self::InsertTool | Self::ReleaseTool | Self::AcquireTool | Self::RemoveTool)

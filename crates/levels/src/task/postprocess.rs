@@ -30,6 +30,9 @@ impl State {
     ) {
         self.plan = *plan;
         outputs.ledger = opened(outputs.ledger, &inputs.external.hws, plan);
+        if plan.is_about_something() {
+            self.data_system.accept(plan, inputs.memory.subtask.status.held);
+        }
         let sites = [&mut self.plan.source, &mut self.plan.destination, &mut self.plan.end_at];
         for (slot, site) in outputs.poses.iter_mut().zip(sites) {
             self.last_pose = pose_range::next(pose_range::TASK, self.last_pose);
@@ -131,6 +134,7 @@ impl State {
         }
         if self.is_in_ledger(outputs) {
             outputs.ledger = None;
+            self.data_system.beliefs.taking = None;
         }
         self.execution.finish();
     }
@@ -184,6 +188,7 @@ impl State {
             location_kind: location.kind,
             location_record: location.record,
             location_array: location.array,
+            location_sector: location.sector,
             pose: location.pose.number,
         };
     }

@@ -2,7 +2,6 @@
 
 use interfaces::{
     emove::{Holding, Standing},
-    hws::HwsCommand,
     process::Inputs,
     subtask::SubtaskVerb,
 };
@@ -10,7 +9,7 @@ use rcs_core::{handshake::Lower, name::Name10};
 use taskdata::files::TaskData;
 
 use super::{
-    ledger::{Part, is_from_elsewhere, opened, placed, resumed, takes},
+    ledger::{Part, Placed, is_from_elsewhere, is_taken, placed, resumed},
     plan::{Found, Plan, Resumed, Site, TOOL_GRIPPER, TaskVerb, is_in_mbd},
     state::State,
     tables::{
@@ -35,14 +34,18 @@ impl State {
         self.data_system.observe(data_base, inputs.tick);
         let arrival = self.execution.observe(inputs.tick, command.number);
         let asked = self.execution.asked(arrival);
+        self.data_system.hold(inputs.memory.subtask.status.held.object());
         let (plan, request) = if asked == Asked::Now {
             self.ordered = Ordered::Nothing;
             let found = Plan::look_up(command, inputs.data);
-            (self.plan(&found.plan, inputs), request(&found))
+            let plan = Plan { resumed: resumed(command, inputs.memory.task.ledger.as_ref()), ..found.plan };
+            let replaces = plan.is_about_something() && plan.resumed == Resumed::Not;
+            self.follow_object(plan.verb, replaces, inputs);
+            (self.plan(&plan, inputs), request(&found))
         } else {
+            self.follow_object(self.plan.verb, false, inputs);
             (self.plan, Request::default())
         };
-        self.follow_object(&plan, asked, inputs);
         let subtask = self.subtask(inputs);
         let pausing = inputs.memory.task.subtask.command == SubtaskVerb::Pause;
         Seen {
@@ -81,9 +84,11 @@ impl State {
     /// A new command, with what it has to do with the commands before it.
     fn plan(&self, plan: &Plan, inputs: &Inputs<'_, TaskData<'_>>) -> Plan {
         let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
-        let resumed = resumed(&inputs.external.hws, ledger);
-        let told = resumed != Resumed::Not && ledger.is_some_and(|ledger| ledger.told);
         let is_held = plan.object.is_some() && plan.object == below.held.object();
+        // What is neither held nor placed is taken again, and told of again.
+        let told = plan.resumed != Resumed::Not
+            && ledger.is_some_and(|ledger| ledger.told)
+            && (is_held || placed(plan, below, ledger) != Placed::Not);
         let carried = self.data_system.beliefs.carried.as_ref();
         let from_elsewhere = plan.verb == TaskVerb::Acquire
             && is_held
@@ -91,22 +96,18 @@ impl State {
         let is_known_in_hand = plan.verb == TaskVerb::Transfer
             && plan.object.is_some_and(|object| self.data_system.follows(object, false));
         let update_due = (plan.update_due || is_known_in_hand) && !told && !from_elsewhere;
-        Plan { resumed, update_due, from_elsewhere, ..*plan }
+        Plan { update_due, from_elsewhere, ..*plan }
     }
 
-    /// The data base is owed where the robot has let go what it carried, but for an object that the command in the
-    /// ledger takes: it will be taken again, or that command tells where it is. POSITION takes nothing.
-    fn follow_object(&mut self, plan: &Plan, asked: Asked, inputs: &Inputs<'_, TaskData<'_>>) {
-        let (memory, data_system) = (inputs.memory, &mut self.data_system);
+    /// The data base is owed where the robot has let go what it carried, but not while the command in the ledger takes
+    /// that: it will take it again, or tell where it is, unless a command `replaces` it. POSITION takes nothing.
+    fn follow_object(&mut self, verb: TaskVerb, replaces: bool, inputs: &Inputs<'_, TaskData<'_>>) {
+        let memory = inputs.memory;
         let Some(placed) = memory.subtask.status.placed else { return };
-        let ledger = match asked {
-            Asked::Now => opened(memory.task.ledger, &inputs.external.hws, plan),
-            _ => memory.task.ledger,
-        };
-        let taken = plan.verb != TaskVerb::Position && takes(ledger.as_ref(), &placed.object);
-        if !taken && data_system.follows(placed.object, is_in_mbd(placed.record, inputs.data)) {
-            let bound_for = memory.task.ledger.filter(|last| last.command.object == Some(placed.object));
-            data_system.owe_released(&placed, bound_for.and_then(|last| destination(&last.command)));
+        let goes_on = verb != TaskVerb::Position && !replaces;
+        let waits = goes_on && is_taken(memory.task.ledger.as_ref(), &placed.object);
+        if !waits && self.data_system.follows(placed.object, is_in_mbd(placed.record, inputs.data)) {
+            self.data_system.owe_released(&placed);
         }
     }
 
@@ -142,11 +143,6 @@ impl State {
             part: if below.pedestal_part { Part::InPedestal } else { Part::Elsewhere },
         }
     }
-}
-
-/// Destination of a command as it is known below, and its sector.
-fn destination(command: &HwsCommand) -> Option<(Name10, Option<i32>)> {
-    command.destination.map(|name| (Name10::clipped(name.as_str()), command.destination_sector))
 }
 
 /// What a new command needs.
@@ -197,7 +193,8 @@ fn way(at: Option<Standing>, plan: &Plan, data: &TaskData<'_>) -> Way {
     let from = place_of(goal.kind, at.record, at.array);
     let to = place_of(goal.kind, goal.record, goal.array);
     if same_location(&from, &to) {
-        Way::Here
+        // Between the sectors of an array no trajectory is needed.
+        if at.sector == goal.sector { Way::Here } else { Way::Leads }
     } else if data.trajectory(&from, &to).is_some() {
         Way::Leads
     } else {

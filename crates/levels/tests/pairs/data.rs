@@ -55,6 +55,7 @@ pub fn emove_command(verb: EmoveVerb, object: &str, grip: i32, location: &str) -
         location_kind: at.place.kind,
         location_record: at.place.locpt.to_option(),
         location_array: at.place.array.to_option(),
+        location_sector: at.sector,
         pose: None,
         end_effector_id: Some(1),
     }
@@ -98,6 +99,7 @@ pub fn subtask_command(
         location_kind: at.place.kind,
         location_record: at.place.locpt.to_option(),
         location_array: at.place.array.to_option(),
+        location_sector: at.sector,
         pose: number,
     };
     (command, ChangingPose { number, pose: Pose::from_frame(&at.frame) })

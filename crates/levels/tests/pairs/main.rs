@@ -130,6 +130,17 @@ fn task_and_subtask_let_an_object_go() {
 }
 
 #[test]
+fn task_and_subtask_take_an_object_out_of_the_mbd() {
+    let mut commands =
+        data::commands(&["TRANSFER LINKBAR1 +2 UNIT_1 1 +2 PFIXTURE 0 SAFE 0", HANDLING[2], HANDLING[0]]);
+    commands.truncate(if is_full() { 3 } else { 2 });
+    let pair = task::Pair::first(0, commands).connected("UNIT_1").promptly(!is_full());
+    let found = is_sound("task and subtask, an object that is taken out of the MBD", pair, 4_000_000);
+    assert!(found.states > 1000, "{} states", found.states);
+    assert!(found.pause <= 14 && found.any <= 32, "{} and {}", found.pause, found.any);
+}
+
+#[test]
 fn task_and_subtask_with_a_mishap() {
     tasks("task and subtask, a mishap", 1, &["PAUSE", "MOVE -- +0 -- 0 +0 HOME 0 -- 0"], 14);
 }

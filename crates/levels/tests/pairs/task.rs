@@ -15,12 +15,12 @@ use levels::{
     subtask::{self, Subtask},
     task::{
         self, Task,
-        data_system::ANSWER_LIMIT,
+        data_system::{ANSWER_LIMIT, IN_HAND},
         plan::{Plan, TaskVerb},
         tables::Ordered,
     },
 };
-use rcs_core::tick::Tick;
+use rcs_core::{name::Name10, tick::Tick};
 
 use crate::{
     data::{data, emove_command},
@@ -91,6 +91,10 @@ pub struct Pair {
     /// The operator has the robot.
     box_on: bool,
     data_base: DataBaseStatus,
+    /// The Data System takes everything at once.
+    prompt: bool,
+    /// Where the Data System has an object of which it is told.
+    recorded: Option<Name10>,
     /// The order that E-move has is one of the current command.
     own: bool,
     /// The last order of the current command that E-move has done.
@@ -119,6 +123,8 @@ impl Pair {
             silent: false,
             box_on: false,
             data_base: DataBaseStatus::default(),
+            prompt: false,
+            recorded: None,
             own: false,
             reached: EmoveVerb::None,
             answered: DataBaseVerb::None,
@@ -139,12 +145,26 @@ impl Pair {
             location: place.location,
             record: place.location_record,
             array: place.location_array,
+            sector: place.location_sector,
             grip: Some(place.grip),
         });
-        let beliefs = &mut self.task.data_system.beliefs;
-        (self.lets_go, beliefs.connected) = (true, true);
-        beliefs.carried = Some(Carried { item: object, told: true, ..Carried::default() });
-        self.task_out.beliefs = *beliefs;
+        let carried = Some(Carried { item: object, told: true, ..Carried::default() });
+        self.task_out.beliefs.carried = carried;
+        self.connected(IN_HAND)
+    }
+
+    /// The Data System is connected, and has the object of the commands at a position; the fingers can finish a release in
+    /// a pause.
+    pub fn connected(mut self, position: &str) -> Self {
+        self.task_out.beliefs.connected = true;
+        self.task.data_system.beliefs = self.task_out.beliefs;
+        (self.lets_go, self.recorded) = (true, Some(Name10::clipped(position)));
+        self
+    }
+
+    /// The Data System takes everything at once, and never refuses.
+    pub const fn promptly(mut self, prompt: bool) -> Self {
+        self.prompt = prompt;
         self
     }
 
@@ -217,6 +237,7 @@ impl Pair {
                     location: order.location,
                     record: order.location_record,
                     array: order.location_array,
+                    sector: order.location_sector,
                     grip: Some(order.grip).filter(|_| verb != EmoveVerb::MovToLoc),
                 });
             }
@@ -228,8 +249,8 @@ impl Pair {
     fn let_go(&mut self) {
         let (at, emove) = (self.emove.at.unwrap_or_default(), &mut self.emove);
         if let Holding::Object(ObjectGrip { object, grip }) = emove.held {
-            let Standing { location, record, array, .. } = at;
-            emove.placed = Some(PlacedObject { object, grip, location, record, array });
+            let Standing { location, record, array, sector, .. } = at;
+            emove.placed = Some(PlacedObject { object, grip, location, record, array, sector });
         }
         emove.held = Holding::Nothing;
     }
@@ -267,7 +288,7 @@ impl Pair {
                 Err("finished, and this command has not moved the robot")
             }
             Some(TaskVerb::Position) if emove.held.is_held() => Err("finished, and something is held"),
-            Some(TaskVerb::Position | TaskVerb::Transfer) if self.is_owing() => {
+            Some(TaskVerb::Position | TaskVerb::Transfer) if self.is_untold(before) => {
                 Err("finished, and the data base has an object elsewhere")
             }
             Some(TaskVerb::Acquire) if emove.held.object() != self.hws.object => {
@@ -321,8 +342,11 @@ impl World for Pair {
             emove.push(EmoveDoes::Silent);
         }
         let asked = self.task_out.data_base.number != self.data_base.echo;
-        let answers: &[Option<DataBaseReport>] =
-            if asked { &[None, Some(DataBaseReport::Done), Some(DataBaseReport::Refused)] } else { &[None] };
+        let answers: &[Option<DataBaseReport>] = match (asked, self.prompt) {
+            (true, true) => &[Some(DataBaseReport::Done)],
+            (true, false) => &[None, Some(DataBaseReport::Done), Some(DataBaseReport::Refused)],
+            (false, _) => &[None],
+        };
         let mut events = Vec::new();
         let mishaps = [Mishap::None, Mishap::RestartTask, Mishap::RestartSubtask];
         for mishap in mishaps.into_iter().take(if self.mishaps > 0 { 3 } else { 1 }) {
@@ -392,8 +416,12 @@ impl World for Pair {
         self.silent = event.emove == EmoveDoes::Silent;
         if let Some(report) = event.answer {
             self.data_base = DataBaseStatus { echo: self.task_out.data_base.number, report };
+            let DataBaseCommand { command, position, .. } = self.task_out.data_base;
+            if (report, command) == (DataBaseReport::Done, DataBaseVerb::Update) {
+                self.recorded = self.recorded.map(|_| position);
+            }
             if report == DataBaseReport::Done && self.task_out.status.echo == self.hws.number {
-                self.answered = self.task_out.data_base.command;
+                self.answered = command;
             }
         }
         (self.task_out, self.subtask_out) = (task_out, subtask_out);
@@ -453,6 +481,7 @@ impl World for Pair {
         image.add(&it.subtask_out.status);
         image.add(&it.emove);
         image.add(&it.data_base);
+        image.add(&it.recorded);
         image.add(&it.reached);
         image.add(&it.answered);
         image.bytes.extend([it.silent, it.box_on, it.own].map(u8::from));
@@ -495,13 +524,11 @@ impl Pair {
             && self.subtask.execution.receiver.echo == number
     }
 
-    /// Has the Data System not been told of an object that was let go?
-    fn is_owing(&self) -> bool {
-        let beliefs = &self.task.data_system.beliefs;
-        let placed = self.subtask_out.status.placed.map(|placed| placed.object);
-        let is_carried = |carried: &Carried| carried.told && Some(carried.item) == placed;
-        beliefs.connected
-            && (beliefs.owed.iter().any(Option::is_some) || beliefs.carried.as_ref().is_some_and(is_carried))
+    /// Has the Data System an object elsewhere than where it was let go, if that is known?
+    fn is_untold(&self, before: &Self) -> bool {
+        let placed = before.emove.placed.map(|placed| placed.location).filter(|at| !at.is_empty());
+        self.task_out.beliefs.connected
+            && placed.zip(before.recorded).is_some_and(|(at, recorded)| at != recorded)
     }
 
     /// Task waits for the Data System.

@@ -114,6 +114,7 @@ impl EmoveDouble {
                         location: command.location,
                         record: command.location_record,
                         array: command.location_array,
+                        sector: command.location_sector,
                     });
                 }
                 self.hold("", 0);
@@ -138,6 +139,7 @@ impl EmoveDouble {
                     location: command.location,
                     record: command.location_record,
                     array: command.location_array,
+                    sector: command.location_sector,
                     grip: Some(command.grip).filter(|_| command.command != EmoveVerb::MovToLoc),
                 });
             }

@@ -232,7 +232,7 @@ fn standing(bench: &Bench<'_>, at: Option<(&str, Option<i32>)>) -> Option<Standi
     at.map(|(name, grip)| {
         let location = Name10::new(name).unwrap();
         let record = bench.data.locpt_named(&location).map(|id| id.number());
-        Standing { location, record, array: None, grip }
+        Standing { location, record, array: None, sector: None, grip }
     })
 }
 

@@ -123,6 +123,7 @@ impl SubtaskDouble {
                     location: command.location,
                     record: command.location_record,
                     array: command.location_array,
+                    sector: command.location_sector,
                 });
                 self.stand_at(command, Some(command.destination_grip));
             }
@@ -140,8 +141,8 @@ impl SubtaskDouble {
         let (held, at) = (self.outputs.status.held, self.outputs.status.at.unwrap_or_default());
         self.hold("");
         if let Holding::Object(ObjectGrip { object, grip }) = held {
-            let Standing { location, record, array, .. } = at;
-            self.outputs.status.placed = Some(PlacedObject { object, grip, location, record, array });
+            let Standing { location, record, array, sector, .. } = at;
+            self.outputs.status.placed = Some(PlacedObject { object, grip, location, record, array, sector });
         }
     }
 
@@ -149,6 +150,7 @@ impl SubtaskDouble {
         self.stand(command.location.as_str());
         if let Some(at) = &mut self.outputs.status.at {
             (at.record, at.array, at.grip) = (command.location_record, command.location_array, grip);
+            at.sector = command.location_sector;
         }
     }
 

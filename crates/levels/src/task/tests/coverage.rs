@@ -118,6 +118,15 @@ fn with_data_system(rows: &mut Coverage) {
             rows.append(&mut bench.rows);
         }
     }
+    // Two updates are owed when a REFIXTURE comes.
+    let mut bench = Bench::connected();
+    bench.data_system.answer = Answer::Refuse;
+    bench.run(from_tray);
+    bench.set(1, "PART", "PFIXTURE");
+    bench.run("POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0");
+    bench.data_system.answer = Answer::After(1);
+    bench.run("REFIXTURE PART +1 PFIXTURE 0 -1 SAFE 0 -- 0");
+    rows.append(&mut bench.rows);
     // The Data System begins to answer when it has been told the first of two updates of a tool again.
     let mut bench = Bench::connected();
     bench.set(3, "TOOL-1", "HOME");

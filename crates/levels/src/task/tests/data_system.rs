@@ -1,6 +1,13 @@
 //! Scenarios of Task and the Data System (IV.4.2, IX.2).
 
-use interfaces::{Reason, data_base::DataBaseVerb, hws::HwsReport};
+use interfaces::{
+    Reason,
+    data_base::DataBaseVerb,
+    hws::HwsReport,
+    operator::{Variable, Write},
+    process::{Inputs, Process},
+    subtask::SubtaskStatus,
+};
 use rcs_core::name::Name16;
 
 use super::{
@@ -395,6 +402,250 @@ fn what_was_put_into_a_tray_is_told_with_its_sector() {
         }
     }
     assert!(untold > 0);
+}
+
+/// What was told of an item: serial number, position, and sector or 0.
+type Told = (String, String, i32);
+
+fn was(serial: &str, position: &str, sector: i32) -> Told {
+    (serial.to_owned(), position.to_owned(), sector)
+}
+
+/// What the Data System was told of PART since the bench was asked last.
+fn parts(bench: &mut Bench<'_>) -> Vec<Told> {
+    let updates = bench.data_system.received.drain(..);
+    let of_part = updates.filter(|told| told.command == DataBaseVerb::Update && told.item.as_str() == "PART");
+    of_part.map(|told| was(told.serial.as_str(), told.position.as_str(), told.sector.unwrap_or(0))).collect()
+}
+
+/// A command about the part with a serial number.
+fn order(bench: &mut Bench<'_>, line: &str, serial: &str) {
+    bench.command(line);
+    bench.external.hws.serial = Name16::new(serial).unwrap();
+}
+
+/// The same to its end.
+fn perform(bench: &mut Bench<'_>, line: &str, serial: &str) {
+    order(bench, line, serial);
+    assert_eq!(bench.finish(), FINISHED, "{line}");
+}
+
+/// Step until a condition of Subtask holds.
+fn until(bench: &mut Bench<'_>, holds: impl Fn(&SubtaskStatus) -> bool) {
+    while !holds(&bench.memory.subtask.status) {
+        assert_eq!(bench.step().report, HwsReport::Executing);
+    }
+}
+
+/// A command that takes a part out of the MBD is replaced and never sent again: the command that lets the part go, or
+/// the next one about an object, tells where it is. So it is if an earlier part of the same name was let go before, and
+/// that one is told of no more.
+#[test]
+fn what_an_abandoned_command_has_taken_out_of_a_tray_is_told() {
+    const LINES: [&str; 4] = [
+        "TRANSFER PART +1 UNIT_1 2 +1 PFIXTURE 0 SAFE 0",
+        FROM_TRAY,
+        "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0",
+        "REFIXTURE PART +1 UNIT_1 2 +2 PFIXTURE 0 -- 0",
+    ];
+    for (line, by, earlier) in LINES.into_iter().flat_map(|line| {
+        [PAUSE, NOWHERE, HOME].into_iter().flat_map(move |by| [(line, by, false), (line, by, true)])
+    }) {
+        let (mut approaching, mut placed, mut held) = (0, 0, 0);
+        for ticks in 1.. {
+            let mut bench = Bench::connected();
+            if earlier {
+                perform(&mut bench, FROM_TRAY, "A");
+                bench.set(1, "PART", "PFIXTURE");
+                perform(&mut bench, LET_GO, "A");
+                assert_eq!(parts(&mut bench), [was("A", "H_ROBOT", 0), was("A", "PFIXTURE", 0)]);
+            }
+            order(&mut bench, line, "B");
+            bench.wait(ticks);
+            if bench.memory.task.status.report != HwsReport::Executing {
+                break;
+            }
+            bench.command(by);
+            bench.finish();
+            bench.wait(5);
+            let case = format!("{line}, {by}, tick {ticks}, {earlier}");
+            let mut told = parts(&mut bench);
+            let below = bench.memory.subtask.status;
+            let has_begun = bench.memory.task.beliefs.taking.is_none();
+            if below.held.object().is_some() {
+                held += 1;
+                bench.set(1, "PART", "SAFE");
+                perform(&mut bench, "POSITION PART +1 SAFE 0 0 -- 0 -- 0", "B");
+                told.extend(parts(&mut bench));
+                told.retain(|told| *told != was("B", "H_ROBOT", 0));
+                assert_eq!(told, [was("B", "SAFE", 0)], "{case}");
+                continue;
+            }
+            assert_eq!(bench.run(OTHER), FINISHED, "{case}");
+            told.extend(parts(&mut bench));
+            if has_begun {
+                placed += 1;
+                assert_eq!(told, [was("B", "PFIXTURE", 0)], "{case}");
+            } else {
+                approaching += 1;
+                assert_eq!(told, [], "{case}");
+            }
+        }
+        assert_eq!((approaching > 0, placed > 0, held > 0), (true, line == LINES[0], true), "{line}, {by}");
+    }
+}
+
+/// The robot has lost the part that it carried, with a Data System or without. What it takes then under the same name is
+/// another one.
+#[test]
+fn a_part_that_was_lost_is_not_told_for_the_next_one() {
+    let mut bench = Bench::connected();
+    perform(&mut bench, FROM_TRAY, "A");
+    bench.set(1, "", "PFIXTURE");
+    order(&mut bench, "MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0", "B");
+    until(&mut bench, |below| below.held.object().is_some());
+    assert_eq!(bench.run(PAUSE), FINISHED);
+    bench.set(1, "PART", "PFIXTURE");
+    perform(&mut bench, LET_GO, "B");
+    assert_eq!(parts(&mut bench), [was("B", "PFIXTURE", 0)]);
+    let mut bench = Bench::connected();
+    perform(&mut bench, FROM_TRAY, "A");
+    bench.data_system.answer = Answer::Refuse;
+    assert_eq!(bench.run(STARTUP), error(Reason::DataBase));
+    bench.set(1, "", "PFIXTURE");
+    perform(&mut bench, "TRANSFER PART +1 PFIXTURE 0 +1 SAFE 0 -- 0", "B");
+    bench.data_system.answer = Answer::After(1);
+    assert_eq!(bench.run(STARTUP), FINISHED);
+    assert_eq!(bench.run(OTHER), FINISHED);
+    assert_eq!(parts(&mut bench), []);
+}
+
+/// A part keeps its serial number while it is held, whatever the next commands call it; the next part of the same name
+/// has its own.
+#[test]
+fn two_parts_of_a_name_keep_their_serial_numbers() {
+    for next in [
+        "TRANSFER PART +1 UNIT_1 1 +1 SAFE 0 -- 0",
+        "MOVE PART +1 SAFE 0 +1 HOME 0 -- 0",
+        "REFIXTURE PART +1 UNIT_1 1 +2 HOME 0 -- 0",
+    ] {
+        let mut bench = Bench::connected();
+        perform(&mut bench, FROM_TRAY, "A");
+        order(&mut bench, next, "B");
+        bench.wait(2);
+        assert_eq!(bench.run(PAUSE), FINISHED);
+        bench.set(1, "PART", "PFIXTURE");
+        perform(&mut bench, LET_GO, "A");
+        assert_eq!(parts(&mut bench), [was("A", "PFIXTURE", 0)], "{next}");
+    }
+    // The first was let go by a command that was replaced, and the next one of its name is taken.
+    for next in ["TRANSFER PART +1 UNIT_1 1 +1 SAFE 0 -- 0", "TRANSFER PART +1 PFIXTURE 0 +1 SAFE 0 -- 0"] {
+        let mut bench = Bench::connected();
+        order(&mut bench, "TRANSFER PART +1 UNIT_1 2 +1 PFIXTURE 0 HOME 0", "A");
+        until(&mut bench, |below| below.placed.is_some());
+        assert_eq!(bench.run(PAUSE), FINISHED);
+        order(&mut bench, next, "B");
+        bench.finish();
+        let mut told = parts(&mut bench);
+        assert_eq!(bench.run(OTHER), FINISHED);
+        told.extend(parts(&mut bench));
+        assert_eq!(told.first(), Some(&was("A", "PFIXTURE", 0)), "{next}");
+        let second = next.contains("UNIT_1").then(|| was("B", "SAFE", 0));
+        assert_eq!(told.get(1), second.as_ref(), "{next}");
+    }
+}
+
+/// The sector is that in which the fingers have opened, and not that of another command.
+#[test]
+fn the_sector_is_that_in_which_the_part_was_let_go() {
+    for (first, sector, next) in [
+        ("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0", 2, "TRANSFER PART +1 UNIT_1 2 +1 UNIT_1 1 SAFE 0"),
+        ("TRANSFER PART +1 UNIT_1 2 +1 UNIT_1 1 SAFE 0", 1, "MOVE PART +1 UNIT_1 1 +1 SAFE 0 -- 0"),
+        ("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0", 2, "MOVE PART +1 UNIT_1 2 +1 SAFE 0 -- 0"),
+    ] {
+        let mut bench = Bench::connected();
+        order(&mut bench, first, "A");
+        until(&mut bench, |below| below.placed.is_some());
+        assert_eq!(bench.run(PAUSE), FINISHED);
+        order(&mut bench, next, "A");
+        bench.wait(2);
+        let mut told = parts(&mut bench);
+        assert_eq!(bench.run(PAUSE), FINISHED);
+        assert_eq!(bench.run(OTHER), FINISHED);
+        told.extend(parts(&mut bench));
+        assert_eq!(told, [was("A", "UNIT_1", sector)], "{first}, {next}");
+    }
+    // A MOVE from one sector to another, abandoned where it ends.
+    let mut bench = Bench::connected();
+    order(&mut bench, "MOVE PART +1 UNIT_1 2 +1 UNIT_1 1 -- 0", "A");
+    until(&mut bench, |below| below.at.is_some_and(|at| at.sector == Some(1)));
+    assert_eq!(bench.run(PAUSE), FINISHED);
+    assert_eq!(bench.run("POSITION PART +1 UNIT_1 2 0 -- 0 -- 0"), error(Reason::HeldElsewhere));
+    assert!(bench.sent().is_empty(), "nothing is let go in another sector");
+    perform(&mut bench, "POSITION PART +1 UNIT_1 1 0 -- 0 -- 0", "A");
+    assert_eq!(parts(&mut bench), [was("A", "UNIT_1", 1)]);
+}
+
+/// A TRANSFER that comes just when another command has grasped its part tells where it puts it.
+#[test]
+fn a_transfer_that_is_accepted_in_the_tick_of_the_grasp_tells() {
+    for ticks in 1..20 {
+        let mut bench = Bench::connected();
+        order(&mut bench, FROM_TRAY, "A");
+        bench.wait(ticks);
+        let is_held = bench.subtask.outputs.status.held.object().is_some();
+        perform(&mut bench, TO_FIXTURE, "A");
+        if is_held {
+            assert_eq!(parts(&mut bench).last(), Some(&was("A", "PFIXTURE", 0)), "tick {ticks}");
+        }
+    }
+}
+
+/// REFIXTURE, too, tells what is owed before it takes anything: no update is lost.
+#[test]
+fn refixture_tells_first_what_is_owed() {
+    let mut bench = Bench::connected();
+    bench.data_system.answer = Answer::Refuse;
+    order(&mut bench, FROM_TRAY, "A");
+    assert_eq!(bench.finish(), error(Reason::DataBase));
+    bench.set(1, "PART", "PFIXTURE");
+    order(&mut bench, LET_GO, "A");
+    assert_eq!(bench.finish(), error(Reason::DataBase));
+    const REFIXTURE: &str = "REFIXTURE PART +1 UNIT_1 2 +2 PFIXTURE 0 -- 0";
+    assert_eq!(bench.run(REFIXTURE), error(Reason::DataBase));
+    assert!(bench.sent().is_empty(), "nothing moves");
+    bench.data_system.answer = Answer::After(1);
+    perform(&mut bench, REFIXTURE, "B");
+    assert_eq!(parts(&mut bench).split_off(1), [was("A", "H_ROBOT", 0), was("A", "PFIXTURE", 0)]);
+}
+
+/// An operator who deletes the ledger deletes what its command would have taken.
+#[test]
+fn a_deleted_command_takes_nothing() {
+    let mut bench = Bench::connected();
+    bench.command(FROM_TRAY);
+    bench.wait(3);
+    assert_eq!(bench.run(PAUSE), FINISHED);
+    assert!(bench.memory.task.beliefs.taking.is_some());
+    let mut outputs = bench.memory.task;
+    let (tick, memory, external, data) = (bench.tick, &bench.memory, &bench.external, &bench.data);
+    let write = Write { variable: Variable::Ledger, ..Write::default() };
+    bench.process.write(&write, &Inputs { tick, memory, external, data }, &mut outputs);
+    bench.memory.task = outputs;
+    bench.step();
+    assert_eq!((bench.memory.task.ledger, bench.memory.task.beliefs.taking), (None, None));
+}
+
+/// The robot holds a part that is told of when it is let go, also if it is sent for another one meanwhile.
+#[test]
+fn what_the_robot_holds_is_not_forgotten_for_what_it_cannot_take() {
+    let mut bench = Bench::connected();
+    assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
+    bench.command(OTHER);
+    bench.wait(3);
+    assert_eq!(bench.run(PAUSE), FINISHED);
+    bench.set(1, "PART", "PFIXTURE");
+    assert_eq!(told(&mut bench, LET_GO), ["PFIXTURE"]);
 }
 
 /// V.4.1 has updates of moves from and to the MBD; a part that the data base has as the robot's is told of, too.
