@@ -81,7 +81,7 @@ pub struct Carried {
     pub location: Name10,
     /// Sector there, if it has one.
     pub sector: Option<i32>,
-    /// The data base is told wherever it is let go: it has it as the robot's, or where the robot has taken it.
+    /// The data base is told wherever it is let go, and not only in the MBD.
     pub told: bool,
 }
 
@@ -97,7 +97,8 @@ pub struct DataBaseBeliefs {
     pub owed: [Option<DataBaseCommand>; KEPT_UPDATES],
     /// What the command in the ledger takes, until it is held; none if the data base is not told where it is let go.
     pub taking: Option<Carried>,
-    /// What the robot holds: by a command that is told of, or after a MOVE or an ACQUIRE.
+    /// What the robot held last: by a command that is told of, or after a MOVE or an ACQUIRE. It stays if the part is
+    /// lost, until another one of that name is taken.
     pub carried: Option<Carried>,
 }
 

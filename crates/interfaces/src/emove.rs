@@ -154,6 +154,8 @@ pub struct LocatedObject {
     pub record: Option<u32>,
     /// Record of ARRAY-TABLE where it is, if it lies in a sector.
     pub array: Option<u32>,
+    /// The sector, from 1, if it lies in one.
+    pub sector: Option<i32>,
 }
 
 /// Where the robot stands: the end of its last completed move (extension).
@@ -303,6 +305,8 @@ pub struct Located {
     pub record: Option<u32>,
     /// Record of ARRAY-TABLE where it is, if it lies in a sector.
     pub array: Option<u32>,
+    /// The sector, from 1, if it lies in one.
+    pub sector: Option<i32>,
     /// Its part frame.
     pub pose: Pose,
 }

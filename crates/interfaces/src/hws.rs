@@ -77,7 +77,7 @@ pub struct Ledger {
     pub command: HwsCommand,
     /// Its last command to Subtask, except PAUSE.
     pub last: SubtaskVerb,
-    /// The Data System has got the update for its move, or needs none.
+    /// The Data System has got the update for its move, or needs none; until its object is taken again.
     pub told: bool,
 }
 

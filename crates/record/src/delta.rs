@@ -107,13 +107,25 @@ impl Piece {
     fn apply(&self, values: &mut &[u8], field: &mut [u8]) -> Option<()> {
         let value = take_varint(values)?;
         if self.number {
-            let sum = layout::unsigned(field).wrapping_add(unzigzag(value).cast_unsigned());
-            field.iter_mut().zip(sum.to_le_bytes()).for_each(|(slot, byte)| *slot = byte);
+            add(field, unzigzag(value).cast_unsigned());
             return Some(());
         }
         let (runs, rest) = values.split_at_checked(usize::try_from(value).ok()?)?;
         *values = rest;
         apply_runs(runs, field)
+    }
+}
+
+/// Add to a number of at most eight bytes; it goes on from its end at its beginning.
+fn add(field: &mut [u8], difference: u64) {
+    let [a, b, c, d, ..] = difference.to_le_bytes();
+    if let Ok(field) = <&mut [u8; 4]>::try_from(&mut *field) {
+        *field = u32::from_le_bytes(*field).wrapping_add(u32::from_le_bytes([a, b, c, d])).to_le_bytes();
+    } else if let Ok(field) = <&mut [u8; 8]>::try_from(&mut *field) {
+        *field = u64::from_le_bytes(*field).wrapping_add(difference).to_le_bytes();
+    } else {
+        let sum = layout::unsigned(field).wrapping_add(difference);
+        field.iter_mut().zip(sum.to_le_bytes()).for_each(|(slot, byte)| *slot = byte);
     }
 }
 

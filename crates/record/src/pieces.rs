@@ -5,7 +5,8 @@
 //! decompressed bytes is limited in proportion to the size of the file, and with it memory and time of reading.
 //!
 //! All processors check the first chunks of a sound file ahead. What they decompress for it is not kept: decompressing
-//! it again takes no longer than fetching it from memory that is not in the caches.
+//! it again takes no longer than fetching it from memory that is not in the caches. Who reads the
+//! whole file anyway checks the chunks when reading them.
 
 use std::{collections::BTreeMap, iter, ops::Range, thread};
 
@@ -41,9 +42,20 @@ pub enum Piece<'a> {
     Damaged(Range<usize>),
 }
 
+/// When the chunks of a file are checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Check {
+    /// All when the file is opened.
+    Now,
+    /// The first, which has the channels, when the file is opened, and the others by who reads them.
+    Later,
+}
+
 /// The pieces of a file, in order.
 pub struct Pieces<'a> {
     bytes: &'a [u8],
+    check: Check,
+    has_channels: bool,
     at: usize,
     /// Number of bytes that may still be decompressed or checksummed.
     left: u64,
@@ -57,13 +69,15 @@ impl<'a> Pieces<'a> {
     ///
     /// # Errors
     /// [`McapError::BadMagic`] if it does not.
-    pub fn new(bytes: &'a [u8]) -> McapResult<Self> {
+    pub fn new(bytes: &'a [u8], check: Check) -> McapResult<Self> {
         if !bytes.starts_with(MAGIC) {
             return Err(McapError::BadMagic);
         }
         let size = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
         let left = size.saturating_mul(EXPANSION).saturating_add(LEAST);
-        Ok(Self { bytes, at: MAGIC.len(), left, decoder: Decoder::default(), ahead: ahead(bytes) })
+        let ahead = if check == Check::Now { ahead(bytes) } else { BTreeMap::new() };
+        let (at, decoder) = (MAGIC.len(), Decoder::default());
+        Ok(Self { bytes, check, has_channels: false, at, left, decoder, ahead })
     }
 
     /// The record that begins at a position, and its end; `None` if it is unreadable.
@@ -75,8 +89,10 @@ impl<'a> Pieces<'a> {
                 self.spend(chunk_size(self.bytes.get(at..end)?)?)?;
                 let described = match self.ahead.remove(&at) {
                     Some(described) => described?,
+                    None if self.check == Check::Later && self.has_channels => Vec::new(),
                     None => described(self.decoder.unpack(self.bytes.get(at..end)?)?)?,
                 };
+                self.has_channels = true;
                 Piece::Chunk(at..end, described)
             }
             op::ATTACHMENT => {
@@ -165,7 +181,7 @@ fn chunk_size(chunk: &[u8]) -> Option<u64> {
 }
 
 /// The channels and schemas among the records of a chunk; `None` if a record is unreadable.
-fn described(records: &[u8]) -> Option<Vec<Record<'static>>> {
+pub fn described(records: &[u8]) -> Option<Vec<Record<'static>>> {
     let (mut at, mut described) = (0, Vec::new());
     while at < records.len() {
         let (opcode, end) = frame(records, at)?;

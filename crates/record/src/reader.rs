@@ -6,11 +6,13 @@
 //! not an error.
 
 use std::{
+    borrow::Borrow,
     collections::BTreeMap,
     io::Read,
     iter,
     ops::Range,
     path::{Path, PathBuf},
+    sync::atomic::{AtomicBool, Ordering},
 };
 
 use mcap::{McapError, records::Record};
@@ -24,7 +26,7 @@ use crate::{
     input::{Attachment, Link},
     layout,
     operator::{OPERATOR, OperatorLine},
-    pieces::{self, Decoder, Message, Piece, Pieces},
+    pieces::{self, Check, Decoder, Message, Piece, Pieces},
     proto::{
         foxglove::{self, Level, Transform},
         wire::{Fields, Value},
@@ -41,6 +43,9 @@ const HEAD: u64 = 8;
 pub struct Log {
     path: PathBuf,
     bytes: Vec<u8>,
+    check: Check,
+    /// A chunk could not be read that was not checked when the log was opened.
+    misread: AtomicBool,
     segments: Vec<Segment>,
     /// Channel numbers by topic.
     channels: BTreeMap<String, u16>,
@@ -102,6 +107,11 @@ impl Log {
     /// # Errors
     /// [`ReadError`] if the file is not a log. The layout is not checked: see [`Log::check_layout`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
+        Self::open_with(path, Check::Now)
+    }
+
+    /// The same, if the file is checked when it is read: see [`Log::is_misread`].
+    pub(crate) fn open_with(path: &Path, check: Check) -> Result<Self, ReadError> {
         let unreadable = |source| ReadError::Unreadable { path: path.to_owned(), source };
         let mut file = files::open(path).map_err(unreadable)?;
         // The magic is checked before the rest, which may be long, is read into memory.
@@ -110,7 +120,7 @@ impl Log {
         if bytes == mcap::MAGIC {
             file.read_to_end(&mut bytes).map_err(unreadable)?;
         }
-        Self::from_bytes(path, bytes)
+        Self::from_bytes_with(path, bytes, check)
     }
 
     /// A log from the bytes of a file; `path` names it in errors.
@@ -118,9 +128,15 @@ impl Log {
     /// # Errors
     /// As [`Log::open`].
     pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, ReadError> {
+        Self::from_bytes_with(path, bytes, Check::Now)
+    }
+
+    fn from_bytes_with(path: &Path, bytes: Vec<u8>, check: Check) -> Result<Self, ReadError> {
         let mut log = Self {
             path: path.to_owned(),
             bytes: Vec::new(),
+            check,
+            misread: AtomicBool::new(false),
             segments: Vec::new(),
             channels: BTreeMap::new(),
             described: Described::default(),
@@ -130,7 +146,7 @@ impl Log {
             complete: false,
         };
         let mut is_log = false;
-        let pieces = Pieces::new(&bytes).map_err(|source| log.not_mcap(source))?;
+        let pieces = Pieces::new(&bytes, check).map_err(|source| log.not_mcap(source))?;
         for piece in pieces {
             match piece {
                 Piece::Chunk(range, described) => {
@@ -196,6 +212,11 @@ impl Log {
         })
     }
 
+    /// True if something was read that is damaged, and was not checked before: the log is to be opened with the check.
+    pub(crate) fn is_misread(&self) -> bool {
+        self.misread.load(Ordering::Relaxed)
+    }
+
     /// Size of the file, bytes.
     #[must_use]
     pub fn size(&self) -> usize {
@@ -224,7 +245,7 @@ impl Log {
 
     /// The recorded ticks, in order, up to the end or the damage.
     pub fn ticks(&self) -> impl Iterator<Item = Result<LoggedTick, ReadError>> {
-        let mut ticks = self.ticks_from(0);
+        let mut ticks = self.ticks_from(0, Codecs::new());
         iter::from_fn(move || ticks.advance().map(|read| read.map(|(_, logged)| logged.clone())))
     }
 
@@ -234,16 +255,17 @@ impl Log {
     }
 
     /// The recorded ticks from a part of the file on: those from its first whole images on.
-    pub(crate) fn ticks_from(
+    pub(crate) fn ticks_from<C: Borrow<Codecs>>(
         &self,
         first: usize,
-    ) -> Ticks<impl Iterator<Item = (usize, Option<(Tick, Vec<u8>)>)>> {
-        let codecs = Codecs::new();
+        codecs: C,
+    ) -> Ticks<C, impl Iterator<Item = Item>> {
+        let sizes = codecs.borrow();
         let last = LoggedTick {
             tick: Tick::BEFORE_START,
             gap: 0,
-            external: vec![0; codecs.external.size()],
-            memory: vec![0; codecs.memory.size()],
+            external: vec![0; sizes.external.size()],
+            memory: vec![0; sizes.memory.size()],
             state: None,
             world: None,
             timing: None,
@@ -315,11 +337,7 @@ impl Log {
 
     /// The messages of a topic from a part of the file on, with their ticks, and `None` where the file is damaged; each
     /// with the number of its part.
-    fn items(
-        &self,
-        topic: &str,
-        first: usize,
-    ) -> impl Iterator<Item = (usize, Option<(Tick, Vec<u8>)>)> + use<'_> {
+    fn items(&self, topic: &str, first: usize) -> impl Iterator<Item = Item> + use<'_> {
         let id = self.channels.get(topic).copied();
         let mut decoder = Decoder::default();
         self.segments.iter().enumerate().skip(first).flat_map(move |(part, segment)| {
@@ -343,21 +361,29 @@ impl Log {
             Segment::Chunk(range) => self.bytes.get(range.clone()),
             Segment::Damaged(_) => None,
         };
-        // `from_bytes` has read them without an error.
-        pieces::messages(chunk.and_then(|chunk| decoder.unpack(chunk)).unwrap_or_default())
+        let records = chunk.and_then(|chunk| decoder.unpack(chunk));
+        let is_sound = |records: &&[u8]| self.check == Check::Now || pieces::described(records).is_some();
+        let records = records.filter(is_sound);
+        if chunk.is_some() && records.is_none() {
+            self.misread.store(true, Ordering::Relaxed);
+        }
+        pieces::messages(records.unwrap_or_default())
     }
 }
 
+/// A message with its tick, `None` where the file is damaged, and the number of its part of the file.
+type Item = (usize, Option<(Tick, Vec<u8>)>);
+
 /// Reads the recorded ticks of a log.
-pub struct Ticks<I> {
+pub(crate) struct Ticks<C, I> {
     items: I,
-    codecs: Codecs,
+    codecs: C,
     last: LoggedTick,
     /// The differences of the next message are to the last tick.
     has_base: bool,
 }
 
-impl<I: Iterator<Item = (usize, Option<(Tick, Vec<u8>)>)>> Ticks<I> {
+impl<C: Borrow<Codecs>, I: Iterator<Item = Item>> Ticks<C, I> {
     /// The next tick, with the number of its part of the file.
     pub(crate) fn advance(&mut self) -> Option<Result<(usize, &LoggedTick), ReadError>> {
         loop {
@@ -371,7 +397,7 @@ impl<I: Iterator<Item = (usize, Option<(Tick, Vec<u8>)>)>> Ticks<I> {
                 continue;
             }
             let before = self.last.tick;
-            let sound = advance(&self.codecs, &mut self.last, &data);
+            let sound = advance(self.codecs.borrow(), &mut self.last, &data);
             let tick = self.last.tick;
             if !sound || tick <= before || tick.0 > u64::from(u32::MAX) {
                 return Some(Err(ReadError::Damaged { tick: tick.0 }));

@@ -33,7 +33,9 @@ use crate::{
     comparison::Comparison,
     error::ReplayError,
     input::Attachment,
+    pieces::Check,
     reader::{Log, LoggedTick},
+    writer::Codecs,
 };
 
 pub use crate::comparison::Difference;
@@ -111,14 +113,24 @@ pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
 /// As [`replay`]; [`ReplayError::Empty`] if the part contains no tick.
 pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, ReplayError> {
     let started = Instant::now();
-    let log = Log::open(path)?;
+    // A sound log is read once, and each part is checked when it is read. Of another one all damage is reported.
+    if options.until.is_none() {
+        let log = Log::open_with(path, Check::Later)?;
+        let report = replay_log(&log, options, started);
+        if report.as_ref().is_ok_and(|report| report.first_difference.is_none()) && !log.is_misread() {
+            return report;
+        }
+    }
+    replay_log(&Log::open(path)?, options, started)
+}
+
+fn replay_log(log: &Log, options: &Options, started: Instant) -> Result<ReplayReport, ReplayError> {
     log.check_layout()?;
     let generations = match &options.data {
         Some(data) => grown(data.clone(), &log.attachments)?,
-        None => generations(&log)?,
+        None => generations(log)?,
     };
-    let comparison = Comparison::new(options.data.is_some());
-    let stretches = Stretches { log: &log, options, generations: &generations, comparison, length: STRETCH };
+    let stretches = Stretches::new(log, options, &generations, STRETCH);
     let Replayed { ticks, skipped, digest: computed, first_difference } = stretches.replay()?;
     if ticks == 0 {
         return Err(ReplayError::Empty);
@@ -202,12 +214,18 @@ struct Stretches<'a> {
     log: &'a Log,
     options: &'a Options,
     generations: &'a [Store],
+    codecs: Codecs,
     comparison: Comparison,
     /// Parts of the log in a stretch.
     length: usize,
 }
 
-impl Stretches<'_> {
+impl<'a> Stretches<'a> {
+    fn new(log: &'a Log, options: &'a Options, generations: &'a [Store], length: usize) -> Self {
+        let comparison = Comparison::new(options.data.is_some());
+        Self { log, options, generations, codecs: Codecs::new(), comparison, length }
+    }
+
     /// Replay all stretches up to the first that differs, or cannot be computed.
     fn replay(&self) -> Result<Replayed, ReplayError> {
         let mut all = Replayed { ticks: 0, skipped: 0, digest: Digest::new(), first_difference: None };
@@ -260,7 +278,7 @@ impl Stretches<'_> {
     fn stretch(&self, number: usize) -> Result<Replayer, ReplayError> {
         let first = number.saturating_mul(self.length);
         let end = first.saturating_add(self.length);
-        let mut ticks = self.log.ticks_from(first);
+        let mut ticks = self.log.ticks_from(first, &self.codecs);
         let (mut replayer, mut has_begun) = (Replayer::new(), number == 0);
         // Ticks from the last recorded states to the beginning of the replay.
         let mut run_up: Vec<LoggedTick> = Vec::new();
@@ -297,8 +315,10 @@ impl Stretches<'_> {
 /// Computes recorded ticks again, and compares them.
 struct Replayer {
     ladder: Ladder,
-    /// Common memory after the tick before, and of the one before that, which the next tick overwrites.
+    /// Common memory after the last tick, and after the one before that, which the next tick overwrites.
     halves: [CommonMemory; 2],
+    /// The last tick is in the second half.
+    in_second: bool,
     /// Byte image of common memory after the last tick.
     image: Vec<u8>,
     /// False if the replay needs recorded states to continue.
@@ -316,6 +336,7 @@ impl Replayer {
         Self {
             ladder: Ladder::default(),
             halves: [CommonMemory::ZERO; 2],
+            in_second: false,
             image: vec![0; CommonMemory::SIZE],
             has_states: true,
             last: Tick::BEFORE_START,
@@ -339,10 +360,10 @@ impl Replayer {
         let missing = ReplayError::Generation { tick: tick.0, generation: external.generation };
         let store = usize::try_from(external.generation).ok().and_then(|at| stretches.generations.get(at));
         let data = store.ok_or(missing)?.view();
-        let [before, after] = &mut self.halves;
+        let [first, second] = &mut self.halves;
+        let (before, after) = if self.in_second { (second, first) } else { (first, second) };
+        self.in_second = !self.in_second;
         self.ladder.step(tick, before, &external, &data, after);
-        self.halves.swap(0, 1);
-        let [after, _] = &self.halves;
         after.encode(&mut Writer::new(&mut self.image));
         self.hashes.push(hash(&self.image));
         let states = logged.state.is_some().then(|| image(&self.ladder.state()));
@@ -357,7 +378,8 @@ impl Replayer {
         if let Some(image) = &logged.state {
             let state: LadderState = from_bytes(image).map_err(bad)?;
             self.ladder.restore(&state);
-            self.halves = [from_bytes(&logged.memory).map_err(bad)?, CommonMemory::ZERO];
+            (self.halves, self.in_second) =
+                ([from_bytes(&logged.memory).map_err(bad)?, CommonMemory::ZERO], false);
         }
         Ok(())
     }

@@ -116,6 +116,7 @@ impl State {
                 object,
                 record: command.location_record,
                 array: command.location_array,
+                sector: command.location_sector,
                 pose,
             });
             part

@@ -136,6 +136,7 @@ impl State {
                 && Some(located.object) == command.object
                 && located.record == command.location_record
                 && located.array == command.location_array
+                && located.sector == command.location_sector
         });
         let pose = match (located, command.pose) {
             (Some(located), _) => located.pose,

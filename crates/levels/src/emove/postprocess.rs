@@ -345,10 +345,8 @@ impl State {
             reference_pose: inputs.memory.prim.status.sensor_pose,
             held: self.holding(inputs.memory),
             placed: self.beliefs.placed,
-            located: self.beliefs.located.map(|Located { object, record, array, .. }| LocatedObject {
-                object,
-                record,
-                array,
+            located: self.beliefs.located.map(|Located { object, record, array, sector, .. }| {
+                LocatedObject { object, record, array, sector }
             }),
             // Pins with a bad contact do not make the robot bare: Subtask would fetch the gripper that is on.
             end_effector_id: if self.is_misread(inputs.memory) {

@@ -187,8 +187,9 @@ pub(super) fn location_pose(command: &SubtaskCommand, inputs: &Inputs<'_, TaskDa
 fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &TaskData<'_>) -> Vision {
     let place = place_of(command.location_kind, command.location_record, command.location_array);
     let located = emove.located.is_some_and(|located| {
-        let there = (command.object, command.location_record, command.location_array);
-        is_at && (Some(located.object), located.record, located.array) == there
+        is_at
+            && Some(located.object) == command.object
+            && (located.record, located.array, located.sector) == site(command)
     });
     let view = command.object.and_then(|object| data.view(&object, &place));
     if !view.is_some_and(|(_, view)| view.enabled) {

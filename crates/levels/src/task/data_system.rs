@@ -12,6 +12,7 @@ use interfaces::{
     DataBaseCommand, DataBaseStatus, ExternalInputs, TaskOutputs,
     data_base::{Carried, Connection, DataBaseBeliefs, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
     emove::{Holding, PlacedObject},
+    subtask::SubtaskStatus,
 };
 use rcs_core::{
     Plain,
@@ -147,30 +148,39 @@ impl DataSystem {
     }
 
     /// A command about an object or a tool is accepted. If it takes an object of which the data base is told, it is told
-    /// where that is let go, also if the command is never finished.
-    pub fn accept(&mut self, plan: &Plan, held: Holding) {
-        self.beliefs.taking = None;
-        let Some(item) = plan.object.filter(|_| plan.verb.takes()) else { return };
+    /// where that is let go, also if the command is never finished. What is in the hand already keeps its serial number.
+    pub fn accept(&mut self, plan: &Plan, below: &SubtaskStatus) {
+        let takes_tool = plan.verb == TaskVerb::AcquireTool;
+        let Some(item) = plan.object.filter(|_| plan.verb.takes() || takes_tool) else {
+            self.beliefs.taking = None;
+            return;
+        };
         let is_followed =
             self.beliefs.connected && !plan.from_elsewhere && (plan.update_due || self.follows(item, false));
-        let before = self.beliefs.carried.filter(|carried| carried.item == item);
-        let site = plan.source.location.unwrap_or_default();
-        let (location, sector) = (site.name, site.sector);
-        let taken = Carried { item, serial: plan.serial, location, sector, told: true };
-        match held {
+        match below.held {
             Holding::Object(held) if held.object == item => {
-                if is_followed {
-                    self.beliefs.carried = Some(Carried { told: true, ..before.unwrap_or(taken) });
+                self.beliefs.taking = None;
+                let carried = self.beliefs.carried.as_mut().filter(|carried| carried.item == item);
+                if let Some(carried) = carried {
+                    carried.told |= is_followed;
                 }
-                return;
             }
-            // The robot has lost what it carried under that name: what it takes now is another one.
-            Holding::Nothing if before.is_some() && plan.resumed == Resumed::Not => {
-                self.beliefs.carried = None;
+            Holding::Nothing | Holding::Object(_) => {
+                // The robot has lost what it carried under that name: what it takes now is another one.
+                if below.placed.is_none_or(|placed| placed.object != item) {
+                    self.beliefs.carried = self.beliefs.carried.filter(|carried| carried.item != item);
+                }
+                let site = plan.source.location.unwrap_or_default();
+                let (serial, location, sector) = (plan.serial, site.name, site.sector);
+                let taken = Carried { item, serial, location, sector, told: true };
+                self.beliefs.taking = (is_followed && !takes_tool).then_some(taken);
             }
-            _ => {}
+            // It may be the object or another one.
+            Holding::Something | Holding::NotKnown if plan.resumed == Resumed::Not => {
+                self.beliefs.taking = None;
+            }
+            Holding::Something | Holding::NotKnown => {}
         }
-        self.beliefs.taking = is_followed.then_some(taken);
     }
 
     /// Once a tick: what the robot was sent to take is what it holds.
@@ -180,8 +190,8 @@ impl DataSystem {
         }
     }
 
-    /// The robot holds the object of a MOVE or an ACQUIRE. An ACQUIRE that found it in the hand, taken elsewhere,
-    /// leaves where that was.
+    /// The robot holds the object of a MOVE or an ACQUIRE, of which the data base is `told`, or is not. An ACQUIRE that
+    /// found it in the hand, taken elsewhere, leaves where that was; and without an update it keeps its serial number.
     pub fn carry(&mut self, plan: &Plan, told: bool) {
         let item = plan.object.unwrap_or_default();
         let before = self.beliefs.carried.filter(|carried| carried.item == item);
@@ -191,8 +201,10 @@ impl DataSystem {
             let site = plan.destination.location.or(plan.source.location).unwrap_or_default();
             (site.name, site.sector)
         };
-        let told = told || before.is_some_and(|carried| carried.told);
-        self.beliefs.carried = Some(Carried { item, serial: plan.serial, location, sector, told });
+        let known = before.filter(|carried| carried.told && !told);
+        let serial = known.map_or(plan.serial, |carried| carried.serial);
+        self.beliefs.carried =
+            Some(Carried { item, serial, location, sector, told: told || known.is_some() });
     }
 
     /// REPORT-ITEM (IX.2): write where the object of a command now is, and keep it until it is taken.

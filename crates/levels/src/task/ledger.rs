@@ -111,7 +111,7 @@ pub fn is_taken(ledger: Option<&Ledger>, object: &Name16) -> bool {
 }
 
 /// The ledger when a command has been accepted. A command that is about no object says nothing of one that
-/// is. One that takes its object again has told nothing yet.
+/// is. One that has to take its object again has told nothing yet.
 #[must_use]
 pub fn opened(ledger: Option<Ledger>, command: &HwsCommand, plan: &Plan) -> Option<Ledger> {
     if !plan.is_about_something() || plan.resumed != Resumed::Not {

@@ -31,7 +31,7 @@ impl State {
         self.plan = *plan;
         outputs.ledger = opened(outputs.ledger, &inputs.external.hws, plan);
         if plan.is_about_something() {
-            self.data_system.accept(plan, inputs.memory.subtask.status.held);
+            self.data_system.accept(plan, &inputs.memory.subtask.status);
         }
         let sites = [&mut self.plan.source, &mut self.plan.destination, &mut self.plan.end_at];
         for (slot, site) in outputs.poses.iter_mut().zip(sites) {

@@ -85,10 +85,15 @@ impl State {
     fn plan(&self, plan: &Plan, inputs: &Inputs<'_, TaskData<'_>>) -> Plan {
         let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
         let is_held = plan.object.is_some() && plan.object == below.held.object();
-        // What is neither held nor placed is taken again, and told of again.
-        let told = plan.resumed != Resumed::Not
-            && ledger.is_some_and(|ledger| ledger.told)
-            && (is_held || placed(plan, below, ledger) != Placed::Not);
+        // What is certainly not in the hand, nor placed, is taken again, and told of again.
+        let is_gone = match below.held {
+            Holding::Nothing => true,
+            Holding::Object(held) => Some(held.object) != plan.object,
+            Holding::Something | Holding::NotKnown => false,
+        };
+        let is_taken_again = is_gone && placed(plan, below, ledger) == Placed::Not;
+        let told =
+            plan.resumed != Resumed::Not && ledger.is_some_and(|ledger| ledger.told) && !is_taken_again;
         let carried = self.data_system.beliefs.carried.as_ref();
         let from_elsewhere = plan.verb == TaskVerb::Acquire
             && is_held
@@ -193,8 +198,8 @@ fn way(at: Option<Standing>, plan: &Plan, data: &TaskData<'_>) -> Way {
     let from = place_of(goal.kind, at.record, at.array);
     let to = place_of(goal.kind, goal.record, goal.array);
     if same_location(&from, &to) {
-        // Between the sectors of an array no trajectory is needed.
-        if at.sector == goal.sector { Way::Here } else { Way::Leads }
+        // Between the sectors of a tray no trajectory is needed.
+        if (at.array, at.sector) == (goal.array, goal.sector) { Way::Here } else { Way::Leads }
     } else if data.trajectory(&from, &to).is_some() {
         Way::Leads
     } else {

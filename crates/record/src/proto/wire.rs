@@ -23,6 +23,11 @@ pub fn put_varint(mut value: u64, out: &mut Vec<u8>) {
 
 /// Take a number from the front of `bytes`; `None` if it has no end or does not fit in 64 bits.
 pub fn take_varint(bytes: &mut &[u8]) -> Option<u64> {
+    // Most are of one byte.
+    if let [byte @ 0..=0x7F, rest @ ..] = *bytes {
+        *bytes = rest;
+        return Some(u64::from(*byte));
+    }
     let mut value = 0_u64;
     for group in 0..10_u32 {
         let (byte, rest) = bytes.split_first()?;

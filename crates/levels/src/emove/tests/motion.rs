@@ -1,6 +1,6 @@
 //! MOV-…, GRASP-OBJ, RELEASE, LOCATE-OBJ and WITHDRAW with each gripper.
 
-use geometry::frame::Vector;
+use geometry::{frame::Vector, pose::Pose};
 use interfaces::{
     Reason, StatusReport,
     device::VisionStatus,
@@ -401,6 +401,29 @@ fn an_object_at_the_edge_of_its_tray_is_not_gone_to() {
         assert_eq!(bench.finish(), end, "{array} {y} {z} {angle}");
         assert_eq!(bench.memory.emove.beliefs.located.is_some(), end == DONE, "the next command looks again");
     }
+}
+
+/// What vision has found in one sector is not where a command for another sector of the same tray leads.
+#[test]
+fn what_was_located_in_one_sector_is_not_gone_to_for_another() {
+    let mut bench = Bench::ready("HOME", 1);
+    let array = data().array_named(&Name16::clipped("SLOTS")).map(ArrayId::number);
+    assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
+    bench.command(LocateObj, "BLOCK", 1, "BENCH", 1);
+    let told = &mut bench.memory.subtask.emove;
+    (told.location_array, told.location_sector) = (array, Some(1));
+    assert_eq!(bench.finish(), DONE);
+    bench.command(MovToObj, "BLOCK", 1, "BENCH", 1);
+    let mut there = frame_of("BENCH");
+    there.position.y += 3.0;
+    let pose = &mut bench.memory.subtask.poses[0];
+    pose.number = Some(pose_range::next(pose_range::SUBTASK, pose.number.unwrap_or_default()));
+    pose.pose = Pose::from_frame(&there);
+    let told = &mut bench.memory.subtask.emove;
+    (told.location_array, told.location_sector, told.pose) = (array, Some(2), pose.number);
+    assert_eq!(bench.finish(), DONE);
+    let off = bench.world.frame.distance(&moved(there, &["GRASP-MTB"])).inches;
+    assert!(off < 0.1, "{off} in from where the command leads");
 }
 
 #[test]

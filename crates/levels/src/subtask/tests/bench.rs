@@ -125,6 +125,7 @@ impl EmoveDouble {
                     object,
                     record: command.location_record,
                     array: command.location_array,
+                    sector: command.location_sector,
                 });
             }
             EmoveVerb::QcDetach => {

@@ -451,7 +451,7 @@ fn what_vision_has_found_is_not_looked_for_again() {
     let mut bench = Bench::default();
     let record = bench.data.locpt_named(&Name10::new("UNIT_1").unwrap()).map(|id| id.number());
     let object = Name16::new("BAR").unwrap();
-    bench.emove.outputs.status.located = Some(LocatedObject { object, record, array: None });
+    bench.emove.outputs.status.located = Some(LocatedObject { object, record, array: None, sector: None });
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-OBJ", "GRASP-OBJ"]);

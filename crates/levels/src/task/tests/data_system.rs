@@ -3,6 +3,7 @@
 use interfaces::{
     Reason,
     data_base::DataBaseVerb,
+    emove::Holding,
     hws::HwsReport,
     operator::{Variable, Write},
     process::{Inputs, Process},
@@ -508,20 +509,40 @@ fn a_part_that_was_lost_is_not_told_for_the_next_one() {
     bench.set(1, "PART", "PFIXTURE");
     perform(&mut bench, LET_GO, "B");
     assert_eq!(parts(&mut bench), [was("B", "PFIXTURE", 0)]);
+    const NEXT: &str = "TRANSFER PART +1 PFIXTURE 0 +1 SAFE 0 -- 0";
+    for is_sent_before in [false, true] {
+        let mut bench = Bench::connected();
+        perform(&mut bench, FROM_TRAY, "A");
+        bench.data_system.answer = Answer::Refuse;
+        assert_eq!(bench.run(STARTUP), error(Reason::DataBase));
+        if is_sent_before {
+            order(&mut bench, NEXT, "B");
+            bench.wait(2);
+            assert_eq!(bench.run(PAUSE), FINISHED);
+        }
+        bench.set(1, "", "PFIXTURE");
+        perform(&mut bench, NEXT, "B");
+        bench.data_system.answer = Answer::After(1);
+        assert_eq!(bench.run(STARTUP), FINISHED);
+        assert_eq!(bench.run(OTHER), FINISHED);
+        assert_eq!(parts(&mut bench), []);
+    }
+    // So it is with a tool that the drum gives and gets.
     let mut bench = Bench::connected();
-    perform(&mut bench, FROM_TRAY, "A");
-    bench.data_system.answer = Answer::Refuse;
-    assert_eq!(bench.run(STARTUP), error(Reason::DataBase));
-    bench.set(1, "", "PFIXTURE");
-    perform(&mut bench, "TRANSFER PART +1 PFIXTURE 0 +1 SAFE 0 -- 0", "B");
-    bench.data_system.answer = Answer::After(1);
-    assert_eq!(bench.run(STARTUP), FINISHED);
-    assert_eq!(bench.run(OTHER), FINISHED);
-    assert_eq!(parts(&mut bench), []);
+    bench.set(3, "", "HOME");
+    perform(&mut bench, "MOVE TOOL-1 +1 UNIT_1 2 +1 TOOL-SAFE 0 -- 0", "A");
+    bench.set(3, "", "TOOL-SAFE");
+    bench.data_system.received.clear();
+    for line in
+        ["ACQUIRE-TOOL TOOL-1 +1 -- 0 +1 TOOL-SAFE 0 -- 0", "RELEASE-TOOL TOOL-1 +1 -- 0 +1 -- 0 TOOL-SAFE 0"]
+    {
+        perform(&mut bench, line, "B");
+        assert!(positions(&mut bench).is_empty(), "{line}");
+    }
 }
 
-/// A part keeps its serial number while it is held, whatever the next commands call it; the next part of the same name
-/// has its own.
+/// A part keeps its serial number while it is held, whatever commands call it that do not tell of it; the next part of
+/// the same name has its own.
 #[test]
 fn two_parts_of_a_name_keep_their_serial_numbers() {
     for next in [
@@ -538,6 +559,25 @@ fn two_parts_of_a_name_keep_their_serial_numbers() {
         perform(&mut bench, LET_GO, "A");
         assert_eq!(parts(&mut bench), [was("A", "PFIXTURE", 0)], "{next}");
     }
+    for next in ["MOVE PART +1 SAFE 0 +1 HOME 0 -- 0", "ACQUIRE PART +1 UNIT_1 1 0 -- 0 -- 0"] {
+        let mut bench = Bench::connected();
+        perform(&mut bench, FROM_TRAY, "A");
+        perform(&mut bench, next, "B");
+        bench.set(1, "PART", "PFIXTURE");
+        perform(&mut bench, LET_GO, "A");
+        assert_eq!(parts(&mut bench), [was("A", "H_ROBOT", 0), was("A", "PFIXTURE", 0)], "{next}");
+    }
+    // A part that no update is due of is held, and another one of its name is in the tray.
+    let mut bench = Bench::connected();
+    order(&mut bench, "MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0", "A");
+    until(&mut bench, |below| below.held.object().is_some());
+    assert_eq!(bench.run(PAUSE), FINISHED);
+    order(&mut bench, "TRANSFER PART +1 UNIT_1 1 +1 SAFE 0 -- 0", "B");
+    bench.wait(2);
+    assert_eq!(bench.run(PAUSE), FINISHED);
+    bench.set(1, "PART", "PFIXTURE");
+    perform(&mut bench, LET_GO, "A");
+    assert_eq!(parts(&mut bench), []);
     // The first was let go by a command that was replaced, and the next one of its name is taken.
     for next in ["TRANSFER PART +1 UNIT_1 1 +1 SAFE 0 -- 0", "TRANSFER PART +1 PFIXTURE 0 +1 SAFE 0 -- 0"] {
         let mut bench = Bench::connected();
@@ -552,6 +592,40 @@ fn two_parts_of_a_name_keep_their_serial_numbers() {
         assert_eq!(told.first(), Some(&was("A", "PFIXTURE", 0)), "{next}");
         let second = next.contains("UNIT_1").then(|| was("B", "SAFE", 0));
         assert_eq!(told.get(1), second.as_ref(), "{next}");
+    }
+}
+
+/// The hand cannot be read for a time, in which a command is accepted: what it holds keeps its serial number, and an
+/// object that was taken elsewhere is not told.
+#[test]
+fn a_hand_that_cannot_be_read_changes_nothing() {
+    const ACQUIRE: &str = "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0";
+    let begin = |bench: &mut Bench<'_>, line: &str, serial: &str| {
+        order(bench, line, serial);
+        bench.wait(2);
+        assert_eq!(bench.run(PAUSE), FINISHED);
+    };
+    for unreadable in [Holding::NotKnown, Holding::Something] {
+        let mut bench = Bench::connected();
+        perform(&mut bench, "ACQUIRE PART +1 PFIXTURE 0 0 -- 0 -- 0", "A");
+        begin(&mut bench, ACQUIRE, "A");
+        let held = core::mem::replace(&mut bench.subtask.outputs.status.held, unreadable);
+        bench.step();
+        begin(&mut bench, ACQUIRE, "A");
+        bench.subtask.outputs.status.held = held;
+        bench.step();
+        perform(&mut bench, ACQUIRE, "A");
+        assert_eq!(parts(&mut bench), [], "it was taken from the fixture: {unreadable:?}");
+
+        let mut bench = Bench::connected();
+        perform(&mut bench, FROM_TRAY, "A");
+        let held = core::mem::replace(&mut bench.subtask.outputs.status.held, unreadable);
+        bench.step();
+        begin(&mut bench, "TRANSFER PART +1 UNIT_1 1 +1 SAFE 0 -- 0", "B");
+        bench.subtask.outputs.status.held = held;
+        bench.set(1, "PART", "PFIXTURE");
+        perform(&mut bench, LET_GO, "A");
+        assert_eq!(parts(&mut bench), [was("A", "PFIXTURE", 0)], "{unreadable:?}");
     }
 }
 
