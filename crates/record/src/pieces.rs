@@ -5,8 +5,8 @@
 //! decompressed bytes is limited in proportion to the size of the file, and with it memory and time of reading.
 //!
 //! All processors check the first chunks of a sound file ahead. What they decompress for it is not kept: decompressing
-//! it again takes no longer than fetching it from memory that is not in the caches. Who reads the
-//! whole file anyway checks the chunks when reading them.
+//! it again takes no longer than fetching it from memory that is not in the caches. A program that reads the whole file
+//! anyway can check the chunks when it reads them ([`Check`]).
 
 use std::{collections::BTreeMap, iter, ops::Range, thread};
 
@@ -47,7 +47,7 @@ pub enum Piece<'a> {
 pub enum Check {
     /// All when the file is opened.
     Now,
-    /// The first, which has the channels, when the file is opened, and the others by who reads them.
+    /// The first, which has the channels, when the file is opened, and the others when they are read.
     Later,
 }
 
@@ -55,6 +55,7 @@ pub enum Check {
 pub struct Pieces<'a> {
     bytes: &'a [u8],
     check: Check,
+    /// A chunk was checked.
     has_channels: bool,
     at: usize,
     /// Number of bytes that may still be decompressed or checksummed.

@@ -110,7 +110,7 @@ impl Log {
         Self::open_with(path, Check::Now)
     }
 
-    /// The same, if the file is checked when it is read: see [`Log::is_misread`].
+    /// The same, with a check of the chunks now or when they are read (see [`Log::is_misread`]).
     pub(crate) fn open_with(path: &Path, check: Check) -> Result<Self, ReadError> {
         let unreadable = |source| ReadError::Unreadable { path: path.to_owned(), source };
         let mut file = files::open(path).map_err(unreadable)?;

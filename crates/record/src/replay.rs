@@ -113,15 +113,21 @@ pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
 /// As [`replay`]; [`ReplayError::Empty`] if the part contains no tick.
 pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, ReplayError> {
     let started = Instant::now();
-    // A sound log is read once, and each part is checked when it is read. Of another one all damage is reported.
-    if options.until.is_none() {
-        let log = Log::open_with(path, Check::Later)?;
-        let report = replay_log(&log, options, started);
-        if report.as_ref().is_ok_and(|report| report.first_difference.is_none()) && !log.is_misread() {
-            return report;
-        }
+    match replay_sound(path, options, started) {
+        Some(report) => Ok(report),
+        None => replay_log(&Log::open(path)?, options, started),
     }
-    replay_log(&Log::open(path)?, options, started)
+}
+
+/// Replay a log that is checked while it is read. `None` if it is not read to its end, or not sound: what is damaged is
+/// found out before the replay then.
+fn replay_sound(path: &Path, options: &Options, started: Instant) -> Option<ReplayReport> {
+    let log = Log::open_with(path, Check::Later).ok()?;
+    if options.until.is_some() || log.damage().is_some() {
+        return None;
+    }
+    let report = replay_log(&log, options, started).ok()?;
+    (report.first_difference.is_none() && !log.is_misread()).then_some(report)
 }
 
 fn replay_log(log: &Log, options: &Options, started: Instant) -> Result<ReplayReport, ReplayError> {
@@ -130,7 +136,9 @@ fn replay_log(log: &Log, options: &Options, started: Instant) -> Result<ReplayRe
         Some(data) => grown(data.clone(), &log.attachments)?,
         None => generations(log)?,
     };
-    let stretches = Stretches::new(log, options, &generations, STRETCH);
+    // Recorded states have the record numbers of the log's own task data.
+    let length = if options.data.is_some() { usize::MAX } else { STRETCH };
+    let stretches = Stretches::new(log, options, &generations, length);
     let Replayed { ticks, skipped, digest: computed, first_difference } = stretches.replay()?;
     if ticks == 0 {
         return Err(ReplayError::Empty);
@@ -209,6 +217,15 @@ struct Replayed {
     first_difference: Option<Difference>,
 }
 
+/// What the replay of a stretch has come to.
+#[derive(Default)]
+struct Stretch {
+    /// Hashes of the output buffers of the computed ticks.
+    hashes: Vec<u64>,
+    skipped: u64,
+    first_difference: Option<Difference>,
+}
+
 /// A log that is replayed in stretches.
 struct Stretches<'a> {
     log: &'a Log,
@@ -230,7 +247,7 @@ impl<'a> Stretches<'a> {
     fn replay(&self) -> Result<Replayed, ReplayError> {
         let mut all = Replayed { ticks: 0, skipped: 0, digest: Digest::new(), first_difference: None };
         for stretch in self.in_all_processors() {
-            let Replayer { hashes, skipped, first_difference, .. } = stretch?;
+            let Stretch { hashes, skipped, first_difference } = stretch?;
             all.ticks += hashes.len() as u64;
             all.skipped += skipped;
             hashes.iter().for_each(|hash| all.digest.add_hash(*hash));
@@ -244,7 +261,7 @@ impl<'a> Stretches<'a> {
 
     /// The stretches in order, each replayed in the next processor that was free. At least those up to the first that
     /// differs or cannot be computed.
-    fn in_all_processors(&self) -> Vec<Result<Replayer, ReplayError>> {
+    fn in_all_processors(&self) -> Vec<Result<Stretch, ReplayError>> {
         let count = self.log.parts().div_ceil(self.length);
         let next = AtomicUsize::new(0);
         let replay_some = || {
@@ -255,7 +272,7 @@ impl<'a> Stretches<'a> {
                     return some;
                 }
                 let stretch = self.stretch(number);
-                if !stretch.as_ref().is_ok_and(|replayer| replayer.first_difference.is_none()) {
+                if !stretch.as_ref().is_ok_and(|stretch| stretch.first_difference.is_none()) {
                     // None is begun after it, and all before it have been.
                     next.store(count, Ordering::Relaxed);
                 }
@@ -275,7 +292,7 @@ impl<'a> Stretches<'a> {
 
     /// Compute the ticks of a stretch up to the first that differs. It goes from the first recorded states in its parts of
     /// the file to the first ones after them; the first stretch goes from the start of the run.
-    fn stretch(&self, number: usize) -> Result<Replayer, ReplayError> {
+    fn stretch(&self, number: usize) -> Result<Stretch, ReplayError> {
         let first = number.saturating_mul(self.length);
         let end = first.saturating_add(self.length);
         let mut ticks = self.log.ticks_from(first, &self.codecs);
@@ -298,8 +315,8 @@ impl<'a> Stretches<'a> {
             } else if has_begun {
                 for logged in run_up.iter().chain([logged]) {
                     replayer.step(logged, self)?;
-                    if replayer.first_difference.is_some() {
-                        return Ok(replayer);
+                    if replayer.stretch.first_difference.is_some() {
+                        return Ok(replayer.stretch);
                     }
                 }
                 run_up.clear();
@@ -308,7 +325,7 @@ impl<'a> Stretches<'a> {
                 break;
             }
         }
-        Ok(replayer)
+        Ok(replayer.stretch)
     }
 }
 
@@ -324,10 +341,7 @@ struct Replayer {
     /// False if the replay needs recorded states to continue.
     has_states: bool,
     last: Tick,
-    /// Hashes of the output buffers of the computed ticks.
-    hashes: Vec<u64>,
-    skipped: u64,
-    first_difference: Option<Difference>,
+    stretch: Stretch,
 }
 
 impl Replayer {
@@ -340,18 +354,16 @@ impl Replayer {
             image: vec![0; CommonMemory::SIZE],
             has_states: true,
             last: Tick::BEFORE_START,
-            hashes: Vec::new(),
-            skipped: 0,
-            first_difference: None,
+            stretch: Stretch::default(),
         }
     }
 
     /// Compute a tick again and compare it, or take the recorded values after a gap.
     fn step(&mut self, logged: &LoggedTick, stretches: &Stretches<'_>) -> Result<(), ReplayError> {
         let tick = logged.tick;
-        self.skipped += tick.since(self.last.next());
+        self.stretch.skipped += tick.since(self.last.next());
         if !self.has_states || tick != self.last.next() {
-            self.skipped += 1;
+            self.stretch.skipped += 1;
             return self.take_over(logged);
         }
         self.last = tick;
@@ -365,9 +377,10 @@ impl Replayer {
         self.in_second = !self.in_second;
         self.ladder.step(tick, before, &external, &data, after);
         after.encode(&mut Writer::new(&mut self.image));
-        self.hashes.push(hash(&self.image));
+        self.stretch.hashes.push(hash(&self.image));
         let states = logged.state.is_some().then(|| image(&self.ladder.state()));
-        self.first_difference = stretches.comparison.difference(logged, &self.image, states.as_deref());
+        self.stretch.first_difference =
+            stretches.comparison.difference(logged, &self.image, states.as_deref());
         Ok(())
     }
 

@@ -12,7 +12,8 @@ use interfaces::{
     DataBaseCommand, DataBaseStatus, ExternalInputs, TaskOutputs,
     data_base::{Carried, Connection, DataBaseBeliefs, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
     emove::{Holding, PlacedObject},
-    subtask::SubtaskStatus,
+    hws::Ledger,
+    subtask::{SubtaskStatus, SubtaskVerb},
 };
 use rcs_core::{
     Plain,
@@ -22,7 +23,7 @@ use rcs_core::{
 };
 
 use super::{
-    plan::{Plan, Resumed, TaskVerb},
+    plan::{Plan, TaskVerb},
     tables::{DataBase, Update},
 };
 
@@ -165,9 +166,10 @@ impl DataSystem {
                     carried.told |= is_followed;
                 }
             }
-            Holding::Nothing | Holding::Object(_) => {
+            held => {
                 // The robot has lost what it carried under that name: what it takes now is another one.
-                if below.placed.is_none_or(|placed| placed.object != item) {
+                let is_empty = matches!(held, Holding::Nothing | Holding::Object(_));
+                if is_empty && below.placed.is_none_or(|placed| placed.object != item) {
                     self.beliefs.carried = self.beliefs.carried.filter(|carried| carried.item != item);
                 }
                 let site = plan.source.location.unwrap_or_default();
@@ -175,17 +177,14 @@ impl DataSystem {
                 let taken = Carried { item, serial, location, sector, told: true };
                 self.beliefs.taking = (is_followed && !takes_tool).then_some(taken);
             }
-            // It may be the object or another one.
-            Holding::Something | Holding::NotKnown if plan.resumed == Resumed::Not => {
-                self.beliefs.taking = None;
-            }
-            Holding::Something | Holding::NotKnown => {}
         }
     }
 
-    /// Once a tick: what the robot was sent to take is what it holds.
-    pub fn hold(&mut self, held: Option<Name16>) {
-        if held.is_some() && held == self.beliefs.taking.map(|taking| taking.item) {
+    /// Once a tick: what the robot was sent to take is what it holds, from the order to get it on.
+    pub fn hold(&mut self, held: Option<Name16>, ledger: Option<&Ledger>) {
+        let is_sent =
+            ledger.is_some_and(|ledger| !matches!(ledger.last, SubtaskVerb::None | SubtaskVerb::GetEndeff));
+        if is_sent && held.is_some() && held == self.beliefs.taking.map(|taking| taking.item) {
             self.beliefs.carried = self.beliefs.taking.take();
         }
     }

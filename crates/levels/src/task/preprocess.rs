@@ -34,11 +34,12 @@ impl State {
         self.data_system.observe(data_base, inputs.tick);
         let arrival = self.execution.observe(inputs.tick, command.number);
         let asked = self.execution.asked(arrival);
-        self.data_system.hold(inputs.memory.subtask.status.held.object());
+        let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
+        self.data_system.hold(below.held.object(), ledger);
         let (plan, request) = if asked == Asked::Now {
             self.ordered = Ordered::Nothing;
             let found = Plan::look_up(command, inputs.data);
-            let plan = Plan { resumed: resumed(command, inputs.memory.task.ledger.as_ref()), ..found.plan };
+            let plan = Plan { resumed: resumed(command, ledger), ..found.plan };
             let replaces = plan.is_about_something() && plan.resumed == Resumed::Not;
             self.follow_object(plan.verb, replaces, inputs);
             (self.plan(&plan, inputs), request(&found))
