@@ -116,7 +116,7 @@ impl Piece {
     }
 }
 
-/// Add to a number of at most eight bytes; it goes on from its end at its beginning.
+/// Add to a number of at most eight bytes; it wraps around.
 fn add(field: &mut [u8], difference: u64) {
     let [a, b, c, d, ..] = difference.to_le_bytes();
     if let Ok(field) = <&mut [u8; 4]>::try_from(&mut *field) {

@@ -12,10 +12,8 @@
 
 use std::{
     collections::BTreeMap,
-    panic::resume_unwind,
     path::Path,
     sync::atomic::{AtomicUsize, Ordering},
-    thread,
     time::{Duration, Instant},
 };
 
@@ -27,7 +25,7 @@ use rcs_core::{
     plain::{Writer, from_bytes},
     tick::{TICK_MS, Tick},
 };
-use taskdata::load::{Source, Store};
+use taskdata::load::{Source, Store, parallel};
 
 use crate::{
     comparison::Comparison,
@@ -259,39 +257,24 @@ impl<'a> Stretches<'a> {
         Ok(all)
     }
 
-    /// The stretches in order, each replayed in the next processor that was free. At least those up to the first that
-    /// differs or cannot be computed.
-    fn in_all_processors(&self) -> Vec<Result<Stretch, ReplayError>> {
-        let count = self.log.parts().div_ceil(self.length);
-        let next = AtomicUsize::new(0);
-        let replay_some = || {
-            let mut some = Vec::new();
-            loop {
-                let number = next.fetch_add(1, Ordering::Relaxed);
-                if number >= count {
-                    return some;
-                }
-                let stretch = self.stretch(number);
-                if !stretch.as_ref().is_ok_and(|stretch| stretch.first_difference.is_none()) {
-                    // None is begun after it, and all before it have been.
-                    next.store(count, Ordering::Relaxed);
-                }
-                some.push((number, stretch));
+    /// The stretches in order, up to the first that differs or cannot be computed.
+    fn in_all_processors(&self) -> impl Iterator<Item = Result<Stretch, ReplayError>> {
+        let last = AtomicUsize::new(usize::MAX);
+        let stretches = parallel::map(self.log.parts().div_ceil(self.length), |number| {
+            if number > last.load(Ordering::Relaxed) {
+                return None;
             }
-        };
-        let threads = thread::available_parallelism().map_or(1, usize::from).min(count);
-        let mut stretches: Vec<_> = thread::scope(|scope| {
-            let all: Vec<_> = (0..threads).map(|_| scope.spawn(replay_some)).collect();
-            all.into_iter()
-                .flat_map(|some| some.join().unwrap_or_else(|panic| resume_unwind(panic)))
-                .collect()
+            let stretch = self.stretch(number);
+            if !stretch.as_ref().is_ok_and(|stretch| stretch.first_difference.is_none()) {
+                last.fetch_min(number, Ordering::Relaxed);
+            }
+            Some(stretch)
         });
-        stretches.sort_by_key(|(number, _)| *number);
-        stretches.into_iter().map(|(_, stretch)| stretch).collect()
+        stretches.into_iter().map_while(|stretch| stretch)
     }
 
-    /// Compute the ticks of a stretch up to the first that differs. It goes from the first recorded states in its parts of
-    /// the file to the first ones after them; the first stretch goes from the start of the run.
+    /// Compute the ticks of a stretch up to the first that differs. It goes from the first recorded states in its parts
+    /// of the file to the first ones after them; the first stretch goes from the start of the run.
     fn stretch(&self, number: usize) -> Result<Stretch, ReplayError> {
         let first = number.saturating_mul(self.length);
         let end = first.saturating_add(self.length);

@@ -11,7 +11,7 @@
 use interfaces::{
     DataBaseCommand, DataBaseStatus, ExternalInputs, TaskOutputs,
     data_base::{Carried, Connection, DataBaseBeliefs, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
-    emove::{Holding, PlacedObject},
+    emove::PlacedObject,
     hws::Ledger,
     subtask::{SubtaskStatus, SubtaskVerb},
 };
@@ -26,6 +26,7 @@ use super::{
     plan::{Plan, TaskVerb},
     tables::{DataBase, Update},
 };
+use crate::held::Held;
 
 /// Ticks in which the Data System is expected to finish a command: 10 s, on a factory network.
 pub const ANSWER_LIMIT: u64 = 250;
@@ -148,36 +149,32 @@ impl DataSystem {
         (self.beliefs.connected, self.beliefs.connecting) = (true, false);
     }
 
-    /// A command about an object or a tool is accepted. If it takes an object of which the data base is told, it is told
-    /// where that is let go, also if the command is never finished. What is in the hand already keeps its serial number.
+    /// A command about an object or a tool is accepted. If it takes an object of which the data base is told, the data
+    /// base is told where that is let go, also if the command is never finished. What is in the hand already keeps its
+    /// serial number.
     pub fn accept(&mut self, plan: &Plan, below: &SubtaskStatus) {
+        self.beliefs.taking = None;
         let takes_tool = plan.verb == TaskVerb::AcquireTool;
-        let Some(item) = plan.object.filter(|_| plan.verb.takes() || takes_tool) else {
-            self.beliefs.taking = None;
-            return;
-        };
+        let Some(item) = plan.object.filter(|_| plan.verb.takes() || takes_tool) else { return };
         let is_followed =
             self.beliefs.connected && !plan.from_elsewhere && (plan.update_due || self.follows(item, false));
-        match below.held {
-            Holding::Object(held) if held.object == item => {
-                self.beliefs.taking = None;
-                let carried = self.beliefs.carried.as_mut().filter(|carried| carried.item == item);
-                if let Some(carried) = carried {
-                    carried.told |= is_followed;
-                }
+        let held = Held::of(below.held, Some(item));
+        if held == Held::Right {
+            let carried = self.beliefs.carried.as_mut().filter(|carried| carried.item == item);
+            if let Some(carried) = carried {
+                carried.told |= is_followed;
             }
-            held => {
-                // The robot has lost what it carried under that name: what it takes now is another one.
-                let is_empty = matches!(held, Holding::Nothing | Holding::Object(_));
-                if is_empty && below.placed.is_none_or(|placed| placed.object != item) {
-                    self.beliefs.carried = self.beliefs.carried.filter(|carried| carried.item != item);
-                }
-                let site = plan.source.location.unwrap_or_default();
-                let (serial, location, sector) = (plan.serial, site.name, site.sector);
-                let taken = Carried { item, serial, location, sector, told: true };
-                self.beliefs.taking = (is_followed && !takes_tool).then_some(taken);
-            }
+            return;
         }
+        let is_placed = below.placed.is_some_and(|placed| placed.object == item);
+        if matches!(held, Held::Nothing | Held::Other) && !is_placed {
+            // The robot has lost what it carried under that name: what it takes now is another one.
+            self.beliefs.carried = self.beliefs.carried.filter(|carried| carried.item != item);
+        }
+        let site = plan.source.location.unwrap_or_default();
+        let (serial, location, sector) = (plan.serial, site.name, site.sector);
+        let taken = Carried { item, serial, location, sector, told: true };
+        self.beliefs.taking = (is_followed && !takes_tool).then_some(taken);
     }
 
     /// Once a tick: what the robot was sent to take is what it holds, from the order to get it on.

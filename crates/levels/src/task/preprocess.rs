@@ -85,19 +85,15 @@ impl State {
     /// A new command, with what it has to do with the commands before it.
     fn plan(&self, plan: &Plan, inputs: &Inputs<'_, TaskData<'_>>) -> Plan {
         let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
-        let is_held = plan.object.is_some() && plan.object == below.held.object();
+        let held = Held::of(below.held, plan.object);
         // What is certainly not in the hand, nor placed, is taken again, and told of again.
-        let is_gone = match below.held {
-            Holding::Nothing => true,
-            Holding::Object(held) => Some(held.object) != plan.object,
-            Holding::Something | Holding::NotKnown => false,
-        };
-        let is_taken_again = is_gone && placed(plan, below, ledger) == Placed::Not;
+        let is_taken_again =
+            matches!(held, Held::Nothing | Held::Other) && placed(plan, below, ledger) == Placed::Not;
         let told =
             plan.resumed != Resumed::Not && ledger.is_some_and(|ledger| ledger.told) && !is_taken_again;
         let carried = self.data_system.beliefs.carried.as_ref();
         let from_elsewhere = plan.verb == TaskVerb::Acquire
-            && is_held
+            && held == Held::Right
             && is_from_elsewhere(&inputs.external.hws, plan, ledger, carried);
         let is_known_in_hand = plan.verb == TaskVerb::Transfer
             && plan.object.is_some_and(|object| self.data_system.follows(object, false));

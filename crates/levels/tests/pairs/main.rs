@@ -119,8 +119,8 @@ fn task_and_subtask_tell_the_data_system() {
     tasks("task and subtask, the Data System", 0, &TELLING[..some], 23);
 }
 
-/// Ticks to the end of a TRANSFER that tells first where the command that it replaces has left an object, and then where
-/// it puts its own.
+/// Ticks to the end of a TRANSFER that tells first where the command that it replaces has left an object, and then
+/// where it puts its own.
 const TELLING_TWICE: u32 = 32;
 
 #[test]

@@ -153,8 +153,8 @@ impl Pair {
         self.connected(IN_HAND)
     }
 
-    /// The Data System is connected, and has the object of the commands at a position; the fingers can finish a release in
-    /// a pause.
+    /// The Data System is connected, and has the object of the commands at a position; the fingers can finish a release
+    /// in a pause.
     pub fn connected(mut self, position: &str) -> Self {
         self.task_out.beliefs.connected = true;
         self.task.data_system.beliefs = self.task_out.beliefs;

@@ -27,7 +27,7 @@ pub mod lex;
 mod link;
 pub mod origins;
 mod orphans;
-mod parallel;
+pub mod parallel;
 pub mod parse;
 pub mod parser;
 pub mod print;

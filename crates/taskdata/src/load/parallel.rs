@@ -1,5 +1,5 @@
-//! Work on all processors with results in a fixed order, so that the report of a load does not depend on the number of
-//! processors.
+//! Work on all processors with results in a fixed order, so that the report of a load, or of a replay, does not depend
+//! on the number of processors.
 
 use std::{
     iter::Flatten,
@@ -14,7 +14,7 @@ use std::{
 ///
 /// # Panics
 /// If `work` does.
-pub(super) fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+pub fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let threads = thread::available_parallelism().map_or(1, NonZero::get).min(count);
     if threads <= 1 {
         return (0..count).map(work).collect();

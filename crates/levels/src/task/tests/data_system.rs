@@ -496,8 +496,8 @@ fn what_an_abandoned_command_has_taken_out_of_a_tray_is_told() {
     }
 }
 
-/// The robot has lost the part that it carried, with a Data System or without. What it takes then under the same name is
-/// another one.
+/// The robot has lost the part that it carried, with a Data System or without. What it takes then under the same name
+/// is another one.
 #[test]
 fn a_part_that_was_lost_is_not_told_for_the_next_one() {
     let mut bench = Bench::connected();
