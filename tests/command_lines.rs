@@ -45,7 +45,7 @@ fn the_page_of_the_command_lines_is_what_the_programs_say() {
     let kept = fs::read_to_string(&file).expect("the page is there");
     assert!(
         kept == page,
-        "docs/cli.md is old: RCS_PAGES=write cargo test --release -p whole-system-tests --test command_lines"
+        "docs/cli.md is old: RCS_PAGES=write cargo test --release -p whole-system-tests --test runs command_lines"
     );
 }
 

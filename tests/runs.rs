@@ -1,5 +1,8 @@
-//! Runs of the whole system, in one program: each program takes a while to link.
+//! Runs of the whole system, in one program: each program takes a while to link, and programs run one after the other,
+//! so that only tests of the same program have all processors while one of them waits.
 
+mod boards;
+mod command_lines;
 mod contacts;
 mod egm;
 mod estop;
@@ -7,5 +10,12 @@ mod faults;
 mod finished;
 mod jobs;
 mod linkbar;
+mod live;
+mod neighbours;
+mod operator;
+mod readme;
+mod replays;
+mod seeds;
+mod survival;
 mod traces;
 mod why;

@@ -16,7 +16,7 @@ use neighbours::network::{Address, NeighbourKeys, Peer, Role};
 use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 use zenoh::{Config, Session, Wait as _};
 
-use crate::bench::{Controller, Workstation, bare, make_keys, run_alone};
+use super::bench::{Controller, Workstation, bare, make_keys, run_alone};
 
 /// An endpoint that no other test has, nor another run of them on this machine.
 fn endpoint(test: u8) -> String {

@@ -21,7 +21,7 @@ use neighbours::{
 use rcs_core::name::Name16;
 use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 
-use crate::bench::{Controller, Ended, Workstation, bare};
+use super::bench::{Controller, Ended, Workstation, bare};
 
 /// What a Data System does with the first update.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

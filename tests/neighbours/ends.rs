@@ -11,7 +11,7 @@ use neighbours::{
 use rcs_core::name::Name16;
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::bench::{Controller, Ended, Workstation, attend, bare};
+use super::bench::{Controller, Ended, Workstation, attend, bare};
 
 /// A run that goes on without its workstation controller ends here, and not where it should.
 const TOO_LONG: [&str; 3] = ["--json", "--ticks", "20000"];

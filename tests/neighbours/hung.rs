@@ -7,7 +7,7 @@ use neighbours::network::{Peer, Role};
 use rustix::process::{Pid, Signal, kill_process};
 use whole_system_tests::Scratch;
 
-use crate::bench::{Controller, Workstation, bare};
+use super::bench::{Controller, Workstation, bare};
 
 /// What a neighbour that hangs is told at last.
 const TOLD: &str = "the controller says: no answer for 10 s";

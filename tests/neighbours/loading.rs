@@ -9,7 +9,7 @@ use rcs_core::name::Name16;
 use record::{Log, OperatorLine};
 use whole_system_tests::Scratch;
 
-use crate::bench::{Controller, Workstation, bare};
+use super::bench::{Controller, Workstation, bare};
 
 /// The finger point of SAFE-P, and one that is half an inch higher with its wrist and tool point.
 const SAFE: &str = "   -3362    -3734      638\n   -4781    -5310    -1483\n   -2552    -7317    -1483";

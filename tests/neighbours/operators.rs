@@ -16,7 +16,7 @@ use operator::Client;
 use record::Log;
 use whole_system_tests::{Scratch, rcs_run, root};
 
-use crate::bench::{Controller, PATIENCE, make_keys};
+use super::bench::{Controller, PATIENCE, make_keys};
 
 const JOB: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
 

@@ -28,7 +28,7 @@ use neighbours::{
 use rcs_core::name::Name16;
 use whole_system_tests::{Scratch, rcs_log, rcs_neighbour, rcs_run, root};
 
-use crate::bench::{Controller, Ended, Workstation, bare, computed, computed_alone};
+use super::bench::{Controller, Ended, Workstation, bare, computed, computed_alone};
 
 const SILENT: &str = "the Active Pedestal does not answer";
 

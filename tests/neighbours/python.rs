@@ -11,7 +11,7 @@ use std::{
 
 use whole_system_tests::Scratch;
 
-use crate::bench::{Controller, example, make_keys};
+use super::bench::{Controller, example, make_keys};
 
 const EXAMPLES: [&str; 2] = ["hwsc.py", "vision.py"];
 /// Mark, version 3, and the clock, which the examples do not read.

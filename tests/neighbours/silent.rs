@@ -18,7 +18,7 @@ use neighbours::{
 use rustix::process::{Pid, Signal, kill_process};
 use whole_system_tests::Scratch;
 
-use crate::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
+use super::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
 
 /// Exchanges after which it has had time enough.
 const LONG: usize = 50;

@@ -14,7 +14,7 @@ use std::{
 use neighbours::network::{Address, NeighbourKeys, Peer, Role};
 use whole_system_tests::{NOBODY, Scratch, may_become_nobody, rcs_neighbour, rcs_run, root};
 
-use crate::bench::{Controller, PATIENCE, make_keys};
+use super::bench::{Controller, PATIENCE, make_keys};
 
 /// A controller at a port, with the directory of its keys.
 fn controller(name: &str, more: &[&str]) -> (Controller, std::path::PathBuf) {

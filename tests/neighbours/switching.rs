@@ -6,7 +6,7 @@ use interfaces::HwsCommand;
 use rcs_core::name::Name16;
 use whole_system_tests::Scratch;
 
-use crate::bench::{Controller, Ended, Workstation, bare};
+use super::bench::{Controller, Ended, Workstation, bare};
 
 /// The fields of a command without object.
 const NOTHING: &str = "-- +0 -- 0 +0";

@@ -9,7 +9,7 @@ use neighbours::mailbox::HWSC_STATUS;
 use operator::Client;
 use rcs_core::name::Name16;
 
-use crate::bench::{Controller, PATIENCE, Workstation, bare};
+use super::bench::{Controller, PATIENCE, Workstation, bare};
 
 /// Ask until it is taken, while the workstation controller reads on. Refusals must be for one of these reasons.
 fn ask_until(client: &mut Client, workstation: &mut Workstation, request: &str, meanwhile: &[&str]) {

@@ -9,7 +9,7 @@ use std::{
 use neighbours::data_system::{Item, Store};
 use whole_system_tests::{Scratch, rcs_neighbour, root};
 
-use crate::bench::{Controller, computed, computed_alone};
+use super::bench::{Controller, computed, computed_alone};
 
 /// The items in a data base.
 fn items(file: &Path) -> Vec<Item> {

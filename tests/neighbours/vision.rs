@@ -20,7 +20,7 @@ use neighbours::{
 use rcs_core::name::Name16;
 use whole_system_tests::{Scratch, golden, rcs_log, rcs_neighbour, root};
 
-use crate::bench::{Controller, Ended, Workstation, bare};
+use super::bench::{Controller, Ended, Workstation, bare};
 
 /// `rcs-neighbour vision`, which ends with the test.
 struct Vision(Child);

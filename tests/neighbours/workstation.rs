@@ -13,7 +13,7 @@ use neighbours::{
 use rustix::process::{Pid, Signal, kill_process};
 use whole_system_tests::{rcs_neighbour, root};
 
-use crate::bench::{Controller, Workstation, bare, run_alone};
+use super::bench::{Controller, Workstation, bare, run_alone};
 
 /// The job of the controller's own emulator and that of one in another process are the same to the bit.
 #[test]

@@ -182,7 +182,7 @@ says what is promised.
     cargo run --release -p whole-system-tests --bin robustness -- --markdown docs/robustness.md
 
 makes this page; `--help` lists the parts. With `--sample` it tries a few cases of each row, as the tests do
-(`cargo test --release -p whole-system-tests --test survival campaign`). ";
+(`cargo test --release -p whole-system-tests --test runs survival::campaign`). ";
 
 /// What stands behind it.
 const TAIL: &str = "
