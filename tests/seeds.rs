@@ -94,7 +94,8 @@ fn shipped_jobs_and_fit_sectors_finish_with_every_seed() {
     let failed = failed(&kinds, seeds);
     if all.is_some() {
         let mut table = "# Seeds\n\nThe seed of a run decides the noise of its sensors and where a part lies that is put down at random. Written by\n\
-                         `RCS_SEEDS=20 cargo test --release -p whole-system-tests --test runs seeds`: each row with the seeds from 1 on.\n\n\
+                         `RCS_SEEDS=20 cargo test --release -p whole-system-tests --test runs seeds`: \
+                         each row with the seeds from 1 on.\n\n\
                          | job | seeds | finished |\n|---|---:|---:|\n"
             .to_owned();
         for (number, kind) in kinds.iter().enumerate() {
