@@ -108,7 +108,7 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
 /// want of the crates below it is a part of what they are.
 fn selection(name: &str) -> Vec<&str> {
     let program = ["--bin", name];
-    let with_zenoh = ["--features", "zenoh", "--test", "neighbours"];
+    let with_zenoh = ["--features", "zenoh", "--test", "runs"];
     program.into_iter().chain(with_zenoh.into_iter().filter(|_| cfg!(feature = "zenoh"))).collect()
 }
 
