@@ -57,9 +57,8 @@ const REPETITION: u64 = 10;
 /// Uncompressed size at which a chunk is closed before its second is over, bytes: three times what a second
 /// of a moving cell takes.
 const CHUNK: u64 = 256 * 1024;
-/// Level of the compression. At level 3 a log is a twenty-sixth larger. At level 9 it is a five hundredth smaller, and a
-/// run in fast clock has to wait for the writer.
-const COMPRESSION: u32 = 6;
+/// Level of the compression. At level 6 a log is a twenty-sixth smaller, and a run takes a seventh more processor time.
+const COMPRESSION: u32 = 3;
 /// Name of the metadata written at the start.
 pub const RUN: &str = "rcs-run";
 /// Name of the metadata written at the end.
