@@ -84,6 +84,7 @@ pub struct UnionSchema {
     pub name: &'static str,
     /// The variants in the order of their codes.
     pub variants: &'static [UnionVariant],
+    payload_size: usize,
 }
 
 /// A variant of an enum with data.
@@ -104,6 +105,7 @@ pub struct StructSchema {
     pub name: &'static str,
     /// The fields.
     pub fields: &'static [FieldSchema],
+    size: usize,
 }
 
 /// A field of a struct.
@@ -144,34 +146,48 @@ impl EnumSchema {
 }
 
 impl UnionSchema {
+    /// The schema of an enum with these variants.
+    #[must_use]
+    #[inline]
+    pub const fn new(name: &'static str, variants: &'static [UnionVariant]) -> Self {
+        let (mut rest, mut payload_size) = (variants, 0_usize);
+        while let Some((variant, more)) = rest.split_first() {
+            if let Some(payload) = &variant.payload
+                && payload.size() > payload_size
+            {
+                payload_size = payload.size();
+            }
+            rest = more;
+        }
+        Self { name, variants, payload_size }
+    }
+
     /// Bytes of the largest value that a variant carries.
     #[must_use]
     #[inline]
     pub const fn payload_size(&self) -> usize {
-        let (mut rest, mut largest) = (self.variants, 0_usize);
-        while let Some((variant, more)) = rest.split_first() {
-            if let Some(payload) = &variant.payload
-                && payload.size() > largest
-            {
-                largest = payload.size();
-            }
-            rest = more;
-        }
-        largest
+        self.payload_size
     }
 }
 
 impl StructSchema {
-    /// Bytes of the image.
+    /// The schema of a struct with these fields.
     #[must_use]
     #[inline]
-    pub const fn size(&self) -> usize {
-        let (mut rest, mut size) = (self.fields, 0_usize);
+    pub const fn new(name: &'static str, fields: &'static [FieldSchema]) -> Self {
+        let (mut rest, mut size) = (fields, 0_usize);
         while let Some((field, more)) = rest.split_first() {
             size = size.saturating_add(field.schema.size());
             rest = more;
         }
-        size
+        Self { name, fields, size }
+    }
+
+    /// Bytes of the image.
+    #[must_use]
+    #[inline]
+    pub const fn size(&self) -> usize {
+        self.size
     }
 }
 

@@ -44,13 +44,13 @@ fn of_struct(name: &Ident, data: &DataStruct) -> Result<TokenStream> {
     Ok(quote! {
         impl #name {
             /// The fields of the byte image.
-            pub const STRUCT: &'static ::rcs_core::plain::StructSchema = &::rcs_core::plain::StructSchema {
-                name: #text,
-                fields: &[ #( ::rcs_core::plain::FieldSchema {
+            pub const STRUCT: &'static ::rcs_core::plain::StructSchema = &::rcs_core::plain::StructSchema::new(
+                #text,
+                &[ #( ::rcs_core::plain::FieldSchema {
                     name: #texts,
                     schema: <#types as ::rcs_core::Plain>::SCHEMA,
                 }, )* ],
-            };
+            );
         }
 
         impl ::rcs_core::Plain for #name {
@@ -224,7 +224,7 @@ fn of_union(name: &Ident, data: &DataEnum) -> Result<TokenStream> {
         impl #name {
             /// The variants of the byte image.
             pub const UNION: &'static ::rcs_core::plain::UnionSchema =
-                &::rcs_core::plain::UnionSchema { name: #text, variants: &[ #( #schemas, )* ] };
+                &::rcs_core::plain::UnionSchema::new(#text, &[ #( #schemas, )* ]);
         }
 
         impl ::rcs_core::Plain for #name {

@@ -64,19 +64,27 @@ impl<W: Write + Seek> Output<W> {
         Ok(id)
     }
 
-    /// Write a message of a tick.
-    pub fn put(&mut self, channel_id: u16, tick: Tick, data: &[u8]) -> McapResult<()> {
+    /// Write a message of a tick, and pass it to the tap.
+    pub fn put(&mut self, channel: u16, tick: Tick, data: &[u8]) -> McapResult<()> {
+        self.write(channel, tick, data)?;
+        self.pass(channel, tick, data);
+        Ok(())
+    }
+
+    /// Write a message of a tick that was passed to the tap.
+    pub fn write(&mut self, channel_id: u16, tick: Tick, data: &[u8]) -> McapResult<()> {
         let log_time = self.epoch.of(tick);
         // A tick number beyond 32 bits is five years of running.
         let sequence = u32::try_from(tick.0).unwrap_or(u32::MAX);
-        self.mcap.write_to_known_channel(
-            &MessageHeader { channel_id, sequence, log_time, publish_time: log_time },
-            data,
-        )?;
+        let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
+        self.mcap.write_to_known_channel(&header, data)
+    }
+
+    /// Pass a message of a tick to the tap.
+    pub fn pass(&mut self, channel: u16, tick: Tick, data: &[u8]) {
         if let Some(tap) = &mut self.tap {
-            tap.message(channel_id, log_time, data);
+            tap.message(channel, self.epoch.of(tick), data);
         }
-        Ok(())
     }
 }
 
@@ -121,7 +129,11 @@ fn places(prefix: &str, record: &'static StructSchema, mut offset: usize) -> Vec
         if name != Header::STRUCT.name {
             let command = name.ends_with("Command") && !field.name.ends_with("command");
             let topic = format!("{prefix}/{}{}", field.name, if command { "_command" } else { "" });
-            found.push(Place { topic, bytes: offset..offset + size, schema: StructSchema { name, fields } });
+            found.push(Place {
+                topic,
+                bytes: offset..offset + size,
+                schema: StructSchema::new(name, fields),
+            });
         }
         offset += size;
     }

@@ -4,9 +4,11 @@
 //! next readable record: a chunk or an attachment with the right checksum, or metadata of this program. The total of
 //! decompressed bytes is limited in proportion to the size of the file, and with it memory and time of reading.
 //!
-//! All processors check the first chunks of a sound file ahead. What they decompress for it is not kept: decompressing
-//! it again takes no longer than fetching it from memory that is not in the caches. A program that reads the whole file
-//! anyway can check the chunks when it reads them ([`Check`]).
+//! A file that is as it was written has the right checksum of all its chunks at its end, and of the index after them: then
+//! no chunk needs to be decompressed before it is read, and the index says which chunks have messages of a channel.
+//! Otherwise each chunk has to show by its own checksum that it is readable. All processors check the first chunks ahead;
+//! what they decompress for it is not kept: decompressing it again takes no longer than fetching it from memory that is
+//! not in the caches.
 
 use std::{collections::BTreeMap, iter, ops::Range, thread};
 
@@ -29,6 +31,10 @@ const LEAST: u64 = 64 << 20;
 /// Limit of decompressed bytes that are checked ahead: those of a quarter of an hour. It bounds the memory for channels
 /// and schemas.
 const AHEAD: u64 = 64 << 20;
+/// Size of the body of the last record, bytes.
+const FOOTER: usize = 20;
+/// Size of a checksum, bytes.
+const CHECKSUM: usize = 4;
 /// Size of what stands before the data of a message, bytes: channel, number, and two times.
 const MESSAGE_HEAD: usize = 22;
 
@@ -36,27 +42,19 @@ const MESSAGE_HEAD: usize = 22;
 pub enum Piece<'a> {
     /// A record outside the chunks.
     Record(Record<'a>),
-    /// A readable chunk, including its record header, and the channels and schemas in it.
+    /// A readable chunk, including its record header, and the channels and schemas in it. Those of a whole file stand
+    /// after its data, too, and are not read here.
     Chunk(Range<usize>, Vec<Record<'static>>),
+    /// The chunk before has messages of a channel.
+    Index(u16),
     /// Unreadable bytes.
     Damaged(Range<usize>),
-}
-
-/// When the chunks of a file are checked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Check {
-    /// All when the file is opened.
-    Now,
-    /// The first, which has the channels, when the file is opened, and the others when they are read.
-    Later,
 }
 
 /// The pieces of a file, in order.
 pub struct Pieces<'a> {
     bytes: &'a [u8],
-    check: Check,
-    /// A chunk was checked.
-    has_channels: bool,
+    is_whole: bool,
     at: usize,
     /// Number of bytes that may still be decompressed or checksummed.
     left: u64,
@@ -70,15 +68,21 @@ impl<'a> Pieces<'a> {
     ///
     /// # Errors
     /// [`McapError::BadMagic`] if it does not.
-    pub fn new(bytes: &'a [u8], check: Check) -> McapResult<Self> {
+    pub fn new(bytes: &'a [u8]) -> McapResult<Self> {
         if !bytes.starts_with(MAGIC) {
             return Err(McapError::BadMagic);
         }
         let size = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
         let left = size.saturating_mul(EXPANSION).saturating_add(LEAST);
-        let ahead = if check == Check::Now { ahead(bytes) } else { BTreeMap::new() };
+        let is_whole = is_whole(bytes).unwrap_or_default();
+        let ahead = if is_whole { BTreeMap::new() } else { ahead(bytes) };
         let (at, decoder) = (MAGIC.len(), Decoder::default());
-        Ok(Self { bytes, check, has_channels: false, at, left, decoder, ahead })
+        Ok(Self { bytes, is_whole, at, left, decoder, ahead })
+    }
+
+    /// The file is as it was written.
+    pub const fn is_whole(&self) -> bool {
+        self.is_whole
     }
 
     /// The record that begins at a position, and its end; `None` if it is unreadable.
@@ -90,16 +94,16 @@ impl<'a> Pieces<'a> {
                 self.spend(chunk_size(self.bytes.get(at..end)?)?)?;
                 let described = match self.ahead.remove(&at) {
                     Some(described) => described?,
-                    None if self.check == Check::Later && self.has_channels => Vec::new(),
+                    None if self.is_whole => Vec::new(),
                     None => described(self.decoder.unpack(self.bytes.get(at..end)?)?)?,
                 };
-                self.has_channels = true;
                 Piece::Chunk(at..end, described)
             }
             op::ATTACHMENT => {
                 self.spend(u64::try_from(body.len()).ok()?)?;
                 Piece::Record(parse(opcode, body)?)
             }
+            op::MESSAGE_INDEX => Piece::Index(u16::from_le_bytes(*body.first_chunk()?)),
             // The last record: after it the file ends with the same magic as at its beginning.
             op::FOOTER if self.bytes.get(end..) != Some(MAGIC) => return None,
             op::HEADER..=op::DATA_END => Piece::Record(parse(opcode, body)?),
@@ -119,7 +123,7 @@ impl<'a> Pieces<'a> {
             Piece::Chunk(..) => true,
             Piece::Record(Record::Attachment { crc, .. }) => *crc != 0,
             Piece::Record(Record::Metadata(metadata)) => metadata.name == RUN || metadata.name == END,
-            Piece::Record(_) | Piece::Damaged(_) => false,
+            Piece::Record(_) | Piece::Index(_) | Piece::Damaged(_) => false,
         };
         let end = self.bytes.len();
         let begins =
@@ -149,7 +153,28 @@ impl<'a> Iterator for Pieces<'a> {
     }
 }
 
-/// The channels and schemas of the first chunks of a sound file, checked by all processors.
+/// True if the file ends with the right checksums of its data and of what stands after them; `None` if it has none.
+fn is_whole(bytes: &[u8]) -> Option<bool> {
+    // Footer: begin of the summary, begin of its offsets, checksum of the summary and of the footer up to here.
+    let footer = bytes.len().checked_sub(HEAD + FOOTER + MAGIC.len())?;
+    let (opcode, end) = frame(bytes, footer)?;
+    if opcode != op::FOOTER || bytes.get(end..) != Some(MAGIC) {
+        return None;
+    }
+    let begin = bytes.get(footer + HEAD..)?.first_chunk().map(|begin| u64::from_le_bytes(*begin))?;
+    let begin = usize::try_from(begin).ok()?;
+    let checksum_at = end.checked_sub(CHECKSUM)?;
+    let is_right = |covered: Range<usize>, checksum: usize| {
+        let checksum = u32::from_le_bytes(*bytes.get(checksum..)?.first_chunk()?);
+        Some(checksum != 0 && crc32fast::hash(bytes.get(covered)?) == checksum)
+    };
+    let data_end = begin.checked_sub(HEAD + CHECKSUM)?;
+    let (opcode, end) = frame(bytes, data_end)?;
+    let ends = opcode == op::DATA_END && end == begin;
+    Some(ends && is_right(begin..checksum_at, checksum_at)? && is_right(0..data_end, data_end + HEAD)?)
+}
+
+/// The channels and schemas of the first chunks, checked by all processors.
 fn ahead(bytes: &[u8]) -> BTreeMap<usize, Option<Vec<Record<'static>>>> {
     let (mut at, mut left, mut chunks) = (MAGIC.len(), AHEAD, Vec::new());
     while let Some((opcode, end)) = frame(bytes, at) {
@@ -182,7 +207,7 @@ fn chunk_size(chunk: &[u8]) -> Option<u64> {
 }
 
 /// The channels and schemas among the records of a chunk; `None` if a record is unreadable.
-pub fn described(records: &[u8]) -> Option<Vec<Record<'static>>> {
+fn described(records: &[u8]) -> Option<Vec<Record<'static>>> {
     let (mut at, mut described) = (0, Vec::new());
     while at < records.len() {
         let (opcode, end) = frame(records, at)?;
@@ -219,6 +244,11 @@ impl<'a> Message<'a> {
         let (channel, sequence) = (u16::from_le_bytes(*channel), u32::from_le_bytes(*sequence));
         Some(Self { channel, sequence, log_time: u64::from_le_bytes(*log_time), data })
     }
+}
+
+/// Time of the first message of a chunk, which is given with its record header, as it says: nanoseconds since 1970.
+pub fn chunk_begin(chunk: &[u8]) -> Option<u64> {
+    chunk.get(HEAD..)?.first_chunk().map(|begin| u64::from_le_bytes(*begin))
 }
 
 /// The messages among the records of a readable chunk.

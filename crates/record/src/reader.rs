@@ -12,7 +12,6 @@ use std::{
     iter,
     ops::Range,
     path::{Path, PathBuf},
-    sync::atomic::{AtomicBool, Ordering},
 };
 
 use mcap::{McapError, records::Record};
@@ -26,7 +25,7 @@ use crate::{
     input::{Attachment, Link},
     layout,
     operator::{OPERATOR, OperatorLine},
-    pieces::{self, Check, Decoder, Message, Piece, Pieces},
+    pieces::{self, Decoder, Message, Piece, Pieces},
     proto::{
         foxglove::{self, Level, Transform},
         wire::{Fields, Value},
@@ -43,9 +42,6 @@ const HEAD: u64 = 8;
 pub struct Log {
     path: PathBuf,
     bytes: Vec<u8>,
-    check: Check,
-    /// A chunk could not be read that was not checked when the log was opened.
-    misread: AtomicBool,
     segments: Vec<Segment>,
     /// Channel numbers by topic.
     channels: BTreeMap<String, u16>,
@@ -63,7 +59,8 @@ pub struct Log {
 
 /// A part of the file with messages.
 enum Segment {
-    Chunk(Range<usize>),
+    /// With the channels of its messages; none if they are not known for sure.
+    Chunk(Range<usize>, Vec<u16>),
     Damaged(Range<usize>),
 }
 
@@ -107,11 +104,6 @@ impl Log {
     /// # Errors
     /// [`ReadError`] if the file is not a log. The layout is not checked: see [`Log::check_layout`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
-        Self::open_with(path, Check::Now)
-    }
-
-    /// The same, with a check of the chunks now or when they are read (see [`Log::is_misread`]).
-    pub(crate) fn open_with(path: &Path, check: Check) -> Result<Self, ReadError> {
         let unreadable = |source| ReadError::Unreadable { path: path.to_owned(), source };
         let mut file = files::open(path).map_err(unreadable)?;
         // The magic is checked before the rest, which may be long, is read into memory.
@@ -120,7 +112,7 @@ impl Log {
         if bytes == mcap::MAGIC {
             file.read_to_end(&mut bytes).map_err(unreadable)?;
         }
-        Self::from_bytes_with(path, bytes, check)
+        Self::from_bytes(path, bytes)
     }
 
     /// A log from the bytes of a file; `path` names it in errors.
@@ -128,15 +120,9 @@ impl Log {
     /// # Errors
     /// As [`Log::open`].
     pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, ReadError> {
-        Self::from_bytes_with(path, bytes, Check::Now)
-    }
-
-    fn from_bytes_with(path: &Path, bytes: Vec<u8>, check: Check) -> Result<Self, ReadError> {
         let mut log = Self {
             path: path.to_owned(),
             bytes: Vec::new(),
-            check,
-            misread: AtomicBool::new(false),
             segments: Vec::new(),
             channels: BTreeMap::new(),
             described: Described::default(),
@@ -146,12 +132,18 @@ impl Log {
             complete: false,
         };
         let mut is_log = false;
-        let pieces = Pieces::new(&bytes, check).map_err(|source| log.not_mcap(source))?;
+        let pieces = Pieces::new(&bytes).map_err(|source| log.not_mcap(source))?;
+        let is_whole = pieces.is_whole();
         for piece in pieces {
             match piece {
                 Piece::Chunk(range, described) => {
                     described.iter().for_each(|record| log.note(record));
-                    log.segments.push(Segment::Chunk(range));
+                    log.segments.push(Segment::Chunk(range, Vec::new()));
+                }
+                Piece::Index(channel) => {
+                    if let Some(Segment::Chunk(_, channels)) = log.segments.last_mut().filter(|_| is_whole) {
+                        channels.push(channel);
+                    }
                 }
                 Piece::Damaged(range) => log.segments.push(Segment::Damaged(range)),
                 Piece::Record(Record::Metadata(metadata)) if metadata.name == RUN => {
@@ -202,7 +194,7 @@ impl Log {
     pub fn damage(&self) -> Option<String> {
         let damaged = |segment: &Segment| match segment {
             Segment::Damaged(range) => Some(format!("{} bytes from byte {} on", range.len(), range.start)),
-            Segment::Chunk(_) => None,
+            Segment::Chunk(..) => None,
         };
         let places: Vec<String> = self.segments.iter().filter_map(damaged).collect();
         let (first, more) = (places.first()?, places.len().saturating_sub(1));
@@ -210,11 +202,6 @@ impl Log {
             0 => format!("{first} are damaged; what they held is missing"),
             _ => format!("{first} are damaged, and {more} more places; what they held is missing"),
         })
-    }
-
-    /// True if something was read that is damaged, and was not checked before: the log is to be opened with the check.
-    pub(crate) fn is_misread(&self) -> bool {
-        self.misread.load(Ordering::Relaxed)
     }
 
     /// Size of the file, bytes.
@@ -249,7 +236,7 @@ impl Log {
         iter::from_fn(move || ticks.advance().map(|read| read.map(|(_, logged)| logged.clone())))
     }
 
-    /// The number of parts of the file with messages, about one for a second of the run.
+    /// The number of parts of the file with messages, about two for a second of the run.
     pub(crate) const fn parts(&self) -> usize {
         self.segments.len()
     }
@@ -318,16 +305,33 @@ impl Log {
         self.described.tell(tap);
     }
 
-    /// Pass all messages to a tap, in the order of the file. `before` gets the time of each message before it is
+    /// Pass all messages to a tap, in the order of their times. `before` gets the time of each message before it is
     /// passed, nanoseconds since 1970, and may wait.
     pub fn play(&self, tap: &mut dyn Tap, mut before: impl FnMut(u64)) {
         let mut decoder = Decoder::default();
-        for segment in &self.segments {
-            for Message { channel, log_time, data, .. } in self.messages_in(segment, &mut decoder) {
-                before(log_time);
-                tap.message(channel, log_time, data);
+        let mut waiting: Vec<(u64, u16, Vec<u8>)> = Vec::new();
+        for (segment, next) in iter::zip(&self.segments, self.next_times()) {
+            let messages = self.messages_in(segment, &mut decoder);
+            waiting
+                .extend(messages.map(|message| (message.log_time, message.channel, message.data.to_vec())));
+            waiting.sort_by_key(|(time, ..)| *time);
+            let due = waiting.partition_point(|(time, ..)| *time < next);
+            for (time, channel, data) in waiting.drain(..due) {
+                before(time);
+                tap.message(channel, time, &data);
             }
         }
+    }
+
+    /// For each part of the file, the time of the first message after it: nanoseconds since 1970.
+    fn next_times(&self) -> Vec<u64> {
+        let begins =
+            self.segments.iter().rev().map(|segment| self.chunk(segment).and_then(pieces::chunk_begin));
+        let mut times: Vec<u64> = begins
+            .scan(u64::MAX, |next, begin| Some(std::mem::replace(next, begin.unwrap_or(u64::MAX).min(*next))))
+            .collect();
+        times.reverse();
+        times
     }
 
     /// The messages of a topic with their ticks.
@@ -341,8 +345,14 @@ impl Log {
         let id = self.channels.get(topic).copied();
         let mut decoder = Decoder::default();
         self.segments.iter().enumerate().skip(first).flat_map(move |(part, segment)| {
-            if matches!(segment, Segment::Damaged(_)) {
-                return vec![(part, None)];
+            match segment {
+                Segment::Damaged(_) => return vec![(part, None)],
+                Segment::Chunk(_, known)
+                    if !known.is_empty() && !id.is_some_and(|id| known.contains(&id)) =>
+                {
+                    return Vec::new();
+                }
+                Segment::Chunk(..) => {}
             }
             let messages = self.messages_in(segment, &mut decoder);
             let of_topic = messages.filter(|message| Some(message.channel) == id);
@@ -357,17 +367,16 @@ impl Log {
         segment: &Segment,
         decoder: &'a mut Decoder,
     ) -> impl Iterator<Item = Message<'a>> + use<'a> {
-        let chunk = match segment {
-            Segment::Chunk(range) => self.bytes.get(range.clone()),
-            Segment::Damaged(_) => None,
-        };
-        let records = chunk.and_then(|chunk| decoder.unpack(chunk));
-        let is_sound = |records: &&[u8]| self.check == Check::Now || pieces::described(records).is_some();
-        let records = records.filter(is_sound);
-        if chunk.is_some() && records.is_none() {
-            self.misread.store(true, Ordering::Relaxed);
-        }
+        let records = self.chunk(segment).and_then(|chunk| decoder.unpack(chunk));
         pieces::messages(records.unwrap_or_default())
+    }
+
+    /// The bytes of a chunk, with its record header; `None` for a damaged part.
+    fn chunk(&self, segment: &Segment) -> Option<&[u8]> {
+        match segment {
+            Segment::Chunk(range, _) => self.bytes.get(range.clone()),
+            Segment::Damaged(_) => None,
+        }
     }
 }
 

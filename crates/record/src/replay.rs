@@ -31,15 +31,14 @@ use crate::{
     comparison::Comparison,
     error::ReplayError,
     input::Attachment,
-    pieces::Check,
     reader::{Log, LoggedTick},
     writer::Codecs,
 };
 
 pub use crate::comparison::Difference;
 
-/// Parts of a log that a processor replays at once, of a second each.
-const STRETCH: usize = 8;
+/// Parts of a log that a processor replays at once: eight seconds, of two parts each.
+const STRETCH: usize = 16;
 
 /// The part of a log to replay, and the task data.
 #[derive(Clone, Debug, Default)]
@@ -111,32 +110,15 @@ pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
 /// As [`replay`]; [`ReplayError::Empty`] if the part contains no tick.
 pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, ReplayError> {
     let started = Instant::now();
-    match replay_sound(path, options, started) {
-        Some(report) => Ok(report),
-        None => replay_log(&Log::open(path)?, options, started),
-    }
-}
-
-/// Replay a log that is checked while it is read. `None` if it is not read to its end, or not sound: what is damaged is
-/// found out before the replay then.
-fn replay_sound(path: &Path, options: &Options, started: Instant) -> Option<ReplayReport> {
-    let log = Log::open_with(path, Check::Later).ok()?;
-    if options.until.is_some() || log.damage().is_some() {
-        return None;
-    }
-    let report = replay_log(&log, options, started).ok()?;
-    (report.first_difference.is_none() && !log.is_misread()).then_some(report)
-}
-
-fn replay_log(log: &Log, options: &Options, started: Instant) -> Result<ReplayReport, ReplayError> {
+    let log = Log::open(path)?;
     log.check_layout()?;
     let generations = match &options.data {
         Some(data) => grown(data.clone(), &log.attachments)?,
-        None => generations(log)?,
+        None => generations(&log)?,
     };
     // Recorded states have the record numbers of the log's own task data.
     let length = if options.data.is_some() { usize::MAX } else { STRETCH };
-    let stretches = Stretches::new(log, options, &generations, length);
+    let stretches = Stretches::new(&log, options, &generations, length);
     let Replayed { ticks, skipped, digest: computed, first_difference } = stretches.replay()?;
     if ticks == 0 {
         return Err(ReplayError::Empty);

@@ -1,6 +1,6 @@
 //! A further receiver of the messages of a log while it is written.
 
-/// Gets the channels and messages of a log as they are written, in the writer's thread and in the order of the file. It
+/// Gets the channels and messages of a log while it is written, in the writer's thread and in the order of their times. It
 /// ends with the log. The writer waits for it: a slow tap delays the log, but not the tick.
 pub trait Tap: Send {
     /// A new channel.

@@ -120,6 +120,8 @@ pub struct Timing {
 pub struct LogWriter<W: Write + Seek> {
     output: Output<W>,
     replay: u16,
+    /// Messages on [`REPLAY`] of the second that is not over.
+    second: Vec<(Tick, Vec<u8>)>,
     log: u16,
     external: Buffers,
     memory: Buffers,
@@ -202,6 +204,7 @@ impl<W: Write + Seek> LogWriter<W> {
         Ok(Self {
             output,
             replay,
+            second: Vec::new(),
             log,
             external,
             memory,
@@ -240,13 +243,13 @@ impl<W: Write + Seek> LogWriter<W> {
         if full {
             // The second that ends here is safe before the next one begins.
             if self.last_full.is_some() {
-                self.output.mcap.flush()?;
+                self.end_second()?;
             }
             self.last_full = Some(tick);
         }
         record.external.encode(&mut Writer::new(&mut self.now.external));
         record.memory.encode(&mut Writer::new(&mut self.now.memory));
-        self.put_replay(record, state, cell.and_then(|frame| frame.digest), full)?;
+        self.note_replay(record, state, cell.and_then(|frame| frame.digest), full);
         if record.gap > 0 {
             self.gaps += 1;
             let text = format!("{} ticks are missing before this one: the log could not keep up", record.gap);
@@ -326,6 +329,7 @@ impl<W: Write + Seek> LogWriter<W> {
         ];
         let mut metadata = end.facts.clone();
         metadata.extend(entries.map(|(key, value)| (key.to_owned(), value)));
+        self.end_second()?;
         self.output.mcap.write_metadata(&Metadata { name: END.into(), metadata })?;
         self.output.mcap.finish()?;
         let mut sink = self.output.mcap.into_inner();
@@ -333,13 +337,14 @@ impl<W: Write + Seek> LogWriter<W> {
         Ok(Written { ticks: self.ticks, bytes: sink.stream_position()? })
     }
 
-    fn put_replay(
+    /// Note the message on [`REPLAY`] of a tick.
+    fn note_replay(
         &mut self,
         record: &TickRecord,
         state: Option<&LadderState>,
         world: Option<u64>,
         full: bool,
-    ) -> McapResult<()> {
+    ) {
         let mut data = Vec::new();
         wire::unsigned(replay_field::TICK, record.tick.0, &mut data);
         wire::unsigned(replay_field::GAP, record.gap.into(), &mut data);
@@ -364,7 +369,17 @@ impl<W: Write + Seek> LogWriter<W> {
             wire::unsigned(replay_field::CONTROLLER_NS, controller_ns, &mut data);
             wire::unsigned(replay_field::SKIPPED, skipped, &mut data);
         }
-        self.output.put(self.replay, record.tick, &data)
+        self.output.pass(self.replay, record.tick, &data);
+        self.second.push((record.tick, data));
+    }
+
+    /// Write the messages on [`REPLAY`] of a second into a chunk of their own: a replay reads a seventh of a log.
+    fn end_second(&mut self) -> McapResult<()> {
+        self.output.mcap.flush()?;
+        for (tick, data) in self.second.drain(..) {
+            self.output.write(self.replay, tick, &data)?;
+        }
+        self.output.mcap.flush()
     }
 }
 

@@ -1,6 +1,8 @@
 //! The layout of a run's services: their names, the records that the executive adds to those of the processes, and
 //! their common version.
 
+use std::sync::LazyLock;
+
 use interfaces::{ExternalInputs, for_each_process};
 use rcs_core::{Plain, digest::Digest, plain::Schema, tick::Tick};
 
@@ -70,13 +72,16 @@ for_each_process!(services);
 /// each other's bytes.
 #[must_use]
 pub fn layout_version() -> u32 {
-    let mut digest = Digest::new();
-    for (service, schema) in SERVICES {
-        add_text(&mut digest, service);
-        add_schema(&mut digest, schema);
-    }
-    let hash = digest.value().to_le_bytes();
-    u32::from_le_bytes([hash[0] ^ hash[4], hash[1] ^ hash[5], hash[2] ^ hash[6], hash[3] ^ hash[7]])
+    static VERSION: LazyLock<u32> = LazyLock::new(|| {
+        let mut digest = Digest::new();
+        for (service, schema) in SERVICES {
+            add_text(&mut digest, service);
+            add_schema(&mut digest, schema);
+        }
+        let hash = digest.value().to_le_bytes();
+        u32::from_le_bytes([hash[0] ^ hash[4], hash[1] ^ hash[5], hash[2] ^ hash[6], hash[3] ^ hash[7]])
+    });
+    *VERSION
 }
 
 fn add_text(digest: &mut Digest, text: &str) {
@@ -156,10 +161,10 @@ mod tests {
             UnionVariant { code: 0, text, payload }
         }
         static UNIONS: [UnionSchema; 4] = [
-            UnionSchema { name: "Goal", variants: &[carried("at", None)] },
-            UnionSchema { name: "Goal", variants: &[carried("at", Some(Schema::U8))] },
-            UnionSchema { name: "Goal", variants: &[carried("at", Some(Schema::Bool))] },
-            UnionSchema { name: "Goal", variants: &[carried("in", Some(Schema::Bool))] },
+            UnionSchema::new("Goal", &[carried("at", None)]),
+            UnionSchema::new("Goal", &[carried("at", Some(Schema::U8))]),
+            UnionSchema::new("Goal", &[carried("at", Some(Schema::Bool))]),
+            UnionSchema::new("Goal", &[carried("in", Some(Schema::Bool))]),
         ];
         let versions: BTreeSet<_> = UNIONS.iter().map(|of| version(&Schema::Union(of))).collect();
         assert_eq!(versions.len(), UNIONS.len());
