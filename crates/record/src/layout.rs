@@ -14,7 +14,7 @@
 //!
 //! A leaf of a value that an image does not hold is `none` there.
 
-use std::fmt::Write as _;
+use std::{fmt::Write as _, sync::LazyLock};
 
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::LadderState;
@@ -385,14 +385,17 @@ const FORMAT: &str = "format 2: differences by field\n";
 
 /// The layout of all images of a log: the text that goes into each log, and from which the version is made.
 #[must_use]
-pub fn description() -> String {
-    [
-        FORMAT.to_owned(),
-        describe("external", ExternalInputs::STRUCT),
-        describe("memory", CommonMemory::STRUCT),
-        describe("state", LadderState::STRUCT),
-    ]
-    .concat()
+pub fn description() -> &'static str {
+    static DESCRIPTION: LazyLock<String> = LazyLock::new(|| {
+        [
+            FORMAT.to_owned(),
+            describe("external", ExternalInputs::STRUCT),
+            describe("memory", CommonMemory::STRUCT),
+            describe("state", LadderState::STRUCT),
+        ]
+        .concat()
+    });
+    &DESCRIPTION
 }
 
 /// Version of the inputs and outputs of the ladder, without its states.

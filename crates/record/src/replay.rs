@@ -14,6 +14,7 @@ use std::{
     collections::BTreeMap,
     path::Path,
     sync::atomic::{AtomicUsize, Ordering},
+    thread,
     time::{Duration, Instant},
 };
 
@@ -31,6 +32,7 @@ use crate::{
     comparison::Comparison,
     error::ReplayError,
     input::Attachment,
+    layout,
     reader::{Log, LoggedTick},
     writer::Codecs,
 };
@@ -110,6 +112,8 @@ pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
 /// As [`replay`]; [`ReplayError::Empty`] if the part contains no tick.
 pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, ReplayError> {
     let started = Instant::now();
+    // It takes half as long as reading a log, and is done beside it.
+    thread::spawn(layout::description);
     let log = Log::open(path)?;
     log.check_layout()?;
     let generations = match &options.data {

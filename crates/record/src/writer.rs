@@ -398,7 +398,7 @@ fn write_head<W: Write + Seek>(output: &mut Output<W>, setup: &Setup) -> McapRes
     run.insert(LAYOUT.into(), layout::version());
     output.mcap.write_metadata(&Metadata { name: RUN.into(), metadata: run })?;
     let mut attachments = setup.attachments.clone();
-    attachments.push(Attachment::text(Attachment::LAYOUT, &layout::description()));
+    attachments.push(Attachment::text(Attachment::LAYOUT, layout::description()));
     if let Some(cell) = &setup.cell {
         let urdf = Attachment::text(Attachment::URDF, &cell.urdf);
         attachments.push(Attachment { media_type: "application/xml".into(), ..urdf });

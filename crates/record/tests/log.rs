@@ -7,6 +7,7 @@ use std::{
     fs,
     io::{self, Cursor, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
+    sync::{Arc, Mutex},
 };
 
 use interfaces::{CommonMemory, ExternalInputs};
@@ -16,6 +17,7 @@ use record::{
     Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Log, Lost, Options, Pace, ReadError,
     RecordError, Recorder, ReplayError, Setup, Timing, Transform, golden, replay, replay_with,
     sink::Sink,
+    tap::{Channel, Tap},
     writer::{LogWriter, TickRecord},
 };
 use taskdata::{files::TaskData, load::Source};
@@ -174,6 +176,65 @@ fn a_log_that_was_cut_off_is_read_up_to_the_cut() {
         }
     }
     assert!(most > 225, "{most} ticks of 300 were readable");
+}
+
+#[test]
+fn a_replay_has_chunks_of_its_own() {
+    let scratch = Scratch::new();
+    let path = scratch.file("run.mcap");
+    record_run(&path, 300);
+    let summary = mcap::Summary::read(&fs::read(&path).unwrap()).unwrap().unwrap();
+    let replay = summary.channels.values().find(|channel| channel.topic == "/replay").unwrap().id;
+    let chunks = summary.chunk_indexes.iter().map(|chunk| &chunk.message_index_offsets);
+    let (own, others): (Vec<_>, Vec<_>) = chunks.partition(|channels| channels.contains_key(&replay));
+    assert_eq!((own.len(), others.len()), (12, 12), "two for each second");
+    assert!(own.iter().all(|channels| channels.len() == 1));
+}
+
+#[test]
+fn a_byte_that_is_changed_anywhere_is_told_or_changes_nothing() {
+    let scratch = Scratch::new();
+    let path = scratch.file("run.mcap");
+    record_run(&path, 300);
+    let sound = fs::read(&path).unwrap();
+    let mut untold = 0;
+    for at in (0..sound.len()).step_by(sound.len() / 251) {
+        let mut bytes = sound.clone();
+        bytes[at] ^= 0x10;
+        fs::write(&path, bytes).unwrap();
+        let Ok(report) = replay(&path) else { continue };
+        if report.damage.is_none() && report.complete {
+            assert!(report.is_same(), "byte {at}: {:?}", report.first_difference);
+            assert_eq!((report.ticks, report.skipped), (300, 0), "byte {at}");
+            untold += 1;
+        }
+    }
+    assert!(untold > 0, "an index that is wrong is not used");
+}
+
+/// Counts messages, and looks at their times.
+#[derive(Clone, Default)]
+struct Played(Arc<Mutex<(u64, u64)>>);
+
+impl Tap for Played {
+    fn channel(&mut self, _: u16, _: &Channel<'_>) {}
+
+    fn message(&mut self, _: u16, time: u64, _: &[u8]) {
+        let mut played = self.0.lock().unwrap();
+        assert!(time >= played.1, "{time} after {}", played.1);
+        *played = (played.0 + 1, time);
+    }
+}
+
+#[test]
+fn messages_are_played_in_the_order_of_their_times() {
+    let scratch = Scratch::new();
+    let path = scratch.file("run.mcap");
+    record_run(&path, 300);
+    let mut tap = Played::default();
+    Log::open(&path).unwrap().play(&mut tap, |_| {});
+    let summary = mcap::Summary::read(&fs::read(&path).unwrap()).unwrap().unwrap();
+    assert_eq!(tap.0.lock().unwrap().0, summary.stats.unwrap().message_count);
 }
 
 /// A log in memory, ticks changed by `change` before they are written, with gaps where it says no.
