@@ -4,7 +4,6 @@ use std::{
     os::unix::process::ExitStatusExt as _,
     path::{Path, PathBuf},
     process::{Child, Command, Output, Stdio},
-    sync::RwLock,
     thread,
     time::{Duration, Instant},
 };
@@ -14,9 +13,6 @@ use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 
 use crate::{rcs_run, root};
-
-/// Held for writing by a test that counts what a busy machine does to the grid, and for reading by the others.
-pub static ALONE: RwLock<()> = RwLock::new(());
 
 /// How long something may take that takes milliseconds.
 const PATIENCE: Duration = Duration::from_secs(120);

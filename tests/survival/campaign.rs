@@ -2,8 +2,6 @@
 
 use std::process::{Child, Command, Stdio};
 
-use whole_system_tests::bench::ALONE;
-
 /// The parts of the campaign: damaged logs, garbage in shared memory, readers that die or hang, signals, and a disk or
 /// memory that fills.
 const PARTS: [&str; 5] = ["logs", "memory", "readers", "signals", "disks"];
@@ -21,7 +19,6 @@ fn start(part: &str) -> Child {
 /// skipped.
 #[test]
 fn a_sample_of_each_part_has_no_finding() {
-    let _beside = ALONE.read();
     let started = PARTS.map(|part| (part, start(part)));
     // All have ended before one of them fails the test.
     let ended = started.map(|(part, child)| (part, child.wait_with_output().expect("the campaign ends")));

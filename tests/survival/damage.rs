@@ -9,7 +9,7 @@ use std::{
 use rustix::process::geteuid;
 use whole_system_tests::{
     Scratch,
-    bench::{ALONE, Ended, job, rcs, wait_for},
+    bench::{Ended, job, rcs, wait_for},
     rcs_run,
 };
 
@@ -22,7 +22,6 @@ fn count(variable: &str, usual: u64) -> u64 {
 
 #[test]
 fn clean_leaves_a_run_of_the_same_name_under_another_directory_alone() {
-    let _beside = ALONE.read();
     let scratch = Scratch::new("same-name");
     let arguments = job("linkbar");
     let start = |place: &str, ticks: &str| {

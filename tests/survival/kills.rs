@@ -5,7 +5,7 @@ use executive::memory::ReadError;
 use record::replay;
 use whole_system_tests::{
     Scratch,
-    bench::{ALONE, Ended, Running, assert_cleaned, traces},
+    bench::{Ended, Running, assert_cleaned, traces},
 };
 
 /// Jobs whose runs are killed, with their lengths in ticks.
@@ -32,7 +32,6 @@ fn assert_log_reaches(log: &std::path::Path, tick: u64, behind: u64) {
 
 #[test]
 fn a_run_may_be_killed_in_any_phase_of_a_job() {
-    let _beside = ALONE.read();
     let scratch = Scratch::new("kills");
     for kill in 0..kills() {
         // Golden steps through the job: all phases come up, in a different order in every job.
@@ -63,7 +62,6 @@ fn a_run_may_be_killed_in_any_phase_of_a_job() {
 
 #[test]
 fn in_real_time_a_kill_costs_a_second_of_the_log() {
-    let _beside = ALONE.read();
     let scratch = Scratch::new("real-kill");
     let more = ["--clock", "real", "--log", "killed.mcap"];
     let mut run = Running::start(&scratch.file(""), "linkbar", &more);

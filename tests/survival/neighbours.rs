@@ -5,13 +5,12 @@ use std::{fs, os::unix::process::CommandExt, process::Stdio};
 use executive::memory::{layout, prefix};
 use whole_system_tests::{
     NOBODY, Scratch,
-    bench::{ALONE, Ended, Running, assert_cleaned, rcs, traces, wait_for},
+    bench::{Ended, Running, assert_cleaned, rcs, traces, wait_for},
     may_become_nobody, rcs_run,
 };
 
 #[test]
 fn two_runs_side_by_side_do_not_meet() {
-    let _beside = ALONE.read();
     let scratch = Scratch::new("beside");
     let start = |log| Running::start(&scratch.file(""), "linkbar", &["--ticks", "2000", "--log", log]);
     // Names of equal length: the command line stands in the log.
@@ -35,7 +34,6 @@ fn another_user_runs_beside_and_after_the_first() {
         eprintln!("no right to become another user: none to try");
         return;
     }
-    let _beside = ALONE.read();
     let mut first = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(first.attach());
     // The program where every user can start it: the target directory may be the owner's alone.
@@ -67,7 +65,6 @@ fn another_user_runs_beside_and_after_the_first() {
 
 #[test]
 fn a_run_is_seen_by_its_status() {
-    let _beside = ALONE.read();
     let scratch = Scratch::new("status");
     let mut run = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(run.attach());

@@ -5,12 +5,11 @@ use std::{fs, os::unix::fs::PermissionsExt, path::Path};
 use executive::memory;
 use whole_system_tests::{
     Scratch,
-    bench::{ALONE, Running, assert_cleaned, traces},
+    bench::{Running, assert_cleaned, traces},
 };
 
 #[test]
 fn what_is_shared_is_the_owners_alone() {
-    let _beside = ALONE.read();
     let scratch = Scratch::new("modes");
     let mut run = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(run.attach());

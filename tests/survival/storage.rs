@@ -9,7 +9,7 @@ use std::{
 use rustix::process::geteuid;
 use whole_system_tests::{
     Scratch,
-    bench::{ALONE, Ended, Running, apart, job, rcs},
+    bench::{Ended, Running, apart, job, rcs},
 };
 
 /// A run of 500 ticks ended well and says a sentence.
@@ -21,7 +21,6 @@ fn assert_goes_on(ended: &Ended, sentence: &str) {
 
 #[test]
 fn without_shared_memory_nobody_looks_on_and_the_run_goes_on() {
-    let _beside = ALONE.read();
     let scratch = Scratch::new("no-memory");
     let full = "mount -t tmpfs -o size=64k tmpfs /dev/shm";
     let Some(ended) = apart(&scratch.file(""), full, &["--ticks", "500", "--log", "none"]) else {
@@ -44,7 +43,6 @@ fn without_shared_memory_nobody_looks_on_and_the_run_goes_on() {
 
 #[test]
 fn memory_that_is_taken_while_a_run_begins_is_missed_in_words() {
-    let _beside = ALONE.read();
     let scratch = Scratch::new("race");
     // Enough to begin with, and taken by another process as soon as the first object is there.
     let fills = "mount -t tmpfs -o size=2200k tmpfs /dev/shm && \
@@ -127,7 +125,6 @@ fn a_full_disk_ends_the_log_and_not_the_run() {
 
 #[test]
 fn a_log_that_is_cut_from_outside_does_not_end_the_run_and_is_missed() {
-    let _beside = ALONE.read();
     let scratch = Scratch::new("cut-log");
     let more = ["--clock", "real", "--ticks", "100", "--log", "run.mcap"];
     let mut run = Running::start(&scratch.file(""), "linkbar", &more);
@@ -148,7 +145,6 @@ fn a_log_that_is_cut_from_outside_does_not_end_the_run_and_is_missed() {
 
 #[test]
 fn a_log_that_is_removed_does_not_end_the_run_and_is_missed() {
-    let _beside = ALONE.read();
     let scratch = Scratch::new("removed");
     let more = ["--clock", "real", "--ticks", "100", "--log", "logs/run.mcap"];
     let mut run = Running::start(&scratch.file(""), "linkbar", &more);

@@ -16,8 +16,9 @@ use super::*;
 const LAST: &str = "19b";
 /// The step that a person must confirm.
 const LOOK: &str = "6";
-/// Time after which Enter is pressed again, because the robot controller was not ready for its key.
-const AGAIN: Duration = Duration::from_secs(3);
+/// Time after which Enter is pressed again, because the robot controller was not ready for its key; ten times as long in
+/// a recording.
+const AGAIN: Duration = Duration::from_millis(300);
 
 /// A recording in version 2 of asciicast: a header, then a line per piece of output.
 fn asciicast(written: &Written) -> String {
@@ -52,6 +53,7 @@ fn step_under_cursor(screen: &str) -> Option<(String, String)> {
 
 /// Carry out the steps of the open procedure, in order.
 fn do_all_steps(console: &mut Terminal, pause: Duration) {
+    let again = if pause.is_zero() { AGAIN } else { 10 * AGAIN };
     let mut done = Vec::new();
     loop {
         let (mark, step) = step_under_cursor(&console.screen()).unwrap_or_default();
@@ -77,7 +79,7 @@ fn do_all_steps(console: &mut Terminal, pause: Duration) {
                 console.press("\r");
                 console.wait_while(|screen| screen.contains("Enter again does it"), "the warning stays");
                 pressed = Instant::now();
-            } else if pressed.elapsed() > AGAIN && step != LOOK {
+            } else if pressed.elapsed() > again && step != LOOK {
                 console.press("\r");
                 pressed = Instant::now();
             }
