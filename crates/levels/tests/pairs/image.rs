@@ -3,6 +3,8 @@
 //! A time enters as whether it is over its limit; the time of a command as its age, while an echo may be due. A counter
 //! enters up to the value from which on it makes no difference. The row that fired is left out: no process reads it.
 
+use std::{any::TypeId, cell::RefCell, rc::Rc};
+
 use interfaces::{EmoveOutputs, Reason, pose_range};
 use levels::{
     emove::{self, tables::Step},
@@ -18,81 +20,152 @@ use rcs_core::{
 /// Ages that count exactly: one more than [`rcs_core::handshake::ECHO_LIMIT`].
 const EXACT: u64 = 4;
 
+/// Fields of one byte, by name, that count up to a greatest value.
+type Counters = &'static [(&'static str, u8)];
+
+/// What so many bytes of a value add to an image.
+enum Piece {
+    /// Themselves.
+    Keep(usize),
+    /// Nothing.
+    Skip(usize),
+    /// The number of a tick: its age; `None` for one that is left out.
+    Age(Option<Clock>),
+    /// A byte that counts up to a greatest value.
+    Count(u8),
+    /// A flag, and the pieces of a value of so many bytes that is only there if the flag is set.
+    Option(usize, Vec<Self>),
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Clock {
+    /// When a command was sent: its age counts until it should have been echoed.
+    Sent,
+    /// Only whether its age is over the limit counts.
+    Other,
+}
+
+thread_local! {
+    /// The pieces of types with counters: a few, so that to look for one takes no time.
+    static PIECES: RefCell<Vec<(TypeId, Counters, Rc<[Piece]>)>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Add the pieces of a field.
+fn add_pieces(schema: &Schema, name: &str, counters: Counters, pieces: &mut Vec<Piece>) {
+    match schema {
+        Schema::Struct(record) if matches!(record.name, "Rows" | "Header") => {
+            pieces.push(Piece::Skip(schema.size()));
+        }
+        Schema::Struct(record) => {
+            record.fields.iter().for_each(|field| add_pieces(&field.schema, field.name, counters, pieces));
+        }
+        Schema::Option(of) => {
+            let mut inner = Vec::new();
+            add_pieces(of, name, counters, &mut inner);
+            if inner.iter().all(|piece| matches!(piece, Piece::Keep(_))) {
+                keep(schema.size(), pieces);
+            } else {
+                pieces.push(Piece::Option(of.size(), inner));
+            }
+        }
+        Schema::Array(Schema::I32 | Schema::F64, _) => keep(schema.size(), pieces),
+        Schema::Array(of, count) => (0..*count).for_each(|_| add_pieces(of, name, counters, pieces)),
+        Schema::U64 if name != "variables" => pieces.push(Piece::Age(match name {
+            "sent" => Some(Clock::Sent),
+            _ => (!name.starts_with("cycle")).then_some(Clock::Other),
+        })),
+        Schema::U8 => match counters.iter().find(|(counter, _)| *counter == name) {
+            Some((_, greatest)) => pieces.push(Piece::Count(*greatest)),
+            None => keep(1, pieces),
+        },
+        _ => keep(schema.size(), pieces),
+    }
+}
+
+fn keep(size: usize, pieces: &mut Vec<Piece>) {
+    match pieces.last_mut() {
+        Some(Piece::Keep(before)) => *before += size,
+        _ => pieces.push(Piece::Keep(size)),
+    }
+}
+
 /// A state as bytes.
 pub struct Image {
     pub bytes: Vec<u8>,
+    /// The value that is added.
+    value: Vec<u8>,
     now: Tick,
     /// Ticks after which a time is over its limit.
     limit: u64,
-    /// Fields of one byte, by name, that count up to a greatest value.
-    counters: &'static [(&'static str, u8)],
+    counters: Counters,
 }
 
 impl Image {
-    pub fn new(now: Tick, limit: u64, counters: &'static [(&'static str, u8)]) -> Self {
-        Self { bytes: Vec::with_capacity(256), now, limit, counters }
+    pub fn new(now: Tick, limit: u64, counters: Counters) -> Self {
+        Self { bytes: Vec::with_capacity(1024), value: Vec::new(), now, limit, counters }
     }
 
     /// Add a value without what does not count.
-    pub fn add<T: Plain>(&mut self, value: &T) {
-        let mut bytes = vec![0; T::SIZE];
+    pub fn add<T: Plain + 'static>(&mut self, value: &T) {
+        let pieces = PIECES.with_borrow_mut(|known| self.pieces_of::<T>(known));
+        let mut bytes = std::mem::take(&mut self.value);
+        bytes.resize(T::SIZE, 0);
         value.encode(&mut Writer::new(&mut bytes));
-        let used = self.walk(&T::SCHEMA, "", &bytes);
-        assert_eq!(used, bytes.len(), "the schema is that of the bytes");
+        let used = self.add_bytes(&pieces, &bytes);
+        assert_eq!(used, bytes.len(), "the pieces are those of the bytes");
+        self.value = bytes;
     }
 
-    /// Add what counts of a field; its size.
-    fn walk(&mut self, schema: &Schema, name: &str, bytes: &[u8]) -> usize {
-        match schema {
-            Schema::Struct(record) if matches!(record.name, "Rows" | "Header") => schema.size(),
-            Schema::Struct(record) => {
-                let mut at = 0;
-                for field in record.fields {
-                    at += self.walk(&field.schema, field.name, &bytes[at..]);
-                }
-                at
-            }
-            Schema::Option(of) => {
-                self.bytes.push(bytes[0]);
-                1 + if bytes[0] == 0 { of.size() } else { self.walk(of, name, &bytes[1..]) }
-            }
-            Schema::Array(Schema::I32 | Schema::F64, _) => {
-                let size = schema.size();
-                self.bytes.extend_from_slice(&bytes[..size]);
-                size
-            }
-            Schema::Array(of, count) => {
-                let mut at = 0;
-                for _ in 0..*count {
-                    at += self.walk(of, name, &bytes[at..]);
-                }
-                at
-            }
-            Schema::U64 if name != "variables" => {
-                let mut word = [0; 8];
-                word.copy_from_slice(&bytes[..8]);
-                let age = self.now.0.saturating_sub(u64::from_le_bytes(word));
-                let rank = match name {
-                    _ if age > self.limit => EXACT + 2,
-                    "sent" => age.min(EXACT + 1),
-                    _ => 0,
-                };
-                if !name.starts_with("cycle") {
-                    self.bytes.push(u8::try_from(rank).unwrap_or(u8::MAX));
-                }
-                8
-            }
-            Schema::U8 => {
-                let greatest = self.counters.iter().find(|(counter, _)| *counter == name);
-                self.bytes.push(greatest.map_or(bytes[0], |(_, greatest)| bytes[0].min(*greatest)));
-                1
-            }
-            _ => {
-                let size = schema.size();
-                self.bytes.extend_from_slice(&bytes[..size]);
-                size
-            }
+    /// The pieces of a type, among the known ones from now on.
+    fn pieces_of<T: Plain + 'static>(&self, known: &mut Vec<(TypeId, Counters, Rc<[Piece]>)>) -> Rc<[Piece]> {
+        let of = TypeId::of::<T>();
+        if let Some((.., pieces)) =
+            known.iter().find(|(id, counters, _)| *id == of && std::ptr::eq(*counters, self.counters))
+        {
+            return Rc::clone(pieces);
         }
+        let mut pieces = Vec::new();
+        add_pieces(&T::SCHEMA, "", self.counters, &mut pieces);
+        let pieces: Rc<[Piece]> = pieces.into();
+        known.push((of, self.counters, Rc::clone(&pieces)));
+        pieces
+    }
+
+    /// Add what counts of some bytes; how many they are.
+    fn add_bytes(&mut self, pieces: &[Piece], bytes: &[u8]) -> usize {
+        let mut at = 0;
+        for piece in pieces {
+            at += match piece {
+                Piece::Keep(size) => {
+                    self.bytes.extend_from_slice(&bytes[at..at + size]);
+                    *size
+                }
+                Piece::Skip(size) => *size,
+                Piece::Age(clock) => {
+                    let word = bytes[at..].first_chunk().expect("a tick has eight bytes");
+                    let age = self.now.0.saturating_sub(u64::from_le_bytes(*word));
+                    let rank = match clock {
+                        _ if age > self.limit => EXACT + 2,
+                        Some(Clock::Sent) => age.min(EXACT + 1),
+                        _ => 0,
+                    };
+                    self.bytes.extend(clock.and_then(|_| u8::try_from(rank).ok()));
+                    8
+                }
+                Piece::Count(greatest) => {
+                    self.bytes.push(bytes[at].min(*greatest));
+                    1
+                }
+                Piece::Option(size, inner) => {
+                    self.bytes.push(bytes[at]);
+                    if bytes[at] != 0 {
+                        self.add_bytes(inner, &bytes[at + 1..]);
+                    }
+                    1 + size
+                }
+            };
+        }
+        at
     }
 }
 
