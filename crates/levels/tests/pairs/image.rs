@@ -45,9 +45,12 @@ enum Clock {
     Other,
 }
 
+/// The pieces of a type, with counters.
+type Known = (TypeId, Counters, Rc<[Piece]>);
+
 thread_local! {
-    /// The pieces of types with counters: a few, so that to look for one takes no time.
-    static PIECES: RefCell<Vec<(TypeId, Counters, Rc<[Piece]>)>> = const { RefCell::new(Vec::new()) };
+    /// A few, so that to look for one takes no time.
+    static PIECES: RefCell<Vec<Known>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Add the pieces of a field.
@@ -117,7 +120,7 @@ impl Image {
     }
 
     /// The pieces of a type, among the known ones from now on.
-    fn pieces_of<T: Plain + 'static>(&self, known: &mut Vec<(TypeId, Counters, Rc<[Piece]>)>) -> Rc<[Piece]> {
+    fn pieces_of<T: Plain + 'static>(&self, known: &mut Vec<Known>) -> Rc<[Piece]> {
         let of = TypeId::of::<T>();
         if let Some((.., pieces)) =
             known.iter().find(|(id, counters, _)| *id == of && std::ptr::eq(*counters, self.counters))
