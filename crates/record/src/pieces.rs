@@ -4,11 +4,11 @@
 //! next readable record: a chunk or an attachment with the right checksum, or metadata of this program. The total of
 //! decompressed bytes is limited in proportion to the size of the file, and with it memory and time of reading.
 //!
-//! A file that is as it was written has the right checksum of all its chunks at its end, and of the index after them: then
-//! no chunk needs to be decompressed before it is read, and the index says which chunks have messages of a channel.
-//! Otherwise each chunk has to show by its own checksum that it is readable. All processors check the first chunks ahead;
-//! what they decompress for it is not kept: decompressing it again takes no longer than fetching it from memory that is
-//! not in the caches.
+//! A whole file has at its end the right checksums of all its chunks and of the index after them: then no chunk needs to
+//! be decompressed before it is read, and the index says which chunks have messages of a channel. Otherwise each chunk
+//! has to show by its own checksum that it is readable. All processors check the first chunks ahead; what they
+//! decompress for it is not kept: decompressing it again takes no longer than fetching it from memory that is not in the
+//! caches.
 
 use std::{collections::BTreeMap, iter, ops::Range, thread};
 
@@ -80,7 +80,7 @@ impl<'a> Pieces<'a> {
         Ok(Self { bytes, is_whole, at, left, decoder, ahead })
     }
 
-    /// The file is as it was written.
+    /// The file has the right checksums at its end, and all its channels before them.
     pub const fn is_whole(&self) -> bool {
         self.is_whole
     }
@@ -91,11 +91,12 @@ impl<'a> Pieces<'a> {
         let body = self.bytes.get(at.checked_add(HEAD)?..end)?;
         let piece = match opcode {
             op::CHUNK => {
-                self.spend(chunk_size(self.bytes.get(at..end)?)?)?;
+                let chunk = self.bytes.get(at..end)?;
+                self.spend(chunk_size(chunk)?)?;
                 let described = match self.ahead.remove(&at) {
                     Some(described) => described?,
-                    None if self.is_whole => Vec::new(),
-                    None => described(self.decoder.unpack(self.bytes.get(at..end)?)?)?,
+                    None if self.is_whole => Packed::of(chunk).map(|_| Vec::new())?,
+                    None => described(self.decoder.unpack(chunk)?)?,
                 };
                 Piece::Chunk(at..end, described)
             }
@@ -153,7 +154,8 @@ impl<'a> Iterator for Pieces<'a> {
     }
 }
 
-/// True if the file ends with the right checksums of its data and of what stands after them; `None` if it has none.
+/// True if the file ends with the right checksums of its data and of what stands after them, and its channels stand there,
+/// too; `None` if it has no checksums.
 fn is_whole(bytes: &[u8]) -> Option<bool> {
     // Footer: begin of the summary, begin of its offsets, checksum of the summary and of the footer up to here.
     let footer = bytes.len().checked_sub(HEAD + FOOTER + MAGIC.len())?;
@@ -171,20 +173,24 @@ fn is_whole(bytes: &[u8]) -> Option<bool> {
     let data_end = begin.checked_sub(HEAD + CHECKSUM)?;
     let (opcode, end) = frame(bytes, data_end)?;
     let ends = opcode == op::DATA_END && end == begin;
-    Some(ends && is_right(begin..checksum_at, checksum_at)? && is_right(0..data_end, data_end + HEAD)?)
+    let has_channels = frames(bytes, begin).any(|(_, opcode, _)| opcode == op::CHANNEL);
+    Some(
+        ends && has_channels
+            && is_right(begin..checksum_at, checksum_at)?
+            && is_right(0..data_end, data_end + HEAD)?,
+    )
 }
 
 /// The channels and schemas of the first chunks, checked by all processors.
 fn ahead(bytes: &[u8]) -> BTreeMap<usize, Option<Vec<Record<'static>>>> {
-    let (mut at, mut left, mut chunks) = (MAGIC.len(), AHEAD, Vec::new());
-    while let Some((opcode, end)) = frame(bytes, at) {
+    let (mut left, mut chunks) = (AHEAD, Vec::new());
+    for (at, opcode, end) in frames(bytes, MAGIC.len()) {
         let chunk = bytes.get(at..end).filter(|_| opcode == op::CHUNK);
         if let Some(chunk) = chunk {
             let Some(rest) = chunk_size(chunk).and_then(|size| left.checked_sub(size)) else { break };
             left = rest;
             chunks.push((at, chunk));
         }
-        at = end;
     }
     let check_some = |first: usize, step: usize| {
         let mut decoder = Decoder::default();
@@ -275,6 +281,15 @@ fn frame(bytes: &[u8], at: usize) -> Option<(u8, usize)> {
     (end <= bytes.len()).then_some((*opcode, end))
 }
 
+/// Begin, operation code and end of the records from a position on, up to one that would be longer than the file.
+fn frames(bytes: &[u8], from: usize) -> impl Iterator<Item = (usize, u8, usize)> {
+    let mut at = from;
+    iter::from_fn(move || {
+        let (opcode, end) = frame(bytes, at)?;
+        Some((std::mem::replace(&mut at, end), opcode, end))
+    })
+}
+
 /// Parse a record of a kind that is used; of others keep only the bytes. The library allocates memory for a text before
 /// it checks the length, so the lengths are checked here.
 fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
@@ -309,6 +324,36 @@ fn texts(body: &[u8], from: usize) -> Option<usize> {
     (at == end).then_some(end)
 }
 
+/// What stands in a chunk.
+struct Packed<'a> {
+    /// Size of the records.
+    size: usize,
+    checksum: u32,
+    is_compressed: bool,
+    records: &'a [u8],
+}
+
+impl<'a> Packed<'a> {
+    /// That of a chunk, which is given with its record header; `None` if it is too large, or is compressed in another
+    /// way, or has no checksum.
+    fn of(chunk: &'a [u8]) -> Option<Self> {
+        // Two times, size, checksum, compression, length of the records, records.
+        let body = chunk.get(HEAD..)?;
+        let size = chunk_size(chunk)?;
+        let checksum = body.get(24..28)?.try_into().map(u32::from_le_bytes).ok()?;
+        let name = text(body, 28)?;
+        let (length, records) = body.get(name..)?.split_first_chunk()?;
+        let records = records.get(..usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
+        let size = usize::try_from(size).ok().filter(|_| size <= CHUNK && checksum != 0)?;
+        let is_compressed = match body.get(32..name)? {
+            b"" => false,
+            b"zstd" => true,
+            _ => return None,
+        };
+        Some(Self { size, checksum, is_compressed, records })
+    }
+}
+
 /// Decompresses chunks, one after the other, into the same memory.
 #[derive(Default)]
 pub struct Decoder {
@@ -319,26 +364,15 @@ pub struct Decoder {
 impl Decoder {
     /// The records of a chunk, which is given with its record header.
     ///
-    /// `None` if the chunk is too large, or has no checksum or a wrong one.
+    /// `None` if the chunk cannot be decompressed, or its checksum is wrong.
     pub fn unpack<'a>(&'a mut self, chunk: &'a [u8]) -> Option<&'a [u8]> {
-        // Two times, size, checksum, compression, length of the records, records.
-        let body = chunk.get(HEAD..)?;
-        let size = chunk_size(chunk)?;
-        let checksum = body.get(24..28)?.try_into().map(u32::from_le_bytes).ok()?;
-        let name = text(body, 28)?;
-        let (length, packed) = body.get(name..)?.split_first_chunk()?;
-        let packed = packed.get(..usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
-        let size = usize::try_from(size).ok().filter(|_| size <= CHUNK && checksum != 0)?;
-        let records = match body.get(32..name)? {
-            b"" => packed,
-            b"zstd" => {
-                self.records.clear();
-                self.records.reserve(size);
-                self.zstd.decompress_to_buffer(packed, &mut self.records).ok()?;
-                &self.records
-            }
-            _ => return None,
-        };
+        let Packed { size, checksum, is_compressed, mut records } = Packed::of(chunk)?;
+        if is_compressed {
+            self.records.clear();
+            self.records.reserve(size);
+            self.zstd.decompress_to_buffer(records, &mut self.records).ok()?;
+            records = &self.records;
+        }
         (records.len() == size && crc32fast::hash(records) == checksum).then_some(records)
     }
 }

@@ -112,8 +112,8 @@ pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
 /// As [`replay`]; [`ReplayError::Empty`] if the part contains no tick.
 pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, ReplayError> {
     let started = Instant::now();
-    // It takes half as long as reading a log, and is done beside it.
-    thread::spawn(layout::description);
+    // It takes half as long as reading a log, and is made beside it; without a thread it is made later.
+    let _ = thread::Builder::new().spawn(layout::description);
     let log = Log::open(path)?;
     log.check_layout()?;
     let generations = match &options.data {

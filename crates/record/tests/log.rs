@@ -212,6 +212,54 @@ fn a_byte_that_is_changed_anywhere_is_told_or_changes_nothing() {
     assert!(untold > 0, "an index that is wrong is not used");
 }
 
+/// A log once more, as another program writes it.
+fn written_again(log: &[u8], options: mcap::WriteOptions) -> Vec<u8> {
+    let mut writer = options.create(Cursor::new(Vec::new())).unwrap();
+    let summary = mcap::Summary::read(log).unwrap().unwrap();
+    for index in &summary.metadata_indexes {
+        writer.write_metadata(&mcap::read::metadata(log, index).unwrap()).unwrap();
+    }
+    for message in mcap::MessageStream::new(log).unwrap() {
+        writer.write(&message.unwrap()).unwrap();
+    }
+    writer.finish().unwrap();
+    writer.into_inner().into_inner()
+}
+
+#[test]
+fn a_log_that_another_program_has_written_again_is_read_whole() {
+    let scratch = Scratch::new();
+    let path = scratch.file("run.mcap");
+    record_run(&path, 300);
+    let recorded = fs::read(&path).unwrap();
+    let new = mcap::WriteOptions::new;
+    let read = |options: mcap::WriteOptions| {
+        fs::write(&path, written_again(&recorded, options)).unwrap();
+        let report = replay(&path).unwrap();
+        assert!(report.is_same() && report.complete, "{:?}", report.first_difference);
+        (report.ticks, report.skipped, report.damage.is_some())
+    };
+    for (number, options) in [
+        new(),
+        new().compression(None),
+        new().chunk_size(Some(10_000)),
+        new().repeat_channels(false),
+        new().repeat_schemas(false).emit_chunk_indexes(false),
+        new().emit_message_indexes(false),
+        new().emit_summary_records(false),
+        new().calculate_data_section_crc(false),
+        new().calculate_summary_section_crc(false),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        assert_eq!(read(options), (300, 0, false), "options {number}");
+    }
+    // Chunks without a checksum are not read, whatever the end says.
+    fs::write(&path, written_again(&recorded, new().calculate_chunk_crcs(false))).unwrap();
+    assert!(matches!(replay(&path), Err(ReplayError::Empty)));
+}
+
 /// Counts messages, and looks at their times.
 #[derive(Clone, Default)]
 struct Played(Arc<Mutex<(u64, u64)>>);
