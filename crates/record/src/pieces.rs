@@ -4,11 +4,11 @@
 //! next readable record: a chunk or an attachment with the right checksum, or metadata of this program. The total of
 //! decompressed bytes is limited in proportion to the size of the file, and with it memory and time of reading.
 //!
-//! A whole file has at its end the right checksums of all its chunks and of the index after them: then no chunk needs to
-//! be decompressed before it is read, and the index says which chunks have messages of a channel. Otherwise each chunk
-//! has to show by its own checksum that it is readable. All processors check the first chunks ahead; what they
-//! decompress for it is not kept: decompressing it again takes no longer than fetching it from memory that is not in the
-//! caches.
+//! A whole file has at its end the right checksums of all its chunks and of the index after them: then no chunk needs
+//! to be decompressed before it is read, and the index says which chunks have messages of a channel. Otherwise each
+//! chunk has to show by its own checksum that it is readable. All processors check the first chunks ahead; what they
+//! decompress for it is not kept: decompressing it again takes no longer than fetching it from memory that is not in
+//! the caches.
 
 use std::{collections::BTreeMap, iter, ops::Range, thread};
 
@@ -154,8 +154,8 @@ impl<'a> Iterator for Pieces<'a> {
     }
 }
 
-/// True if the file ends with the right checksums of its data and of what stands after them, and its channels stand there,
-/// too; `None` if it has no checksums.
+/// True if the file ends with the right checksums of its data and of what stands after them, and its channels stand
+/// there, too; `None` if it has no checksums.
 fn is_whole(bytes: &[u8]) -> Option<bool> {
     // Footer: begin of the summary, begin of its offsets, checksum of the summary and of the footer up to here.
     let footer = bytes.len().checked_sub(HEAD + FOOTER + MAGIC.len())?;

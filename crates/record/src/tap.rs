@@ -1,7 +1,7 @@
 //! A further receiver of the messages of a log while it is written.
 
-/// Gets the channels and messages of a log while it is written, in the writer's thread and in the order of their times. It
-/// ends with the log. The writer waits for it: a slow tap delays the log, but not the tick.
+/// Gets the channels and messages of a log while it is written, in the writer's thread and in the order of their times.
+/// It ends with the log. The writer waits for it: a slow tap delays the log, but not the tick.
 pub trait Tap: Send {
     /// A new channel.
     fn channel(&mut self, id: u16, channel: &Channel<'_>);

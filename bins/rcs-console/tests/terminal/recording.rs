@@ -16,8 +16,8 @@ use super::*;
 const LAST: &str = "19b";
 /// The step that a person must confirm.
 const LOOK: &str = "6";
-/// Time after which Enter is pressed again, because the robot controller was not ready for its key; ten times as long in
-/// a recording.
+/// Time after which Enter is pressed again, because the robot controller was not ready for its key; ten times as long
+/// in a recording.
 const AGAIN: Duration = Duration::from_millis(300);
 
 /// A recording in version 2 of asciicast: a header, then a line per piece of output.
