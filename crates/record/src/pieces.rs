@@ -154,8 +154,8 @@ impl<'a> Iterator for Pieces<'a> {
     }
 }
 
-/// True if the file ends with the right checksums of its data and of what stands after them, and its channels stand
-/// there, too; `None` if it has no checksums.
+/// True if the file ends with the right checksums of its data and of what stands after them, and its channels and
+/// schemas stand there, too; `None` if it has no such end.
 fn is_whole(bytes: &[u8]) -> Option<bool> {
     // Footer: begin of the summary, begin of its offsets, checksum of the summary and of the footer up to here.
     let footer = bytes.len().checked_sub(HEAD + FOOTER + MAGIC.len())?;
@@ -173,9 +173,10 @@ fn is_whole(bytes: &[u8]) -> Option<bool> {
     let data_end = begin.checked_sub(HEAD + CHECKSUM)?;
     let (opcode, end) = frame(bytes, data_end)?;
     let ends = opcode == op::DATA_END && end == begin;
-    let has_channels = frames(bytes, begin).any(|(_, opcode, _)| opcode == op::CHANNEL);
+    let has = |kind: u8| frames(bytes, begin).any(|(_, opcode, _)| opcode == kind);
     Some(
-        ends && has_channels
+        ends && has(op::CHANNEL)
+            && has(op::SCHEMA)
             && is_right(begin..checksum_at, checksum_at)?
             && is_right(0..data_end, data_end + HEAD)?,
     )

@@ -354,8 +354,11 @@ impl Log {
                 }
                 Segment::Chunk(..) => {}
             }
-            let messages = self.messages_in(segment, &mut decoder);
-            let of_topic = messages.filter(|message| Some(message.channel) == id);
+            // In a whole file this is the first that shows whether the chunk can be read.
+            let Some(records) = self.chunk(segment).and_then(|chunk| decoder.unpack(chunk)) else {
+                return vec![(part, None)];
+            };
+            let of_topic = pieces::messages(records).filter(|message| Some(message.channel) == id);
             let item = |message: Message<'_>| (Tick(u64::from(message.sequence)), message.data.to_vec());
             of_topic.map(|message| (part, Some(item(message)))).collect()
         })

@@ -373,7 +373,7 @@ impl<W: Write + Seek> LogWriter<W> {
         self.second.push((record.tick, data));
     }
 
-    /// Write the messages on [`REPLAY`] of a second into a chunk of their own: a replay reads a seventh of a log.
+    /// Write the messages on [`REPLAY`] of a second into a chunk of their own: a replay decompresses a seventh of a log.
     fn end_second(&mut self) -> McapResult<()> {
         self.output.mcap.flush()?;
         for (tick, data) in self.second.drain(..) {

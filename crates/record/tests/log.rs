@@ -260,6 +260,39 @@ fn a_log_that_another_program_has_written_again_is_read_whole() {
     assert!(matches!(replay(&path), Err(ReplayError::Empty)));
 }
 
+#[test]
+fn no_value_is_made_up_after_a_chunk_that_cannot_be_read_in_a_file_with_the_right_checksums() {
+    let scratch = Scratch::new();
+    let path = scratch.file("run.mcap");
+    record_run(&path, 300);
+    let recorded = fs::read(&path).unwrap();
+    let expected: Vec<_> = Log::open(&path).unwrap().ticks().map(Result::unwrap).collect();
+    let small = written_again(&recorded, mcap::WriteOptions::new().chunk_size(Some(5_000)));
+    let summary = mcap::Summary::read(&small).unwrap().unwrap();
+    let chunks = summary.chunk_indexes.len();
+    let mut skipped = 0;
+    for chunk in summary.chunk_indexes.iter().skip(chunks / 4).step_by(chunks / 40) {
+        let mut bytes = small.clone();
+        let chunk = usize::try_from(chunk.chunk_start_offset + chunk.chunk_length).unwrap();
+        bytes[chunk - 20] ^= 0x10;
+        // The last record but the footer of the data, and the checksum in it.
+        let footer = bytes.len() - 37;
+        let summary = u64::from_le_bytes(bytes[footer + 9..footer + 17].try_into().unwrap());
+        let end = usize::try_from(summary).unwrap() - 13;
+        let checksum = crc32fast::hash(&bytes[..end]);
+        bytes[end + 9..end + 13].copy_from_slice(&checksum.to_le_bytes());
+        fs::write(&path, bytes).unwrap();
+        for logged in Log::open(&path).unwrap().ticks().map(Result::unwrap) {
+            let recorded = &expected[usize::try_from(logged.tick.0).unwrap() - 1];
+            assert!(logged.memory == recorded.memory && logged.external == recorded.external);
+        }
+        let report = replay(&path).unwrap();
+        assert!(report.first_difference.is_none(), "{:?}", report.first_difference);
+        skipped += report.skipped;
+    }
+    assert!(skipped > 0, "a chunk with ticks was among them");
+}
+
 /// Counts messages, and looks at their times.
 #[derive(Clone, Default)]
 struct Played(Arc<Mutex<(u64, u64)>>);
