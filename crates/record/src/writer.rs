@@ -17,9 +17,10 @@
 //! values for people; there a clock or a counter that changes in every tick does not count as a change (see
 //! [`crate::channels`]).
 //!
-//! Once a second of simulated time the open chunk is written out, and the next one begins with the whole images: a
-//! killed run loses a second. Buffers that do not change are repeated less often: each message costs sixteen bytes of
-//! index besides its own, and fifty unchanged buffers would be a fifth of a log.
+//! Once a second of simulated time the open chunk is written out, and then a chunk with the messages of that second on
+//! `/replay`, of which the first has the whole images: a killed run loses a second. Buffers that do not change are
+//! repeated less often: each message costs sixteen bytes of index besides its own, and fifty unchanged buffers would be
+//! a fifth of a log.
 
 use std::{
     collections::BTreeMap,
