@@ -24,7 +24,7 @@ use crate::writer::{END, RUN};
 const HEAD: usize = 9;
 /// Largest decompressed size of a chunk, bytes: the recorder closes a chunk at a quarter of a megabyte.
 const CHUNK: u64 = 16 << 20;
-/// Largest ratio of decompressed bytes to bytes of the file: the recorder's chunks have a ratio of six to ten.
+/// Largest ratio of decompressed bytes to bytes of the file: the recorder's chunks have a ratio of two to eleven.
 const EXPANSION: u64 = 64;
 /// Limit of decompressed bytes for small files.
 const LEAST: u64 = 64 << 20;
@@ -42,8 +42,8 @@ const MESSAGE_HEAD: usize = 22;
 pub enum Piece<'a> {
     /// A record outside the chunks.
     Record(Record<'a>),
-    /// A readable chunk, including its record header, and the channels and schemas in it. Those of a whole file stand
-    /// after its data, too, and are not read here.
+    /// A chunk, including its record header, and the channels and schemas in it. That of a whole file is not
+    /// decompressed here: its channels and schemas stand after its data, too.
     Chunk(Range<usize>, Vec<Record<'static>>),
     /// The chunk before has messages of a channel.
     Index(u16),
@@ -80,7 +80,7 @@ impl<'a> Pieces<'a> {
         Ok(Self { bytes, is_whole, at, left, decoder, ahead })
     }
 
-    /// The file has the right checksums at its end, and all its channels before them.
+    /// The file has the right checksums at its end, and its channels and schemas stand there, too.
     pub const fn is_whole(&self) -> bool {
         self.is_whole
     }

@@ -311,7 +311,7 @@ impl Log {
         let mut decoder = Decoder::default();
         let mut waiting: Vec<(u64, u16, Vec<u8>)> = Vec::new();
         for (segment, next) in iter::zip(&self.segments, self.next_times()) {
-            let messages = self.messages_in(segment, &mut decoder);
+            let messages = self.messages_in(segment, &mut decoder).into_iter().flatten();
             waiting
                 .extend(messages.map(|message| (message.log_time, message.channel, message.data.to_vec())));
             waiting.sort_by_key(|(time, ..)| *time);
@@ -354,24 +354,21 @@ impl Log {
                 }
                 Segment::Chunk(..) => {}
             }
-            // In a whole file this is the first that shows whether the chunk can be read.
-            let Some(records) = self.chunk(segment).and_then(|chunk| decoder.unpack(chunk)) else {
-                return vec![(part, None)];
-            };
-            let of_topic = pieces::messages(records).filter(|message| Some(message.channel) == id);
+            // Whether a chunk of a whole file can be read shows only here.
+            let Some(messages) = self.messages_in(segment, &mut decoder) else { return vec![(part, None)] };
+            let of_topic = messages.filter(|message| Some(message.channel) == id);
             let item = |message: Message<'_>| (Tick(u64::from(message.sequence)), message.data.to_vec());
             of_topic.map(|message| (part, Some(item(message)))).collect()
         })
     }
 
-    /// The messages of a chunk; a damaged part has none.
+    /// The messages of a chunk; `None` if it cannot be read, and for a damaged part.
     fn messages_in<'a>(
         &'a self,
         segment: &Segment,
         decoder: &'a mut Decoder,
-    ) -> impl Iterator<Item = Message<'a>> + use<'a> {
-        let records = self.chunk(segment).and_then(|chunk| decoder.unpack(chunk));
-        pieces::messages(records.unwrap_or_default())
+    ) -> Option<impl Iterator<Item = Message<'a>> + use<'a>> {
+        Some(pieces::messages(decoder.unpack(self.chunk(segment)?)?))
     }
 
     /// The bytes of a chunk, with its record header; `None` for a damaged part.

@@ -374,7 +374,8 @@ impl<W: Write + Seek> LogWriter<W> {
         self.second.push((record.tick, data));
     }
 
-    /// Write the messages on [`REPLAY`] of a second into a chunk of their own: a replay decompresses a seventh of a log.
+    /// Write the messages on [`REPLAY`] of a second into a chunk of their own, so that a replay decompresses a seventh
+    /// of a log.
     fn end_second(&mut self) -> McapResult<()> {
         self.output.mcap.flush()?;
         for (tick, data) in self.second.drain(..) {

@@ -103,6 +103,14 @@ fn record_run(path: &Path, ticks: u64) -> record::Summary {
     recorder.finish(End { digest: Some(digest), result: "finished".into(), ..End::default() }).unwrap()
 }
 
+/// A directory with the log of a run of so many ticks, and its path.
+fn recorded(ticks: u64) -> (Scratch, PathBuf) {
+    let scratch = Scratch::new();
+    let path = scratch.file("run.mcap");
+    record_run(&path, ticks);
+    (scratch, path)
+}
+
 #[test]
 fn a_recorded_run_is_replayed_bit_for_bit() {
     let scratch = Scratch::new();
@@ -154,9 +162,7 @@ fn the_same_run_writes_the_same_bytes() {
 
 #[test]
 fn a_log_that_was_cut_off_is_read_up_to_the_cut() {
-    let scratch = Scratch::new();
-    let path = scratch.file("run.mcap");
-    record_run(&path, 300);
+    let (_scratch, path) = recorded(300);
     let whole = fs::read(&path).unwrap();
     let mut most = 0;
     for part in 1..=40 {
@@ -180,9 +186,7 @@ fn a_log_that_was_cut_off_is_read_up_to_the_cut() {
 
 #[test]
 fn a_replay_has_chunks_of_its_own() {
-    let scratch = Scratch::new();
-    let path = scratch.file("run.mcap");
-    record_run(&path, 300);
+    let (_scratch, path) = recorded(300);
     let summary = mcap::Summary::read(&fs::read(&path).unwrap()).unwrap().unwrap();
     let replay = summary.channels.values().find(|channel| channel.topic == "/replay").unwrap().id;
     let chunks = summary.chunk_indexes.iter().map(|chunk| &chunk.message_index_offsets);
@@ -193,9 +197,7 @@ fn a_replay_has_chunks_of_its_own() {
 
 #[test]
 fn a_byte_that_is_changed_anywhere_is_told_or_changes_nothing() {
-    let scratch = Scratch::new();
-    let path = scratch.file("run.mcap");
-    record_run(&path, 300);
+    let (_scratch, path) = recorded(300);
     let sound = fs::read(&path).unwrap();
     let mut untold = 0;
     for at in (0..sound.len()).step_by(sound.len() / 251) {
@@ -228,9 +230,7 @@ fn written_again(log: &[u8], options: mcap::WriteOptions) -> Vec<u8> {
 
 #[test]
 fn a_log_that_another_program_has_written_again_is_read_whole() {
-    let scratch = Scratch::new();
-    let path = scratch.file("run.mcap");
-    record_run(&path, 300);
+    let (_scratch, path) = recorded(300);
     let recorded = fs::read(&path).unwrap();
     let new = mcap::WriteOptions::new;
     let read = |options: mcap::WriteOptions| {
@@ -262,9 +262,7 @@ fn a_log_that_another_program_has_written_again_is_read_whole() {
 
 #[test]
 fn no_value_is_made_up_after_a_chunk_that_cannot_be_read_in_a_file_with_the_right_checksums() {
-    let scratch = Scratch::new();
-    let path = scratch.file("run.mcap");
-    record_run(&path, 300);
+    let (_scratch, path) = recorded(300);
     let recorded = fs::read(&path).unwrap();
     let expected: Vec<_> = Log::open(&path).unwrap().ticks().map(Result::unwrap).collect();
     let small = written_again(&recorded, mcap::WriteOptions::new().chunk_size(Some(5_000)));
@@ -275,7 +273,7 @@ fn no_value_is_made_up_after_a_chunk_that_cannot_be_read_in_a_file_with_the_righ
         let mut bytes = small.clone();
         let chunk = usize::try_from(chunk.chunk_start_offset + chunk.chunk_length).unwrap();
         bytes[chunk - 20] ^= 0x10;
-        // The last record but the footer of the data, and the checksum in it.
+        // The checksum at the end of the data.
         let footer = bytes.len() - 37;
         let summary = u64::from_le_bytes(bytes[footer + 9..footer + 17].try_into().unwrap());
         let end = usize::try_from(summary).unwrap() - 13;
@@ -309,9 +307,7 @@ impl Tap for Played {
 
 #[test]
 fn messages_are_played_in_the_order_of_their_times() {
-    let scratch = Scratch::new();
-    let path = scratch.file("run.mcap");
-    record_run(&path, 300);
+    let (_scratch, path) = recorded(300);
     let mut tap = Played::default();
     Log::open(&path).unwrap().play(&mut tap, |_| {});
     let summary = mcap::Summary::read(&fs::read(&path).unwrap()).unwrap().unwrap();
