@@ -154,9 +154,8 @@ impl Default for RunConfig {
 }
 
 /// Access of operators to a run (`docs/operator.md`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum OperatorAccess {
     /// Nobody
     None,
@@ -167,9 +166,8 @@ pub enum OperatorAccess {
 }
 
 /// When ticks are run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum ClockKind {
     /// As fast as the cell can be simulated
     Fast,
@@ -276,9 +274,8 @@ fn silence(part: &str) -> Result<u16, String> {
 }
 
 /// Distribution of the control processes over boards.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Boards {
     /// All in one thread
     One,
