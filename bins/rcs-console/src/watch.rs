@@ -5,6 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use os_io::replace::replace;
+
 use crate::model::buffers::{is_within, paths};
 
 /// Path of the list; `None` without a home directory.
@@ -30,7 +32,7 @@ pub fn load(path: &Path) -> Vec<String> {
 pub fn save(path: &Path, list: &[String]) -> io::Result<()> {
     path.parent().map_or(Ok(()), fs::create_dir_all)?;
     let text: String = list.iter().flat_map(|name| [name.as_str(), "\n"]).collect();
-    fs::write(path, text)
+    replace(path, text.as_bytes())
 }
 
 #[cfg(test)]

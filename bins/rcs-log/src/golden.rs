@@ -7,6 +7,7 @@ use std::{
     process::ExitCode,
 };
 
+use os_io::replace::replace;
 use record::golden;
 use serde::Serialize;
 
@@ -63,7 +64,7 @@ fn make(path: &Path, directory: &Path) -> Result<One, Error> {
     };
     fs::create_dir_all(directory).map_err(unwritten(directory))?;
     golden::write(&golden, &file).map_err(failed)?;
-    fs::write(&text, &played.summary).map_err(unwritten(&text))?;
+    replace(&text, played.summary.as_bytes()).map_err(unwritten(&text))?;
     let bytes = fs::metadata(&file).map_err(unwritten(&file))?.len();
     Ok(One { file, ticks: played.ticks, bytes, digest: played.digest.to_string() })
 }

@@ -10,7 +10,7 @@ mod variants;
 
 use std::{
     collections::HashMap,
-    fs, io,
+    io,
     path::{Path, PathBuf},
     process::ExitCode,
     sync::{Arc, Mutex, PoisonError},
@@ -18,7 +18,10 @@ use std::{
 
 use diagnostics::{Diagnostic, Diagnostics, Finding, Problems, Severity, Source, amount};
 use egm_robot::{RobotFile, placement::PlacementError};
-use os_io::{console, files};
+use os_io::{
+    console, files,
+    replace::{Format, check_output, replace},
+};
 use paths::known::Known;
 use plant::{
     Cell, CellDescription,
@@ -74,7 +77,9 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     }
     let checked = Checked::of(&arguments.data, &Flights::default());
     if let Some((path, cell)) = arguments.urdf.as_ref().zip(checked.cell.as_ref()) {
-        fs::write(path, cell.urdf()).map_err(|source| Error::Write { path: path.clone(), source })?;
+        check_output(path, Format::Urdf, [])
+            .and_then(|()| replace(path, cell.urdf().as_bytes()))
+            .map_err(|source| Error::Write { path: path.clone(), source })?;
     }
     let mut outcome = checked.outcome();
     let robot = arguments.robot.as_ref().filter(|_| outcome.ok);

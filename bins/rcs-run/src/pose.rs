@@ -145,7 +145,8 @@ fn write(
     };
     let changed = form::put(&text, arguments.block, kind, &name, form)
         .map_err(|why| Error::Pose(format!("{}: {why}", file.display())))?;
-    std::fs::write(file, &changed.text).map_err(|source| Error::Write { path: file.clone(), source })?;
+    os_io::replace::replace_text(file, &changed.text)
+        .map_err(|source| Error::Write { path: file.clone(), source })?;
     let lines = changed.removed.iter().map(|line| format!("-{line}\n"));
     let lines = lines.chain(changed.added.iter().map(|line| format!("+{line}\n"))).collect::<String>();
     console::answer(&format!("{} line {}\n{lines}", file.display(), changed.line))?;

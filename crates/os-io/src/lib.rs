@@ -10,3 +10,4 @@
 pub mod carried;
 pub mod console;
 pub mod files;
+pub mod replace;

@@ -27,7 +27,7 @@ use executive::{
     boards::{BoardData, Checked, Fingerprint},
     memory::{RunName, load_file},
 };
-use os_io::files;
+use os_io::{files, replace::replace};
 use rcs_core::Plain as _;
 use taskdata::{
     files::TaskData,
@@ -127,11 +127,9 @@ fn fingerprint(store: &Store) -> u64 {
     Fingerprint::of("", store.sources(), []).data
 }
 
-/// Write the file for the boards, atomically.
+/// Write the file for the boards.
 fn write(path: &Path, done: usize, source: &Source) -> io::Result<()> {
-    let new = path.with_added_extension("new");
-    fs::write(&new, format!("{done} {}\n{}", source.name, source.text))?;
-    fs::rename(new, path)
+    replace(path, format!("{done} {}\n{}", source.name, source.text).as_bytes())
 }
 
 /// Read the file for the boards: number of reloads before the block, and the block.

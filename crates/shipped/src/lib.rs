@@ -10,6 +10,7 @@ use std::{
 use os_io::{
     carried::{self, Carried, PREFIX},
     files,
+    replace::replace,
 };
 
 /// All files of `data/`.
@@ -43,7 +44,7 @@ pub fn write(directory: &Path) -> io::Result<usize> {
     for file in FILES {
         let path = place(file);
         path.parent().map_or(Ok(()), fs::create_dir_all)?;
-        fs::write(path, file.bytes)?;
+        replace(&path, file.bytes)?;
     }
     Ok(FILES.len())
 }

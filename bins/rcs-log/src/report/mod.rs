@@ -7,9 +7,12 @@ mod page;
 mod scene;
 mod svg;
 
-use std::{fs, path::PathBuf, process::ExitCode};
+use std::{path::PathBuf, process::ExitCode};
 
-use os_io::console;
+use os_io::{
+    console,
+    replace::{Format, check_output, replace},
+};
 
 use crate::{Error, story::open};
 
@@ -25,11 +28,12 @@ pub struct Arguments {
 
 /// Writes the page of a log.
 pub fn report(arguments: &Arguments) -> Result<ExitCode, Error> {
+    let output = arguments.output.clone().unwrap_or_else(|| arguments.file.with_extension("html"));
+    let unwritten = |source| Error::Write { path: output.clone(), source };
+    check_output(&output, Format::Html, [arguments.file.as_path()]).map_err(unwritten)?;
     let log = open(&arguments.file)?;
     let run = gather::gather(&log, &arguments.file)?;
-    let output = arguments.output.clone().unwrap_or_else(|| arguments.file.with_extension("html"));
-    fs::write(&output, page::page(&log, &run))
-        .map_err(|source| Error::Write { path: output.clone(), source })?;
+    replace(&output, page::page(&log, &run).as_bytes()).map_err(unwritten)?;
     console::answer(&format!("{}\n", output.display()))?;
     Ok(ExitCode::SUCCESS)
 }

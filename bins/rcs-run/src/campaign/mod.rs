@@ -37,7 +37,7 @@ mod trial;
 
 use std::{fs, io, process::ExitCode};
 
-use os_io::console;
+use os_io::{console, replace::replace_text};
 use runtime::{
     StartError,
     setup::{CellFile, TaskFiles},
@@ -76,7 +76,7 @@ pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
             Err(source) => return Err(StartError::Read { path: path.clone(), source }.into()),
         };
         let text = markdown::page(page.as_deref(), &columns).map_err(Error::Campaign)?;
-        fs::write(path, text).map_err(|source| Error::Write { path: path.clone(), source })?;
+        replace_text(path, &text).map_err(|source| Error::Write { path: path.clone(), source })?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use os_io::files;
+use os_io::{files, replace::replace_text};
 use similar::TextDiff;
 use taskdata::load::{Source, source::BLOCK_LINES, source::blocks};
 
@@ -181,7 +181,7 @@ pub fn changeable(data: &Path) -> Result<(), Error> {
 fn put(path: &Path, text: &str) -> Result<(), Error> {
     let write = || {
         path.parent().map_or(Ok(()), fs::create_dir_all)?;
-        fs::write(path, text)
+        replace_text(path, text)
     };
     write().map_err(|source| Error::Write { path: path.to_owned(), source })
 }

@@ -15,14 +15,13 @@ mod summary;
 
 use std::{
     collections::BTreeMap,
-    fs,
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
 
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::Ladder;
-use os_io::files;
+use os_io::{files, replace::replace};
 use prost::Message as _;
 use rcs_core::{
     Plain as _,
@@ -188,7 +187,7 @@ pub fn write(golden: &Golden, path: &Path) -> Result<(), GoldenError> {
     let mut bytes = MAGIC.to_vec();
     let packed = zstd::bulk::compress(&golden.0.encode_to_vec(), COMPRESSION).map_err(failed)?;
     bytes.extend_from_slice(&packed);
-    fs::write(path, bytes).map_err(failed)
+    replace(path, &bytes).map_err(failed)
 }
 
 /// Make a golden of the log of a whole run.

@@ -14,6 +14,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use os_io::replace::replace_text;
 use taskdata::load::{
     BlockNumber, Source, Store,
     source::{BLOCK_COLUMNS, BLOCK_LINES, blocks},
@@ -259,13 +260,11 @@ impl Editor {
         let told = |error: io::Error| format!("{}: {error}", self.path.display());
         if fs::read_to_string(&self.path).map_err(told)? != self.before {
             return Err(format!(
-                "{} has changed since: leave the editor and begin anew",
+                "{} was changed by another program: leave the editor and open the block again",
                 self.path.display()
             ));
         }
-        let new = self.path.with_added_extension("new");
-        fs::write(&new, self.text()).map_err(told)?;
-        fs::rename(&new, &self.path).map_err(told)
+        replace_text(&self.path, &self.text()).map_err(told)
     }
 
     /// Number, old and new text of each changed line.
