@@ -2,12 +2,16 @@
 
 use std::{
     fs::{self, File, TryLockError},
-    io,
     os::unix::fs::MetadataExt as _,
     path::{Path, PathBuf},
+    time::SystemTime,
 };
 
-use os_io::files;
+use os_io::{
+    files,
+    replace::{Format, check_output},
+};
+use time::OffsetDateTime;
 
 use crate::error::RecordError;
 
@@ -20,6 +24,8 @@ pub struct LogFile {
     identity: (u64, u64),
     /// The file is new, and the log has not begun.
     unused: bool,
+    /// An earlier log at the path is renamed when this one begins; otherwise it is replaced.
+    keeps_earlier: bool,
 }
 
 impl LogFile {
@@ -34,6 +40,7 @@ impl LogFile {
         }
         loop {
             let unused = fs::symlink_metadata(path).is_err();
+            check_output(path, Format::Mcap, []).map_err(failed)?;
             let file = files::create(path).map_err(failed)?;
             match file.try_lock() {
                 Ok(()) => {}
@@ -41,7 +48,8 @@ impl LogFile {
                 Err(TryLockError::Error(source)) => return Err(failed(source)),
             }
             let found = file.metadata().map_err(failed)?;
-            let claimed = Self { path: path.to_owned(), file, identity: (found.dev(), found.ino()), unused };
+            let identity = (found.dev(), found.ino());
+            let claimed = Self { path: path.to_owned(), file, identity, unused, keeps_earlier: false };
             // Another run may have removed the file, which it had not used, before it was locked here.
             if claimed.look().is_ok() {
                 return Ok(claimed);
@@ -49,7 +57,8 @@ impl LogFile {
         }
     }
 
-    /// Claim `<name>.mcap` in a directory, or `<name>-2.mcap` and so on while other runs write those before it.
+    /// Claim `<name>.mcap` in a directory, or `<name>-2.mcap` and so on while other runs write those before it. A log of
+    /// an earlier run is kept under the time of its end, for example `<name>-2026-11-27T214500Z.mcap`.
     ///
     /// # Errors
     /// [`RecordError::Create`].
@@ -59,7 +68,11 @@ impl LogFile {
             let name = if number == 1 { name.to_owned() } else { format!("{name}-{number}") };
             match Self::claim(&directory.join(name).with_added_extension("mcap")) {
                 Err(RecordError::InUse { .. }) => number += 1,
-                claimed => return claimed,
+                claimed => {
+                    let mut file = claimed?;
+                    file.keeps_earlier = true;
+                    return Ok(file);
+                }
             }
         }
     }
@@ -70,11 +83,23 @@ impl LogFile {
         &self.path
     }
 
-    /// The file, empty: the log begins.
-    pub(crate) fn emptied(&mut self) -> io::Result<File> {
+    /// The file, empty: the log begins. An earlier log is renamed if it is to be kept.
+    pub(crate) fn emptied(&mut self) -> Result<File, RecordError> {
+        let failed = |path: &Path| {
+            let path = path.to_owned();
+            |source| RecordError::Create { path, source }
+        };
+        if self.keeps_earlier {
+            let earlier = self.file.metadata().map_err(failed(&self.path))?;
+            if earlier.len() > 0 {
+                let ended = earlier.modified().map_err(failed(&self.path))?;
+                fs::rename(&self.path, free_name(&self.path, ended)).map_err(failed(&self.path))?;
+                // The lock of the renamed file ends with its handle.
+                *self = Self::claim(&self.path.clone())?;
+            }
+        }
         self.unused = false;
-        self.file.set_len(0)?;
-        self.file.try_clone()
+        self.file.set_len(0).and_then(|()| self.file.try_clone()).map_err(failed(&self.path))
     }
 
     /// Check that the file is still at its path.
@@ -98,9 +123,34 @@ impl Drop for LogFile {
     }
 }
 
+/// A name for an earlier log: that of the log with the time in UTC, and a number if that name exists.
+fn free_name(path: &Path, ended: SystemTime) -> PathBuf {
+    let at = OffsetDateTime::from(ended);
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let stem = format!(
+        "{stem}-{:04}-{:02}-{:02}T{:02}{:02}{:02}Z",
+        at.year(),
+        u8::from(at.month()),
+        at.day(),
+        at.hour(),
+        at.minute(),
+        at.second()
+    );
+    let numbers = (2_u32..).map(|number| format!("{stem}-{number}.mcap"));
+    let mut names =
+        std::iter::once(format!("{stem}.mcap")).chain(numbers).map(|name| path.with_file_name(name));
+    // The chain of names has no end.
+    names.find(|name| fs::symlink_metadata(name).is_err()).unwrap_or_else(|| path.to_owned())
+}
+
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
+
+    /// The first bytes of a log.
+    const EARLIER: &[u8] = b"\x89MCAP0\r\nearlier";
 
     #[test]
     fn a_file_whose_log_never_began_is_removed_if_it_was_made_for_it() {
@@ -112,9 +162,42 @@ mod tests {
         begun.emptied().unwrap();
         drop(begun);
         assert!(path.exists());
-        fs::write(&path, "of a run before").unwrap();
+        fs::write(&path, EARLIER).unwrap();
         drop(LogFile::claim(&path).unwrap());
-        assert_eq!(fs::read_to_string(&path).unwrap(), "of a run before");
+        assert_eq!(fs::read(&path).unwrap(), EARLIER);
+    }
+
+    #[test]
+    fn an_explicit_log_replaces_a_log_and_no_other_file() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("cell.toml");
+        fs::write(&path, "[robot]").unwrap();
+        assert!(matches!(LogFile::claim(&path), Err(RecordError::Create { .. })));
+        assert_eq!(fs::read_to_string(&path).unwrap(), "[robot]");
+        fs::write(&path, EARLIER).unwrap();
+        LogFile::claim(&path).unwrap().emptied().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"");
+    }
+
+    #[test]
+    fn a_run_keeps_the_earlier_logs_of_its_job() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("linkbar.mcap");
+        let day = Duration::from_secs(86_400);
+        for _ in 0..3 {
+            let mut log = LogFile::claim_free(directory.path(), "linkbar").unwrap();
+            assert_eq!(log.path(), path);
+            log.emptied().unwrap();
+            fs::write(&path, EARLIER).unwrap();
+            log.file.set_modified(SystemTime::UNIX_EPOCH + day).unwrap();
+        }
+        let mut names: Vec<_> = fs::read_dir(directory.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        let first = "linkbar-1970-01-02T000000Z";
+        assert_eq!(names, [format!("{first}-2.mcap").as_str(), &format!("{first}.mcap"), "linkbar.mcap"]);
     }
 
     #[test]

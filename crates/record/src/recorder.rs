@@ -160,7 +160,7 @@ impl Recorder {
             cell.check()?;
         }
         let path = file.path().to_owned();
-        let emptied = file.emptied().map_err(|source| RecordError::Create { path: path.clone(), source })?;
+        let emptied = file.emptied()?;
         let log = LogWriter::create_with(Sink::new(emptied, pace == Pace::Drop), setup, tap)?;
         let tick = Tick::BEFORE_START;
         let (external, memory) = (ExternalInputs::default(), CommonMemory::default());

@@ -14,14 +14,17 @@ use neighbours::{
     pedestal, vision,
     workstation::player::{Hwsc, TIME_LIMIT},
 };
-use os_io::files;
+use os_io::{
+    files,
+    replace::{Format, check_output},
+};
 use plant::{
     Cell, CellDescription,
     camera::Analysis,
     description,
     fault::text::{self, FaultFile},
 };
-use record::LogFile;
+use record::{LogFile, RecordError};
 use taskdata::load::{Diagnostics, Job, Source, Store};
 
 use crate::{
@@ -101,7 +104,12 @@ impl Setup {
         let live = Live::prepare(config)?;
         let log = match &config.log {
             LogTarget::None => None,
-            LogTarget::File(path) => Some(LogFile::claim(path)?),
+            LogTarget::File(path) => {
+                let inputs = config.inputs.as_deref();
+                check_output(path, Format::Mcap, inputs)
+                    .map_err(|source| RecordError::Create { path: path.clone(), source })?;
+                Some(LogFile::claim(path)?)
+            }
             LogTarget::Default => Some(LogFile::claim_free(Path::new("runs"), &job.name)?),
         };
         let neighbours = neighbours(config, &job, &description, observer)?;

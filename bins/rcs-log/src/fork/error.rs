@@ -1,6 +1,6 @@
 //! Errors of forking a log.
 
-use std::io;
+use std::{io, path::PathBuf};
 
 use record::{ReadError, ReplayError};
 use runtime::{ChangeError, RepeatError, StartError};
@@ -47,9 +47,14 @@ pub enum ForkError {
     /// The run has no failure, which `--at-failure` needs.
     #[error("nothing went wrong in this run: name a tick with --tick")]
     NoFailure,
-    /// The output file is the log itself.
-    #[error("the fork would overwrite the log that it comes from: name another file")]
-    SameFile,
+    /// The output would replace the log of the fork, or a file that is no log.
+    #[error("the fork cannot be written to {path}: {source}")]
+    Output {
+        /// The output.
+        path: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
     /// The program has changed, or the log lacks data that the run depended on.
     #[error(
         "this program differs from the log from tick {tick} on: {field} was {was} and is {is}; \

@@ -17,6 +17,7 @@ use std::{
 };
 
 use interfaces::ExternalInputs;
+use os_io::replace::{Format, check_output};
 use rcs_core::{plain::from_bytes, tick::TICK_S};
 use record::{Attachment, Log, ReadError, ReplayError, replay::generations};
 use runtime::{LogTarget, RepeatError, Run, RunConfig, repeat, setup::CELL};
@@ -121,9 +122,8 @@ fn run(log: &Log, arguments: &Arguments, tick: u64) -> Result<Trace, ForkError> 
     let operations = prepare(log, &arguments.changes, tick, &config)?;
     let seed = config.seed;
     if let Some(output) = &arguments.output {
-        if is_same(output, &arguments.file) {
-            return Err(ForkError::SameFile);
-        }
+        check_output(output, Format::Mcap, [arguments.file.as_path()])
+            .map_err(|source| ForkError::Output { path: output.clone(), source })?;
         let changes: Vec<String> = arguments.changes.iter().map(ToString::to_string).collect();
         config.remarks = repeat::fork_remarks(tick, &changes);
         config.log = LogTarget::File(output.clone());
@@ -144,10 +144,6 @@ fn run(log: &Log, arguments: &Arguments, tick: u64) -> Result<Trace, ForkError> 
     let outcome = run.run.finish();
     run.trace.end = End::of_run(&outcome);
     Ok(run.trace)
-}
-
-fn is_same(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 /// Converts the changes to operations before the run begins. Writes a changed cell description into the run's
