@@ -81,6 +81,12 @@ pub enum ReadError {
         /// The file.
         path: PathBuf,
     },
+    /// The file holds several runs.
+    #[error("{path} holds the logs of several runs: open the log of one run")]
+    Merged {
+        /// The file.
+        path: PathBuf,
+    },
     /// The metadata of the run cannot be read.
     #[error("{path} is damaged at its head: without the metadata of the run nothing in it can be read")]
     HeadDamaged {

@@ -4,14 +4,18 @@
 //! next readable record: a chunk or an attachment with the right checksum, or metadata of this program. The total of
 //! decompressed bytes is limited in proportion to the size of the file, and with it memory and time of reading.
 //!
+//! Logs that other programs have written again are read, too: with other compressions, without chunks, or without
+//! checksums. Damage in a part without a checksum may go unnoticed.
+//!
 //! A whole file has at its end the right checksums of all its chunks and of the index after them: then no chunk needs
 //! to be decompressed before it is read, and the index says which chunks have messages of a channel. Otherwise each
 //! chunk has to show by its own checksum that it is readable. All processors check the first chunks ahead; what they
 //! decompress for it is not kept: decompressing it again takes no longer than fetching it from memory that is not in
 //! the caches.
 
-use std::{collections::BTreeMap, iter, ops::Range, thread};
+use std::{collections::BTreeMap, io::Read as _, iter, ops::Range, thread};
 
+use lz4_flex::frame::FrameDecoder;
 use mcap::{
     MAGIC, McapError, McapResult, parse_record,
     records::{Record, op},
@@ -22,8 +26,11 @@ use crate::writer::{END, RUN};
 
 /// Size of a record's header, bytes: operation code and length.
 const HEAD: usize = 9;
-/// Largest decompressed size of a chunk, bytes: the recorder closes a chunk at a quarter of a megabyte.
-const CHUNK: u64 = 16 << 20;
+/// Largest decompressed size of a chunk, bytes: the recorder closes a chunk at a quarter of a megabyte. Other programs
+/// write chunks of some tens of megabytes.
+const CHUNK: u64 = 64 << 20;
+/// Messages outside chunks are read in parts of about this size, bytes.
+const LOOSE: usize = 1 << 18;
 /// Largest ratio of decompressed bytes to bytes of the file: the recorder's chunks have a ratio of two to eleven.
 const EXPANSION: u64 = 64;
 /// Limit of decompressed bytes for small files.
@@ -38,6 +45,20 @@ const CHECKSUM: usize = 4;
 /// Size of what stands before the data of a message, bytes: channel, number, and two times.
 const MESSAGE_HEAD: usize = 22;
 
+/// Why a part of the file cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Damage {
+    /// Its bytes are no record, or have a wrong checksum.
+    #[error("damaged")]
+    Bytes,
+    /// A chunk in a compression that this program does not have.
+    #[error("compressed with {0:?}, and only zstd, lz4 or no compression can be read")]
+    Compression(String),
+    /// A chunk that is too large.
+    #[error("a chunk of {0} bytes, and only chunks of at most {CHUNK} bytes can be read")]
+    TooLarge(u64),
+}
+
 /// A piece of the file.
 pub enum Piece<'a> {
     /// A record outside the chunks.
@@ -45,10 +66,12 @@ pub enum Piece<'a> {
     /// A chunk, including its record header, and the channels and schemas in it. That of a whole file is not
     /// decompressed here: its channels and schemas stand after its data, too.
     Chunk(Range<usize>, Vec<Record<'static>>),
+    /// Messages outside chunks.
+    Loose(Range<usize>),
     /// The chunk before has messages of a channel.
     Index(u16),
     /// Unreadable bytes.
-    Damaged(Range<usize>),
+    Damaged(Range<usize>, Damage),
 }
 
 /// The pieces of a file, in order.
@@ -95,7 +118,7 @@ impl<'a> Pieces<'a> {
                 self.spend(chunk_size(chunk)?)?;
                 let described = match self.ahead.remove(&at) {
                     Some(described) => described?,
-                    None if self.is_whole => Packed::of(chunk).map(|_| Vec::new())?,
+                    None if self.is_whole => Packed::of(chunk).map(|_| Vec::new()).ok()?,
                     None => described(self.decoder.unpack(chunk)?)?,
                 };
                 Piece::Chunk(at..end, described)
@@ -103,6 +126,11 @@ impl<'a> Pieces<'a> {
             op::ATTACHMENT => {
                 self.spend(u64::try_from(body.len()).ok()?)?;
                 Piece::Record(parse(opcode, body)?)
+            }
+            op::MESSAGE => {
+                Message::of(body)?;
+                let end = loose_end(self.bytes, at);
+                return Some((Piece::Loose(at..end), end));
             }
             op::MESSAGE_INDEX => Piece::Index(u16::from_le_bytes(*body.first_chunk()?)),
             // The last record: after it the file ends with the same magic as at its beginning.
@@ -120,11 +148,15 @@ impl<'a> Pieces<'a> {
 
     /// The next position from `from` at which a record certainly begins; the end of the file if there is none.
     fn next_good(&mut self, from: usize) -> usize {
+        let bytes = self.bytes;
         let surely = |piece: &Piece<'_>| match piece {
-            Piece::Chunk(..) => true,
+            Piece::Chunk(range, _) => bytes
+                .get(range.clone())
+                .and_then(|chunk| Packed::of(chunk).ok())
+                .is_some_and(|it| it.checksum != 0),
             Piece::Record(Record::Attachment { crc, .. }) => *crc != 0,
             Piece::Record(Record::Metadata(metadata)) => metadata.name == RUN || metadata.name == END,
-            Piece::Record(_) | Piece::Index(_) | Piece::Damaged(_) => false,
+            Piece::Record(_) | Piece::Index(_) | Piece::Loose(_) | Piece::Damaged(..) => false,
         };
         let end = self.bytes.len();
         let begins =
@@ -147,10 +179,32 @@ impl<'a> Iterator for Pieces<'a> {
             self.at = if matches!(piece, Piece::Record(Record::Footer(_))) { self.bytes.len() } else { end };
             piece
         } else {
-            self.at = self.next_good(begin.saturating_add(1));
-            Piece::Damaged(begin..self.at)
+            let (damage, after) =
+                unreadable(self.bytes, begin).unwrap_or((Damage::Bytes, begin.saturating_add(1)));
+            self.at = if damage == Damage::Bytes { self.next_good(after) } else { after };
+            Piece::Damaged(begin..self.at, damage)
         };
         Some(piece)
+    }
+}
+
+/// The end of a row of messages outside chunks.
+fn loose_end(bytes: &[u8], from: usize) -> usize {
+    let is_message = |(_, opcode, _): &(usize, u8, usize)| *opcode == op::MESSAGE;
+    let row =
+        frames(bytes, from).take_while(is_message).take_while(|(at, ..)| at.saturating_sub(from) < LOOSE);
+    row.last().map_or(from, |(.., end)| end)
+}
+
+/// Why a whole chunk cannot be read, and its end; `None` if no chunk begins there, or its head is damaged.
+fn unreadable(bytes: &[u8], at: usize) -> Option<(Damage, usize)> {
+    let (opcode, end) = frame(bytes, at).filter(|(opcode, _)| *opcode == op::CHUNK)?;
+    // A damaged length of a chunk must not hide what follows it.
+    frame(bytes, end)
+        .filter(|(next, _)| (op::HEADER..=op::DATA_END).contains(next) && opcode == op::CHUNK)?;
+    match Packed::of(bytes.get(at..end)?) {
+        Err(damage) => Some((damage, end)),
+        Ok(_) => None,
     }
 }
 
@@ -329,29 +383,42 @@ fn texts(body: &[u8], from: usize) -> Option<usize> {
 struct Packed<'a> {
     /// Size of the records.
     size: usize,
+    /// Checksum of the records; 0 for none.
     checksum: u32,
-    is_compressed: bool,
+    compression: Compression,
     records: &'a [u8],
 }
 
+/// The compression of a chunk.
+enum Compression {
+    None,
+    Zstd,
+    Lz4,
+}
+
 impl<'a> Packed<'a> {
-    /// That of a chunk, which is given with its record header; `None` if it is too large, or is compressed in another
-    /// way, or has no checksum.
-    fn of(chunk: &'a [u8]) -> Option<Self> {
-        // Two times, size, checksum, compression, length of the records, records.
+    /// The content of a chunk, which is given with its record header.
+    fn of(chunk: &'a [u8]) -> Result<Self, Damage> {
+        let (size, checksum, name, records) = Self::fields(chunk).ok_or(Damage::Bytes)?;
+        let compression = match name {
+            b"" => Compression::None,
+            b"zstd" => Compression::Zstd,
+            b"lz4" => Compression::Lz4,
+            other => return Err(Damage::Compression(String::from_utf8_lossy(other).into_owned())),
+        };
+        let fits = usize::try_from(size).ok().filter(|_| size <= CHUNK);
+        Ok(Self { size: fits.ok_or(Damage::TooLarge(size))?, checksum, compression, records })
+    }
+
+    /// Size, checksum, compression and records: two times, size, checksum, compression, length of the records, records.
+    fn fields(chunk: &'a [u8]) -> Option<(u64, u32, &'a [u8], &'a [u8])> {
         let body = chunk.get(HEAD..)?;
         let size = chunk_size(chunk)?;
         let checksum = body.get(24..28)?.try_into().map(u32::from_le_bytes).ok()?;
         let name = text(body, 28)?;
         let (length, records) = body.get(name..)?.split_first_chunk()?;
         let records = records.get(..usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
-        let size = usize::try_from(size).ok().filter(|_| size <= CHUNK && checksum != 0)?;
-        let is_compressed = match body.get(32..name)? {
-            b"" => false,
-            b"zstd" => true,
-            _ => return None,
-        };
-        Some(Self { size, checksum, is_compressed, records })
+        Some((size, checksum, body.get(32..name)?, records))
     }
 }
 
@@ -367,13 +434,23 @@ impl Decoder {
     ///
     /// `None` if the chunk cannot be decompressed, or its checksum is wrong.
     pub fn unpack<'a>(&'a mut self, chunk: &'a [u8]) -> Option<&'a [u8]> {
-        let Packed { size, checksum, is_compressed, mut records } = Packed::of(chunk)?;
-        if is_compressed {
-            self.records.clear();
-            self.records.reserve(size);
-            self.zstd.decompress_to_buffer(records, &mut self.records).ok()?;
-            records = &self.records;
+        let Packed { size, checksum, compression, mut records } = Packed::of(chunk).ok()?;
+        self.records.clear();
+        match compression {
+            Compression::None => {}
+            Compression::Zstd => {
+                self.records.reserve(size);
+                self.zstd.decompress_to_buffer(records, &mut self.records).ok()?;
+                records = &self.records;
+            }
+            Compression::Lz4 => {
+                // One byte more than the size: a chunk that is longer than it says is damaged.
+                let limit = u64::try_from(size).ok()?.saturating_add(1);
+                FrameDecoder::new(records).take(limit).read_to_end(&mut self.records).ok()?;
+                records = &self.records;
+            }
         }
-        (records.len() == size && crc32fast::hash(records) == checksum).then_some(records)
+        let is_sound = checksum == 0 || crc32fast::hash(records) == checksum;
+        (records.len() == size && is_sound).then_some(records)
     }
 }

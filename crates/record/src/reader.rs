@@ -25,7 +25,7 @@ use crate::{
     input::{Attachment, Link},
     layout,
     operator::{OPERATOR, OperatorLine},
-    pieces::{self, Decoder, Message, Piece, Pieces},
+    pieces::{self, Damage, Decoder, Message, Piece, Pieces},
     proto::{
         foxglove::{self, Level, Transform},
         wire::{Fields, Value},
@@ -59,9 +59,11 @@ pub struct Log {
 
 /// A part of the file with messages.
 enum Segment {
-    /// With the channels of its messages; none if they are not known for sure.
+    /// A chunk with the channels of its messages; none if they are not known for sure.
     Chunk(Range<usize>, Vec<u16>),
-    Damaged(Range<usize>),
+    /// Messages outside chunks.
+    Loose(Range<usize>),
+    Damaged(Range<usize>, Damage),
 }
 
 /// A recorded tick.
@@ -145,8 +147,12 @@ impl Log {
                         channels.push(channel);
                     }
                 }
-                Piece::Damaged(range) => log.segments.push(Segment::Damaged(range)),
+                Piece::Loose(range) => log.segments.push(Segment::Loose(range)),
+                Piece::Damaged(range, damage) => log.segments.push(Segment::Damaged(range, damage)),
                 Piece::Record(Record::Metadata(metadata)) if metadata.name == RUN => {
+                    if is_log && log.run != metadata.metadata {
+                        return Err(ReadError::Merged { path: log.path });
+                    }
                     (log.run, is_log) = (metadata.metadata, true);
                 }
                 Piece::Record(Record::Metadata(metadata)) if metadata.name == END => {
@@ -163,7 +169,7 @@ impl Log {
         }
         // An incomplete record at the end, as a killed program leaves it, is not damage.
         let half =
-            |segment: &mut Segment| matches!(segment, Segment::Damaged(range) if range.end == bytes.len());
+            |segment: &mut Segment| matches!(segment, Segment::Damaged(range, _) if range.end == bytes.len());
         if !log.complete {
             log.segments.pop_if(half);
         }
@@ -193,14 +199,17 @@ impl Log {
     #[must_use]
     pub fn damage(&self) -> Option<String> {
         let damaged = |segment: &Segment| match segment {
-            Segment::Damaged(range) => Some(format!("{} bytes from byte {} on", range.len(), range.start)),
-            Segment::Chunk(..) => None,
+            Segment::Damaged(range, damage) => {
+                Some(format!("{} bytes from byte {} on are {damage}", range.len(), range.start))
+            }
+            Segment::Chunk(..) | Segment::Loose(_) => None,
         };
         let places: Vec<String> = self.segments.iter().filter_map(damaged).collect();
         let (first, more) = (places.first()?, places.len().saturating_sub(1));
         Some(match more {
-            0 => format!("{first} are damaged; what they held is missing"),
-            _ => format!("{first} are damaged, and {more} more places; what they held is missing"),
+            0 => format!("{first}; what they held is missing"),
+            1 => format!("{first}, and 1 more place cannot be read; what they held is missing"),
+            _ => format!("{first}, and {more} more places cannot be read; what they held is missing"),
         })
     }
 
@@ -325,8 +334,7 @@ impl Log {
 
     /// For each part of the file, the time of the first message after it: nanoseconds since 1970.
     fn next_times(&self) -> Vec<u64> {
-        let begins =
-            self.segments.iter().rev().map(|segment| self.chunk(segment).and_then(pieces::chunk_begin));
+        let begins = self.segments.iter().rev().map(|segment| self.begin(segment));
         let mut times: Vec<u64> = begins
             .scan(u64::MAX, |next, begin| Some(std::mem::replace(next, begin.unwrap_or(u64::MAX).min(*next))))
             .collect();
@@ -346,13 +354,13 @@ impl Log {
         let mut decoder = Decoder::default();
         self.segments.iter().enumerate().skip(first).flat_map(move |(part, segment)| {
             match segment {
-                Segment::Damaged(_) => return vec![(part, None)],
+                Segment::Damaged(..) => return vec![(part, None)],
                 Segment::Chunk(_, known)
                     if !known.is_empty() && !id.is_some_and(|id| known.contains(&id)) =>
                 {
                     return Vec::new();
                 }
-                Segment::Chunk(..) => {}
+                Segment::Chunk(..) | Segment::Loose(_) => {}
             }
             // Whether a chunk of a whole file can be read shows only here.
             let Some(messages) = self.messages_in(segment, &mut decoder) else { return vec![(part, None)] };
@@ -368,14 +376,22 @@ impl Log {
         segment: &Segment,
         decoder: &'a mut Decoder,
     ) -> Option<impl Iterator<Item = Message<'a>> + use<'a>> {
-        Some(pieces::messages(decoder.unpack(self.chunk(segment)?)?))
+        let records = match segment {
+            Segment::Chunk(range, _) => decoder.unpack(self.bytes.get(range.clone())?)?,
+            Segment::Loose(range) => self.bytes.get(range.clone())?,
+            Segment::Damaged(..) => return None,
+        };
+        Some(pieces::messages(records))
     }
 
-    /// The bytes of a chunk, with its record header; `None` for a damaged part.
-    fn chunk(&self, segment: &Segment) -> Option<&[u8]> {
+    /// The time of the first message of a part, nanoseconds since 1970.
+    fn begin(&self, segment: &Segment) -> Option<u64> {
         match segment {
-            Segment::Chunk(range, _) => self.bytes.get(range.clone()),
-            Segment::Damaged(_) => None,
+            Segment::Chunk(range, _) => pieces::chunk_begin(self.bytes.get(range.clone())?),
+            Segment::Loose(range) => {
+                pieces::messages(self.bytes.get(range.clone())?).next().map(|it| it.log_time)
+            }
+            Segment::Damaged(..) => None,
         }
     }
 }
