@@ -127,3 +127,8 @@ fn the_samples_of_the_tutorial_on_new_parts_are_what_is_printed() {
         "the page makes a part, shows its data, and breaks them"
     );
 }
+
+#[test]
+fn the_sample_of_the_page_about_forms_is_what_is_printed() {
+    assert_eq!(run_samples("docs/forms.md"), 1, "the page shows the path of a command");
+}
