@@ -10,8 +10,8 @@ use rcs_core::{
 
 use super::words::{location, name};
 use crate::{
-    ChangingPose, Header, Reason, StatusReport, grip::GripCommand, jaws::JawsCommand, location::LocationKind,
-    prim::PrimCommand, quick_change::QuickChangeCommand, vision::VisionRequest,
+    ChangingPose, Header, Reason, StatusReport, Unconfirmed, grip::GripCommand, jaws::JawsCommand,
+    location::LocationKind, prim::PrimCommand, quick_change::QuickChangeCommand, vision::VisionRequest,
 };
 
 /// Commands of E-move (V.2.1).
@@ -182,6 +182,8 @@ pub struct EmoveStatus {
     pub report: StatusReport,
     /// `status-para-out`.
     pub reason: Reason,
+    /// Part of the goal that no sensor confirms, with `done` (extension).
+    pub unconfirmed: Unconfirmed,
     /// `ref-pose-^`: the feedback pose, if the resolvers can be believed.
     pub reference_pose: Option<u32>,
     /// `obj-held-status-out`: what is held (more than yes or no is an extension).

@@ -11,7 +11,7 @@ pub use super::location::LocationKind;
 
 use super::words::{location, name};
 use crate::{
-    ChangingPose, Header, Reason, StatusReport,
+    ChangingPose, Header, Reason, StatusReport, Unconfirmed,
     emove::{EmoveCommand, Holding, PlacedObject, Standing},
     pedestal::PedestalCommand,
 };
@@ -96,6 +96,8 @@ pub struct SubtaskStatus {
     pub report: StatusReport,
     /// `status-para-out`.
     pub reason: Reason,
+    /// Part of the goal that no sensor confirms, with `done` (extension).
+    pub unconfirmed: Unconfirmed,
     /// `ref-pose-^-out`: the feedback pose, as E-move reports it.
     pub reference_pose: Option<u32>,
     /// `obj-held-status-out`: what is held, as E-move reports it (more than yes or no is an extension).

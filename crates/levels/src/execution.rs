@@ -19,7 +19,7 @@
 //! it consults [`HALT`](crate::halt::HALT) before ACCEPT; Subtask and E-move consult [`EFFECT`](crate::halt::EFFECT)
 //! after the table of the command. See `docs/design/tables.md`.
 
-use interfaces::{Header, Reason, StatusReport};
+use interfaces::{Header, Reason, StatusReport, Unconfirmed};
 use rcs_core::{
     Actions, Plain, Variables, decision_table,
     handshake::{Arrival, Lower, Receiver},
@@ -167,6 +167,8 @@ pub struct Execution {
     pub outcome: Outcome,
     /// Why it failed.
     pub reason: Reason,
+    /// Part of its goal that no sensor has confirmed at its end.
+    pub unconfirmed: Unconfirmed,
     /// The rows for the header.
     pub rows: Rows,
     /// The command is new and neither accepted nor refused yet.
@@ -202,7 +204,7 @@ impl Execution {
                 self.reason = Reason::Restarted;
                 self.rows.decide(EXECUTE_NUMBER, decision.row, decision.values);
             }
-            Course::Begin => self.reason = Reason::None,
+            Course::Begin => (self.reason, self.unconfirmed) = (Reason::None, Unconfirmed::None),
             Course::Rest | Course::Continue => {}
         }
         decision.action
@@ -378,6 +380,15 @@ impl Execution {
             }
             Lower::Lost => self.fail(Reason::NeighbourLost),
             Lower::Pending | Lower::Executing | Lower::Done | Lower::Error => self.fail(reason),
+        }
+    }
+
+    /// Part of the goal that no sensor has confirmed, for a command that is done.
+    #[must_use]
+    pub const fn unconfirmed(&self) -> Unconfirmed {
+        match self.outcome {
+            Outcome::Done => self.unconfirmed,
+            Outcome::Idle | Outcome::Executing | Outcome::Error | Outcome::Joystick => Unconfirmed::None,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use geometry::pose::Pose;
 use interfaces::{
-    ChangingPose, EmoveOutputs, Reason, StatusReport,
+    ChangingPose, EmoveOutputs, Reason, StatusReport, Unconfirmed,
     device::Picture,
     emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject},
     pose_range,
@@ -342,6 +342,11 @@ impl State {
             echo: self.execution.receiver.echo,
             report,
             reason,
+            unconfirmed: if report == StatusReport::Done {
+                self.execution.unconfirmed()
+            } else {
+                Unconfirmed::None
+            },
             reference_pose: inputs.memory.prim.status.sensor_pose,
             held: self.holding(inputs.memory),
             placed: self.beliefs.placed,
