@@ -12,7 +12,7 @@ pub use super::location::LocationKind;
 use super::words::{location, name};
 use crate::{
     ChangingPose, Header, Reason, StatusReport, Unconfirmed,
-    emove::{EmoveCommand, Holding, PlacedObject, Standing},
+    emove::{EmoveCommand, Holding, Offset, PlacedObject, Standing},
     pedestal::PedestalCommand,
 };
 
@@ -108,6 +108,8 @@ pub struct SubtaskStatus {
     pub end_effector_id: Option<u8>,
     /// Where the robot stands, if E-move knows it (extension).
     pub at: Option<Standing>,
+    /// How far the robot is from there, as E-move reports it (extension).
+    pub offset: Offset,
     /// The fingers are around a tool in the tool drum, as E-move reports it (extension).
     pub drum: bool,
     /// The part is in the pedestal's hand, alone or together with the robot (extension).

@@ -16,6 +16,8 @@ pub enum Unconfirmed {
     GraspForce,
     /// The tool in the drum (the drum has no sensor).
     ToolInDrum,
+    /// The robot's position (the resolvers give none).
+    Position,
 }
 
 impl Unconfirmed {

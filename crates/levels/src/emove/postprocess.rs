@@ -4,7 +4,7 @@ use geometry::pose::Pose;
 use interfaces::{
     ChangingPose, EmoveOutputs, Reason, StatusReport, Unconfirmed,
     device::Picture,
-    emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject},
+    emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject, Offset},
     pose_range,
     prim::{PrimCommand, PrimReport, PrimVerb},
     process::Inputs,
@@ -17,7 +17,7 @@ use super::{
     gripper::Gripper,
     order::{FingerOrder, FingerVerb},
     relative::{Reference, Relative},
-    robot_place::{commanded_pose, standing},
+    robot_place::{commanded_pose, offset, standing},
     route::LegGoal,
     state::State,
     tables::{Action, Ordered, Seen},
@@ -360,6 +360,7 @@ impl State {
                 inputs.memory.quick_change.status.end_effector_id
             },
             at: self.place().as_ref().map(standing),
+            offset: self.place().map_or(Offset::None, |place| offset(&place.pose, inputs.memory)),
             exchange: self.changing(inputs.memory),
             drum: self.is_around_tool(inputs.memory, inputs.data),
         };

@@ -193,6 +193,7 @@ impl State {
             placed: below.placed,
             end_effector_id: below.end_effector_id,
             at: below.at,
+            offset: below.offset,
             drum: below.drum,
             pedestal_part: pedestal_hand(&inputs.memory.pedestal.status) != PedestalHand::Free,
         };
