@@ -215,7 +215,8 @@ impl fmt::Display for Info {
             let begin = command.first_tick as f64 * TICK_S;
             let length = (command.last_tick - command.first_tick + 1) as f64 * TICK_S;
             let (tick, status) = (command.first_tick, &command.status);
-            writeln!(f, "{tick:>6} {begin:>7.1} {length:>6.1}  {status:<10} {}", command.text)?;
+            let remark = command.remark();
+            writeln!(f, "{tick:>6} {begin:>7.1} {length:>6.1}  {status:<10} {}{remark}", command.text)?;
         }
         match &self.failure {
             Some(failure) => writeln!(f, "\nfailure    {failure}"),

@@ -89,6 +89,21 @@ pub struct CommandStory {
     pub last_tick: u64,
     /// Its last status.
     pub status: String,
+    /// What no sensor confirms about it, if it has finished; empty if the sensors confirm its goal.
+    #[serde(skip_serializing_if = "str::is_empty")]
+    pub unconfirmed: &'static str,
+}
+
+impl CommandStory {
+    /// The text after the command: `, unconfirmed: ...`, or nothing.
+    #[must_use]
+    pub fn remark(&self) -> String {
+        if self.unconfirmed.is_empty() {
+            String::new()
+        } else {
+            format!(", unconfirmed: {}", self.unconfirmed)
+        }
+    }
 }
 
 /// The commands of a run, and the failure if Task reported one.
@@ -116,12 +131,14 @@ impl Chronicle {
                 first_tick: moment.tick.0,
                 last_tick: moment.tick.0,
                 status: String::new(),
+                unconfirmed: "",
             });
         }
         let Some(command) = self.commands.last_mut() else { return };
         if self.last.is_none_or(|last| last == HwsReport::Executing) {
             command.last_tick = moment.tick.0;
             status.report.text().clone_into(&mut command.status);
+            command.unconfirmed = status.unconfirmed.text();
         }
         if self.last != Some(status.report) && status.report == HwsReport::Error {
             self.failure = self.watch.failure(Ladder::processes());

@@ -83,7 +83,7 @@ fn job(arguments: &WorkstationArguments) -> Result<Job, Error> {
 fn tell(hwsc: &Hwsc, told: &mut usize, over: bool) {
     let finished = if over { hwsc.begun_steps().len() } else { hwsc.begun_steps().len().saturating_sub(1) };
     for step in hwsc.begun_steps().get(*told..finished).unwrap_or_default() {
-        os_io::stdout_line!("{}: {} after {} ticks", step.text, step.outcome.text(), step.ticks);
+        os_io::stdout_line!("{}: {} after {} ticks", step.text, step.ending(), step.ticks);
     }
     *told = finished.max(*told);
 }

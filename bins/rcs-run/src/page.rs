@@ -30,7 +30,7 @@ impl fmt::Display for Page<'_> {
         let width = steps.iter().map(|step| step.text.len()).max().unwrap_or(0);
         for step in steps {
             let seconds = step.ticks as f64 * TICK_S;
-            writeln!(f, "  {:width$}  {seconds:7.1} s  {}", step.text, step.outcome.text())?;
+            writeln!(f, "  {:width$}  {seconds:7.1} s  {}", step.text, step.ending())?;
         }
         writeln!(f)?;
         if let Some(simulated) = result.simulated {

@@ -9,7 +9,10 @@ mod tests;
 
 use std::{fmt::Write as _, process::ExitCode};
 
-use levels::ladder::{Ladder, ProcessInfo};
+use levels::{
+    goal::Declared,
+    ladder::{Ladder, ProcessInfo},
+};
 use os_io::console;
 use rcs_core::{
     plain::{EnumSchema, VariantSchema},
@@ -30,6 +33,9 @@ step where the step changes.
 `consult` is no decision: the process goes on to another table, with the value in brackets, until a row
 decides. First come the tables that all commands have in common, then the one of the command, and last one
 that several commands share.
+
+The goals of a process stand before its tables: what must hold at the end of a command, the sensors that confirm
+it, the tolerance, the greatest age of a reading in ticks, and what no sensor confirms. CONFIRM compares them.
 
 The log, `rcs-run status` and the sentence about a failure name a row by table and number, and write a step
 in small letters: `letting-go` for `LettingGo`.
@@ -75,6 +81,7 @@ fn append_process(text: &mut String, process: &ProcessInfo, earlier: &[ProcessIn
     if own.is_empty() {
         text.push('\n');
     }
+    append_goals(text, process.goals);
     for (number, table) in (1..).zip(process.tables) {
         let heading = format!("{number}. {}", table.name);
         let _ = match printed(table) {
@@ -90,6 +97,28 @@ fn append_process(text: &mut String, process: &ProcessInfo, earlier: &[ProcessIn
     if !shared.is_empty() {
         text.push_str("\n### Values\n\nWhat several tables of the process share.\n");
         shared.append(text);
+    }
+}
+
+/// Append the goals of the commands of a process.
+fn append_goals(text: &mut String, goals: &[Declared]) {
+    let rows = goals.iter().filter(|declared| !declared.command.is_empty()).map(|declared| {
+        let goal = declared.goal;
+        let sensors: Vec<_> = goal.sensors.iter().map(|sensor| sensor.text()).collect();
+        let unconfirmed: Vec<_> = goal.unconfirmed.iter().map(|what| what.text()).collect();
+        [
+            declared.command.to_owned(),
+            goal.holds.to_owned(),
+            sensors.join(", "),
+            goal.tolerance.to_owned(),
+            goal.age.to_string(),
+            unconfirmed.join(", "),
+        ]
+    });
+    let rows: Vec<_> = rows.collect();
+    if !rows.is_empty() {
+        text.push_str("\nGoals:\n\n");
+        grid(text, ["command", "what must hold", "sensors", "tolerance", "age", "unconfirmed"], rows);
     }
 }
 

@@ -245,7 +245,7 @@ mod tests {
             "Hand",
             "Table",
         ];
-        names.map(|name| ProcessInfo { name, tables: if name == "Grip" { TABLES } else { &[] } })
+        names.map(|name| ProcessInfo { name, tables: if name == "Grip" { TABLES } else { &[] }, goals: &[] })
     }
 
     /// Plays ticks: each closure changes common memory, and the watch observes it.

@@ -19,6 +19,8 @@ pub struct ProcessStatus {
     pub command: String,
     /// Its status report.
     pub status: &'static str,
+    /// What no sensor confirms about its finished command; empty if the sensors confirm the goal.
+    pub unconfirmed: &'static str,
     /// Its decision table; `None` if it has not used one yet.
     pub table: Option<&'static str>,
     /// The row that fired; `None` if none has fired yet.
@@ -66,6 +68,7 @@ impl Status {
                 process: info.name,
                 command: command(id, &external.hws, memory),
                 status: memory.said(id).report,
+                unconfirmed: memory.said(id).unconfirmed.text(),
                 table: header.decided.and_then(|decided| info.table(decided.table)).map(|table| table.name),
                 row: header.decided.map(|decided| decided.row),
                 step: header.step.unwrap_or_default().to_string(),
@@ -116,6 +119,9 @@ impl fmt::Display for Status {
             };
             if !process.step.is_empty() {
                 row += &format!(", {}", process.step);
+            }
+            if !process.unconfirmed.is_empty() {
+                row += &format!(", unconfirmed: {}", process.unconfirmed);
             }
             let suspended = if process.suspended { " (suspended)" } else { "" };
             let elsewhere = match (process.elsewhere, process.lost) {

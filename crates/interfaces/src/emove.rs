@@ -10,8 +10,8 @@ use rcs_core::{
 
 use super::words::{location, name};
 use crate::{
-    ChangingPose, Header, Reason, StatusReport, grip::GripCommand, jaws::JawsCommand, location::LocationKind,
-    prim::PrimCommand, quick_change::QuickChangeCommand, vision::VisionRequest,
+    ChangingPose, Header, Reason, StatusReport, Unconfirmed, grip::GripCommand, jaws::JawsCommand,
+    location::LocationKind, prim::PrimCommand, quick_change::QuickChangeCommand, vision::VisionRequest,
 };
 
 /// Commands of E-move (V.2.1).
@@ -173,6 +173,20 @@ pub struct Standing {
     pub grip: Option<i32>,
 }
 
+/// How far the robot is from the place at which it stands, by the resolvers (extension; docs/design/motion.md "Where
+/// the robot is").
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Offset {
+    /// Within 0.02 in and 0.1 degree, or it stands at no known place.
+    None,
+    /// Within 0.05 in and 0.25 degree: as far as the arm settles while its status is passed up the ladder.
+    Slight,
+    /// More: the robot was moved, or the arm has sunk.
+    Off,
+    /// The resolvers give no position.
+    NotSensed,
+}
+
 /// Status from E-move to Subtask.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EmoveStatus {
@@ -182,6 +196,8 @@ pub struct EmoveStatus {
     pub report: StatusReport,
     /// `status-para-out`.
     pub reason: Reason,
+    /// Part of the goal that no sensor confirms, with `done` (extension).
+    pub unconfirmed: Unconfirmed,
     /// `ref-pose-^`: the feedback pose, if the resolvers can be believed.
     pub reference_pose: Option<u32>,
     /// `obj-held-status-out`: what is held (more than yes or no is an extension).
@@ -194,6 +210,8 @@ pub struct EmoveStatus {
     pub end_effector_id: Option<u8>,
     /// Where the robot stands, if that is known (extension).
     pub at: Option<Standing>,
+    /// How far the robot is from there (extension).
+    pub offset: Offset,
     /// Number of the gripper in whose holster the robot stands in the middle of an exchange: between the
     /// first and the last point of QC-ATTACH or QC-DETACH; or of the one that hangs on a ring that is not
     /// locked (extension).

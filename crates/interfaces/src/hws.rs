@@ -6,7 +6,7 @@ use rcs_core::{Plain, handshake::Lower, name::Name16};
 
 use super::words::{location, name};
 use crate::{
-    ChangingPose, Header, Reason,
+    ChangingPose, Header, Reason, Unconfirmed,
     data_base::{Connection, DataBaseBeliefs, DataBaseCommand},
     subtask::{SubtaskCommand, SubtaskVerb},
 };
@@ -67,6 +67,8 @@ pub struct HwsStatus {
     pub report: HwsReport,
     /// Why it failed (extension).
     pub reason: Reason,
+    /// Part of the goal that no sensor confirms, with `finished` (extension).
+    pub unconfirmed: Unconfirmed,
 }
 
 /// The last command about an object or a tool that Task has accepted and not finished. It is an output, so

@@ -37,6 +37,7 @@ pub mod quick_change;
 mod remedy;
 pub mod subtask;
 pub mod t3i;
+pub mod unconfirmed;
 pub mod vision;
 mod words;
 
@@ -58,6 +59,7 @@ pub use self::{
     quick_change::QuickChangeOutputs,
     subtask::SubtaskOutputs,
     t3i::T3iOutputs,
+    unconfirmed::Unconfirmed,
 };
 pub use rcs_core::header::{Basis, Consulted, Decided, Header};
 

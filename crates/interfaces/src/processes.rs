@@ -6,7 +6,7 @@
 
 use rcs_core::{Plain, handshake::Lower};
 
-use crate::{Header, Reason, t3i::LinkFault};
+use crate::{Header, Reason, Unconfirmed, t3i::LinkFault};
 
 /// Give the list of processes to a macro. An entry is:
 ///
@@ -200,6 +200,7 @@ macro_rules! register {
                         report: status.report.text(),
                         lower: status.report.lower(),
                         fault: Fault::from(status.$failure),
+                        unconfirmed: self.unconfirmed(process),
                     }
                 } )+ }
             }
@@ -234,6 +235,26 @@ macro_rules! register {
 }
 for_each_process!(register);
 
+impl CommonMemory {
+    /// Part of the goal that no sensor confirms, as the status of a process reports it.
+    const fn unconfirmed(&self, process: ProcessId) -> Unconfirmed {
+        match process {
+            ProcessId::Task => self.task.status.unconfirmed,
+            ProcessId::Subtask => self.subtask.status.unconfirmed,
+            ProcessId::Emove => self.emove.status.unconfirmed,
+            ProcessId::Prim
+            | ProcessId::T3i
+            | ProcessId::QuickChange
+            | ProcessId::Grip
+            | ProcessId::VGrip
+            | ProcessId::ToolGrip
+            | ProcessId::Pedestal
+            | ProcessId::Hand
+            | ProcessId::RotaryTable => Unconfirmed::None,
+        }
+    }
+}
+
 /// The status of a process, independent of its type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Said {
@@ -243,6 +264,8 @@ pub struct Said {
     pub lower: Lower,
     /// Why it failed.
     pub fault: Fault,
+    /// Part of the goal that no sensor confirms.
+    pub unconfirmed: Unconfirmed,
 }
 
 /// Why a process failed.

@@ -11,8 +11,8 @@ pub use super::location::LocationKind;
 
 use super::words::{location, name};
 use crate::{
-    ChangingPose, Header, Reason, StatusReport,
-    emove::{EmoveCommand, Holding, PlacedObject, Standing},
+    ChangingPose, Header, Reason, StatusReport, Unconfirmed,
+    emove::{EmoveCommand, Holding, Offset, PlacedObject, Standing},
     pedestal::PedestalCommand,
 };
 
@@ -96,6 +96,8 @@ pub struct SubtaskStatus {
     pub report: StatusReport,
     /// `status-para-out`.
     pub reason: Reason,
+    /// Part of the goal that no sensor confirms, with `done` (extension).
+    pub unconfirmed: Unconfirmed,
     /// `ref-pose-^-out`: the feedback pose, as E-move reports it.
     pub reference_pose: Option<u32>,
     /// `obj-held-status-out`: what is held, as E-move reports it (more than yes or no is an extension).
@@ -106,6 +108,8 @@ pub struct SubtaskStatus {
     pub end_effector_id: Option<u8>,
     /// Where the robot stands, if E-move knows it (extension).
     pub at: Option<Standing>,
+    /// How far the robot is from there, as E-move reports it (extension).
+    pub offset: Offset,
     /// The fingers are around a tool in the tool drum, as E-move reports it (extension).
     pub drum: bool,
     /// The part is in the pedestal's hand, alone or together with the robot (extension).

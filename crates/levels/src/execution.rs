@@ -17,9 +17,9 @@
 //! A process consults in turn, until a row decides: [`EXECUTE`], its table ACCEPT with what a new command needs, its
 //! table of what all commands have in common, if it has one, and the table of the command. A process with others below
 //! it consults [`HALT`](crate::halt::HALT) before ACCEPT; Subtask and E-move consult [`EFFECT`](crate::halt::EFFECT)
-//! after the table of the command. See `docs/design/tables.md`.
+//! after the table of the command. [`CONFIRM`](crate::confirm::CONFIRM) is consulted about a row that reports done. See `docs/design/tables.md`.
 
-use interfaces::{Header, Reason, StatusReport};
+use interfaces::{Header, Reason, StatusReport, Unconfirmed};
 use rcs_core::{
     Actions, Plain, Variables, decision_table,
     handshake::{Arrival, Lower, Receiver},
@@ -28,6 +28,8 @@ use rcs_core::{
 };
 
 use crate::{
+    confirm::Proof,
+    goal::Goal,
     halt::{Fired, Futile, Halt, Halting, Intake, Order, Replaced, effect, halt},
     rows::Rows,
 };
@@ -129,15 +131,22 @@ pub struct LastOrder {
     pub variables: u64,
 }
 
-/// The actions of a process that commands others.
-pub trait Orders: Sized {
-    /// A pause to the processes below.
-    const STOP: Self;
+/// The actions with which a command ends, for [`CONFIRM`](crate::confirm::CONFIRM).
+pub trait Ending: Sized {
     /// Nothing new.
     const WAIT: Self;
 
     /// Report an error.
     fn fail(reason: Reason) -> Self;
+
+    /// The action reports the command as done.
+    fn ends(&self) -> bool;
+}
+
+/// The actions of a process that commands others.
+pub trait Orders: Ending {
+    /// A pause to the processes below.
+    const STOP: Self;
 
     /// The action orders something of a process below that changes a state variable when it is carried out.
     fn is_order(&self) -> bool;
@@ -167,6 +176,8 @@ pub struct Execution {
     pub outcome: Outcome,
     /// Why it failed.
     pub reason: Reason,
+    /// Part of its goal that no sensor has confirmed at its end.
+    pub unconfirmed: Unconfirmed,
     /// The rows for the header.
     pub rows: Rows,
     /// The command is new and neither accepted nor refused yet.
@@ -175,6 +186,8 @@ pub struct Execution {
     pub halt: Halt,
     /// What was ordered last for the command.
     pub last_order: Option<LastOrder>,
+    /// Ticks for which a row has reported it done and the sensors have contradicted.
+    pub claimed: u8,
 }
 
 /// Number of [`EXECUTE`] in every process.
@@ -202,7 +215,9 @@ impl Execution {
                 self.reason = Reason::Restarted;
                 self.rows.decide(EXECUTE_NUMBER, decision.row, decision.values);
             }
-            Course::Begin => self.reason = Reason::None,
+            Course::Begin => {
+                (self.reason, self.unconfirmed, self.claimed) = (Reason::None, Unconfirmed::None, 0);
+            }
             Course::Rest | Course::Continue => {}
         }
         decision.action
@@ -264,11 +279,13 @@ impl Execution {
         }
     }
 
-    /// As [`Self::decide`], for a process that commands others: HALT is consulted before the tables and
-    /// EFFECT after them. `variables` are those of the command's table, as one number.
+    /// As [`Self::decide`], for a process that commands others: HALT is consulted before the tables, EFFECT and
+    /// CONFIRM after them. `variables` are those of the command's table, as one number; `goal` is its goal, compared
+    /// with the sensors, and `confirm` the number of CONFIRM.
     pub fn command<Action: Orders, Step: Copy>(
         &mut self,
         (arrival, replaced, variables): (Arrival, &Replaced, u64),
+        (confirm, goal): (u8, (&Goal, Proof)),
         first: Step,
         step: &mut Step,
         tables: impl FnOnce(Step) -> Choice<Action, Step>,
@@ -281,6 +298,7 @@ impl Execution {
             Ok(Course::Continue) => {}
         }
         let choice = self.effective(tables(*step), variables);
+        let choice = self.confirm(confirm, *step, choice, goal);
         self.note(&choice);
         *step = choice.next;
         Some(choice.action)
@@ -378,6 +396,15 @@ impl Execution {
             }
             Lower::Lost => self.fail(Reason::NeighbourLost),
             Lower::Pending | Lower::Executing | Lower::Done | Lower::Error => self.fail(reason),
+        }
+    }
+
+    /// Part of the goal that no sensor has confirmed, for a command that is done.
+    #[must_use]
+    pub const fn unconfirmed(&self) -> Unconfirmed {
+        match self.outcome {
+            Outcome::Done => self.unconfirmed,
+            Outcome::Idle | Outcome::Executing | Outcome::Error | Outcome::Joystick => Unconfirmed::None,
         }
     }
 

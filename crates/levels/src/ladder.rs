@@ -22,7 +22,10 @@ use taskdata::files::TaskData;
 
 pub use interfaces::{PROCESS_COUNT, ProcessId};
 
-use crate::processes::*;
+use crate::{
+    goal::{Declared, Goals},
+    processes::*,
+};
 
 /// A process by name, with its decision tables.
 #[derive(Debug)]
@@ -31,6 +34,8 @@ pub struct ProcessInfo {
     pub name: &'static str,
     /// Its tables; `table` of a [`Decided`] counts them from 1.
     pub tables: &'static [&'static Table],
+    /// The goals of its commands.
+    pub goals: &'static [Declared],
 }
 
 impl ProcessInfo {
@@ -48,8 +53,8 @@ impl ProcessInfo {
     }
 }
 
-const fn info<P: Process<TaskData<'static>>>() -> ProcessInfo {
-    ProcessInfo { name: P::NAME, tables: P::TABLES }
+const fn info<P: Process<TaskData<'static>> + Goals>() -> ProcessInfo {
+    ProcessInfo { name: P::NAME, tables: P::TABLES, goals: P::GOALS }
 }
 
 type StateOf<P> = <P as Process<TaskData<'static>>>::State;

@@ -38,12 +38,14 @@
     )
 )]
 
+pub mod confirm;
 #[cfg(test)]
 mod coverage;
 pub mod emove;
 #[cfg(test)]
 mod exact_robot;
 pub mod execution;
+pub mod goal;
 pub mod grip;
 pub mod halt;
 pub mod held;

@@ -94,7 +94,8 @@
 //!
 //! [`commands!`](crate::commands!) lists the tables of a process once. It gives the enum of all steps, the
 //! list of all tables, the numbers of those that no command selects, and the function that consults the table
-//! of a command. `A then b::c` consults two in turn.
+//! of a command. An entry is `Verb: GOAL => table;`: a command without a goal does not compile. `a then b::c` consults
+//! two tables in turn.
 
 mod values;
 

@@ -29,9 +29,10 @@ struct Commands {
     entries: Vec<Entry>,
 }
 
-/// Commands, and the tables that are consulted one after the other until one decides.
+/// Commands, their goal, and the tables that are consulted one after the other until one decides.
 struct Entry {
     verbs: Vec<Ident>,
+    goal: Path,
     chain: Vec<Path>,
 }
 
@@ -78,13 +79,20 @@ impl Parse for Commands {
 impl Parse for Entry {
     fn parse(input: ParseStream<'_>) -> Result<Self> {
         let verbs = Punctuated::<Ident, Token![|]>::parse_separated_nonempty(input)?.into_iter().collect();
+        if !input.peek(Token![:]) {
+            return Err(
+                input.error("`: GOAL` is expected: each command declares its goal (docs/design/tables.md)")
+            );
+        }
+        input.parse::<Token![:]>()?;
+        let goal = input.call(Path::parse_mod_style)?;
         input.parse::<Token![=>]>()?;
         let mut chain = vec![input.call(Path::parse_mod_style)?];
         while input.parse::<Option<word::then>>()?.is_some() {
             chain.push(input.call(Path::parse_mod_style)?);
         }
         input.parse::<Token![;]>()?;
-        Ok(Self { verbs, chain })
+        Ok(Self { verbs, goal, chain })
     }
 }
 
@@ -185,6 +193,28 @@ impl Commands {
         }
     }
 
+    /// The goals of the commands: by the command, and as a list.
+    fn goals(&self) -> TokenStream {
+        let (vis, verb) = (&self.vis, &self.verb);
+        let arms =
+            self.entries.iter().map(|Entry { verbs, goal, .. }| quote!(#( #verb::#verbs )|* => &#goal));
+        let declared = self.entries.iter().flat_map(|Entry { verbs, goal, .. }| {
+            verbs
+                .iter()
+                .map(move |name| quote!(crate::goal::Declared { command: #verb::#name.text(), goal: &#goal }))
+        });
+        quote! {
+            /// The goals of all commands, in the order of their tables.
+            #vis const GOALS: &[crate::goal::Declared] = &[ #( #declared, )* ];
+
+            /// The goal of a command.
+            #[must_use]
+            #vis const fn goal(verb: #verb) -> &'static crate::goal::Goal {
+                match verb { #( #arms, )* }
+            }
+        }
+    }
+
     /// The arm of a command: its tables in turn.
     fn arm(&self, entry: &Entry, tables: &[Path]) -> TokenStream {
         let (verb, all) = (&self.verb, &self.step);
@@ -233,11 +263,11 @@ impl Commands {
     }
 }
 
-/// The enum of all steps, the list of all tables, their numbers, and the function that consults the table of a command.
+/// The enum of all steps, the goals of the commands, the list of all tables, their numbers, and the function that consults the table of a command.
 pub fn expand(input: TokenStream) -> Result<TokenStream> {
     let commands: Commands = parse2(input)?;
     let Commands { attributes, vis, decide, step, verb, situation, action, others, .. } = &commands;
-    let (tables, steps) = (commands.tables(), commands.steps());
+    let (tables, steps, goals) = (commands.tables(), commands.steps(), commands.goals());
     let arms = commands.entries.iter().map(|entry| commands.arm(entry, &tables));
     let numbers = others.iter().zip(1_u8..).map(|(table, number)| {
         let (name, number) = (table.segments.last().map(|last| &last.ident), Literal::u8_suffixed(number));
@@ -247,6 +277,8 @@ pub fn expand(input: TokenStream) -> Result<TokenStream> {
     });
     Ok(quote! {
         #steps
+
+        #goals
 
         /// All decision tables; the header of the outputs names one by its position from 1.
         #vis const TABLES: &[&::rcs_core::table::Table] = &[ #( &#tables, )* ];

@@ -72,7 +72,7 @@ fn commands(
     }
     if was.report != is.report && is.report != HwsReport::Idle {
         let level = if is.report == HwsReport::Error { Level::Error } else { Level::Info };
-        say(level, "task", format!("command {}: {}", is.echo, is.report));
+        say(level, "task", format!("command {}: {}{}", is.echo, is.report, is.unconfirmed.suffix()));
     }
     down(before, after, say);
 }

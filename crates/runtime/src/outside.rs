@@ -4,7 +4,7 @@
 //! fast clock ends when its workstation controller disconnects, and has failed if that was in the middle of a command;
 //! on the 40 ms grid the robot waits until it connects again.
 
-use interfaces::{HwsCommand, TaskOutputs, hws::HwsReport};
+use interfaces::{HwsCommand, TaskOutputs, Unconfirmed, hws::HwsReport};
 use neighbours::{
     mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS},
     network::{ClockKind, Disconnect, Endpoint, NetEvent, Presence},
@@ -205,6 +205,7 @@ impl OutsideWorkstation {
                 is_command: true,
                 began: tick,
                 outcome: Outcome::Executing,
+                unconfirmed: Unconfirmed::None,
                 ticks: 0,
             });
         }
@@ -217,6 +218,7 @@ impl OutsideWorkstation {
             return;
         }
         step.ticks = tick.since(self.began);
+        step.unconfirmed = task.status.unconfirmed;
         step.outcome = match task.status.report {
             HwsReport::Finished => Outcome::Finished,
             HwsReport::Error | HwsReport::JoystickOn => Outcome::Failed,

@@ -27,6 +27,9 @@ pub struct CommandResult {
     pub text: String,
     /// `finished`, `error` or `executing`.
     pub status: &'static str,
+    /// What no sensor confirms about a finished command; not written if the sensors confirm its goal.
+    #[serde(skip_serializing_if = "str::is_empty")]
+    pub unconfirmed: &'static str,
     /// Ticks from the one that sent it to the one that saw its end.
     pub ticks: u64,
 }

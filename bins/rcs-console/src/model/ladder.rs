@@ -1,9 +1,9 @@
 //! The ladder (VI.6): a line per process and per neighbour, with command, status and row.
 
 use executive::failure;
-use interfaces::{CommonMemory, Header, ProcessId, device::VisionStatus, for_each_process};
+use interfaces::{CommonMemory, Header, ProcessId, Said, device::VisionStatus, for_each_process};
 use levels::ladder::Ladder;
-use rcs_core::{handshake::Lower, tick::TICK_S};
+use rcs_core::{handshake::Lower, table::Row, tick::TICK_S};
 
 use crate::{
     picture::{Absence, Picture},
@@ -143,7 +143,7 @@ fn process_line(branch: Branch, process: ProcessId, picture: &Picture, story: &S
     let cause =
         story.present_trouble(picture).and_then(|trouble| story::process_named(&trouble.failure.process));
     let status = match absence {
-        None => said.report.to_owned(),
+        None => format!("{}{}", said.report, said.unconfirmed.suffix()),
         Some(absence @ Absence::Elsewhere) => format!("{} {}", said.report, absence.text()),
         Some(absence) => absence.text().to_owned(),
     };
@@ -163,9 +163,15 @@ fn process_line(branch: Branch, process: ProcessId, picture: &Picture, story: &S
         status,
         echo: Some(echo(&picture.memory, process)),
         row: row.map_or_else(String::new, |(table, row)| format!("{} {}", table.name, row.number)),
-        text: row.map_or_else(String::new, |(_, row)| row.to_string()),
+        text: explanation(&said, row.map(|(_, row)| row)),
         age: age(header),
     }
+}
+
+/// The row that fired, after what no sensor confirms about a finished command.
+fn explanation(said: &Said, row: Option<&Row>) -> String {
+    let row = row.map_or_else(String::new, ToString::to_string);
+    if said.unconfirmed.is_none() { row } else { format!("unconfirmed: {}; {row}", said.unconfirmed) }
 }
 
 /// Seconds since the row fired; `None` if it fired in this tick, or if the time is not known.
@@ -207,7 +213,7 @@ fn workstation(branch: Branch, picture: &Picture) -> Line {
         mark: Mark { trouble: status.report.lower() == Lower::Error, ..Mark::default() },
         command: hws.to_string(),
         number: Some(hws.number),
-        status: status.report.text().to_owned(),
+        status: format!("{}{}", status.report, status.unconfirmed.suffix()),
         echo: Some(status.echo),
         ..neighbour_line(branch, Item::Workstation, "Workstation")
     }

@@ -305,7 +305,7 @@ fn ending(model: &Model) -> String {
     let Some(picture) = &model.picture else { return "before its first tick".to_owned() };
     let status = &picture.memory.task.status;
     let commands = lines::present_commands(picture);
-    format!("Task says {}; {commands}", status.report)
+    format!("Task says {}{}; {commands}", status.report, status.unconfirmed.suffix())
 }
 
 fn keys(model: &Model, state: State) -> &'static str {

@@ -1,5 +1,6 @@
 //! Sections below each other: in panes that share the height, or in one column with scrolling.
 
+use interfaces::Said;
 use ratatui::text::Line;
 
 use super::{
@@ -26,9 +27,9 @@ pub fn process(
 ) -> (Vec<Line<'static>>, Reach) {
     let command = picture.command(model.process);
     let command = if command.is_empty() { "no command".to_owned() } else { command };
-    let report = picture.memory.said(model.process).report;
-    let head =
-        format!("{}: {command}, number {}, {report}", model.process, picture.command_number(model.process));
+    let Said { report, unconfirmed, .. } = picture.memory.said(model.process);
+    let (name, number) = (model.process, picture.command_number(model.process));
+    let head = format!("{name}: {command}, number {number}, {report}{}", unconfirmed.suffix());
     let filter =
         if model.filter.is_empty() { String::new() } else { format!("  (lines with {:?})", model.filter) };
     let mut lines = vec![look.line(Tone::Plain, super::fit(&format!(" {head}{filter}"), width))];

@@ -129,7 +129,8 @@ impl Changes {
                 || "not commanded".to_owned(),
                 |command| {
                     let ticks = command.last_tick - command.first_tick;
-                    format!("{} after {ticks} ticks ({:.2} s)", command.status, ticks as f64 * TICK_S)
+                    let (status, remark) = (&command.status, command.remark());
+                    format!("{status} after {ticks} ticks ({:.2} s){remark}", ticks as f64 * TICK_S)
                 },
             )
         };

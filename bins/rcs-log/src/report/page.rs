@@ -172,7 +172,7 @@ fn commands(run: &Run) -> Markup {
                             td.n { (command.first_tick) }
                             td.n { (format_args!("{:.1}", seconds(command.first_tick))) }
                             td.n { (format_args!("{length:.1}")) }
-                            td class=(class) { (command.status) }
+                            td class=(class) { (command.status) (command.remark()) }
                             td { (command.text) }
                         }
                     }

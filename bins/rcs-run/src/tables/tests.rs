@@ -100,8 +100,8 @@ decision_table! {
 }
 
 static PROCESSES: [ProcessInfo; 2] = [
-    ProcessInfo { name: "Front Door", tables: &[&ACCEPT, &CLOSE_DOOR, &PAUSE] },
-    ProcessInfo { name: "Gate", tables: &[&PAUSE] },
+    ProcessInfo { name: "Front Door", tables: &[&ACCEPT, &CLOSE_DOOR, &PAUSE], goals: &[] },
+    ProcessInfo { name: "Gate", tables: &[&PAUSE], goals: &[] },
 ];
 
 #[test]

@@ -33,6 +33,7 @@ pub mod drum;
 pub mod ends;
 pub mod exchange;
 pub mod fingers;
+pub mod goals;
 pub mod gripper;
 pub mod grippers;
 pub mod locate;
@@ -72,6 +73,10 @@ pub struct Emove {
     state: State,
 }
 
+impl crate::goal::Goals for Emove {
+    const GOALS: &'static [crate::goal::Declared] = tables::GOALS;
+}
+
 impl<'d> Process<TaskData<'d>> for Emove {
     type State = State;
     type Outputs = EmoveOutputs;
@@ -103,6 +108,8 @@ impl<'d> Process<TaskData<'d>> for Emove {
         }
         let variables = seen.situation.code() | seen.progress;
         let choice = state.execution.effective(tables::decide(state.step, seen), variables);
+        let goal = (tables::goal(seen.verb), seen.proof);
+        let choice = state.execution.confirm(number::CONFIRM, state.step, choice, goal);
         state.execution.note(&choice);
         state.step = choice.next;
         choice.action

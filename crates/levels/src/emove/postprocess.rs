@@ -2,9 +2,9 @@
 
 use geometry::pose::Pose;
 use interfaces::{
-    ChangingPose, EmoveOutputs, Reason, StatusReport,
+    ChangingPose, EmoveOutputs, Reason, StatusReport, Unconfirmed,
     device::Picture,
-    emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject},
+    emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject, Offset},
     pose_range,
     prim::{PrimCommand, PrimReport, PrimVerb},
     process::Inputs,
@@ -17,7 +17,7 @@ use super::{
     gripper::Gripper,
     order::{FingerOrder, FingerVerb},
     relative::{Reference, Relative},
-    robot_place::{commanded_pose, standing},
+    robot_place::{commanded_pose, offset, standing},
     route::LegGoal,
     state::State,
     tables::{Action, Ordered, Seen},
@@ -342,6 +342,11 @@ impl State {
             echo: self.execution.receiver.echo,
             report,
             reason,
+            unconfirmed: if report == StatusReport::Done {
+                self.execution.unconfirmed()
+            } else {
+                Unconfirmed::None
+            },
             reference_pose: inputs.memory.prim.status.sensor_pose,
             held: self.holding(inputs.memory),
             placed: self.beliefs.placed,
@@ -355,6 +360,7 @@ impl State {
                 inputs.memory.quick_change.status.end_effector_id
             },
             at: self.place().as_ref().map(standing),
+            offset: self.place().map_or(Offset::None, |place| offset(&place.pose, inputs.memory)),
             exchange: self.changing(inputs.memory),
             drum: self.is_around_tool(inputs.memory, inputs.data),
         };

@@ -94,6 +94,7 @@ impl State {
             Request::default()
         };
         let orders = self.orders(command, inputs);
+        let situation = self.situation(command, &orders, inputs);
         let seen = Seen {
             arrival,
             verb: command.command,
@@ -103,7 +104,8 @@ impl State {
             request,
             watch,
             orders,
-            situation: self.situation(command, &orders, inputs),
+            proof: self.proof(command, &situation, inputs, outputs),
+            situation,
         };
         self.button = inputs.memory.prim.status.joystick_grip;
         seen

@@ -4,7 +4,7 @@
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
     CommonMemory,
-    emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace, Standing},
+    emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, Offset, RobotPlace, Standing},
     prim::PrimReport,
 };
 use taskdata::files::Place;
@@ -87,4 +87,29 @@ pub fn present_frame(memory: &CommonMemory) -> Option<Frame> {
 pub fn commanded_pose(memory: &CommonMemory) -> Option<Pose> {
     let commanded = memory.prim.status.present_pose.and_then(|number| memory.changing_pose(number)).copied();
     commanded.or_else(|| present_frame(memory).map(|frame| Pose::from_frame(&frame)))
+}
+
+/// The robot is at a place within so many inches ...
+pub const THERE_INCHES: f64 = 0.02;
+/// ... and radians (0.1 degree): what Prim confirms at the end of a motion.
+pub const THERE_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0;
+/// A place is confirmed within so many inches ...
+pub const CONFIRMED_INCHES: f64 = 0.05;
+/// ... and radians (0.25 degree): the arm settles while the status is passed up.
+pub const CONFIRMED_RADIANS: f64 = 0.25 * core::f64::consts::PI / 180.0;
+
+/// How far the robot is from a pose, by the resolvers.
+#[must_use]
+pub fn offset(pose: &Pose, memory: &CommonMemory) -> Offset {
+    let (Some(present), Ok(goal)) = (present_frame(memory), pose.to_frame()) else {
+        return Offset::NotSensed;
+    };
+    let distance = goal.distance(&present);
+    if distance.inches <= THERE_INCHES && distance.radians <= THERE_RADIANS {
+        Offset::None
+    } else if distance.inches <= CONFIRMED_INCHES && distance.radians <= CONFIRMED_RADIANS {
+        Offset::Slight
+    } else {
+        Offset::Off
+    }
 }

@@ -52,6 +52,7 @@
 pub mod calibration;
 pub mod felt;
 pub mod goal;
+pub mod goals;
 pub mod postprocess;
 pub mod preprocess;
 pub mod site;
@@ -87,6 +88,10 @@ pub struct Servo<S> {
 
 /// The Grip process.
 pub type Grip = Servo<PartsGripper>;
+
+impl<S> crate::goal::Goals for Servo<S> {
+    const GOALS: &'static [crate::goal::Declared] = tables::GOALS;
+}
 
 impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
     type State = State;

@@ -35,6 +35,7 @@
 //! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`]: valves and status.
 
+pub mod goals;
 pub mod kind;
 pub mod postprocess;
 pub mod preprocess;
@@ -73,6 +74,10 @@ pub struct Jaws<K> {
 pub type VGrip = Jaws<CylindricalPartGripper>;
 /// The Tool-Grip process.
 pub type ToolGrip = Jaws<ToolGripper>;
+
+impl<K> crate::goal::Goals for Jaws<K> {
+    const GOALS: &'static [crate::goal::Declared] = tables::GOALS;
+}
 
 impl<K: JawsKind, Data: ?Sized> Process<Data> for Jaws<K> {
     type State = State;

@@ -31,6 +31,7 @@
 //! T3I queues up to four points. Prim reads in tick k+2 what T3I says to the point of tick k, so that T3I
 //! must say `Executing` while it has room for fewer than two. With that the queue cannot overrun.
 
+pub mod goals;
 pub mod manual;
 pub mod motion;
 pub mod postprocess;
@@ -62,6 +63,10 @@ use self::{
 #[derive(Clone, Debug, Default)]
 pub struct Prim {
     state: State,
+}
+
+impl crate::goal::Goals for Prim {
+    const GOALS: &'static [crate::goal::Declared] = tables::GOALS;
 }
 
 impl<'d> Process<TaskData<'d>> for Prim {
@@ -97,6 +102,8 @@ impl<'d> Process<TaskData<'d>> for Prim {
             Attention::Resume => state.execution.reason = Reason::None,
         }
         let choice = tables::decide(state.step, &mut state.link, seen);
+        let goal = (tables::goal(seen.verb), seen.proof);
+        let choice = state.execution.confirm(number::CONFIRM, state.step, choice, goal);
         state.execution.note(&choice);
         state.step = choice.next;
         choice.action

@@ -80,7 +80,8 @@ impl State {
             samples: self.samples(inputs, rest),
         };
         let button = self.button(&devices.joystick);
-        Seen { arrival, verb, request, situation, button, feedback, resolvers }
+        let proof = self.proof(verb, &situation, resolvers.as_ref());
+        Seen { arrival, verb, request, proof, situation, button, feedback, resolvers }
     }
 
     /// After a time in which Prim was held or suspended the motion goes on from rest, because T3I has stopped

@@ -36,6 +36,7 @@
 //! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`]: valves and status.
 
+pub mod goals;
 pub mod postprocess;
 pub mod preprocess;
 pub mod state;
@@ -59,6 +60,10 @@ use crate::execution::Course;
 #[derive(Clone, Debug, Default)]
 pub struct QuickChange {
     state: State,
+}
+
+impl crate::goal::Goals for QuickChange {
+    const GOALS: &'static [crate::goal::Declared] = tables::GOALS;
 }
 
 impl<Data: ?Sized> Process<Data> for QuickChange {

@@ -21,6 +21,7 @@
 //! * [`postprocess`]: the outputs that a row asks for.
 
 pub mod aims;
+pub mod goals;
 mod pedestal_hand;
 pub mod postprocess;
 pub mod preprocess;
@@ -40,12 +41,16 @@ use taskdata::files::TaskData;
 
 use self::{
     state::State,
-    tables::{Action, Seen, Step},
+    tables::{Action, Seen, Step, number},
 };
 /// The Subtask process.
 #[derive(Clone, Debug, Default)]
 pub struct Subtask {
     state: State,
+}
+
+impl crate::goal::Goals for Subtask {
+    const GOALS: &'static [crate::goal::Declared] = tables::GOALS;
 }
 
 impl<'d> Process<TaskData<'d>> for Subtask {
@@ -64,8 +69,9 @@ impl<'d> Process<TaskData<'d>> for Subtask {
     fn decide(&mut self, seen: &Seen) -> Action {
         let State { execution, step, .. } = &mut self.state;
         let input = (seen.arrival, &seen.replaced, seen.situation.code());
-        let decided =
-            execution.command(input, Step::first(seen.verb), step, |step| tables::decide(step, seen));
+        let goal = (number::CONFIRM, (tables::goal(seen.verb), seen.proof));
+        let first = Step::first(seen.verb);
+        let decided = execution.command(input, goal, first, step, |step| tables::decide(step, seen));
         decided.unwrap_or(Action::Wait)
     }
 

@@ -1,7 +1,7 @@
 //! Postprocess of Subtask: commands to E-move and to the Active Pedestal, and the status to Task.
 
 use interfaces::{
-    ChangingPose, Reason, StatusReport, SubtaskOutputs,
+    ChangingPose, Reason, StatusReport, SubtaskOutputs, Unconfirmed,
     emove::{EmoveCommand, EmoveVerb},
     pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
     pose_range,
@@ -183,11 +183,17 @@ impl State {
             echo: execution.receiver.echo,
             report,
             reason,
+            unconfirmed: if report == StatusReport::Done {
+                execution.unconfirmed()
+            } else {
+                Unconfirmed::None
+            },
             reference_pose: below.reference_pose,
             held: below.held,
             placed: below.placed,
             end_effector_id: below.end_effector_id,
             at: below.at,
+            offset: below.offset,
             drum: below.drum,
             pedestal_part: pedestal_hand(&inputs.memory.pedestal.status) != PedestalHand::Free,
         };

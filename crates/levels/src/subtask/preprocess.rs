@@ -13,6 +13,7 @@ use taskdata::files::TaskData;
 
 use super::{
     aims::{Aim, Aims},
+    goals::proof,
     pedestal_hand::{hand, pedestal_hand, turn},
     state::State,
     tables::{
@@ -51,6 +52,7 @@ impl State {
                 gripper: situation.gripper,
             },
             orders: Orders { ordered: self.ordered, emove, pedestal },
+            proof: proof(command, &situation, &inputs.memory.emove.status, &inputs.memory.pedestal.status),
             situation,
         }
     }
@@ -202,7 +204,7 @@ fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &Tas
 }
 
 /// The location of a command: records and sector.
-const fn site(command: &SubtaskCommand) -> (Option<u32>, Option<u32>, Option<i32>) {
+pub(super) const fn site(command: &SubtaskCommand) -> (Option<u32>, Option<u32>, Option<i32>) {
     (command.location_record, command.location_array, command.location_sector)
 }
 

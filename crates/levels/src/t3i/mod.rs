@@ -28,6 +28,7 @@
 //!                              RESTART, PAUSE
 //! ```
 
+pub mod goals;
 pub mod postprocess;
 pub mod preprocess;
 pub mod state;
@@ -68,6 +69,10 @@ impl T3i {
     pub fn new(limits: Limits, answer_ticks: u16) -> Self {
         Self { state: State::new(limits, answer_ticks) }
     }
+}
+
+impl crate::goal::Goals for T3i {
+    const GOALS: &'static [crate::goal::Declared] = tables::GOALS;
 }
 
 impl<Data: ?Sized> Process<Data> for T3i {

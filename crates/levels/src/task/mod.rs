@@ -23,6 +23,7 @@
 //! * [`postprocess`]: the outputs that a row asks for.
 
 pub mod data_system;
+pub mod goals;
 pub mod ledger;
 pub mod plan;
 pub mod postprocess;
@@ -58,6 +59,10 @@ use crate::{
 #[derive(Clone, Debug, Default)]
 pub struct Task {
     state: State,
+}
+
+impl crate::goal::Goals for Task {
+    const GOALS: &'static [crate::goal::Declared] = tables::GOALS;
 }
 
 impl<'d> Process<TaskData<'d>> for Task {
@@ -96,6 +101,8 @@ impl<'d> Process<TaskData<'d>> for Task {
         let request = Request { control: state.control, ..seen.request };
         let orders = Orders { takeover, ..seen.orders };
         let choice = tables::decide(state.step, &Seen { request, orders, ..*seen });
+        let goal = (tables::goal(seen.plan.verb), seen.proof);
+        let choice = state.execution.confirm(number::CONFIRM, state.step, choice, goal);
         state.execution.note(&choice);
         state.step = choice.next;
         (takeover, choice.action)

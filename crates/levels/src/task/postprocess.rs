@@ -1,7 +1,7 @@
 //! Postprocess of Task: commands to Subtask and to the Data System, and the status to the HWSC.
 
 use interfaces::{
-    ChangingPose, Reason, TaskOutputs,
+    ChangingPose, Reason, TaskOutputs, Unconfirmed,
     data_base::DataBaseVerb,
     hws::{HwsReport, HwsStatus},
     pose_range,
@@ -223,8 +223,14 @@ impl State {
         outputs.connection = self.data_system.connection(executing);
         outputs.beliefs = self.data_system.beliefs;
         outputs.header = execution.header(inputs.tick, self.step.text());
-        outputs.status =
-            HwsStatus { echo: execution.receiver.echo, command: inputs.external.hws.command, report, reason };
+        let finished = report == HwsReport::Finished;
+        outputs.status = HwsStatus {
+            echo: execution.receiver.echo,
+            command: inputs.external.hws.command,
+            report,
+            reason,
+            unconfirmed: if finished { execution.unconfirmed() } else { Unconfirmed::None },
+        };
     }
 }
 

@@ -1,14 +1,15 @@
 //! Preprocess of Task: its state variables, from the statuses of Subtask and of the Data System.
 
 use interfaces::{
-    emove::{Holding, Standing},
+    emove::{Holding, Offset, Standing},
     process::Inputs,
-    subtask::SubtaskVerb,
+    subtask::{SubtaskStatus, SubtaskVerb},
 };
 use rcs_core::{handshake::Lower, name::Name10};
 use taskdata::files::TaskData;
 
 use super::{
+    goals::proof,
     ledger::{Part, Placed, is_from_elsewhere, is_taken, placed, resumed},
     plan::{Found, Plan, Resumed, Site, TOOL_GRIPPER, TaskVerb, is_in_mbd},
     state::State,
@@ -48,6 +49,7 @@ impl State {
             (self.plan, Request::default())
         };
         let subtask = self.subtask(inputs);
+        let data_base = self.data_system.status(data_base, inputs.tick);
         let pausing = inputs.memory.task.subtask.command == SubtaskVerb::Pause;
         Seen {
             arrival,
@@ -61,12 +63,8 @@ impl State {
             },
             plan,
             request,
-            orders: Orders {
-                takeover: Takeover::None,
-                ordered: self.ordered,
-                subtask,
-                data_base: self.data_system.status(data_base, inputs.tick),
-            },
+            orders: Orders { takeover: Takeover::None, ordered: self.ordered, subtask, data_base },
+            proof: proof(&plan, below, data_base),
             situation: self.situation(&plan, inputs),
         }
     }
@@ -128,7 +126,7 @@ impl State {
             held: Held::of(below.held, plan.object),
             grips: plan.grips(),
             source: plan.source.named(),
-            ends: ends(&plan.end_at, below.at),
+            ends: ends(&plan.end_at, below),
             update: self.data_system.update(plan),
             tool: match below.held {
                 _ if below.end_effector_id != Some(TOOL_GRIPPER) => Tool::None,
@@ -168,9 +166,11 @@ fn request(found: &Found) -> Request {
     }
 }
 
-/// Where the robot is to be at the end. A sector is not known by its location's name alone.
-fn ends(end_at: &Site, at: Option<Standing>) -> Ends {
-    let at = at.map(|at| at.location);
+/// Where the robot is to be at the end. A sector is not known by its location's name alone. A robot that was moved
+/// away from its place, however little, has to go there.
+fn ends(end_at: &Site, below: &SubtaskStatus) -> Ends {
+    let is_there = matches!(below.offset, Offset::None | Offset::NotSensed);
+    let at = below.at.filter(|_| is_there).map(|at| at.location);
     match &end_at.location {
         None => Ends::Here,
         Some(location) if Some(location.name) == at && location.array.is_none() => Ends::There,

@@ -268,6 +268,7 @@ impl Hwsc {
             Some(Ok(())) if self.began.is_none() => self.begin(tick, workstation),
             Some(Ok(())) => {
                 self.finish(Outcome::Finished);
+                self.confirm(task.unconfirmed);
                 if self.pausing {
                     self.begin(tick, workstation);
                 } else {

@@ -3,7 +3,7 @@
 //! before `verdict`: they still describe the command that Task has.
 
 use interfaces::{
-    Detail, Reason,
+    Detail, Reason, Unconfirmed,
     hws::{HwsReport, HwsStatus},
 };
 use rcs_core::{Plain, name::Name16};
@@ -45,6 +45,8 @@ pub struct Status<'a> {
     pub code: Reason,
     /// `task-state`.
     pub task: TaskState,
+    /// `unconfirmed`.
+    pub unconfirmed: Unconfirmed,
     /// `reason`.
     pub reason: &'a str,
 }
@@ -54,7 +56,7 @@ crate::layout! {
     StatusLayout: Status<'_> = "a status";
     "fdbf>w"               ()               Unused<4>,     "blanks";
     "echo>w"               ()               Unused<16>,    "blanks";
-    "status-length>w"      ()               Length,        "236";
+    "status-length>w"      ()               Length,        "238";
     "time-stamp-status>w"  ()               Unused<12>,    "blanks";
     "command-echo"         (command)        Chars<16>,     "the command that Task has";
     "status"               (report)         Spelled<16>,
@@ -69,8 +71,10 @@ crate::layout! {
         "CHOSEN: why the command failed, 0 if it did not: [its code](reasons.md)";
     "task-state"           (task)           Coded<2>,
         "CHOSEN: 0 Task runs, 1 its switch on the joystick box holds it (III.3.3), 2 it is lost";
+    "unconfirmed"          (unconfirmed)    Coded<2>,
+        "CHOSEN: with finished, what no sensor confirms: 0 nothing, 1 the grasp force, 2 the tool in the drum, 3 the robot's position";
     "reason"               (reason)         Text<REASON>,
-        "CHOSEN: why the mailgram was refused, or else why the command failed, with names and distances";
+        "CHOSEN: why the mailgram was refused, or else why the command failed, with names and distances, or else what no sensor confirms";
 }
 
 /// `status-length>w`; decoding ignores it.
@@ -100,11 +104,14 @@ pub fn encode(
     mailgram_echo: u16,
     refused: Option<&Refusal>,
 ) -> [u8; StatusLayout::BYTES] {
-    let reason = status.reason.text();
-    let sentence = refused.map_or_else(
-        || Sentence::<REASON>::of(&format_args!("{reason}{detail:#}")),
-        |refused| Sentence::of(refused),
-    );
+    let (reason, unconfirmed) = (status.reason.text(), status.unconfirmed);
+    let sentence = match refused {
+        Some(refused) => Sentence::<REASON>::of(refused),
+        None if reason.is_empty() && !unconfirmed.is_none() => {
+            Sentence::of(&format_args!("unconfirmed: {unconfirmed}"))
+        }
+        None => Sentence::of(&format_args!("{reason}{detail:#}")),
+    };
     StatusLayout::encode(&Status {
         command: status.command,
         report: status.report,
@@ -113,6 +120,7 @@ pub fn encode(
         verdict: refused.map_or(0, Refusal::code),
         code: status.reason,
         task,
+        unconfirmed: status.unconfirmed,
         reason: sentence.as_str(),
     })
 }
@@ -138,6 +146,7 @@ mod tests {
             command: Name16::new("TRANSFER").unwrap(),
             report: HwsReport::Error,
             reason: Reason::GraspMissed,
+            unconfirmed: Unconfirmed::None,
         }
     }
 
@@ -145,9 +154,9 @@ mod tests {
     fn every_field_stands_at_its_byte() {
         let expected = [
             &[b' '; 20][..],
-            b"\xEC\x00            TRANSFER        error           ",
+            b"\xEE\x00            TRANSFER        error           ",
             b"\x07\x00\x09\x00\x00\x00",
-            &[Reason::GraspMissed.code(), 0, 1, 0],
+            &[Reason::GraspMissed.code(), 0, 1, 0, 0, 0],
             format!("{:160}", "the fingers closed on nothing").as_bytes(),
         ]
         .concat();
@@ -178,6 +187,21 @@ mod tests {
         let bytes = encode(&failed, detail, TaskState::Runs, 0, None);
         let told = format!("{}: none leads from BENCH to VISE", Reason::NoTrajectory.text());
         assert_eq!(decode(&bytes).unwrap().reason, told);
+    }
+
+    #[test]
+    fn a_finished_command_says_what_is_unconfirmed() {
+        for &unconfirmed in Unconfirmed::ALL {
+            let finished =
+                HwsStatus { report: HwsReport::Finished, reason: Reason::None, unconfirmed, ..failed() };
+            let bytes = encode(&finished, Detail::None, TaskState::Runs, 0, None);
+            let status = decode(&bytes).unwrap();
+            let text = match unconfirmed {
+                Unconfirmed::None => String::new(),
+                what => format!("unconfirmed: {what}"),
+            };
+            assert_eq!((status.unconfirmed, status.reason), (unconfirmed, text.as_str()));
+        }
     }
 
     proptest! {

@@ -6,7 +6,7 @@
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
-use interfaces::{CommonMemory, Decided, ExternalInputs, hws::HwsReport};
+use interfaces::{CommonMemory, Decided, ExternalInputs, Unconfirmed, hws::HwsReport};
 use rcs_core::{
     Plain as _,
     digest::Digest,
@@ -29,6 +29,7 @@ struct Command {
     first: Tick,
     last: Tick,
     report: HwsReport,
+    unconfirmed: Unconfirmed,
 }
 
 /// Collects the summary, tick by tick.
@@ -91,12 +92,13 @@ impl Summary {
         let (was, is) = (&before.task.status, &after.task.status);
         if was.echo != is.echo {
             let text = hws_text(&external.hws);
-            self.commands.push(Command { text, first: tick, last: tick, report: is.report });
+            let unconfirmed = is.unconfirmed;
+            self.commands.push(Command { text, first: tick, last: tick, report: is.report, unconfirmed });
         }
         if let Some(command) = self.commands.last_mut()
             && (was.echo != is.echo || command.report == HwsReport::Executing)
         {
-            (command.last, command.report) = (tick, is.report);
+            (command.last, command.report, command.unconfirmed) = (tick, is.report, is.unconfirmed);
         }
     }
 
@@ -113,7 +115,9 @@ impl Summary {
         for command in &self.commands {
             let seconds = (command.last.since(command.first) + 1) as f64 * TICK_S;
             let (tick, report) = (command.first, command.report.text());
-            let _ = writeln!(text, "{:>8} {seconds:>7.2}  {report:<10} {}", tick.0, command.text);
+            let unconfirmed = command.unconfirmed.suffix();
+            let _ =
+                writeln!(text, "{:>8} {seconds:>7.2}  {report:<10} {}{unconfirmed}", tick.0, command.text);
         }
         if !self.troubles.is_empty() {
             let _ = writeln!(text, "\nwarnings and errors");

@@ -68,6 +68,7 @@ impl Run {
         let commands = steps.iter().filter(|step| step.is_command).map(|step| CommandResult {
             text: result::bare(&step.text),
             status: step.outcome.text(),
+            unconfirmed: step.unconfirmed.text(),
             ticks: step.ticks,
         });
         RunResult {

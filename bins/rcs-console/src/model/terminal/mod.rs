@@ -303,7 +303,7 @@ pub fn follow(exchange: &mut Exchange, picture: &Picture) {
     }
     let step = picture.memory.task.header.step.unwrap_or_default();
     let stage = match (status.report, step.as_str()) {
-        (HwsReport::Finished, _) => "Finished".to_owned(),
+        (HwsReport::Finished, _) => format!("Finished{}", status.unconfirmed.suffix()),
         (HwsReport::Executing, "Aborting" | "Initiating" | "Connecting") => format!("{step}..."),
         (report, _) => report.to_string(),
     };

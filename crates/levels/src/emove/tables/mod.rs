@@ -39,12 +39,14 @@ pub use self::variables::{
 };
 use self::{accept::accept, carried::carried, ordered::ordered};
 use super::{
+    goals,
     relative::{Relative, RelativeMoves},
     route::{Ahead, Planning},
 };
 pub use crate::held::Held;
 use crate::{
-    execution::{Asked, EXECUTE, Orders as Commander, Outcome, Work},
+    confirm::{CONFIRM, Proof},
+    execution::{Asked, EXECUTE, Ending, Orders as Commander, Outcome, Work},
     halt::{BoxState, EFFECT, HALT, Replaced},
 };
 
@@ -191,6 +193,8 @@ pub struct Seen {
     pub watch: Watch,
     /// How the last order of the command stands.
     pub orders: Orders,
+    /// The goal of the command, compared with the sensors.
+    pub proof: Proof,
     /// The state variables of the command's table; [`Orders`] decide on `work`.
     pub situation: Situation,
 }
@@ -282,13 +286,29 @@ pub enum Action {
     PassUp,
 }
 
-impl Commander for Action {
-    const STOP: Self = Self::StopRobot;
+impl Ending for Action {
     const WAIT: Self = Self::Wait;
 
     fn fail(reason: Reason) -> Self {
         Self::Fail(reason)
     }
+
+    fn ends(&self) -> bool {
+        matches!(
+            self,
+            Self::Arrive
+                | Self::Stand
+                | Self::StandInDrum
+                | Self::Grasped
+                | Self::Acquired
+                | Self::Located
+                | Self::Finish
+        )
+    }
+}
+
+impl Commander for Action {
+    const STOP: Self = Self::StopRobot;
 
     fn is_order(&self) -> bool {
         matches!(
@@ -316,22 +336,22 @@ commands! {
     /// Consult the tables of a command.
     pub fn of_command(EmoveVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, EFFECT, attend::ATTEND, search::SEARCH, resume::RESUME,
-            drum::DRUM, carried::CARRIED, ordered::ORDERED;
-        None | Pause            => e_pause::e_pause;
-        MovToLoc                => motion::motion;
-        MovToObj                => mov_to_obj::mov_to_obj then motion::motion;
-        MovObjTo                => mov_obj_to::mov_obj_to then motion::motion;
-        MovToHol | MovToVu      => mov_to_hol::mov_to_hol then motion::motion;
-        LocateObj               => locate_obj::locate_obj;
-        GraspObj                => grasp_obj::grasp_obj;
-        Release                 => release::release;
-        QcDetach                => qc_detach::qc_detach;
-        QcAttach                => qc_attach::qc_attach;
-        Withdraw                => withdraw::withdraw;
-        InsertTool              => insert_tool::insert_tool;
-        ReleaseTool             => release_tool::release_tool;
-        AcquireTool             => acquire_tool::acquire_tool;
-        RemoveTool              => remove_tool::remove_tool;
+            drum::DRUM, carried::CARRIED, ordered::ORDERED, CONFIRM;
+        None | Pause: goals::REST           => e_pause::e_pause;
+        MovToLoc: goals::PLACE              => motion::motion;
+        MovToObj: goals::PLACE              => mov_to_obj::mov_to_obj then motion::motion;
+        MovObjTo: goals::BROUGHT            => mov_obj_to::mov_obj_to then motion::motion;
+        MovToHol | MovToVu: goals::PLACE    => mov_to_hol::mov_to_hol then motion::motion;
+        LocateObj: goals::LOCATED           => locate_obj::locate_obj;
+        GraspObj: goals::HELD               => grasp_obj::grasp_obj;
+        Release: goals::RELEASED            => release::release;
+        QcDetach: goals::DETACHED           => qc_detach::qc_detach;
+        QcAttach: goals::ATTACHED           => qc_attach::qc_attach;
+        Withdraw: goals::WITHDRAWN          => withdraw::withdraw;
+        InsertTool: goals::INSERTED         => insert_tool::insert_tool;
+        ReleaseTool: goals::TOOL_RELEASED   => release_tool::release_tool;
+        AcquireTool: goals::HELD            => acquire_tool::acquire_tool;
+        RemoveTool: goals::REMOVED          => remove_tool::remove_tool;
     }
 }
 

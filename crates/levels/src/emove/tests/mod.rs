@@ -1,6 +1,7 @@
 //! E-move alone, against test doubles of Prim, Quick Change, the three grippers and vision.
 
 mod bench;
+mod confirmed;
 mod doubles;
 mod drum;
 mod exchange;

@@ -14,6 +14,7 @@ use interfaces::{
 };
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
+use super::goals;
 use crate::execution::{Asked, EXECUTE};
 
 /// Step of all commands.
@@ -327,8 +328,9 @@ commands! {
     /// Consult the table of a command.
     pub fn of_command(GripVerb, Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, up_init::UP_INIT;
-        Position | OpenGrip     => servo::servo then position::position;
-        CloseGrip               => servo::servo then close_grip::close_grip;
-        None | Pause | UpInit   => pause::pause;
+        Position | OpenGrip: goals::OPENING => servo::servo then position::position;
+        CloseGrip: goals::FORCE             => servo::servo then close_grip::close_grip;
+        None | Pause: goals::REST           => pause::pause;
+        UpInit: goals::CALIBRATED           => pause::pause;
     }
 }

@@ -15,6 +15,7 @@ use interfaces::{
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival, table::Choice};
 
 use self::accept::accept;
+use super::goals;
 use crate::execution::{Asked, EXECUTE};
 
 /// Step of all commands.
@@ -146,9 +147,9 @@ commands! {
     /// Consult the table of a command.
     pub fn of_command(JawsVerb, Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT;
-        Grasp           => air::air then grasp::grasp;
-        Release | Pose  => air::air then release::release;
-        None | Pause    => pause::pause;
+        Grasp: goals::CLOSED            => air::air then grasp::grasp;
+        Release | Pose: goals::OPENED   => air::air then release::release;
+        None | Pause: goals::REST       => pause::pause;
     }
 }
 

@@ -26,6 +26,7 @@
 //! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`]: commands to hand and table, and the status.
 
+pub mod goals;
 pub mod orders;
 pub mod postprocess;
 pub mod preprocess;
@@ -42,7 +43,7 @@ use rcs_core::table::Table;
 
 use self::{
     state::State,
-    tables::{Action, Seen, Step},
+    tables::{Action, Seen, Step, number},
 };
 use crate::{execution::Course, halt::Halting};
 
@@ -50,6 +51,10 @@ use crate::{execution::Course, halt::Halting};
 #[derive(Clone, Debug, Default)]
 pub struct Pedestal {
     state: State,
+}
+
+impl crate::goal::Goals for Pedestal {
+    const GOALS: &'static [crate::goal::Declared] = tables::GOALS;
 }
 
 impl<Data: ?Sized> Process<Data> for Pedestal {
@@ -76,6 +81,8 @@ impl<Data: ?Sized> Process<Data> for Pedestal {
             Ok(Course::Continue) => {}
         }
         let choice = tables::decide(verb, state.step, seen);
+        let goal = (tables::goal(verb), seen.proof);
+        let choice = state.execution.confirm(number::CONFIRM, state.step, choice, goal);
         state.execution.note(&choice);
         state.step = choice.next;
         choice.action

@@ -10,6 +10,7 @@ use interfaces::{
 use rcs_core::{handshake::Lower, tick::Tick};
 
 use super::{
+    goals::proof,
     orders::{angle, opening},
     state::State,
     tables::{Calibration, Gripped, Object, Ordered, Orders, Request, Seen, Situation},
@@ -49,6 +50,19 @@ impl State {
             self.gripped = false;
         }
         let object = self.object(felt(inputs), memory);
+        let situation = Situation {
+            object,
+            calibration: if memory.hand.status.initialized {
+                Calibration::Known
+            } else {
+                Calibration::Missing
+            },
+            gripped: if self.gripped { Gripped::Yes } else { Gripped::No },
+            fingers: match hand {
+                Lower::Pending | Lower::Executing => Work::Busy,
+                Lower::Done | Lower::Error | Lower::Joystick | Lower::Lost => Work::Over,
+            },
+        };
         Seen {
             arrival,
             replaced: Replaced {
@@ -66,19 +80,8 @@ impl State {
                 opening: opening(command),
             },
             orders: Orders { verb: self.command.command, ordered: self.ordered, hand, table, object },
-            situation: Situation {
-                object,
-                calibration: if memory.hand.status.initialized {
-                    Calibration::Known
-                } else {
-                    Calibration::Missing
-                },
-                gripped: if self.gripped { Gripped::Yes } else { Gripped::No },
-                fingers: match hand {
-                    Lower::Pending | Lower::Executing => Work::Busy,
-                    Lower::Done | Lower::Error | Lower::Joystick | Lower::Lost => Work::Over,
-                },
-            },
+            proof: proof(&self.command, &situation, memory),
+            situation,
         }
     }
 

@@ -75,8 +75,17 @@ impl Bench {
         self
     }
 
-    /// The table answers its last command.
+    /// The table answers its last command; it is at its angle when it reports done.
     fn table(&mut self, report: PedestalReport) -> &mut Self {
+        let order = self.memory.pedestal.table;
+        if report == PedestalReport::Done && order.command == TableVerb::Turn {
+            self.memory.table.status.position = Some(order.angle);
+        }
+        self.table_elsewhere(report)
+    }
+
+    /// The table answers its last command, and stays where it is.
+    fn table_elsewhere(&mut self, report: PedestalReport) -> &mut Self {
         let status = &mut self.memory.table.status;
         (status.echo, status.report) = (self.memory.pedestal.table.number, report);
         self
@@ -105,6 +114,40 @@ fn pre_grip_opens_the_hand_and_turns_the_table_at_once() {
     assert_eq!(bench.end(), EXECUTING);
     bench.hand(GripReport::Done, 450);
     assert_eq!(bench.end(), DONE);
+}
+
+#[test]
+fn commands_are_not_done_while_hand_or_table_are_elsewhere() {
+    let error = |reason| (PedestalReport::Error, reason);
+    for (hand, table, end) in [
+        (450, true, DONE),
+        (441, true, DONE),
+        (400, true, error(Reason::HandTimeout)),
+        (450, false, error(Reason::TableStuck)),
+    ] {
+        let mut bench = Bench::new();
+        bench.send(PedestalVerb::PreGrip, 450, 0, -1000);
+        bench.step();
+        bench.hand(GripReport::Done, hand);
+        if table {
+            bench.table(PedestalReport::Done);
+        } else {
+            bench.table_elsewhere(PedestalReport::Done);
+        }
+        if end != DONE {
+            assert_eq!(bench.end(), EXECUTING, "a newer reading is awaited");
+        }
+        assert_eq!(bench.end(), end, "hand at {hand}, table there: {table}");
+    }
+    let mut bench = Bench::new();
+    bench.send(PedestalVerb::Flip, 0, 0, 1835);
+    bench.step();
+    assert_eq!(bench.table_elsewhere(PedestalReport::Done).end(), EXECUTING);
+    assert_eq!(bench.end(), error(Reason::TableStuck));
+    bench.send(PedestalVerb::Release, 450, 0, 0);
+    bench.step();
+    assert_eq!(bench.hand(GripReport::Done, 300).end(), EXECUTING);
+    assert_eq!(bench.end(), error(Reason::HandTimeout));
 }
 
 #[test]

@@ -41,6 +41,7 @@
 //! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`]: orders to the motor, and the status.
 
+pub mod goals;
 pub mod postprocess;
 pub mod preprocess;
 pub mod state;
@@ -69,6 +70,10 @@ use crate::execution::Course;
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     state: State,
+}
+
+impl crate::goal::Goals for Table {
+    const GOALS: &'static [crate::goal::Declared] = tables::GOALS;
 }
 
 impl<Data: ?Sized> Process<Data> for Table {

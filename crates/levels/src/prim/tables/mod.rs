@@ -26,8 +26,10 @@ use self::{
     accept::accept,
     link::{LinkStep, link},
 };
+use super::goals;
 use crate::{
-    execution::{Asked, Course, EXECUTE},
+    confirm::{CONFIRM, Proof},
+    execution::{Asked, Course, EXECUTE, Ending},
     halt::Above,
 };
 
@@ -292,6 +294,8 @@ pub struct Seen {
     pub verb: PrimVerb,
     /// What a new command needs.
     pub request: Request,
+    /// The goal of the command, compared with the sensors.
+    pub proof: Proof,
     /// The state variables.
     pub situation: Situation,
     /// The record button.
@@ -337,18 +341,30 @@ pub enum Action {
     Fail(Reason),
 }
 
+impl Ending for Action {
+    const WAIT: Self = Self::Wait;
+
+    fn fail(reason: Reason) -> Self {
+        Self::Fail(reason)
+    }
+
+    fn ends(&self) -> bool {
+        matches!(self, Self::Finish | Self::TakePosition | Self::Calibrate)
+    }
+}
+
 commands! {
     /// Consult the tables of a command.
     pub fn of_command(PrimVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, attend::ATTEND, path_clock::PATH_CLOCK, record_pose::RECORD_POSE,
-            link::LINK;
-        None | Pause            => pause::pause;
-        RobotInit               => robot_init::robot_init;
-        GoThru                  => go_thru::go_thru;
-        GotoPt | DeltaMove      => goto_pt::goto_pt;
-        GoUntil                 => go_until::go_until;
-        GoWhile                 => go_while::go_while then goto_pt::goto_pt;
-        CalSensor               => cal_sensor::cal_sensor;
+            link::LINK, CONFIRM;
+        None | Pause: goals::REST           => pause::pause;
+        RobotInit: goals::POSITIONED        => robot_init::robot_init;
+        GoThru: goals::PASSING              => go_thru::go_thru;
+        GotoPt | DeltaMove: goals::POINT    => goto_pt::goto_pt;
+        GoUntil: goals::CONTACT             => go_until::go_until;
+        GoWhile: goals::POINT               => go_while::go_while then goto_pt::goto_pt;
+        CalSensor: goals::CALIBRATED        => cal_sensor::cal_sensor;
     }
 }
 

@@ -11,6 +11,7 @@ use interfaces::{
 };
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
+use super::goals;
 use crate::execution::{Asked, EXECUTE};
 
 /// Step of all commands: it outlasts the command, so that a failure is reported until the next one.
@@ -123,8 +124,8 @@ commands! {
     /// Consult the table of a command, and that of QC-PAUSE once the command has ended.
     pub fn of_command(QuickChangeVerb, Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT;
-        Lock            => qc_lock::qc_lock then qc_pause::qc_pause;
-        Unlock          => qc_unlock::qc_unlock then qc_pause::qc_pause;
-        None | Pause    => qc_pause::qc_pause;
+        Lock: goals::LOCKED         => qc_lock::qc_lock then qc_pause::qc_pause;
+        Unlock: goals::UNLOCKED     => qc_unlock::qc_unlock then qc_pause::qc_pause;
+        None | Pause: goals::REST   => qc_pause::qc_pause;
     }
 }

@@ -31,8 +31,10 @@ pub use self::variables::{
     PedestalHand, Robot, Turn, Vision, Where,
 };
 use self::{accept::accept, hindrance::hindrance, ordered::ordered};
+use super::goals;
 use crate::{
-    execution::{Asked, EXECUTE, Orders as Commander, Work},
+    confirm::{CONFIRM, Proof},
+    execution::{Asked, EXECUTE, Ending, Orders as Commander, Work},
     halt::{EFFECT, HALT, Replaced},
     held::Held,
     places::Missing,
@@ -127,6 +129,8 @@ pub struct Seen {
     pub hindrance: Hindrance,
     /// How the last order of the command stands.
     pub orders: Orders,
+    /// The goal of the command, compared with the statuses from below.
+    pub proof: Proof,
     /// The state variables of the command's table; [`Orders`] decide on `work`.
     pub situation: Situation,
 }
@@ -196,13 +200,20 @@ pub enum Action {
     PassUpPedestal(Reason),
 }
 
-impl Commander for Action {
-    const STOP: Self = Self::Pause;
+impl Ending for Action {
     const WAIT: Self = Self::Wait;
 
     fn fail(reason: Reason) -> Self {
         Self::Fail(reason)
     }
+
+    fn ends(&self) -> bool {
+        matches!(self, Self::Finish)
+    }
+}
+
+impl Commander for Action {
+    const STOP: Self = Self::Pause;
 
     fn is_order(&self) -> bool {
         !matches!(
@@ -215,20 +226,20 @@ impl Commander for Action {
 commands! {
     /// Consult the table of a command.
     pub fn of_command(SubtaskVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, hindrance::HINDRANCE, ordered::ORDERED;
-        None | Pause            => s_pause::s_pause;
-        GetEndeff               => get_endeff::get_endeff;
-        GetObject               => get_object::get_object;
-        FixGrip                 => fix_grip::fix_grip;
-        PlaceObj                => place_obj::place_obj;
-        MoveObjToDest           => move_obj_to_dest::move_obj_to_dest;
-        GotoEndpt | GotoDest    => goto::goto;
-        Position                => position::position;
-        Release                 => release::release;
-        InsertTool              => insert_tool::insert_tool;
-        ReleaseTool             => release_tool::release_tool;
-        AcquireTool             => acquire_tool::acquire_tool;
-        RemoveTool              => remove_tool::remove_tool;
+        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, hindrance::HINDRANCE, ordered::ORDERED, CONFIRM;
+        None | Pause: goals::REST               => s_pause::s_pause;
+        GetEndeff: goals::ATTACHED              => get_endeff::get_endeff;
+        GetObject: goals::HELD                  => get_object::get_object;
+        FixGrip: goals::REGRIPPED               => fix_grip::fix_grip;
+        PlaceObj: goals::PLACED                 => place_obj::place_obj;
+        MoveObjToDest: goals::BROUGHT           => move_obj_to_dest::move_obj_to_dest;
+        GotoEndpt | GotoDest: goals::PLACE      => goto::goto;
+        Position: goals::PLACE                  => position::position;
+        Release: goals::RELEASED                => release::release;
+        InsertTool: goals::INSERTED             => insert_tool::insert_tool;
+        ReleaseTool: goals::TOOL_RELEASED       => release_tool::release_tool;
+        AcquireTool: goals::ACQUIRED            => acquire_tool::acquire_tool;
+        RemoveTool: goals::REMOVED              => remove_tool::remove_tool;
     }
 }
 

@@ -103,9 +103,13 @@ impl EmoveDouble {
 
     fn effect(&mut self, command: &EmoveCommand) {
         match command.command {
-            EmoveVerb::GraspObj | EmoveVerb::AcquireTool => {
-                self.hold(command.object.unwrap_or_default().as_str(), command.grip)
+            EmoveVerb::GraspObj => self.hold(command.object.unwrap_or_default().as_str(), command.grip),
+            EmoveVerb::AcquireTool => {
+                self.hold(command.object.unwrap_or_default().as_str(), command.grip);
+                self.outputs.status.drum = true;
             }
+            EmoveVerb::InsertTool => self.outputs.status.drum = true,
+            EmoveVerb::RemoveTool => self.outputs.status.drum = false,
             EmoveVerb::Release => {
                 if let Some(held) = self.outputs.status.held.object() {
                     self.outputs.status.placed = Some(PlacedObject {
@@ -119,7 +123,10 @@ impl EmoveDouble {
                 }
                 self.hold("", 0);
             }
-            EmoveVerb::ReleaseTool => self.hold("", 0),
+            EmoveVerb::ReleaseTool => {
+                self.hold("", 0);
+                self.outputs.status.drum = false;
+            }
             EmoveVerb::LocateObj => {
                 self.outputs.status.located = command.object.map(|object| LocatedObject {
                     object,

@@ -1,6 +1,7 @@
 //! Scenarios of Subtask with doubles of E-move and of the Active Pedestal.
 
 mod bench;
+mod confirmed;
 pub(crate) mod data;
 mod recovery;
 

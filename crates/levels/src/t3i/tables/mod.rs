@@ -8,6 +8,7 @@ pub mod report;
 pub mod restart;
 pub mod trouble;
 
+use super::goals;
 use depc::step::Step as Advance;
 use interfaces::t3i::{T3iCommand, T3iReport, T3iVerb};
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
@@ -215,8 +216,8 @@ commands! {
     /// Consult the tables of a command.
     pub fn of_command(T3iVerb, enum Step, Situation) -> Action {
         others: receive::RECEIVE, report::REPORT, trouble::TROUBLE;
-        None | Pause    => trouble::trouble then pause::pause;
-        Restart         => trouble::trouble then restart::restart;
-        Point           => trouble::trouble then point::point;
+        None | Pause: goals::REST   => trouble::trouble then pause::pause;
+        Restart: goals::RESTARTED   => trouble::trouble then restart::restart;
+        Point: goals::SENT          => trouble::trouble then point::point;
     }
 }

@@ -28,11 +28,13 @@ use rcs_core::{
 pub use self::variables::{DataBase, Drum, Ends, Goal, Ordered, Station, Tool, Update, Way};
 use self::{accept::accept, joystick::Control, ordered::ordered};
 use super::{
+    goals,
     ledger::{Part, Placed},
     plan::{Grip, Gripper, Grips, Handling, Named, Near, PedestalData, Plan, Resumed, TaskVerb, ToolData},
 };
 use crate::{
-    execution::{Asked, EXECUTE, Outcome, Work},
+    confirm::{CONFIRM, Proof},
+    execution::{Asked, EXECUTE, Ending, Outcome, Work},
     halt::{HALT, Replaced},
     held::Held,
     places::Missing,
@@ -158,6 +160,8 @@ pub struct Seen {
     pub request: Request,
     /// How the last order of the command stands; [`joystick::JOYSTICK`] decides on `takeover`.
     pub orders: Orders,
+    /// The goal of the command, compared with the statuses from below.
+    pub proof: Proof,
     /// The state variables of the command's table; [`ordered::ORDERED`] decides on `work`.
     pub situation: Situation,
 }
@@ -229,22 +233,34 @@ pub enum Action {
     PassUp,
 }
 
+impl Ending for Action {
+    const WAIT: Self = Self::Wait;
+
+    fn fail(reason: Reason) -> Self {
+        Self::Fail(reason)
+    }
+
+    fn ends(&self) -> bool {
+        matches!(self, Self::Finish | Self::Connect)
+    }
+}
+
 commands! {
     /// Consult the table of a command.
     pub fn of_command(TaskVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, HALT, joystick::JOYSTICK, ordered::ORDERED;
-        None | Pause    => pause::pause;
-        Transfer        => transfer::transfer;
-        Move            => mov::r#move;
-        Position        => position::position;
-        Acquire         => acquire::acquire;
-        Refixture       => refixture::refixture;
-        InsertTool      => insert_tool::insert_tool;
-        ReleaseTool     => release_tool::release_tool;
-        AcquireTool     => acquire_tool::acquire_tool;
-        RemoveTool      => remove_tool::remove_tool;
-        Startup         => startup::startup;
-        Shutdown        => shutdown::shutdown;
+        others: EXECUTE, accept::ACCEPT, HALT, joystick::JOYSTICK, ordered::ORDERED, CONFIRM;
+        None | Pause: goals::REST           => pause::pause;
+        Transfer: goals::TRANSFERRED        => transfer::transfer;
+        Move: goals::MOVED                  => mov::r#move;
+        Position: goals::POSITIONED         => position::position;
+        Acquire: goals::HELD                => acquire::acquire;
+        Refixture: goals::REFIXTURED        => refixture::refixture;
+        InsertTool: goals::INSERTED         => insert_tool::insert_tool;
+        ReleaseTool: goals::TOOL_RELEASED   => release_tool::release_tool;
+        AcquireTool: goals::ACQUIRED        => acquire_tool::acquire_tool;
+        RemoveTool: goals::REMOVED          => remove_tool::remove_tool;
+        Startup: goals::CONNECTED           => startup::startup;
+        Shutdown: goals::DISCONNECTED       => shutdown::shutdown;
     }
 }
 

@@ -103,7 +103,10 @@ impl SubtaskDouble {
             SubtaskVerb::GetEndeff if command.end_effector_id.is_some() => {
                 status.end_effector_id = command.end_effector_id;
             }
-            SubtaskVerb::GetObject => self.hold(command.object.unwrap_or_default().as_str()),
+            SubtaskVerb::GetObject => {
+                self.hold(command.object.unwrap_or_default().as_str());
+                self.grip(command.source_grip);
+            }
             SubtaskVerb::AcquireTool => {
                 self.hold(command.object.unwrap_or_default().as_str());
                 self.stand("TOOL-TRNS");
@@ -131,7 +134,11 @@ impl SubtaskDouble {
                 self.stand_at(command, None);
             }
             SubtaskVerb::Position => self.stand_at(command, Some(command.source_grip)),
-            SubtaskVerb::FixGrip => status.pedestal_part = false,
+            SubtaskVerb::FixGrip => {
+                status.pedestal_part = false;
+                self.hold(command.object.unwrap_or_default().as_str());
+                self.grip(command.destination_grip);
+            }
             _ => {}
         }
     }
@@ -162,6 +169,13 @@ impl SubtaskDouble {
             self.outputs.status.placed = None;
         }
         self.outputs.status.held = if object.is_empty() { Holding::Nothing } else { held };
+    }
+
+    /// What is held is held in a grip.
+    fn grip(&mut self, grip: i32) {
+        if let Holding::Object(held) = &mut self.outputs.status.held {
+            held.grip = grip;
+        }
     }
 
     /// The robot stands at a location, in the drum if it is that of the drum; an empty name for none that is

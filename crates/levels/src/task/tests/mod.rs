@@ -1,6 +1,7 @@
 //! Scenarios of Task with doubles of Subtask and of the Data System.
 
 mod bench;
+mod confirmed;
 mod coverage;
 mod data_system;
 mod recovery;

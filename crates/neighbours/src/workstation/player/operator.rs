@@ -15,7 +15,7 @@
 
 use std::fmt;
 
-use interfaces::HwsCommand;
+use interfaces::{HwsCommand, Unconfirmed};
 use rcs_core::{handshake::Lower, tick::Tick};
 use taskdata::load::job::{JobLine, Step};
 
@@ -235,6 +235,7 @@ impl Hwsc {
             is_command: true,
             began: tick,
             outcome: Outcome::Executing,
+            unconfirmed: Unconfirmed::None,
             ticks: 0,
         });
         let number = self.commander.send(tick.next());

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use interfaces::{Reason, hws::HwsReport};
+use interfaces::{Reason, Unconfirmed, hws::HwsReport};
 use rcs_core::tick::{TICK_MS, Tick};
 
 /// How a step ended.
@@ -45,8 +45,18 @@ pub struct BegunStep {
     pub began: Tick,
     /// Outcome of the step.
     pub outcome: Outcome,
+    /// Part of the command's goal that no sensor confirms, if it has finished.
+    pub unconfirmed: Unconfirmed,
     /// Ticks from the start of the step to the tick in which its end was seen.
     pub ticks: u64,
+}
+
+impl BegunStep {
+    /// How the step ended: the word of its outcome, and what is unconfirmed.
+    #[must_use]
+    pub fn ending(&self) -> String {
+        format!("{}{}", self.outcome.text(), self.unconfirmed.suffix())
+    }
 }
 
 /// Why a job ended before its last step.

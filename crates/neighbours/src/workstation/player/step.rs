@@ -1,6 +1,6 @@
 //! Start and end of the steps of a job, and delayed actions.
 
-use interfaces::HwsCommand;
+use interfaces::{HwsCommand, Unconfirmed};
 use rcs_core::tick::Tick;
 use taskdata::load::job::{JobLine, Step, Workstation as Action};
 
@@ -82,6 +82,7 @@ impl Hwsc {
             is_command,
             began: tick,
             outcome: Outcome::Executing,
+            unconfirmed: Unconfirmed::None,
             ticks: 0,
         });
     }
@@ -90,6 +91,13 @@ impl Hwsc {
         self.finish(Outcome::Failed);
         if !self.waits_for_operator(&failure) {
             self.progress = Progress::Failed(failure);
+        }
+    }
+
+    /// Notes what no sensor confirms about the current step, if it is a command that has finished.
+    pub(super) fn confirm(&mut self, unconfirmed: Unconfirmed) {
+        if let Some(step) = self.begun_steps.get_mut(self.entry).filter(|step| step.is_command) {
+            step.unconfirmed = unconfirmed;
         }
     }
 

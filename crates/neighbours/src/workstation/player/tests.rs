@@ -85,6 +85,7 @@ fn answer(status: &HwsStatus) -> Status<'static> {
         verdict: 0,
         code: status.reason,
         task: TaskState::Runs,
+        unconfirmed: status.unconfirmed,
         reason: status.reason.text(),
     }
 }

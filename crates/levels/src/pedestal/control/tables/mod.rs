@@ -17,8 +17,10 @@ use rcs_core::{
 };
 
 use self::{accept::accept, ordered::ordered};
+use super::goals;
 use crate::{
-    execution::{Asked, EXECUTE, Work},
+    confirm::{CONFIRM, Proof},
+    execution::{Asked, EXECUTE, Ending, Work},
     halt::{HALT, Replaced},
 };
 
@@ -138,6 +140,8 @@ pub struct Seen {
     pub request: Request,
     /// How the orders of the command stand.
     pub orders: Orders,
+    /// The goal of the command, compared with the statuses of hand and table.
+    pub proof: Proof,
     /// The state variables of the command's table.
     pub situation: Situation,
 }
@@ -171,15 +175,27 @@ pub enum Action {
     PassUpTable,
 }
 
+impl Ending for Action {
+    const WAIT: Self = Self::Wait;
+
+    fn fail(reason: Reason) -> Self {
+        Self::Fail(reason)
+    }
+
+    fn ends(&self) -> bool {
+        matches!(self, Self::Finish)
+    }
+}
+
 commands! {
     /// Consult the table of a command.
     pub fn of_command(PedestalVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, HALT, ordered::ORDERED;
-        None | Pause    => pause::pause;
-        PreGrip         => pre_grip::pre_grip;
-        Grip            => grip::grip;
-        Flip            => flip::flip;
-        Release         => release::release;
+        others: EXECUTE, accept::ACCEPT, HALT, ordered::ORDERED, CONFIRM;
+        None | Pause: goals::REST   => pause::pause;
+        PreGrip: goals::READY       => pre_grip::pre_grip;
+        Grip: goals::HELD           => grip::grip;
+        Flip: goals::TURNED         => flip::flip;
+        Release: goals::RELEASED    => release::release;
     }
 }
 

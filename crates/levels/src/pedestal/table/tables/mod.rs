@@ -10,6 +10,7 @@ pub mod turn;
 use interfaces::{Reason, pedestal::TableVerb};
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
+use super::goals;
 use crate::execution::{Asked, Course, EXECUTE};
 
 /// Step of all commands.
@@ -205,7 +206,8 @@ commands! {
     /// Consult the table of a command.
     pub fn of_command(TableVerb, Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, calibrate::CALIBRATE;
-        Turn                        => rest::rest then turn::turn;
-        None | Pause | Calibrate    => rest::rest then pause::pause;
+        Turn: goals::TURNED             => rest::rest then turn::turn;
+        None | Pause: goals::REST       => rest::rest then pause::pause;
+        Calibrate: goals::CALIBRATED    => rest::rest then pause::pause;
     }
 }

@@ -1,0 +1,63 @@
+//! The part of a goal that no sensor confirms, reported together with `done` and `finished` (docs/design/tables.md
+//! "Goals").
+
+use core::fmt;
+
+use rcs_core::Plain;
+
+/// What no sensor confirms about a command that has finished: the machine has no sensor for it (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(doc)]
+pub enum Unconfirmed {
+    /// The sensors confirm the whole goal.
+    #[text = ""]
+    None,
+    /// The grasp force (the gripper has no force sensor).
+    GraspForce,
+    /// The tool in the drum (the drum has no sensor).
+    ToolInDrum,
+    /// The robot's position (the resolvers give none).
+    Position,
+}
+
+impl Unconfirmed {
+    /// True if the sensors confirm the whole goal.
+    #[must_use]
+    pub const fn is_none(self) -> bool {
+        matches!(self, Self::None)
+    }
+
+    /// The text to be written after the report: `, unconfirmed: the tool in the drum (the drum has no sensor)`, or
+    /// nothing.
+    #[must_use]
+    pub const fn suffix(self) -> Suffix {
+        Suffix(self)
+    }
+}
+
+/// Text of [`Unconfirmed::suffix`].
+#[derive(Clone, Copy, Debug)]
+pub struct Suffix(Unconfirmed);
+
+impl fmt::Display for Suffix {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Unconfirmed::None => Ok(()),
+            what => write!(f, ", unconfirmed: {what}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn suffix_names_what_is_unconfirmed() {
+        assert_eq!(format!("finished{}", Unconfirmed::None.suffix()), "finished");
+        assert_eq!(
+            format!("finished{}", Unconfirmed::GraspForce.suffix()),
+            "finished, unconfirmed: the grasp force (the gripper has no force sensor)"
+        );
+    }
+}

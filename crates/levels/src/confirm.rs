@@ -1,0 +1,360 @@
+//! CONFIRM: a command ends when its goal holds now (docs/design/tables.md "Goals").
+//!
+//! ```text
+//!   a row reports done ----> the sensors confirm the goal, or have no part in it ----> done
+//!        ^        |
+//!        |        '--> they contradict --> Awaited: wait for a newer reading
+//!        '------------------------------------'  |
+//!                                                '--> still contradicted: the command fails
+//! ```
+//!
+//! Preprocess compares the goal of the command with the sensors in every tick; the result is a [`Proof`].
+
+use interfaces::{Reason, Unconfirmed, emove::Offset};
+use rcs_core::{Actions, Plain, Variables, decision_table, table::Choice, table::Verdict};
+
+use crate::{
+    execution::{Ending, Execution},
+    goal::Goal,
+};
+
+/// What the sensors say about the goal of the command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Evidence {
+    /// The goal holds.
+    Holds,
+    /// Nothing contradicts it, and a part of it has no sensor.
+    Unsensed,
+    /// The robot is not at the goal.
+    Elsewhere,
+    /// The robot still moves.
+    Moving,
+    /// The object is not held.
+    NotHeld,
+    /// The object is held in another grip.
+    OtherGrip,
+    /// Something is still held.
+    StillHeld,
+    /// Something unknown is held.
+    Unknown,
+    /// The sensors do not show whether something is held.
+    NotKnown,
+    /// The object was not released at its destination.
+    NotPlaced,
+    /// The gripper of the command is not on the robot.
+    GripperOff,
+    /// A gripper is still on the robot.
+    GripperOn,
+    /// The locking ring is not where the command has turned it.
+    Ring,
+    /// The robot is still in a holster.
+    InHolster,
+    /// The fingers are not around the tool in the drum.
+    OutsideDrum,
+    /// The fingers are still in the drum.
+    InsideDrum,
+    /// The pedestal's hand still holds the object.
+    InPedestal,
+    /// The pedestal's hand does not hold the object.
+    HandEmpty,
+    /// The pedestal's hand is not open.
+    HandNarrow,
+    /// The rotary table is not at its angle.
+    TableElsewhere,
+    /// The Data System has not answered.
+    NoAnswer,
+}
+
+/// How new the readings are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Reading {
+    /// They may be older than the end of the command.
+    Awaited,
+    /// They are newer.
+    Newest,
+}
+
+/// A command that a row reports as done, for [`CONFIRM`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Claim {
+    /// What the sensors say about its goal.
+    pub evidence: Evidence,
+    /// How new the readings are.
+    pub reading: Reading,
+}
+
+/// What [`CONFIRM`] can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+pub enum Doubt {
+    /// Wait for a newer reading.
+    Wait,
+    /// Report an error.
+    Fail(Reason),
+}
+
+decision_table! {
+    /// CONFIRM: a command is done only if the sensors confirm its goal in this tick. Readings that are older than the
+    /// end of the command are given the time to arrive; then the command fails.
+    pub CONFIRM: fn confirm(Claim) -> Doubt or () {
+        1:  evidence: Holds | Unsensed          => consult;
+        2:  reading: Awaited                    => Wait;
+        3:  evidence: Elsewhere | Moving        => Fail(NotAtGoal);
+        4:  evidence: NotHeld                   => Fail(ObjectLost);
+        5:  evidence: OtherGrip                 => Fail(RegripNeeded);
+        6:  evidence: StillHeld                 => Fail(ReleaseNotEnded);
+        7:  evidence: Unknown                   => Fail(UnknownHeld);
+        8:  evidence: NotKnown                  => Fail(HeldNotKnown);
+        9:  evidence: NotPlaced                 => Fail(ObjectLost);
+        10: evidence: GripperOff                => Fail(NotAttached);
+        11: evidence: GripperOn                 => Fail(NotDetached);
+        12: evidence: Ring                      => Fail(RingNotLocked);
+        13: evidence: InHolster                 => Fail(InHolster);
+        14: evidence: OutsideDrum               => Fail(NotPrepared);
+        15: evidence: InsideDrum                => Fail(InDrum);
+        16: evidence: InPedestal                => Fail(PartInPedestal);
+        17: evidence: HandEmpty                 => Fail(HandMissed);
+        18: evidence: HandNarrow                => Fail(HandTimeout);
+        19: evidence: TableElsewhere            => Fail(TableStuck);
+        20: evidence: NoAnswer                  => Fail(DataBaseSilent);
+    }
+}
+
+/// The goal of a command, compared with the sensors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Proof {
+    /// What they say.
+    pub evidence: Evidence,
+    /// The part without a sensor.
+    pub unconfirmed: Unconfirmed,
+}
+
+impl Proof {
+    /// The sensors confirm the goal.
+    pub const HOLDS: Self = Self::of(Evidence::Holds);
+
+    /// The sensors say this, and see the whole goal.
+    #[must_use]
+    pub const fn of(evidence: Evidence) -> Self {
+        Self { evidence, unconfirmed: Unconfirmed::None }
+    }
+
+    /// A part of the goal has no sensor.
+    #[must_use]
+    pub const fn unsensed(unconfirmed: Unconfirmed) -> Self {
+        match unconfirmed {
+            Unconfirmed::None => Self::HOLDS,
+            Unconfirmed::GraspForce | Unconfirmed::ToolInDrum | Unconfirmed::Position => {
+                Self { evidence: Evidence::Unsensed, unconfirmed }
+            }
+        }
+    }
+
+    /// The goal holds if a condition does.
+    #[must_use]
+    pub const fn when(holds: bool, otherwise: Evidence) -> Self {
+        if holds { Self::HOLDS } else { Self::of(otherwise) }
+    }
+
+    /// The robot is at a place, by its offset from there.
+    #[must_use]
+    pub const fn at(offset: Offset) -> Self {
+        match offset {
+            Offset::None | Offset::Slight => Self::HOLDS,
+            Offset::Off => Self::of(Evidence::Elsewhere),
+            Offset::NotSensed => Self::unsensed(Unconfirmed::Position),
+        }
+    }
+
+    /// Both goals: the first contradiction counts, else the first part without a sensor.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        match (self.evidence, other.evidence) {
+            (Evidence::Holds, _) | (Evidence::Unsensed, _) if !other.is_done() => other,
+            (Evidence::Holds, _) => other,
+            _ => self,
+        }
+    }
+
+    /// The goal, with one more part that has no sensor and is named first.
+    #[must_use]
+    pub const fn and_unsensed(self, unconfirmed: Unconfirmed) -> Self {
+        if self.is_done() { Self::unsensed(unconfirmed) } else { self }
+    }
+
+    /// Nothing contradicts the goal.
+    #[must_use]
+    pub const fn is_done(self) -> bool {
+        matches!(self.evidence, Evidence::Holds | Evidence::Unsensed)
+    }
+}
+
+impl Execution {
+    /// Consult [`CONFIRM`] about a row that reports done: the row, or that of CONFIRM, which has this number. A process
+    /// that waits stays in its step.
+    pub fn confirm<Action: Ending, Step>(
+        &mut self,
+        number: u8,
+        step: Step,
+        choice: Choice<Action, Step>,
+        (goal, proof): (&Goal, Proof),
+    ) -> Choice<Action, Step> {
+        if !choice.action.ends() {
+            self.claimed = 0;
+            return choice;
+        }
+        let reading = if self.claimed < goal.age { Reading::Awaited } else { Reading::Newest };
+        match confirm((), &Claim { evidence: proof.evidence, reading }) {
+            Verdict::Passed(()) => {
+                (self.claimed, self.unconfirmed) = (0, proof.unconfirmed);
+                choice
+            }
+            Verdict::Decided(decision) => {
+                self.claimed = self.claimed.saturating_add(1);
+                let (action, next) = match decision.action {
+                    Doubt::Wait => (Action::WAIT, step),
+                    Doubt::Fail(reason) => (Action::fail(reason), choice.next),
+                };
+                Choice { table: number, row: decision.row, action, next, values: decision.values }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        execution::{Course, Outcome},
+        goal::{Goals, Sensor},
+        ladder::Ladder,
+        processes::{Emove, Prim, Subtask, Task},
+        task::plan::TaskVerb,
+    };
+    use interfaces::{emove::EmoveVerb, prim::PrimVerb, subtask::SubtaskVerb};
+    use rcs_core::{handshake::Arrival, table::Values};
+
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    enum Act {
+        Wait,
+        Order,
+        Finish,
+        Fail(Reason),
+    }
+
+    impl Ending for Act {
+        const WAIT: Self = Self::Wait;
+
+        fn fail(reason: Reason) -> Self {
+            Self::Fail(reason)
+        }
+
+        fn ends(&self) -> bool {
+            *self == Self::Finish
+        }
+    }
+
+    static GOAL: Goal =
+        Goal { holds: "it holds", sensors: &[Sensor::Resolvers], tolerance: "", age: 2, unconfirmed: &[] };
+
+    /// What CONFIRM makes of a row from step 7 to step 8.
+    fn ask(execution: &mut Execution, action: Act, proof: Proof) -> (u8, u8, Act, u8) {
+        let row = Choice { table: 3, row: 5, action, next: 8_u8, values: Values::default() };
+        let choice = execution.confirm(9, 7_u8, row, (&GOAL, proof));
+        (choice.table, choice.row, choice.action, choice.next)
+    }
+
+    #[test]
+    fn confirmed_command_is_done_at_once() {
+        let mut execution = Execution::default();
+        assert_eq!(ask(&mut execution, Act::Finish, Proof::HOLDS), (3, 5, Act::Finish, 8));
+        assert_eq!(execution.unconfirmed, Unconfirmed::None);
+        let proof = Proof::unsensed(Unconfirmed::GraspForce);
+        assert_eq!(ask(&mut execution, Act::Finish, proof), (3, 5, Act::Finish, 8));
+        execution.finish();
+        assert_eq!((execution.outcome, execution.unconfirmed()), (Outcome::Done, Unconfirmed::GraspForce));
+        execution.course(Arrival::New);
+        assert_eq!(execution.unconfirmed(), Unconfirmed::None, "the next command has its own goal");
+    }
+
+    #[test]
+    fn contradicted_command_waits_for_a_newer_reading_and_then_fails() {
+        for (evidence, row, reason) in [
+            (Evidence::Elsewhere, 3, Reason::NotAtGoal),
+            (Evidence::Moving, 3, Reason::NotAtGoal),
+            (Evidence::NotHeld, 4, Reason::ObjectLost),
+            (Evidence::OtherGrip, 5, Reason::RegripNeeded),
+            (Evidence::StillHeld, 6, Reason::ReleaseNotEnded),
+            (Evidence::Unknown, 7, Reason::UnknownHeld),
+            (Evidence::NotKnown, 8, Reason::HeldNotKnown),
+            (Evidence::NotPlaced, 9, Reason::ObjectLost),
+            (Evidence::GripperOff, 10, Reason::NotAttached),
+            (Evidence::GripperOn, 11, Reason::NotDetached),
+            (Evidence::Ring, 12, Reason::RingNotLocked),
+            (Evidence::InHolster, 13, Reason::InHolster),
+            (Evidence::OutsideDrum, 14, Reason::NotPrepared),
+            (Evidence::InsideDrum, 15, Reason::InDrum),
+            (Evidence::InPedestal, 16, Reason::PartInPedestal),
+            (Evidence::HandEmpty, 17, Reason::HandMissed),
+            (Evidence::HandNarrow, 18, Reason::HandTimeout),
+            (Evidence::TableElsewhere, 19, Reason::TableStuck),
+            (Evidence::NoAnswer, 20, Reason::DataBaseSilent),
+        ] {
+            let mut execution = Execution::default();
+            assert_eq!(execution.course(Arrival::New), Course::Begin);
+            let mut tick = |action| ask(&mut execution, action, Proof::of(evidence));
+            assert_eq!(tick(Act::Order), (3, 5, Act::Order, 8), "nothing is claimed yet");
+            assert_eq!(tick(Act::Finish), (9, 2, Act::Wait, 7), "{evidence:?}");
+            assert_eq!(tick(Act::Finish), (9, 2, Act::Wait, 7));
+            assert_eq!(tick(Act::Finish), (9, row, Act::Fail(reason), 8));
+        }
+    }
+
+    #[test]
+    fn goal_that_holds_in_time_ends_the_wait() {
+        let mut execution = Execution::default();
+        assert_eq!(ask(&mut execution, Act::Finish, Proof::of(Evidence::Elsewhere)).2, Act::Wait);
+        assert_eq!(ask(&mut execution, Act::Finish, Proof::HOLDS).2, Act::Finish);
+        assert_eq!(execution.claimed, 0);
+    }
+
+    #[test]
+    fn first_contradiction_counts_before_parts_without_a_sensor() {
+        let force = Proof::unsensed(Unconfirmed::GraspForce);
+        let elsewhere = Proof::of(Evidence::Elsewhere);
+        assert_eq!(force.and(elsewhere), elsewhere);
+        assert_eq!(elsewhere.and(Proof::of(Evidence::NotHeld)), elsewhere);
+        assert_eq!(Proof::HOLDS.and(force), force);
+        assert_eq!(force.and(Proof::unsensed(Unconfirmed::Position)), force);
+        assert_eq!(force.and_unsensed(Unconfirmed::ToolInDrum), Proof::unsensed(Unconfirmed::ToolInDrum));
+        assert_eq!(elsewhere.and_unsensed(Unconfirmed::ToolInDrum), elsewhere);
+    }
+
+    #[test]
+    fn every_goal_names_its_sensor_and_an_age_within_the_ladder() {
+        for process in Ladder::processes() {
+            assert!(!process.goals.is_empty(), "{}", process.name);
+            for declared in process.goals {
+                let goal = declared.goal;
+                assert!(!goal.holds.is_empty() && !goal.sensors.is_empty(), "{}", process.name);
+                assert!(
+                    goal.age <= 4,
+                    "{} {}: Task is 4 ticks from the resolvers",
+                    process.name,
+                    declared.command
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn every_process_with_statuses_below_consults_confirm() {
+        for (name, tables) in Ladder::processes().iter().map(|process| (process.name, process.tables)) {
+            let confirms = tables.iter().any(|table| table.name == CONFIRM.name);
+            let commands = matches!(name, "Task" | "Subtask" | "E-move" | "Prim" | "Active Pedestal");
+            assert_eq!(confirms, commands, "{name}");
+        }
+        let counts = [Task::GOALS.len(), Subtask::GOALS.len(), Emove::GOALS.len(), Prim::GOALS.len()];
+        let verbs = [TaskVerb::ALL.len(), SubtaskVerb::ALL.len(), EmoveVerb::ALL.len(), PrimVerb::ALL.len()];
+        assert_eq!(counts, verbs);
+    }
+}

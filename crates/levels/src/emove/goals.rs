@@ -1,0 +1,194 @@
+//! The goals of E-move's commands, and how the sensors compare with them.
+
+use interfaces::{
+    EmoveOutputs, Unconfirmed,
+    emove::{EmoveCommand, EmoveVerb, Holding},
+    grip::Felt,
+    process::Inputs,
+};
+use rcs_core::handshake::Lower;
+use taskdata::files::TaskData;
+
+use super::{
+    gripper::Gripper,
+    robot_place::{commanded_pose, offset},
+    state::State,
+    tables::{Fingers, Holster, Lock, Mate, Situation},
+};
+use crate::{
+    confirm::{Evidence, Proof},
+    goal::{AT_PLACE, Goal, Sensor},
+    held::Held,
+};
+
+/// E-PAUSE.
+pub static REST: Goal = Goal {
+    holds: "Prim commands no motion, or has lost the link",
+    sensors: &[Sensor::Below],
+    tolerance: "",
+    age: 1,
+    unconfirmed: &[],
+};
+/// MOV-TO-LOC, MOV-TO-OBJ, MOV-TO-HOL, MOV-TO-VU, LOCATE-OBJ.
+pub static PLACE: Goal = Goal {
+    holds: "the robot is at the goal pose",
+    sensors: &[Sensor::Resolvers],
+    tolerance: AT_PLACE,
+    age: 2,
+    unconfirmed: &[Unconfirmed::Position],
+};
+/// LOCATE-OBJ.
+pub static LOCATED: Goal = Goal {
+    holds: "the camera has seen the object, and the robot is over it",
+    sensors: &[Sensor::Camera, Sensor::Resolvers],
+    tolerance: AT_PLACE,
+    age: 2,
+    unconfirmed: &[Unconfirmed::Position],
+};
+/// MOV-OBJ-TO.
+pub static BROUGHT: Goal = Goal {
+    holds: "the robot is at the goal pose and holds the object",
+    sensors: &[Sensor::Resolvers, Sensor::Fingers, Sensor::StrainGages],
+    tolerance: AT_PLACE,
+    age: 2,
+    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce],
+};
+/// GRASP-OBJ.
+pub static HELD: Goal = Goal {
+    holds: "the fingers stand at the size of the object, and feel it",
+    sensors: &[Sensor::Fingers, Sensor::StrainGages],
+    tolerance: "parts gripper: 1 lb on each finger; jaws: 0.10 in",
+    age: 1,
+    unconfirmed: &[Unconfirmed::GraspForce],
+};
+/// RELEASE.
+pub static RELEASED: Goal = Goal {
+    holds: "nothing is between the fingers",
+    sensors: &[Sensor::Fingers, Sensor::StrainGages],
+    tolerance: "parts gripper: 1 lb on each finger; jaws: open by the depart size",
+    age: 1,
+    unconfirmed: &[],
+};
+/// QC-ATTACH.
+pub static ATTACHED: Goal = Goal {
+    holds: "the gripper is mated, the ring is locked, and the holster is not full",
+    sensors: &[Sensor::IdPins, Sensor::RingSensors, Sensor::HolsterSensors],
+    tolerance: "",
+    age: 1,
+    unconfirmed: &[],
+};
+/// QC-DETACH.
+pub static DETACHED: Goal = Goal {
+    holds: "no gripper is mated",
+    sensors: &[Sensor::IdPins],
+    tolerance: "",
+    age: 1,
+    unconfirmed: &[],
+};
+/// WITHDRAW.
+pub static WITHDRAWN: Goal = Goal {
+    holds: "the robot is where Prim has sent it",
+    sensors: &[Sensor::Resolvers],
+    tolerance: AT_PLACE,
+    age: 2,
+    unconfirmed: &[Unconfirmed::Position],
+};
+/// INSERT-TOOL.
+pub static INSERTED: Goal = Goal {
+    holds: "the robot is where Prim has sent it, with the tool held, and the drum has it",
+    sensors: &[Sensor::Resolvers, Sensor::Fingers],
+    tolerance: AT_PLACE,
+    age: 2,
+    unconfirmed: &[Unconfirmed::ToolInDrum],
+};
+/// RELEASE-TOOL.
+pub static TOOL_RELEASED: Goal = Goal {
+    holds: "nothing is between the fingers, the robot is where Prim has sent it, and the drum has the tool",
+    sensors: &[Sensor::Fingers, Sensor::Resolvers],
+    tolerance: AT_PLACE,
+    age: 2,
+    unconfirmed: &[Unconfirmed::ToolInDrum],
+};
+/// REMOVE-TOOL.
+pub static REMOVED: Goal = Goal {
+    holds: "the robot is where Prim has sent it, with the tool held",
+    sensors: &[Sensor::Resolvers, Sensor::Fingers],
+    tolerance: AT_PLACE,
+    age: 2,
+    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce],
+};
+
+impl State {
+    /// The goal of the command, compared with the sensors.
+    pub(super) fn proof(
+        &self,
+        command: &EmoveCommand,
+        situation: &Situation,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &EmoveOutputs,
+    ) -> Proof {
+        let memory = inputs.memory;
+        let force = if Gripper::attached(memory).has_stops() {
+            Proof::unsensed(Unconfirmed::GraspForce)
+        } else {
+            Proof::HOLDS
+        };
+        let at_goal = || {
+            let [_, goal, ..] = &outputs.poses;
+            let pose = self.route.as_ref().map_or(&goal.pose, |route| &route.to.pose);
+            Proof::at(offset(pose, memory))
+        };
+        let at_command = || {
+            commanded_pose(memory)
+                .map_or(Proof::unsensed(Unconfirmed::Position), |pose| Proof::at(offset(&pose, memory)))
+        };
+        let is_held = || match situation.held {
+            Held::Right => force,
+            Held::NotKnown => Proof::of(Evidence::NotKnown),
+            Held::Nothing | Held::Other | Held::Something => Proof::of(Evidence::NotHeld),
+        };
+        let is_free = || match self.holding(memory) {
+            Holding::Nothing => Proof::HOLDS,
+            Holding::Object(_) => Proof::of(Evidence::StillHeld),
+            Holding::Something => Proof::of(Evidence::Unknown),
+            Holding::NotKnown => Proof::of(Evidence::NotKnown),
+        };
+        match command.command {
+            EmoveVerb::None | EmoveVerb::Pause => {
+                let moves = matches!(situation.prim, Lower::Pending | Lower::Executing);
+                Proof::when(!moves, Evidence::Moving)
+            }
+            EmoveVerb::MovToLoc
+            | EmoveVerb::MovToObj
+            | EmoveVerb::MovToVu
+            | EmoveVerb::MovToHol
+            | EmoveVerb::LocateObj => at_goal(),
+            EmoveVerb::MovObjTo => is_held().and(at_goal()),
+            EmoveVerb::GraspObj => self.is_grasped(situation, memory).and(force),
+            EmoveVerb::AcquireTool => self.is_grasped(situation, memory).and(force),
+            EmoveVerb::Release => is_free(),
+            EmoveVerb::QcAttach => Proof::when(situation.mate == Mate::Right, Evidence::GripperOff)
+                .and(Proof::when(situation.lock == Lock::Locked, Evidence::Ring))
+                .and(Proof::when(situation.holster != Holster::Full, Evidence::GripperOff)),
+            EmoveVerb::QcDetach => Proof::when(situation.mate == Mate::None, Evidence::GripperOn),
+            EmoveVerb::Withdraw => at_command(),
+            EmoveVerb::InsertTool => is_held().and(at_command()).and_unsensed(Unconfirmed::ToolInDrum),
+            EmoveVerb::ReleaseTool => is_free().and(at_command()).and_unsensed(Unconfirmed::ToolInDrum),
+            EmoveVerb::RemoveTool => is_held().and(at_command()),
+        }
+    }
+
+    /// The fingers stand at the size of the object; those of the parts gripper feel it.
+    fn is_grasped(&self, situation: &Situation, memory: &interfaces::CommonMemory) -> Proof {
+        let attached = Gripper::attached(memory);
+        if situation.fingers != Fingers::Gripping {
+            return Proof::of(Evidence::NotHeld);
+        }
+        match attached.felt(memory) {
+            _ if attached.has_stops() => Proof::HOLDS,
+            Felt::Something => Proof::HOLDS,
+            Felt::Nothing => Proof::of(Evidence::NotHeld),
+            Felt::NotKnown => Proof::of(Evidence::NotKnown),
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Commands that the processes below report as done, while the sensors contradict the goal.
+
+use geometry::frame::Vector;
+use interfaces::{
+    Reason, Unconfirmed,
+    emove::{
+        EmoveVerb::{GraspObj, MovObjTo, MovToLoc, Release, Withdraw},
+        Offset,
+    },
+};
+
+use super::{
+    bench::{Bench, DONE, error},
+    doubles::Mishap,
+};
+
+#[test]
+fn motion_is_not_done_if_the_robot_has_not_moved() {
+    let mut bench = Bench::ready("HOME", 1);
+    bench.spoil("GOTO-PT", Mishap::Stays);
+    assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), error(Reason::NotAtGoal));
+    assert_eq!(bench.memory.emove.status.at, None);
+}
+
+#[test]
+fn motion_is_not_done_if_the_arm_hangs_beside_the_goal() {
+    for (sag, end, offset) in [
+        (0.01, DONE, Offset::None),
+        (0.04, DONE, Offset::Slight),
+        (0.10, error(Reason::NotAtGoal), Offset::None),
+    ] {
+        let mut bench = Bench::ready("HOME", 1);
+        bench.prim.sag = Vector::new(0.0, 0.0, sag);
+        assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), end, "{sag} in");
+        assert_eq!(bench.memory.emove.status.offset, offset, "{sag} in");
+    }
+}
+
+#[test]
+fn withdrawal_is_not_done_if_the_arm_hangs_beside_the_commanded_pose() {
+    let mut bench = Bench::ready("BENCH", 1);
+    bench.prim.sag = Vector::new(0.0, 0.1, 0.0);
+    assert_eq!(bench.run(Withdraw, "", 0, "BENCH", 0), error(Reason::NotAtGoal));
+}
+
+#[test]
+fn only_the_parts_gripper_confirms_the_grasp_force() {
+    for (gripper, object, size, unconfirmed) in [
+        (1, "BLOCK", 75, Unconfirmed::None),
+        (2, "SHAFT", 204, Unconfirmed::GraspForce),
+        (3, "CUTTER", 246, Unconfirmed::GraspForce),
+    ] {
+        let mut bench = Bench::ready("HOME", gripper);
+        bench.world.object = Some(size);
+        assert_eq!(bench.run(GraspObj, object, 1, "HOME", gripper), DONE);
+        assert_eq!(bench.memory.emove.status.unconfirmed, unconfirmed, "{object}");
+        assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), DONE);
+        assert_eq!(bench.memory.emove.status.unconfirmed, unconfirmed, "{object}");
+        assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
+        assert_eq!(bench.memory.emove.status.unconfirmed, Unconfirmed::None, "{object}");
+    }
+}

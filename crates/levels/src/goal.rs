@@ -1,0 +1,86 @@
+//! The goal of a command: what must hold at its end, and which sensors confirm it (V: execution depends on "whether any
+//! subgoals of the command have been achieved [and] what sensory values are being observed").
+//!
+//! `commands!` takes a goal for each command, so that a command without one does not compile. `rcs-run tables` prints
+//! them. [`CONFIRM`](crate::confirm::CONFIRM) compares the goal with the sensors when a row reports the end.
+
+use interfaces::Unconfirmed;
+use rcs_core::Plain;
+
+/// What confirms a goal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Sensor {
+    /// The resolvers of the robot.
+    Resolvers,
+    /// The commanded motion of the process itself.
+    #[text = "commanded motion"]
+    Command,
+    /// The acknowledgements and reports of the robot controller.
+    #[text = "DEPC answers"]
+    Link,
+    /// The sensor that the guarded move names.
+    #[text = "sensor of the guarded move"]
+    Guard,
+    /// The force sensor at the wrist.
+    Force,
+    /// The potentiometer of the fingers.
+    #[text = "potentiometer of the fingers"]
+    Fingers,
+    /// The strain gages of the fingers.
+    StrainGages,
+    /// The id pins of the quick change.
+    IdPins,
+    /// The two sensors of the locking ring.
+    RingSensors,
+    /// The four sensors of a holster.
+    HolsterSensors,
+    /// The vision system.
+    Camera,
+    /// Potentiometer and strain gages of the pedestal's hand.
+    #[text = "sensors of the pedestal's hand"]
+    Hand,
+    /// Counter and potentiometer of the rotary table.
+    #[text = "counter and potentiometer of the table"]
+    Table,
+    /// The answers of the Data System.
+    DataSystem,
+    /// The statuses of the processes below.
+    #[text = "statuses from below"]
+    Below,
+}
+
+/// The goal of a command.
+#[derive(Debug)]
+pub struct Goal {
+    /// What must hold.
+    pub holds: &'static str,
+    /// What confirms it.
+    pub sensors: &'static [Sensor],
+    /// The tolerance, with its unit; empty if the reading has two values.
+    pub tolerance: &'static str,
+    /// Greatest age of a reading at the end of the command, ticks: the hops of the ladder from the sensor. So long the
+    /// process waits for a newer reading before the command fails.
+    pub age: u8,
+    /// The part that no sensor confirms: the status names it.
+    pub unconfirmed: &'static [Unconfirmed],
+}
+
+/// A command with its goal.
+#[derive(Clone, Copy, Debug)]
+pub struct Declared {
+    /// The command, as the manual writes it; empty for the state before the first one.
+    pub command: &'static str,
+    /// Its goal.
+    pub goal: &'static Goal,
+}
+
+/// The goals of a process, for `rcs-run tables`.
+pub trait Goals {
+    /// The goals of all its commands.
+    const GOALS: &'static [Declared];
+}
+
+/// Tolerance of positions that Prim confirms.
+pub const AT_POINT: &str = "0.02 in, 0.1 degree for 3 ticks";
+/// Tolerance of positions that E-move and the processes above it confirm.
+pub const AT_PLACE: &str = "0.05 in, 0.25 degree";

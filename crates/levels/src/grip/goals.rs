@@ -1,0 +1,39 @@
+//! The goals of the commands. The rows that end a command ask for the reading itself, of the same tick.
+
+use crate::goal::{Goal, Sensor};
+
+/// PAUSE.
+pub static REST: Goal = Goal {
+    holds: "the fingers stand, or have had their time; without the gripper the valves are off",
+    sensors: &[Sensor::Fingers],
+    tolerance: "6 counts per tick for 5 ticks",
+    age: 0,
+    unconfirmed: &[],
+};
+
+/// POSITION, OPEN-GRIP.
+pub static OPENING: Goal = Goal {
+    holds: "the settled opening is the commanded one",
+    sensors: &[Sensor::Fingers],
+    tolerance: "0.016 in",
+    age: 0,
+    unconfirmed: &[],
+};
+
+/// CLOSE-GRIP.
+pub static FORCE: Goal = Goal {
+    holds: "both fingers feel the commanded force, or the fingers have passed the grasp size and feel nothing",
+    sensors: &[Sensor::StrainGages, Sensor::Fingers],
+    tolerance: "2 lb; a finger touches from 1 lb on",
+    age: 0,
+    unconfirmed: &[],
+};
+
+/// UP-INIT.
+pub static CALIBRATED: Goal = Goal {
+    holds: "the readings at both ends of travel and without force are plausible",
+    sensors: &[Sensor::Fingers, Sensor::StrainGages],
+    tolerance: "steady for 12 ticks",
+    age: 0,
+    unconfirmed: &[],
+};

@@ -1,0 +1,32 @@
+//! The goals of the commands. The rows that end a command ask for the reading itself, of the same tick.
+
+use interfaces::Unconfirmed;
+
+use crate::goal::{Goal, Sensor};
+
+/// VG-PAUSE, TG-PAUSE.
+pub static REST: Goal = Goal {
+    holds: "the fingers stand",
+    sensors: &[Sensor::Fingers],
+    tolerance: "4 counts (0.007 in) in 4 ticks",
+    age: 0,
+    unconfirmed: &[],
+};
+
+/// VG-GRASP, TG-GRASP.
+pub static CLOSED: Goal = Goal {
+    holds: "the fingers stand at the commanded size, or closed",
+    sensors: &[Sensor::Fingers],
+    tolerance: "0.10 in",
+    age: 0,
+    unconfirmed: &[Unconfirmed::GraspForce],
+};
+
+/// VG-RELEASE, TG-RELEASE, VGRIP-POSE, TGRIP-POSE.
+pub static OPENED: Goal = Goal {
+    holds: "the fingers stand at the commanded size, or open",
+    sensors: &[Sensor::Fingers],
+    tolerance: "0.10 in",
+    age: 0,
+    unconfirmed: &[],
+};

@@ -1,0 +1,30 @@
+//! The goals of the commands. The rows that end a command ask for the reading itself, of the same tick.
+
+use crate::goal::{Goal, Sensor};
+
+/// PAUSE.
+pub static REST: Goal = Goal {
+    holds: "the motor stands, or does not answer",
+    sensors: &[Sensor::Table],
+    tolerance: "no step in 3 ticks",
+    age: 0,
+    unconfirmed: &[],
+};
+
+/// CALIBRATE.
+pub static CALIBRATED: Goal = Goal {
+    holds: "the table stands at the + limit with the counter at zero, and then at -20.00 degrees",
+    sensors: &[Sensor::Table],
+    tolerance: "0.05 degree on the counter, 12 counts on the potentiometer",
+    age: 0,
+    unconfirmed: &[],
+};
+
+/// TURN.
+pub static TURNED: Goal = Goal {
+    holds: "the table stands at the angle",
+    sensors: &[Sensor::Table],
+    tolerance: "0.05 degree on the counter, 12 counts on the potentiometer",
+    age: 0,
+    unconfirmed: &[],
+};

@@ -1,0 +1,100 @@
+//! The goals of Prim's commands, and how the sensors compare with them.
+
+use geometry::frame::Frame;
+use interfaces::{Unconfirmed, prim::PrimVerb};
+
+use super::{
+    motion::segment::FrameData,
+    state::{Goal as Target, State},
+    tables::{Link, Posture, Rest, Samples, Situation},
+};
+use crate::{
+    confirm::{Evidence, Proof},
+    goal::{AT_POINT, Goal, Sensor},
+};
+
+/// Seconds by which a robot that moves follows its commanded point: two ticks of the line and the settling of the
+/// servos (ASSUMED: five ticks).
+const LAG_S: f64 = 0.2;
+
+/// PAUSE.
+pub static REST: Goal = Goal {
+    holds: "nothing is commanded to move, or the link is down",
+    sensors: &[Sensor::Command],
+    tolerance: "",
+    age: 0,
+    unconfirmed: &[],
+};
+/// ROBOT-INIT.
+pub static POSITIONED: Goal = Goal {
+    holds: "the link runs, and the robot controller has reported where the robot is",
+    sensors: &[Sensor::Link],
+    tolerance: "",
+    age: 1,
+    unconfirmed: &[],
+};
+/// GO-THRU.
+pub static PASSING: Goal = Goal {
+    holds: "the robot is within the break distance of the point, and so near as it follows its command",
+    sensors: &[Sensor::Resolvers],
+    tolerance: "break distance, and 0.2 s at the velocity of the motion",
+    age: 1,
+    unconfirmed: &[Unconfirmed::Position],
+};
+/// GOTO-PT, DELTA-MOVE, GO-WHILE.
+pub static POINT: Goal = Goal {
+    holds: "the robot rests at the point",
+    sensors: &[Sensor::Resolvers],
+    tolerance: AT_POINT,
+    age: 1,
+    unconfirmed: &[Unconfirmed::Position],
+};
+/// GO-UNTIL.
+pub static CONTACT: Goal = Goal {
+    holds: "the condition has come, and the robot rests",
+    sensors: &[Sensor::Guard, Sensor::Resolvers],
+    tolerance: "that of the sensor; no motion above 0.02 in, 0.1 degree per tick for 3 ticks",
+    age: 1,
+    unconfirmed: &[],
+};
+/// CAL-SENSOR.
+pub static CALIBRATED: Goal = Goal {
+    holds: "the robot rests, and the readings for the bias are complete",
+    sensors: &[Sensor::Force, Sensor::Resolvers],
+    tolerance: "no motion above 0.02 in, 0.1 degree per tick",
+    age: 1,
+    unconfirmed: &[],
+};
+
+impl State {
+    /// The goal of a command, compared with the sensors.
+    pub(super) fn proof(&self, verb: PrimVerb, situation: &Situation, resolvers: Option<&Frame>) -> Proof {
+        let rests = |rest: Rest| Proof::when(rest == Rest::Arrived, Evidence::Moving);
+        match verb {
+            PrimVerb::None | PrimVerb::Pause => {
+                let still = matches!(situation.posture, Posture::Unpositioned | Posture::Standing);
+                Proof::when(still, Evidence::Moving)
+            }
+            PrimVerb::RobotInit => Proof::when(situation.link == Link::Running, Evidence::Elsewhere),
+            PrimVerb::GotoPt | PrimVerb::DeltaMove | PrimVerb::GoWhile => match resolvers {
+                None => Proof::unsensed(Unconfirmed::Position),
+                Some(_) => Proof::when(situation.goal == Rest::Arrived, Evidence::Elsewhere),
+            },
+            PrimVerb::GoThru => {
+                self.target.goal.as_ref().map_or(Proof::HOLDS, |goal| passes(goal, resolvers))
+            }
+            PrimVerb::GoUntil => rests(situation.rest),
+            PrimVerb::CalSensor => rests(situation.rest)
+                .and(Proof::when(situation.samples == Samples::Complete, Evidence::Moving)),
+        }
+    }
+}
+
+/// The robot passes a through point, as far behind its command as it follows.
+fn passes(goal: &Target, resolvers: Option<&Frame>) -> Proof {
+    let Some(present) = resolvers else { return Proof::unsensed(Unconfirmed::Position) };
+    let Target { frame, limits, through } = goal;
+    let within = through.unwrap_or_default() + limits.velocity * LAG_S;
+    let distance = FrameData::frame(frame).distance(present).path();
+    Proof::when(distance <= within, Evidence::Elsewhere)
+}

@@ -1,0 +1,30 @@
+//! The goals of the commands. The rows that end a command ask for the reading itself, of the same tick.
+
+use crate::goal::{Goal, Sensor};
+
+/// QC-PAUSE.
+pub static REST: Goal = Goal {
+    holds: "the ring has no air",
+    sensors: &[Sensor::Command],
+    tolerance: "",
+    age: 0,
+    unconfirmed: &[],
+};
+
+/// QC-LOCK.
+pub static LOCKED: Goal = Goal {
+    holds: "the ring is locked, and the id pins read a legal id",
+    sensors: &[Sensor::RingSensors, Sensor::IdPins],
+    tolerance: "",
+    age: 0,
+    unconfirmed: &[],
+};
+
+/// QC-UNLOCK.
+pub static UNLOCKED: Goal = Goal {
+    holds: "the ring is unlocked",
+    sensors: &[Sensor::RingSensors],
+    tolerance: "",
+    age: 0,
+    unconfirmed: &[],
+};

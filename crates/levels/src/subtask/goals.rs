@@ -1,0 +1,187 @@
+//! The goals of Subtask's commands, and how the statuses of E-move and of the pedestal compare with them.
+
+use interfaces::{
+    Unconfirmed,
+    emove::{EmoveStatus, Holding},
+    pedestal::PedestalStatus,
+    subtask::{SubtaskCommand, SubtaskVerb},
+};
+
+use super::{
+    pedestal_hand::pedestal_hand,
+    preprocess::site,
+    tables::{Exchange, GripHeld, Gripper, PedestalHand, Situation, Where},
+};
+use crate::{
+    confirm::{Evidence, Proof},
+    emove::gripper::Gripper as Attached,
+    goal::{AT_PLACE, Goal, Sensor},
+    held::Held,
+};
+
+/// Tolerance of a grasp, as E-move states it.
+const GRASP: &str = "as GRASP-OBJ of E-move";
+
+/// S-PAUSE.
+pub static REST: Goal = Goal {
+    holds: "E-move and the pedestal pause, or do not answer",
+    sensors: &[Sensor::Below],
+    tolerance: "",
+    age: 2,
+    unconfirmed: &[],
+};
+/// GET-ENDEFF.
+pub static ATTACHED: Goal = Goal {
+    holds: "the gripper is on the robot, which is clear of the holsters",
+    sensors: &[Sensor::IdPins, Sensor::RingSensors, Sensor::Resolvers],
+    tolerance: "",
+    age: 3,
+    unconfirmed: &[],
+};
+/// GET-OBJECT.
+pub static HELD: Goal = Goal {
+    holds: "the object is held",
+    sensors: &[Sensor::Fingers, Sensor::StrainGages],
+    tolerance: GRASP,
+    age: 2,
+    unconfirmed: &[Unconfirmed::GraspForce],
+};
+/// FIX-GRIP.
+pub static REGRIPPED: Goal = Goal {
+    holds: "the object is held in the destination grip, and the pedestal's hand holds nothing",
+    sensors: &[Sensor::Fingers, Sensor::StrainGages, Sensor::Hand],
+    tolerance: GRASP,
+    age: 2,
+    unconfirmed: &[Unconfirmed::GraspForce],
+};
+/// PLACE-OBJ.
+pub static PLACED: Goal = Goal {
+    holds: "the fingers have released the object at the location, and hold nothing",
+    sensors: &[Sensor::Fingers, Sensor::StrainGages, Sensor::Resolvers],
+    tolerance: AT_PLACE,
+    age: 3,
+    unconfirmed: &[],
+};
+/// MOVE-OBJ>D.
+pub static BROUGHT: Goal = Goal {
+    holds: "the robot is at the location and holds the object in the destination grip",
+    sensors: &[Sensor::Resolvers, Sensor::Fingers, Sensor::StrainGages],
+    tolerance: AT_PLACE,
+    age: 3,
+    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce],
+};
+/// GOTO-ENDPT, GOTO-DEST, >POSITION.
+pub static PLACE: Goal = Goal {
+    holds: "the robot is at the location",
+    sensors: &[Sensor::Resolvers],
+    tolerance: AT_PLACE,
+    age: 3,
+    unconfirmed: &[Unconfirmed::Position],
+};
+/// RELEASE.
+pub static RELEASED: Goal = Goal {
+    holds: "nothing is held",
+    sensors: &[Sensor::Fingers, Sensor::StrainGages],
+    tolerance: "as RELEASE of E-move",
+    age: 2,
+    unconfirmed: &[],
+};
+/// INSERT-TOOL.
+pub static INSERTED: Goal = Goal {
+    holds: "the tool is held, and the fingers are in the drum with it",
+    sensors: &[Sensor::Fingers, Sensor::Resolvers],
+    tolerance: AT_PLACE,
+    age: 3,
+    unconfirmed: &[Unconfirmed::ToolInDrum],
+};
+/// RELEASE-TOOL.
+pub static TOOL_RELEASED: Goal = Goal {
+    holds: "nothing is held, the fingers are out of the drum, and the drum has the tool",
+    sensors: &[Sensor::Fingers, Sensor::Resolvers],
+    tolerance: AT_PLACE,
+    age: 3,
+    unconfirmed: &[Unconfirmed::ToolInDrum],
+};
+/// ACQUIRE-TOOL.
+pub static ACQUIRED: Goal = Goal {
+    holds: "the tool is held, and the fingers are in the drum with it",
+    sensors: &[Sensor::Fingers, Sensor::Resolvers],
+    tolerance: GRASP,
+    age: 3,
+    unconfirmed: &[Unconfirmed::GraspForce],
+};
+/// REMOVE-TOOL.
+pub static REMOVED: Goal = Goal {
+    holds: "the tool is held, and the fingers are out of the drum",
+    sensors: &[Sensor::Fingers, Sensor::Resolvers],
+    tolerance: GRASP,
+    age: 3,
+    unconfirmed: &[Unconfirmed::GraspForce],
+};
+
+/// The goal of a command, compared with the statuses from below.
+pub(super) fn proof(
+    command: &SubtaskCommand,
+    situation: &Situation,
+    emove: &EmoveStatus,
+    pedestal: &PedestalStatus,
+) -> Proof {
+    let is_held = || match situation.held {
+        Held::Right => force(emove.end_effector_id),
+        Held::NotKnown => Proof::of(Evidence::NotKnown),
+        Held::Nothing | Held::Other | Held::Something => Proof::of(Evidence::NotHeld),
+    };
+    let in_destination_grip = || Proof::when(situation.grip == GripHeld::Destination, Evidence::OtherGrip);
+    let at_place = || at(emove, command);
+    let in_drum = || Proof::when(emove.drum, Evidence::OutsideDrum);
+    let out_of_drum = || Proof::when(!emove.drum, Evidence::InsideDrum);
+    match command.command {
+        SubtaskVerb::None | SubtaskVerb::Pause => Proof::HOLDS,
+        SubtaskVerb::GetEndeff => Proof::when(situation.gripper == Gripper::Right, Evidence::GripperOff)
+            .and(Proof::when(situation.exchange == Exchange::None, Evidence::InHolster)),
+        SubtaskVerb::GetObject => is_held(),
+        SubtaskVerb::FixGrip => {
+            let free = pedestal_hand(pedestal) == PedestalHand::Free;
+            is_held().and(in_destination_grip()).and(Proof::when(free, Evidence::InPedestal))
+        }
+        SubtaskVerb::PlaceObj => {
+            is_free(emove.held).and(Proof::when(situation.placed == Where::There, Evidence::NotPlaced))
+        }
+        SubtaskVerb::MoveObjToDest => is_held().and(in_destination_grip()).and(at_place()),
+        SubtaskVerb::GotoEndpt | SubtaskVerb::GotoDest | SubtaskVerb::Position => at_place(),
+        SubtaskVerb::Release => is_free(emove.held),
+        SubtaskVerb::InsertTool => is_held().and(in_drum()).and_unsensed(Unconfirmed::ToolInDrum),
+        SubtaskVerb::ReleaseTool => {
+            is_free(emove.held).and(out_of_drum()).and_unsensed(Unconfirmed::ToolInDrum)
+        }
+        SubtaskVerb::AcquireTool => is_held().and(in_drum()),
+        SubtaskVerb::RemoveTool => is_held().and(out_of_drum()),
+    }
+}
+
+/// The grasp force of what is held: only the parts gripper senses it.
+pub(crate) fn force(end_effector_id: Option<u8>) -> Proof {
+    if Attached::of(end_effector_id).has_stops() {
+        Proof::unsensed(Unconfirmed::GraspForce)
+    } else {
+        Proof::HOLDS
+    }
+}
+
+/// Nothing is held.
+pub(crate) const fn is_free(held: Holding) -> Proof {
+    match held {
+        Holding::Nothing => Proof::HOLDS,
+        Holding::Object(_) => Proof::of(Evidence::StillHeld),
+        Holding::Something => Proof::of(Evidence::Unknown),
+        Holding::NotKnown => Proof::of(Evidence::NotKnown),
+    }
+}
+
+/// The robot is at the location of a command.
+fn at(emove: &EmoveStatus, command: &SubtaskCommand) -> Proof {
+    match emove.at {
+        Some(at) if (at.record, at.array, at.sector) == site(command) => Proof::at(emove.offset),
+        Some(_) | None => Proof::of(Evidence::Elsewhere),
+    }
+}

@@ -1,0 +1,30 @@
+//! The goals of the commands. The rows that end a command ask for the reading itself, of the same tick.
+
+use crate::goal::{Goal, Sensor};
+
+/// PAUSE.
+pub static REST: Goal = Goal {
+    holds: "the last position is repeated, and the controller has acknowledged it; without a link nothing is sent",
+    sensors: &[Sensor::Link],
+    tolerance: "",
+    age: 0,
+    unconfirmed: &[],
+};
+
+/// RESTART.
+pub static RESTARTED: Goal = Goal {
+    holds: "the controller has reported a position",
+    sensors: &[Sensor::Link],
+    tolerance: "",
+    age: 0,
+    unconfirmed: &[],
+};
+
+/// POINT.
+pub static SENT: Goal = Goal {
+    holds: "the controller has acknowledged the last point of the queue",
+    sensors: &[Sensor::Link],
+    tolerance: "",
+    age: 0,
+    unconfirmed: &[],
+};

@@ -1,0 +1,187 @@
+//! The goals of Task's commands, and how the statuses of Subtask and of the Data System compare with them.
+
+use interfaces::{Unconfirmed, emove::Holding, subtask::SubtaskStatus};
+
+use super::{
+    plan::{Handling, Plan, Site, TOOL_GRIPPER, TaskVerb},
+    tables::DataBase,
+};
+use crate::{
+    confirm::{Evidence, Proof},
+    goal::{AT_PLACE, Goal, Sensor},
+    held::Held,
+    subtask::goals::{force, is_free},
+};
+
+/// Tolerance of a grasp, as E-move states it.
+const GRASP: &str = "as GRASP-OBJ of E-move";
+
+/// PAUSE.
+pub static REST: Goal = Goal {
+    holds: "Subtask pauses, or does not answer",
+    sensors: &[Sensor::Below],
+    tolerance: "",
+    age: 3,
+    unconfirmed: &[],
+};
+/// TRANSFER.
+pub static TRANSFERRED: Goal = Goal {
+    holds: "the fingers have released the object at the destination and hold nothing; the robot is at the end-at \
+            location",
+    sensors: &[Sensor::Fingers, Sensor::StrainGages, Sensor::Resolvers],
+    tolerance: AT_PLACE,
+    age: 4,
+    unconfirmed: &[Unconfirmed::Position],
+};
+/// MOVE.
+pub static MOVED: Goal = Goal {
+    holds: "the robot is at the destination, and holds the object if one is named",
+    sensors: &[Sensor::Resolvers, Sensor::Fingers, Sensor::StrainGages],
+    tolerance: AT_PLACE,
+    age: 4,
+    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce],
+};
+/// POSITION.
+pub static POSITIONED: Goal = Goal {
+    holds: "nothing is held, and the robot is at the position",
+    sensors: &[Sensor::Fingers, Sensor::StrainGages, Sensor::Resolvers],
+    tolerance: AT_PLACE,
+    age: 4,
+    unconfirmed: &[Unconfirmed::Position],
+};
+/// ACQUIRE.
+pub static HELD: Goal = Goal {
+    holds: "the object is held",
+    sensors: &[Sensor::Fingers, Sensor::StrainGages],
+    tolerance: GRASP,
+    age: 3,
+    unconfirmed: &[Unconfirmed::GraspForce],
+};
+/// REFIXTURE.
+pub static REFIXTURED: Goal = Goal {
+    holds: "the robot is at the destination and holds the object in the destination grip",
+    sensors: &[Sensor::Resolvers, Sensor::Fingers, Sensor::StrainGages],
+    tolerance: AT_PLACE,
+    age: 4,
+    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce],
+};
+/// INSERT-TOOL.
+pub static INSERTED: Goal = Goal {
+    holds: "the tool gripper holds the tool, and is in the drum with it",
+    sensors: &[Sensor::IdPins, Sensor::Fingers, Sensor::Resolvers],
+    tolerance: GRASP,
+    age: 4,
+    unconfirmed: &[Unconfirmed::ToolInDrum],
+};
+/// RELEASE-TOOL.
+pub static TOOL_RELEASED: Goal = Goal {
+    holds: "the tool gripper is empty and out of the drum, the drum has the tool, and the robot is at the end-at \
+            location",
+    sensors: &[Sensor::IdPins, Sensor::Fingers, Sensor::Resolvers],
+    tolerance: AT_PLACE,
+    age: 4,
+    unconfirmed: &[Unconfirmed::ToolInDrum],
+};
+/// ACQUIRE-TOOL.
+pub static ACQUIRED: Goal = Goal {
+    holds: "the tool gripper holds the tool, and is in the drum with it",
+    sensors: &[Sensor::IdPins, Sensor::Fingers, Sensor::Resolvers],
+    tolerance: GRASP,
+    age: 4,
+    unconfirmed: &[Unconfirmed::GraspForce],
+};
+/// REMOVE-TOOL.
+pub static REMOVED: Goal = Goal {
+    holds: "the tool gripper holds the tool out of the drum, and the robot is at the end-at location",
+    sensors: &[Sensor::IdPins, Sensor::Fingers, Sensor::Resolvers],
+    tolerance: AT_PLACE,
+    age: 4,
+    unconfirmed: &[Unconfirmed::GraspForce],
+};
+/// STARTUP.
+pub static CONNECTED: Goal = Goal {
+    holds: "the Data System has done the last command",
+    sensors: &[Sensor::DataSystem],
+    tolerance: "",
+    age: 1,
+    unconfirmed: &[],
+};
+/// SHUTDOWN.
+pub static DISCONNECTED: Goal = Goal {
+    holds: "Task sends the Data System nothing more, whatever it answers",
+    sensors: &[Sensor::Below],
+    tolerance: "",
+    age: 0,
+    unconfirmed: &[],
+};
+
+/// The goal of a command, compared with the statuses of Subtask and of the Data System.
+pub(super) fn proof(plan: &Plan, below: &SubtaskStatus, data_base: DataBase) -> Proof {
+    let force = force(below.end_effector_id);
+    let is_held = || match Held::of(below.held, plan.object) {
+        Held::Right => force,
+        Held::NotKnown => Proof::of(Evidence::NotKnown),
+        Held::Nothing | Held::Other | Held::Something => Proof::of(Evidence::NotHeld),
+    };
+    let in_grip = |grip: i32| match below.held {
+        Holding::Object(held) => Proof::when(held.grip == grip, Evidence::OtherGrip),
+        Holding::Nothing | Holding::Something | Holding::NotKnown => Proof::HOLDS,
+    };
+    let has_tool = || match below.held {
+        _ if below.end_effector_id != Some(TOOL_GRIPPER) => Proof::of(Evidence::GripperOff),
+        Holding::Object(held) if plan.object.is_none_or(|object| object == held.object) => force,
+        Holding::NotKnown => Proof::of(Evidence::NotKnown),
+        Holding::Object(_) | Holding::Nothing | Holding::Something => Proof::of(Evidence::NotHeld),
+    };
+    let has_tool_gripper = || Proof::when(below.end_effector_id == Some(TOOL_GRIPPER), Evidence::GripperOff);
+    let in_drum = || Proof::when(below.drum, Evidence::OutsideDrum);
+    let out_of_drum = || Proof::when(!below.drum, Evidence::InsideDrum);
+    let destination = || at(&plan.destination, below);
+    let end = || at(&plan.end_at, below);
+    match plan.verb {
+        TaskVerb::None | TaskVerb::Pause | TaskVerb::Shutdown => Proof::HOLDS,
+        TaskVerb::Startup => Proof::when(data_base == DataBase::Done, Evidence::NoAnswer),
+        TaskVerb::Transfer => is_free(below.held)
+            .and(Proof::when(is_placed(plan, below), Evidence::NotPlaced))
+            .and(if plan.end_at.location.is_some() { end() } else { destination() }),
+        TaskVerb::Move if plan.handling() == Handling::NoObject => destination(),
+        TaskVerb::Move => is_held().and(destination()),
+        TaskVerb::Position => {
+            let site = if plan.source.location.is_some() { &plan.source } else { &plan.destination };
+            is_free(below.held).and(at(site, below))
+        }
+        TaskVerb::Acquire => is_held(),
+        TaskVerb::Refixture => is_held().and(in_grip(plan.destination.grip)).and(destination()),
+        TaskVerb::InsertTool => has_tool().and(in_drum()).and_unsensed(Unconfirmed::ToolInDrum),
+        TaskVerb::ReleaseTool => has_tool_gripper()
+            .and(is_free(below.held))
+            .and(out_of_drum())
+            .and(end())
+            .and_unsensed(Unconfirmed::ToolInDrum),
+        TaskVerb::AcquireTool => has_tool().and(in_drum()),
+        TaskVerb::RemoveTool => has_tool().and(out_of_drum()).and(end()),
+    }
+}
+
+/// The object was released at the destination.
+fn is_placed(plan: &Plan, below: &SubtaskStatus) -> bool {
+    let destination =
+        plan.destination.location.map(|location| (location.record, location.array, location.sector));
+    below.placed.is_some_and(|placed| {
+        plan.object == Some(placed.object)
+            && destination == Some((placed.record, placed.array, placed.sector))
+    })
+}
+
+/// The robot is at a location, if one is named.
+fn at(site: &Site, below: &SubtaskStatus) -> Proof {
+    let Some(location) = &site.location else { return Proof::HOLDS };
+    match below.at {
+        Some(at)
+            if (at.record, at.array, at.sector) == (location.record, location.array, location.sector) =>
+        {
+            Proof::at(below.offset)
+        }
+        Some(_) | None => Proof::of(Evidence::Elsewhere),
+    }
+}
