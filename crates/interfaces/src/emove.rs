@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use geometry::pose::Pose;
+use geometry::{frame::Frame, pose::Pose};
 use rcs_core::{
     Plain,
     name::{Name10, Name16},
@@ -320,6 +320,42 @@ pub struct Exchange {
     pub place: RobotPlace,
 }
 
+/// Points of a [`Track`] at most.
+pub const TRACK_POINTS: usize = 32;
+
+/// What is known of the path from the last known place or way of the robot to where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Course {
+    /// Its place or way has not been known since the start.
+    None,
+    /// Its place or way is known.
+    Known,
+    /// The joystick box has moved it, and all of the path is recorded.
+    Tracked,
+    /// The joystick box has moved it, and a part of the path is not recorded.
+    Broken,
+    /// It has moved without a command and without the joystick box: the arm has sunk, or the link has failed.
+    Adrift,
+}
+
+/// The path on which the joystick box has moved the robot from its last known place or way, by the resolvers: straight
+/// segments through points, and from the last point to the end (docs/design/recovery.md "Return").
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Track {
+    /// What is known of the path.
+    pub course: Course,
+    /// The joystick box has moved the robot since the last motion that was commanded.
+    pub by_hand: bool,
+    /// Points that count.
+    pub count: u8,
+    /// The first is that at the known place or way.
+    pub points: [Pose; TRACK_POINTS],
+    /// Direction of the segment from the last point on, a unit vector in world coordinates.
+    pub heading: [f64; 3],
+    /// The end: the last recorded pose. While the place or way is known, the present pose.
+    pub end: Pose,
+}
+
 /// State of the world that E-move cannot read from a sensor alone. It is an output, so that E-move has it again after a
 /// restart; each belief counts only as long as no sensor contradicts it.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -344,6 +380,8 @@ pub struct Beliefs {
     /// The tool drum at which the robot is half way, between the first and the last point of a tool command.
     /// Its pose is that of the location.
     pub drum: Option<RobotPlace>,
+    /// The path from the last known place or way.
+    pub track: Track,
 }
 
 /// A known place, and how far the robot is from it (extension).
@@ -355,6 +393,22 @@ pub struct NearPlace {
     pub inches: f64,
     /// Angle between the orientations, degrees.
     pub degrees: f64,
+    /// The place seen from the robot, inches along world X, Y and Z.
+    pub offset: [f64; 3],
+}
+
+impl NearPlace {
+    /// A place with the tool at `goal`, seen from a robot with the tool at `present`.
+    #[must_use]
+    pub fn seen(location: Name10, goal: &Frame, present: &Frame) -> Self {
+        let distance = goal.distance(present);
+        Self {
+            location,
+            inches: distance.inches,
+            degrees: distance.radians.to_degrees(),
+            offset: (goal.position - present.position).into(),
+        }
+    }
 }
 
 /// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.

@@ -269,6 +269,8 @@ pub enum Reason {
     ReleaseNotEnded,
     /// The object lies too near to the edge of its tray for the open fingers.
     AtTrayEdge,
+    /// The robot has been moved off its place, and what it holds may be clamped there.
+    OffPlace,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

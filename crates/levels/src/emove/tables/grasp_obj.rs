@@ -5,7 +5,8 @@ use rcs_core::decision_table;
 decision_table! {
     /// GRASP-OBJ (V.2.1): close the gripper on the object; done at once if it is held and between the
     /// fingers. What is felt at the object is grasped anew: it may be half gripped. So is what
-    /// counts as held since a release of it has not ended well.
+    /// counts as held since a release of it has not ended well. A robot that a person has moved off its place goes
+    /// back there first, and one that is lost closes on nothing.
     pub GRASP_OBJ: fn grasp_obj(enum GraspObjStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                                => Wait;
@@ -16,13 +17,20 @@ decision_table! {
             3: held: Other                               => Fail(AlreadyHolding);
             4: held: Something, at: Elsewhere | Before | InDrum   => Fail(AlreadyHolding);
             5: held: NotKnown, at: Elsewhere | Before | InDrum    => Fail(HeldNotKnown);
-            6: held: Something | NotKnown, at: There     => Close -> Closing;
-            7: held: Nothing | Right                     => Close -> Closing;
+            6: place: Searching | Unknown                => Fail(UnknownStart);
+            7: ahead: Beside                             => GotoPt -> Correcting;
+        }
+        /// The robot is going back to its place.
+        Correcting {
+            8: held: Other                               => Fail(AlreadyHolding);
+        }
+        Start | Correcting {
+            9: held: Right | Nothing | Something | NotKnown => Close -> Closing;
         }
         /// The gripper is closing.
         Closing {
-            8: fingers: Gripping                         => Grasped;
-            9: fingers: Empty                            => Fail(GraspMissed);
+            10: fingers: Gripping                        => Grasped;
+            11: fingers: Empty                           => Fail(GraspMissed);
         }
     }
 }

@@ -21,7 +21,9 @@ pub mod release;
 pub mod release_tool;
 pub mod remove_tool;
 pub mod resume;
+pub mod returning;
 pub mod search;
+pub mod track;
 mod variables;
 pub mod withdraw;
 
@@ -316,7 +318,8 @@ commands! {
     /// Consult the tables of a command.
     pub fn of_command(EmoveVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, EFFECT, attend::ATTEND, search::SEARCH, resume::RESUME,
-            drum::DRUM, carried::CARRIED, ordered::ORDERED;
+            drum::DRUM, carried::CARRIED, ordered::ORDERED, returning::RETURN, track::TRACK,
+            resume::STANCE;
         None | Pause            => e_pause::e_pause;
         MovToLoc                => motion::motion;
         MovToObj                => mov_to_obj::mov_to_obj then motion::motion;
