@@ -161,9 +161,11 @@ mod tests {
         assert!(
             said(ProcessId::Emove, Reason::UnknownStart, &hws, &memory).starts_with(" (move it with the")
         );
-        let near =
-            |name, inches, degrees, offset| Some(NearPlace { location: Name10::clipped(name), inches, degrees, offset });
-        memory.emove.nearest = [near("HOME", 1.234, 0.5, [-1.2, 0.004, 0.3]), near("SAFE", 20.0, 90.0, [0.0; 3])];
+        let near = |name, inches, degrees, offset| {
+            Some(NearPlace { location: Name10::clipped(name), inches, degrees, offset })
+        };
+        memory.emove.nearest =
+            [near("HOME", 1.234, 0.5, [-1.2, 0.004, 0.3]), near("SAFE", 20.0, 90.0, [0.0; 3])];
         assert!(said(ProcessId::Task, Reason::UnknownStart, &hws, &memory).starts_with(
             ": HOME is 1.23 in (-X 1.20, +Z 0.30) and 0.5 degrees away; SAFE is 20.00 in and 90.0 degrees away (move it"
         ));

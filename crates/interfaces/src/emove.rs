@@ -11,7 +11,7 @@ use rcs_core::{
 use super::words::{location, name};
 use crate::{
     ChangingPose, Header, Reason, StatusReport, grip::GripCommand, jaws::JawsCommand, location::LocationKind,
-    prim::PrimCommand, quick_change::QuickChangeCommand, vision::VisionRequest,
+    prim::PrimCommand, quick_change::QuickChangeCommand, track::Track, vision::VisionRequest,
 };
 
 /// Commands of E-move (V.2.1).
@@ -318,42 +318,6 @@ pub struct Exchange {
     pub gripper: u8,
     /// Its place.
     pub place: RobotPlace,
-}
-
-/// Points of a [`Track`] at most.
-pub const TRACK_POINTS: usize = 32;
-
-/// What is known of the path from the last known place or way of the robot to where it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Course {
-    /// Its place or way has not been known since the start.
-    None,
-    /// Its place or way is known.
-    Known,
-    /// The joystick box has moved it, and all of the path is recorded.
-    Tracked,
-    /// The joystick box has moved it, and a part of the path is not recorded.
-    Broken,
-    /// It has moved without a command and without the joystick box: the arm has sunk, or the link has failed.
-    Adrift,
-}
-
-/// The path on which the joystick box has moved the robot from its last known place or way, by the resolvers: straight
-/// segments through points, and from the last point to the end (docs/design/recovery.md "Return").
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Track {
-    /// What is known of the path.
-    pub course: Course,
-    /// The joystick box has moved the robot since the last motion that was commanded.
-    pub by_hand: bool,
-    /// Points that count.
-    pub count: u8,
-    /// The first is that at the known place or way.
-    pub points: [Pose; TRACK_POINTS],
-    /// Direction of the segment from the last point on, a unit vector in world coordinates.
-    pub heading: [f64; 3],
-    /// The end: the last recorded pose. While the place or way is known, the present pose.
-    pub end: Pose,
 }
 
 /// State of the world that E-move cannot read from a sensor alone. It is an output, so that E-move has it again after a

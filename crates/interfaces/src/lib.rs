@@ -37,6 +37,7 @@ pub mod quick_change;
 mod remedy;
 pub mod subtask;
 pub mod t3i;
+pub mod track;
 pub mod vision;
 mod words;
 

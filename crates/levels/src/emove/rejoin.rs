@@ -12,16 +12,17 @@ use geometry::{
     pose::Pose,
 };
 use interfaces::{
-    emove::{Course, GoneTo, RobotPlace, Track, Way},
+    emove::{GoneTo, RobotPlace, Way},
     process::Inputs,
     subtask::LocationKind,
+    track::{Course, Track},
 };
 use rcs_core::Plain;
 use taskdata::files::{Locpt, LocptId, Target, TaskData, TrajParaId};
 
 use super::{
     robot_place::{commanded_pose, place, present_frame},
-    route::{Planning, Route, THERE_INCHES, THERE_RADIANS, approach_to, foot, near},
+    route::{Planning, Route, THERE_INCHES, THERE_RADIANS, approach_to, near},
     state::State,
     surroundings::is_plain,
     tables::{
@@ -30,7 +31,7 @@ use super::{
         returning::{Freight, Lost, Near, Origin, Return, returning},
     },
     track,
-    way::{Flight, route_of, segment},
+    way::{Flight, foot, route_of, segment},
 };
 use crate::places::{is_in_mbd, place_of};
 
@@ -184,7 +185,9 @@ impl State {
         let clamped = self.holding(inputs.memory).is_held() && clamps(at, inputs.data);
         match present_frame(inputs.memory) {
             Some(present) if is_there(&present) => Offset::There,
-            Some(present) if clamped && is_sent_there && near(&present, &goal, CLAMP_INCHES, CLAMP_RADIANS) => {
+            Some(present)
+                if clamped && is_sent_there && near(&present, &goal, CLAMP_INCHES, CLAMP_RADIANS) =>
+            {
                 Offset::There
             }
             Some(_) if clamped => Offset::Clamped,
@@ -246,7 +249,8 @@ impl State {
         let resting = resting_place(&present, data);
         let out = left.and_then(|nest| out_of(&nest, &present, data));
         let back = Origination { offset: Offset::Beside, ..nowhere };
-        let to_place = |place: RobotPlace, rejoin| Origination { place: Some(place), rejoin: Some(rejoin), ..back };
+        let to_place =
+            |place: RobotPlace, rejoin| Origination { place: Some(place), rejoin: Some(rejoin), ..back };
         let parameters = |at: &RobotPlace| parameters_at(at, data).ok_or(Planning::NoSpeed);
         let record = &self.beliefs.track;
         match (returning((), &self.lost(resting.is_some(), out.is_some(), inputs)).action, left, way) {
@@ -257,7 +261,8 @@ impl State {
             (Return::Retrace, None, Some(way)) => {
                 let way = Way { by_hand: true, ..way };
                 let begins = track::points(record).next().and_then(|pose| pose.to_frame().ok());
-                let foot = begins.and_then(|begins| on_segment(&begins, &way, data)).ok_or(Planning::NoStart)?;
+                let foot =
+                    begins.and_then(|begins| on_segment(&begins, &way, data)).ok_or(Planning::NoStart)?;
                 let back = Rejoin::to(Pose::from_frame(&foot.0), route_of(&way, data)?.stop);
                 let rejoin = Rejoin { track: record.count, ..back };
                 Ok(Origination { way: Some(way), rejoin: Some(rejoin), ..nowhere })
@@ -278,8 +283,8 @@ impl State {
     /// The state variables of RETURN.
     fn lost(&self, resting: bool, nest: bool, inputs: &Inputs<'_, TaskData<'_>>) -> Lost {
         let left = self.beliefs.place;
-        let clampable = left.is_some_and(|left| clamps(&left, inputs.data))
-            && self.holding(inputs.memory).is_held();
+        let clampable =
+            left.is_some_and(|left| clamps(&left, inputs.data)) && self.holding(inputs.memory).is_held();
         Lost {
             resolvers: match present_frame(inputs.memory) {
                 Some(_) => Knowledge::Known,
@@ -306,7 +311,11 @@ impl State {
 ///
 /// # Errors
 /// Why there is none.
-pub(super) fn from_outside(from: &RobotPlace, to: &RobotPlace, data: &TaskData<'_>) -> Result<Route, Planning> {
+pub(super) fn from_outside(
+    from: &RobotPlace,
+    to: &RobotPlace,
+    data: &TaskData<'_>,
+) -> Result<Route, Planning> {
     let route = Route::between(from, to, data)?;
     Ok(Route { commanded: route.depart_points(data), ..route })
 }

@@ -58,10 +58,8 @@ pub fn is_led(memory: &CommonMemory) -> bool {
 #[must_use]
 pub const fn is_cut_off(memory: &CommonMemory) -> bool {
     let status = &memory.prim.status;
-    let failed = matches!(
-        status.report,
-        PrimReport::T3LinkOff | PrimReport::T3LinkErr | PrimReport::NoRespT3i
-    );
+    let failed =
+        matches!(status.report, PrimReport::T3LinkOff | PrimReport::T3LinkErr | PrimReport::NoRespT3i);
     status.restarting || failed
 }
 

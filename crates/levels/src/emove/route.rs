@@ -7,10 +7,7 @@
 //!   that was gone to           of locations      object and grip
 //! ```
 
-use geometry::{
-    frame::{Frame, norm, rotation_by, rotation_vector},
-    pose::Pose,
-};
+use geometry::{frame::Frame, pose::Pose};
 use interfaces::emove::{EmoveCommand, EmoveVerb, GoneTo, Leg as Part, ObjectGrip, RobotPlace};
 use rcs_core::Plain;
 use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Place, Target, TaskData, TrajParaId, VisionId};
@@ -189,23 +186,6 @@ pub fn same_location(a: &Place, b: &Place) -> bool {
 pub fn near(a: &Frame, b: &Frame, inches: f64, radians: f64) -> bool {
     let distance = a.distance(b);
     distance.inches <= inches && distance.radians <= radians
-}
-
-/// The frame of a straight segment that is nearest to a frame: its position, and as much of the segment's
-/// turn as of its length lies before it.
-#[must_use]
-pub fn foot(present: &Frame, start: &Frame, end: &Frame) -> Frame {
-    let (along, offset) = (end.position - start.position, present.position - start.position);
-    let length = along.dot(&along);
-    let share = if length > 0.0 { (along.dot(&offset) / length).clamp(0.0, 1.0) } else { 0.0 };
-    let turn = rotation_vector(&(end.rotation * start.rotation.inverse())) * share;
-    Frame { position: start.position + along * share, rotation: rotation_by(&turn) * start.rotation }
-}
-
-/// How far a frame is from a straight segment, in.
-#[must_use]
-pub fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
-    norm(&(present.position - foot(present, start, end).position))
 }
 
 /// The approach to a place, if one is written.

@@ -15,8 +15,8 @@ use geometry::{
 };
 use interfaces::{
     CommonMemory,
-    emove::{Course, Track},
     prim::PrimVerb,
+    track::{Course, Track},
 };
 
 use super::{

@@ -11,12 +11,16 @@
 //! with the joystick, it first returns to the path and stops there, because the goal may be a nest that is closed at
 //! its sides. The points of the path are not stored: they follow from its two ends and the task data.
 
-use geometry::{frame::Frame, pose::Pose};
+use geometry::{
+    frame::{Frame, norm, rotation_by, rotation_vector},
+    pose::Pose,
+};
 use interfaces::{
     CommonMemory,
-    emove::{Course, Direction, EmoveCommand, GoneTo, Leg as Part, RobotPlace, Way},
+    emove::{Direction, EmoveCommand, GoneTo, Leg as Part, RobotPlace, Way},
     prim::{PrimReport, PrimVerb},
     process::Inputs,
+    track::Course,
 };
 use taskdata::files::{TaskData, TrajParaId};
 
@@ -24,9 +28,7 @@ use super::{
     back::Back,
     rejoin::{Origination, Rejoin, from_outside},
     robot_place::{commanded_pose, is_cut_off, place, present_frame},
-    route::{
-        Ahead, Goal, Leg, LegGoal, Planning, Route, THERE_INCHES, THERE_RADIANS, beside, near, same_location,
-    },
+    route::{Ahead, Goal, Leg, LegGoal, Planning, Route, THERE_INCHES, THERE_RADIANS, near, same_location},
     state::State,
     tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
     whereabouts::{LOST_INCHES, LOST_RADIANS},
@@ -49,6 +51,23 @@ pub struct Flight {
     pub back: Option<Back>,
     /// The first point of the continuation of an interrupted path.
     pub rejoin: Option<Rejoin>,
+}
+
+/// The frame of a straight segment that is nearest to a frame: its position, and as much of the segment's
+/// turn as of its length lies before it.
+#[must_use]
+pub fn foot(present: &Frame, start: &Frame, end: &Frame) -> Frame {
+    let (along, offset) = (end.position - start.position, present.position - start.position);
+    let length = along.dot(&along);
+    let share = if length > 0.0 { (along.dot(&offset) / length).clamp(0.0, 1.0) } else { 0.0 };
+    let turn = rotation_vector(&(end.rotation * start.rotation.inverse())) * share;
+    Frame { position: start.position + along * share, rotation: rotation_by(&turn) * start.rotation }
+}
+
+/// How far a frame is from a straight segment, in.
+#[must_use]
+pub fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
+    norm(&(present.position - foot(present, start, end).position))
 }
 
 /// The route of a way, from its ends.

@@ -2,10 +2,11 @@
 
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
-    emove::{Course, GoneTo, RobotPlace},
+    emove::{GoneTo, RobotPlace},
     prim::PrimVerb,
     process::Inputs,
     subtask::LocationKind,
+    track::Course,
 };
 use rcs_core::handshake::Lower;
 use taskdata::files::{LocptId, TaskData};

@@ -14,23 +14,25 @@ decision_table! {
         /// Nothing done yet.
         Start {
             2: held: Right, fingers: Gripping            => Finish;
+        }
+        /// The robot is going back to its place.
+        Correcting {}
+        Start | Correcting {
             3: held: Other                               => Fail(AlreadyHolding);
+        }
+        Start {
             4: held: Something, at: Elsewhere | Before | InDrum   => Fail(AlreadyHolding);
             5: held: NotKnown, at: Elsewhere | Before | InDrum    => Fail(HeldNotKnown);
             6: place: Searching | Unknown                => Fail(UnknownStart);
             7: ahead: Beside                             => GotoPt -> Correcting;
         }
-        /// The robot is going back to its place.
-        Correcting {
-            8: held: Other                               => Fail(AlreadyHolding);
-        }
         Start | Correcting {
-            9: held: Right | Nothing | Something | NotKnown => Close -> Closing;
+            8: held: Right | Nothing | Something | NotKnown => Close -> Closing;
         }
         /// The gripper is closing.
         Closing {
-            10: fingers: Gripping                        => Grasped;
-            11: fingers: Empty                           => Fail(GraspMissed);
+            9: fingers: Gripping                         => Grasped;
+            10: fingers: Empty                           => Fail(GraspMissed);
         }
     }
 }

@@ -3,7 +3,7 @@
 use rcs_core::{Actions, Plain, Variables, decision_table};
 
 use super::Knowledge;
-pub use interfaces::emove::Course;
+pub use interfaces::track::Course;
 
 /// Where the record of its path leads back to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]

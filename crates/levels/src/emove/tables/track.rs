@@ -3,7 +3,7 @@
 use rcs_core::{Actions, Plain, Variables, decision_table};
 
 use super::Knowledge;
-pub use interfaces::emove::Course;
+pub use interfaces::track::Course;
 
 /// The process or person that moves the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
