@@ -182,7 +182,8 @@ impl State {
         let is_there = |frame: &Frame| near(frame, &goal, THERE_INCHES, THERE_RADIANS);
         let commanded = commanded_pose(inputs.memory).and_then(|pose| pose.to_frame().ok());
         let is_sent_there = commanded.is_some_and(|frame| is_there(&frame));
-        let clamped = self.holding(inputs.memory).is_held() && clamps(at, inputs.data);
+        let gripped = self.holding(inputs.memory).is_held() && clamps(at, inputs.data);
+        let clamped = gripped || at.gone_to == GoneTo::Drum;
         match present_frame(inputs.memory) {
             Some(present) if is_there(&present) => Offset::There,
             Some(present)

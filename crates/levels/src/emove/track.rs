@@ -37,7 +37,9 @@ const STEP_RADIANS: f64 = 0.05;
 const SPACING_INCHES: f64 = 0.1;
 /// … or turned so far, radians (1 degree).
 const SPACING_RADIANS: f64 = core::f64::consts::PI / 180.0;
-/// A segment is extended as long as the robot stays this near to its line, in; less than the spacing, so that a corner
+/// The line of a segment is that to the pose which is this far from its beginning, in: a pose is rounded to 0.01 in.
+const AIM_INCHES: f64 = 0.5;
+/// The segment is extended as long as the robot stays this near to the line, in; less than the spacing, so that a corner
 /// is one …
 const ASIDE_INCHES: f64 = 0.05;
 /// … and turns no farther on it, radians (2 degrees).
@@ -130,6 +132,9 @@ fn add(track: &mut Track, pose: &Pose) -> bool {
     if let Some(from) = last(track) {
         let (along, aside) = on_line(pose, from, &line);
         if along >= 0.0 && aside <= ASIDE_INCHES && apart(from, pose).radians <= TURN_RADIANS {
+            if along <= AIM_INCHES {
+                track.heading = heading(from, pose).into();
+            }
             track.end = *pose;
             return true;
         }

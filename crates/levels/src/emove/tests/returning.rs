@@ -9,6 +9,7 @@ use interfaces::{
 
 use super::{
     bench::{Bench, DONE, error, frame_of, moved},
+    drum::SIZE,
     recovery::{paused, send},
 };
 use crate::emove::{
@@ -139,9 +140,6 @@ fn a_part_that_may_be_clamped_is_not_moved() {
     jog(&mut bench, [0.0, 0.3, 0.0]);
     for command in [release, BLOCK_TO_VISE, (GraspObj, "BLOCK", 1, "VISE", 1)] {
         let fork = &mut bench.clone();
-        if command.0 == GraspObj {
-            fork.grip.opening = 200;
-        }
         assert_eq!(send(fork, command), error(Reason::OffPlace), "{}", command.0);
         assert_eq!(fork.motions(), [""; 0]);
     }
@@ -389,8 +387,7 @@ fn a_long_or_winding_path_is_recorded_as_far_as_there_is_room() {
 #[test]
 fn a_tool_that_was_moved_in_the_drum_is_inserted_again() {
     let mut bench = Bench::ready("TOOL-SAFE", 3);
-    bench.world.object = Some(200);
-    assert_eq!(send(&mut bench, (GraspObj, "CUTTER", 1, "", 3)), DONE);
+    bench.hold("CUTTER", SIZE, 3);
     assert_eq!(send(&mut bench, (InsertTool, "CUTTER", 1, "TOOL-TRNS", 3)), DONE);
     let inside = bench.world.frame;
     assert_eq!(send(&mut bench.clone(), (InsertTool, "CUTTER", 1, "TOOL-TRNS", 3)), DONE);
