@@ -9,6 +9,7 @@ mod estop;
 mod faults;
 mod finished;
 mod jobs;
+mod jogs;
 mod linkbar;
 mod live;
 mod neighbours;

@@ -6,6 +6,9 @@ use rcs_core::name::{Name10, Name16};
 
 use crate::{CommonMemory, Fault, HwsCommand, ProcessId, Reason, StatusReport, emove::NearPlace};
 
+/// Distance along an axis that is shown, inches: as exactly as a pose is written (VII.1).
+const LEAST_SHOWN: f64 = 0.005;
+
 /// Details of a reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Detail {
@@ -15,6 +18,8 @@ pub enum Detail {
     Pair(Name10, Name16),
     /// The known places that are nearest to the robot.
     Near([Option<NearPlace>; 2]),
+    /// The place off which the robot has been moved.
+    Off(NearPlace),
 }
 
 impl Detail {
@@ -32,6 +37,9 @@ impl Detail {
                 from.map_or(Self::None, |from| {
                     Self::Pair(from.location, Name16::clipped(memory.subtask.emove.location.as_str()))
                 })
+            }
+            (ProcessId::Emove, Fault::Reason(Reason::OffPlace)) => {
+                off_place(memory).map_or(Self::None, Self::Off)
             }
             // The POSITION of Task refuses by itself: V.4.1.
             (ProcessId::Task, Fault::Reason(Reason::NoTrajectory)) => {
@@ -53,6 +61,13 @@ impl Detail {
     }
 }
 
+/// The place of E-move, seen from where the resolvers say that the robot is.
+fn off_place(memory: &CommonMemory) -> Option<NearPlace> {
+    let place = memory.emove.beliefs.place?;
+    let present = memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()?;
+    Some(NearPlace::seen(place.location, &place.pose.to_frame().ok()?, &present))
+}
+
 /// `: none leads from BENCH to VISE (...)`, to be written behind the reason; without the remedy in `{:#}`.
 impl fmt::Display for Detail {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -63,9 +78,10 @@ impl fmt::Display for Detail {
                 let mut separator = ": ";
                 for place in places.iter().flatten() {
                     write!(f, "{separator}{place}")?;
-                    separator = ", ";
+                    separator = "; ";
                 }
             }
+            Self::Off(place) => write!(f, ": {place}")?,
         }
         match self {
             Self::Pair(from, to) if !f.alternate() => write!(
@@ -76,15 +92,31 @@ impl fmt::Display for Detail {
                 " (move it with the joystick box to within 0.5 in and 2 degrees of a known location, then send \
                  PAUSE)",
             ),
+            Self::Off(_) if !f.alternate() => f.write_str(
+                " (move it back with the joystick box to within 0.02 in and 0.1 degree, or open the fingers there, \
+                 then send the command again)",
+            ),
             _ => Ok(()),
         }
     }
 }
 
+/// `HOME is 4.41 in (-X 4.40, +Z 0.30) and 0.5 degrees away`: the way there along the world's axes, those of the
+/// joystick box in its frame `WORLD` (III.3.3).
 impl fmt::Display for NearPlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { location, inches, degrees } = self;
-        write!(f, "{location} is {inches:.2} in and {degrees:.1} degrees away")
+        let Self { location, inches, degrees, offset } = self;
+        write!(f, "{location} is {inches:.2} in")?;
+        let mut separator = " (";
+        for (axis, along) in ["X", "Y", "Z"].into_iter().zip(offset) {
+            if along.abs() >= LEAST_SHOWN {
+                let sign = if *along < 0.0 { '-' } else { '+' };
+                write!(f, "{separator}{sign}{axis} {:.2}", along.abs())?;
+                separator = ", ";
+            }
+        }
+        let close = if separator == " (" { "" } else { ")" };
+        write!(f, "{close} and {degrees:.1} degrees away")
     }
 }
 
@@ -129,11 +161,13 @@ mod tests {
         assert!(
             said(ProcessId::Emove, Reason::UnknownStart, &hws, &memory).starts_with(" (move it with the")
         );
-        let near =
-            |name, inches, degrees| Some(NearPlace { location: Name10::clipped(name), inches, degrees });
-        memory.emove.nearest = [near("HOME", 1.234, 0.5), near("SAFE", 20.0, 90.0)];
+        let near = |name, inches, degrees, offset| {
+            Some(NearPlace { location: Name10::clipped(name), inches, degrees, offset })
+        };
+        memory.emove.nearest =
+            [near("HOME", 1.234, 0.5, [-1.2, 0.004, 0.3]), near("SAFE", 20.0, 90.0, [0.0; 3])];
         assert!(said(ProcessId::Task, Reason::UnknownStart, &hws, &memory).starts_with(
-            ": HOME is 1.23 in and 0.5 degrees away, SAFE is 20.00 in and 90.0 degrees away (move it with"
+            ": HOME is 1.23 in (-X 1.20, +Z 0.30) and 0.5 degrees away; SAFE is 20.00 in and 90.0 degrees away (move it"
         ));
     }
 

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use geometry::pose::Pose;
+use geometry::{frame::Frame, pose::Pose};
 use rcs_core::{
     Plain,
     name::{Name10, Name16},
@@ -11,7 +11,8 @@ use rcs_core::{
 use super::words::{location, name};
 use crate::{
     ChangingPose, Header, Reason, StatusReport, Unconfirmed, grip::GripCommand, jaws::JawsCommand,
-    location::LocationKind, prim::PrimCommand, quick_change::QuickChangeCommand, vision::VisionRequest,
+    location::LocationKind, prim::PrimCommand, quick_change::QuickChangeCommand, track::Track,
+    vision::VisionRequest,
 };
 
 /// Commands of E-move (V.2.1).
@@ -362,6 +363,8 @@ pub struct Beliefs {
     /// The tool drum at which the robot is half way, between the first and the last point of a tool command.
     /// Its pose is that of the location.
     pub drum: Option<RobotPlace>,
+    /// The path from the last known place or way.
+    pub track: Track,
 }
 
 /// A known place, and how far the robot is from it (extension).
@@ -373,6 +376,22 @@ pub struct NearPlace {
     pub inches: f64,
     /// Angle between the orientations, degrees.
     pub degrees: f64,
+    /// The place seen from the robot, inches along world X, Y and Z.
+    pub offset: [f64; 3],
+}
+
+impl NearPlace {
+    /// A place with the tool at `goal`, seen from a robot with the tool at `present`.
+    #[must_use]
+    pub fn seen(location: Name10, goal: &Frame, present: &Frame) -> Self {
+        let distance = goal.distance(present);
+        Self {
+            location,
+            inches: distance.inches,
+            degrees: distance.radians.to_degrees(),
+            offset: (goal.position - present.position).into(),
+        }
+    }
 }
 
 /// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.

@@ -37,6 +37,7 @@ pub mod quick_change;
 mod remedy;
 pub mod subtask;
 pub mod t3i;
+pub mod track;
 pub mod unconfirmed;
 pub mod vision;
 mod words;
@@ -271,6 +272,8 @@ pub enum Reason {
     ReleaseNotEnded,
     /// The object lies too near to the edge of its tray for the open fingers.
     AtTrayEdge,
+    /// The robot has been moved off its place, and what it holds may be clamped there.
+    OffPlace,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

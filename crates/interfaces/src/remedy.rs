@@ -69,6 +69,9 @@ impl Reason {
             Self::NotPrepared => "send the commands that must precede it again, or correct the job",
             Self::NeighbourLost | Self::InterfaceSilent => "restart the lost process",
             Self::JoystickOn => "switch the frame at the joystick box off",
+            Self::OffPlace => {
+                "move the robot back to its place with the joystick box, or open the fingers there"
+            }
             Self::UnknownStart => "move the robot to one of the known places with the joystick box",
             Self::RobotElsewhere => "check where the robot is; PAUSE takes its position over",
             Self::LinkOff => {

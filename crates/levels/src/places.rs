@@ -7,8 +7,8 @@ use interfaces::{
     pose_range,
     subtask::LocationKind,
 };
-use rcs_core::Plain;
-use taskdata::files::{ArrayId, Location, LocptId, LookupError, Place, PoseId, TaskData};
+use rcs_core::{Plain, name::Name10};
+use taskdata::files::{ArrayId, Location, LocptId, LookupError, Place, PoseId, Reference, TaskData};
 
 /// Locations that the processes name themselves, because no command of the workstation controller does.
 pub mod named {
@@ -56,6 +56,14 @@ pub fn pose_of(number: u32, memory: &CommonMemory, data: &TaskData<'_>) -> Optio
     } else {
         data.pose(PoseId::new(number)).map(|record| record.frame)
     }
+}
+
+/// True if a record of LOCPT is one of the MBD's.
+#[must_use]
+pub fn is_in_mbd(record: Option<u32>, data: &TaskData<'_>) -> bool {
+    let point = LocptId::from_option(record);
+    let owner = data.owner_named(&Name10::clipped(named::MBD)).filter(|_| !point.is_null());
+    owner.is_some_and(|owner| data.is_member(owner, Reference::location_point(point)))
 }
 
 /// What a look-up of task data did not find: a state variable of the tables ACCEPT.

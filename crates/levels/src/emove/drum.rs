@@ -19,7 +19,7 @@ use interfaces::{
     emove::{EmoveCommand, EmoveVerb, GoneTo, RobotPlace},
     process::Inputs,
 };
-use taskdata::files::TaskData;
+use taskdata::files::{LocptId, TaskData};
 
 use super::{
     exchange::base,
@@ -168,8 +168,21 @@ impl State {
         }
     }
 
+    /// A robot that was moved with the fingers around a tool in the drum is half way there again: the tool has moved, or
+    /// the fingers on it.
+    fn sense_moved_tool(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
+        let (Some(at), Some(present)) = (self.beliefs.place, present_frame(inputs.memory)) else { return };
+        let base = inputs.data.locpt(LocptId::from_option(at.record)).map(|locpt| locpt.frame);
+        let is_there = at.pose.to_frame().is_ok_and(|pose| near(&pose, &present, UNMOVED, LOST_RADIANS));
+        if let (GoneTo::Drum, Some(base), false) = (at.gone_to, base, is_there) {
+            self.beliefs.drum = Some(RobotPlace { pose: Pose::from_frame(&base), ..at });
+            self.beliefs.place = None;
+        }
+    }
+
     /// Does a robot that is half way at the drum stay so? The table DRUM says it.
     pub(super) fn sense_drum(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
+        self.sense_moved_tool(inputs);
         let (Some(half_way), Some(present)) = (self.beliefs.drum, present_frame(inputs.memory)) else {
             return;
         };

@@ -24,9 +24,9 @@ use super::{
     gripper::{Gripper, is_open},
     relative::Relative,
     robot_place::{gone_to, is_led, present_frame, robot_at},
-    route::beside,
     state::State,
     tables::{Along, Shut},
+    way::beside,
     whereabouts::{ASIDE_INCHES, LOST_RADIANS},
 };
 use crate::places::pose_of;

@@ -17,6 +17,7 @@
 //! * [`robot_place`] and [`whereabouts`]: place of the robot;
 //! * [`route`]: depart, trajectory, approach and stop as one list of points;
 //! * [`way`]: continuation of an interrupted path;
+//! * [`track`] and [`rejoin`]: return of a robot that the joystick box has moved;
 //! * [`exchange`]: position of the robot in the change of a gripper;
 //! * [`drum`]: its position at the tool drum;
 //! * [`locate`]: from a picture to a part frame;
@@ -41,6 +42,7 @@ pub mod order;
 pub mod plan;
 pub mod postprocess;
 pub mod preprocess;
+pub mod rejoin;
 pub mod relative;
 pub mod robot_place;
 pub mod route;
@@ -49,6 +51,7 @@ pub mod surroundings;
 pub mod tables;
 #[cfg(test)]
 mod tests;
+pub mod track;
 pub mod way;
 pub mod whereabouts;
 mod written;

@@ -121,6 +121,7 @@ impl State {
                 }
                 Ok(flight)
             }
+            EmoveVerb::LocateObj | EmoveVerb::GraspObj | EmoveVerb::Release => self.stand_still(inputs),
             _ => Ok(Flight::default()),
         }
     }

@@ -212,7 +212,6 @@ impl State {
         outputs.prim.pose = pose;
         outputs.prim.movetable = movetable;
         outputs.prim.trajectory_parameters = leg.parameters.number();
-        self.beliefs.place = None;
     }
 
     /// DELTA-MOVE, GO-UNTIL or GO-WHILE to Prim. If nothing says where the robot stands, the command fails.

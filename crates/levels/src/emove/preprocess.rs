@@ -150,7 +150,8 @@ impl State {
     fn progress(&self) -> u64 {
         let back = self.back.map_or(0, |back| u64::from(back.next & 0xFF) << 1 | u64::from(back.complete));
         let on = self.route.map_or(0, |route| u64::from(route.commanded & 0xFF));
-        (u64::from(self.rejoin.is_some()) << 19 | back << 10 | on << 2 | u64::from(self.tries & 0x3)) << 40
+        let beside = self.rejoin.map_or(0, |rejoin| u64::from(rejoin.ahead() & 0x1F));
+        (beside << 19 | back << 10 | on << 2 | u64::from(self.tries & 0x3)) << 40
     }
 
     /// Follow the echoes until the first command, and count how long Prim has not detected anything.
@@ -187,6 +188,7 @@ impl State {
             place: self.whereabouts(inputs),
             resolvers: known(present.is_some()),
         };
+        self.sense_track(watch.place, inputs.memory);
         self.look_around(watch.place, present.as_ref(), inputs.data);
         let decision = search(self.step, &watch);
         self.execution.rows.beside(&decision.of(number::SEARCH));

@@ -54,6 +54,15 @@ pub fn is_led(memory: &CommonMemory) -> bool {
     memory.prim.status.report == PrimReport::JoystickOn
 }
 
+/// Has the link to the robot controller failed, or does Prim restart it? The arm may have moved since.
+#[must_use]
+pub const fn is_cut_off(memory: &CommonMemory) -> bool {
+    let status = &memory.prim.status;
+    let failed =
+        matches!(status.report, PrimReport::T3LinkOff | PrimReport::T3LinkErr | PrimReport::NoRespT3i);
+    status.restarting || failed
+}
+
 /// The place as task data know it.
 #[must_use]
 pub const fn place(at: &RobotPlace) -> Place {

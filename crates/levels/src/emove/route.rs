@@ -7,10 +7,7 @@
 //!   that was gone to           of locations      object and grip
 //! ```
 
-use geometry::{
-    frame::{Frame, norm, rotation_by, rotation_vector},
-    pose::Pose,
-};
+use geometry::{frame::Frame, pose::Pose};
 use interfaces::emove::{EmoveCommand, EmoveVerb, GoneTo, Leg as Part, ObjectGrip, RobotPlace};
 use rcs_core::Plain;
 use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Place, Target, TaskData, TrajParaId, VisionId};
@@ -47,6 +44,8 @@ pub enum Planning {
     NoApproach,
     /// It is not known where the robot is.
     NoStart,
+    /// The robot has been moved off its place, and what it holds may be clamped there.
+    OffPlace,
     /// The robot stopped on a way on which it can only go on, and the goal is another one.
     ForwardOnly,
     /// The fingers are around a tool in the drum.
@@ -60,7 +59,7 @@ pub enum Planning {
 /// What lies ahead on the route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Ahead {
-    /// The point of the way beside which a person has left the robot.
+    /// A point on the way back to where the robot was before a person moved it.
     Beside,
     /// Nothing: the robot is at the goal, or has been sent there.
     Nothing,
@@ -189,21 +188,17 @@ pub fn near(a: &Frame, b: &Frame, inches: f64, radians: f64) -> bool {
     distance.inches <= inches && distance.radians <= radians
 }
 
-/// The frame of a straight segment that is nearest to a frame: its position, and as much of the segment's
-/// turn as of its length lies before it.
+/// The approach to a place, if one is written.
 #[must_use]
-pub fn foot(present: &Frame, start: &Frame, end: &Frame) -> Frame {
-    let (along, offset) = (end.position - start.position, present.position - start.position);
-    let length = along.dot(&along);
-    let share = if length > 0.0 { (along.dot(&offset) / length).clamp(0.0, 1.0) } else { 0.0 };
-    let turn = rotation_vector(&(end.rotation * start.rotation.inverse())) * share;
-    Frame { position: start.position + along * share, rotation: rotation_by(&turn) * start.rotation }
-}
-
-/// How far a frame is from a straight segment, in.
-#[must_use]
-pub fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
-    norm(&(present.position - foot(present, start, end).position))
+pub fn approach_to(at: &RobotPlace, data: &TaskData<'_>) -> Option<PathId> {
+    let there = place(at);
+    match at.gone_to {
+        GoneTo::Location | GoneTo::Drum => data.approach_location(&there),
+        GoneTo::Object(ObjectGrip { object, grip }) | GoneTo::Brought(ObjectGrip { object, grip }) => {
+            data.approach(&object, grip, &there)
+        }
+        GoneTo::View(ObjectGrip { object, grip }) => data.view_approach(&object, grip, &there),
+    }
 }
 
 /// Does the robot leave a place by the approach path, which is passed in reverse? It does with an object that it has
@@ -217,23 +212,10 @@ fn takes_out(from: &RobotPlace, data: &TaskData<'_>) -> bool {
 }
 
 impl Route {
-    /// Plan the way from where the robot is to the goal of a command.
-    ///
-    /// # Errors
-    /// Why there is no way.
-    pub fn plan(
-        command: &EmoveCommand,
-        goal: &Goal,
-        from: &RobotPlace,
-        data: &TaskData<'_>,
-    ) -> Result<Self, Planning> {
-        let to = goal.place(command);
-        let start = from.pose.to_frame().map_err(|_| Planning::NoStart)?;
-        let here = same_location(&place(from), &place(&to));
-        if here && near(&start, &goal.frame, THERE_INCHES, THERE_RADIANS) {
-            return Ok(Self { from: *from, to, opening: goal.opening, complete: true, ..Self::default() });
-        }
-        Ok(Self { opening: goal.opening, ..Self::between(from, &to, data)? })
+    /// The way to a goal at which the robot is.
+    #[must_use]
+    pub fn here(from: &RobotPlace, to: &RobotPlace, opening: Option<i32>) -> Self {
+        Self { from: *from, to: *to, opening, complete: true, ..Self::default() }
     }
 
     /// The straight way from one pose to another at the same place, as that of the camera over a part.
@@ -262,13 +244,6 @@ impl Route {
             }
             GoneTo::View(ObjectGrip { object, grip }) => data.view_depart(&object, grip, &start),
         };
-        let approach = match to.gone_to {
-            GoneTo::Location | GoneTo::Drum => data.approach_location(&end),
-            GoneTo::Object(ObjectGrip { object, grip }) | GoneTo::Brought(ObjectGrip { object, grip }) => {
-                data.approach(&object, grip, &end)
-            }
-            GoneTo::View(ObjectGrip { object, grip }) => data.view_approach(&object, grip, &end),
-        };
         let between =
             if same_location(&start, &end) { Some(PathId::NULL) } else { data.trajectory(&start, &end) };
         let mut route = Self {
@@ -276,7 +251,7 @@ impl Route {
             to: *to,
             depart: depart.unwrap_or(PathId::NULL),
             between: between.ok_or(Planning::NoTrajectory)?,
-            approach: approach.unwrap_or(PathId::NULL),
+            approach: approach_to(to, data).unwrap_or(PathId::NULL),
             ..Self::default()
         };
         route.stop = route.stop_parameters(data).ok_or(Planning::NoSpeed)?;

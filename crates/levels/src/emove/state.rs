@@ -7,10 +7,10 @@ use super::{
     back::Back,
     gripper::Gripper,
     grippers::Grippers,
+    rejoin::Rejoin,
     route::Route,
     surroundings::Surroundings,
     tables::{Ordered, Step},
-    way::Rejoin,
 };
 use crate::execution::Execution;
 
@@ -39,7 +39,7 @@ pub struct State {
     pub route: Option<Route>,
     /// The part of an interrupted way that is flown back first.
     pub back: Option<Back>,
-    /// The first point of the continuation of an interrupted path.
+    /// The points to which the robot goes first, back to its place or path.
     pub rejoin: Option<Rejoin>,
     /// Beliefs about the world: an output, adopted again after a restart.
     pub beliefs: Beliefs,

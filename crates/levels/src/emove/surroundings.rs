@@ -33,9 +33,7 @@ impl Surroundings {
             };
             self.looked = next.number();
             if is_plain(&locpt.name, &place_of(LocationKind::Point, next.to_option(), None), data) {
-                let distance = locpt.frame.distance(present);
-                let (inches, degrees) = (distance.inches, distance.radians.to_degrees());
-                self.insert(NearPlace { location: locpt.name, inches, degrees });
+                self.insert(NearPlace::seen(locpt.name, &locpt.frame, present));
             }
         }
     }

@@ -11,23 +11,24 @@
 //! with the joystick, it first returns to the path and stops there, because the goal may be a nest that is closed at
 //! its sides. The points of the path are not stored: they follow from its two ends and the task data.
 
-use geometry::{frame::Frame, pose::Pose};
+use geometry::{
+    frame::{Frame, norm, rotation_by, rotation_vector},
+    pose::Pose,
+};
 use interfaces::{
     CommonMemory,
     emove::{Direction, EmoveCommand, GoneTo, Leg as Part, RobotPlace, Way},
     prim::{PrimReport, PrimVerb},
     process::Inputs,
+    track::Course,
 };
-use rcs_core::Plain;
 use taskdata::files::{TaskData, TrajParaId};
 
 use super::{
     back::Back,
-    robot_place::{commanded_pose, place, present_frame},
-    route::{
-        Ahead, Goal, Leg, LegGoal, Planning, Route, THERE_INCHES, THERE_RADIANS, beside, foot, near,
-        same_location,
-    },
+    rejoin::{Origination, Rejoin, from_outside},
+    robot_place::{commanded_pose, is_cut_off, place, present_frame},
+    route::{Ahead, Goal, Leg, LegGoal, Planning, Route, THERE_INCHES, THERE_RADIANS, near, same_location},
     state::State,
     tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
     whereabouts::{LOST_INCHES, LOST_RADIANS},
@@ -52,17 +53,25 @@ pub struct Flight {
     pub rejoin: Option<Rejoin>,
 }
 
-/// The point at which a robot that a person has moved beside its way comes back to it.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Rejoin {
-    /// Where it is.
-    pub foot: Pose,
-    /// Parameters of the motion: those of the segment.
-    pub parameters: TrajParaId,
+/// The frame of a straight segment that is nearest to a frame: its position, and as much of the segment's
+/// turn as of its length lies before it.
+#[must_use]
+pub fn foot(present: &Frame, start: &Frame, end: &Frame) -> Frame {
+    let (along, offset) = (end.position - start.position, present.position - start.position);
+    let length = along.dot(&along);
+    let share = if length > 0.0 { (along.dot(&offset) / length).clamp(0.0, 1.0) } else { 0.0 };
+    let turn = rotation_vector(&(end.rotation * start.rotation.inverse())) * share;
+    Frame { position: start.position + along * share, rotation: rotation_by(&turn) * start.rotation }
+}
+
+/// How far a frame is from a straight segment, in.
+#[must_use]
+pub fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
+    norm(&(present.position - foot(present, start, end).position))
 }
 
 /// The route of a way, from its ends.
-fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {
+pub(super) fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {
     if way.straight {
         let stop = Route::between(&way.from, &way.to, data).map(|route| route.stop)?;
         Ok(Route::straight(&way.from, &way.to, stop))
@@ -72,7 +81,7 @@ fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {
 }
 
 /// The segment of the way that the robot is on: its start, its end, and the records of both.
-fn segment(way: &Way, data: &TaskData<'_>) -> Option<(Frame, Frame, [TrajParaId; 2])> {
+pub(super) fn segment(way: &Way, data: &TaskData<'_>) -> Option<(Frame, Frame, [TrajParaId; 2])> {
     let route = route_of(way, data).ok()?;
     let (end, parameters) = route.point(way.next, data)?;
     let (start, passed) = match way.next.checked_sub(1) {
@@ -92,15 +101,6 @@ fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<boo
     // On the shorter turn from one to the other, with the same tolerance.
     let turned = before + after <= turn + LOST_RADIANS;
     Some(beside(present, &start, &end) <= cut + LOST_INCHES && turned)
-}
-
-/// The point to which a robot returns that a person has moved off its path: the nearest one of its segment.
-fn rejoin(way: &Way, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Rejoin> {
-    let present = present_frame(inputs.memory).filter(|_| way.by_hand)?;
-    let (start, end, [_, parameters]) = segment(way, inputs.data)?;
-    let foot = foot(&present, &start, &end);
-    let beside = !near(&present, &foot, THERE_INCHES, THERE_RADIANS);
-    beside.then(|| Rejoin { foot: Pose::from_frame(&foot), parameters })
 }
 
 /// Does Prim still move the robot for its order, or for the one before? A GO-THRU is done before it is at
@@ -132,8 +132,7 @@ impl State {
         let prim = &memory.prim;
         let report = prim.status.report;
         way.by_hand |= report == PrimReport::JoystickOn;
-        way.cut_off |= prim.status.restarting
-            || matches!(report, PrimReport::T3LinkOff | PrimReport::T3LinkErr | PrimReport::NoRespT3i);
+        way.cut_off |= is_cut_off(memory);
         let moves = matches!(report, PrimReport::Executing | PrimReport::Done) && moves(memory);
         if let Some(commanded) = commanded_pose(memory).filter(|pose| moves && follows(pose, way, data)) {
             way.rest = commanded;
@@ -157,14 +156,16 @@ impl State {
     }
 
     /// The state variables of RESUME for a goal.
-    fn start(&self, goal: &RobotPlace, way: Option<&Way>, data: &TaskData<'_>) -> Start {
-        let robot = match (self.place(), way) {
+    fn start(&self, goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> Start {
+        let robot = match (&begin.place, &begin.way) {
             (Some(_), _) => Robot::AtPlace,
             (None, Some(_)) => Robot::OnWay,
             (None, None) => Robot::Lost,
         };
-        let Some(way) = way else {
-            return Start { robot, goal: GoalOf::Another, back: WayBack::Free, leg: LegNow::Later };
+        let is_here = begin.place.is_some_and(|from| is_same_pose(&from, goal));
+        let Some(way) = begin.way.as_ref().filter(|_| robot == Robot::OnWay) else {
+            let goal = if is_here { GoalOf::Place } else { GoalOf::Another };
+            return Start { robot, goal, back: WayBack::Free, leg: LegNow::Later };
         };
         let route = route_of(way, data).unwrap_or_default();
         let departs = way.next < route.depart_points(data);
@@ -193,13 +194,21 @@ impl State {
         inputs: &Inputs<'_, TaskData<'_>>,
     ) -> Result<Flight, Planning> {
         let data = inputs.data;
-        let (to, way) = (goal.place(command), self.on_way(inputs));
-        let rejoin = way.as_ref().and_then(|way| rejoin(way, inputs));
+        let to = goal.place(command);
+        let begin = self.origination(inputs)?;
+        let rejoin = begin.rejoin;
         let flight = |route, back| Flight { route: Some(route), back, rejoin };
-        let beginning = resume((), &self.start(&to, way.as_ref(), data)).action;
-        match (beginning, self.place(), way) {
+        if let (Some(nest), true) = (&begin.place, begin.is_out) {
+            return Ok(flight(Route { opening: goal.opening, ..from_outside(nest, &to, data)? }, None));
+        }
+        match (resume((), &self.start(&to, &begin, data)).action, begin.place, begin.way) {
             (Beginning::Depart, Some(from), _) => {
-                Ok(Flight { rejoin: None, ..flight(Route::plan(command, goal, &from, data)?, None) })
+                Ok(flight(Route { opening: goal.opening, ..Route::between(&from, &to, data)? }, None))
+            }
+            (Beginning::Settle, Some(from), _) => {
+                let back = self.settle_at(&from, begin.offset, data)?;
+                let route = Route::here(&from, &to, goal.opening);
+                Ok(Flight { rejoin: rejoin.or(back), ..flight(route, None) })
             }
             (Beginning::GoOn, _, Some(way)) => {
                 let on = Route { commanded: way.next, opening: goal.opening, ..route_of(&way, data)? };
@@ -246,12 +255,19 @@ impl State {
     /// The next leg, which is noted as commanded, with the way that the robot is then on.
     pub(super) fn next_leg(&mut self, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Leg> {
         let rest = commanded_pose(memory).unwrap_or_default();
-        if let Some(Rejoin { foot, parameters }) = self.rejoin.take() {
-            if let Some(way) = &mut self.beliefs.way {
-                way.rest = rest;
+        if let Some(rejoin) = &mut self.rejoin {
+            let (next, parameters) = (rejoin.next(&self.beliefs.track), rejoin.parameters);
+            if rejoin.ahead() == 0 {
+                self.rejoin = None;
             }
-            return Some(Leg { at: LegGoal::Computed(foot.to_frame().ok()?), parameters });
+            // A robot that comes back from farther away has left its path, and is at no place: both stay as they are.
+            match &mut self.beliefs.way {
+                Some(way) if self.beliefs.track.course == Course::Known => way.rest = rest,
+                _ => {}
+            }
+            return Some(Leg { at: LegGoal::Computed(next?.to_frame().ok()?), parameters });
         }
+        self.beliefs.place = None;
         let way = |route: &Route, next, direction| Way {
             from: route.from,
             to: route.to,
@@ -298,8 +314,13 @@ impl State {
     }
 }
 
+/// Is it the same pose at the same location, whatever is gone to there?
+fn is_same_pose(a: &RobotPlace, b: &RobotPlace) -> bool {
+    let (Ok(a_frame), Ok(b_frame)) = (a.pose.to_frame(), b.pose.to_frame()) else { return false };
+    same_location(&place(a), &place(b)) && near(&a_frame, &b_frame, THERE_INCHES, THERE_RADIANS)
+}
+
 /// Is it the same goal: same kind, place, object and grip, and the same pose?
 fn is_same(a: &RobotPlace, b: &RobotPlace) -> bool {
-    let (Ok(a_frame), Ok(b_frame)) = (a.pose.to_frame(), b.pose.to_frame()) else { return false };
-    a.gone_to == b.gone_to && place(a) == place(b) && near(&a_frame, &b_frame, THERE_INCHES, THERE_RADIANS)
+    a.gone_to == b.gone_to && place(a) == place(b) && is_same_pose(a, b)
 }

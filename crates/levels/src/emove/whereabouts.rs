@@ -6,6 +6,7 @@ use interfaces::{
     prim::PrimVerb,
     process::Inputs,
     subtask::LocationKind,
+    track::Course,
 };
 use rcs_core::handshake::Lower;
 use taskdata::files::{LocptId, TaskData};
@@ -82,7 +83,9 @@ impl State {
     /// Is it known where the robot is? A way that it has left says nothing any more, once it is at rest.
     pub(super) fn whereabouts(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Whereabouts {
         let moving = matches!(self.robot(inputs), Lower::Pending | Lower::Executing);
-        let on_way = self.beliefs.way.is_some() && (moving || self.on_way(inputs).is_some());
+        // On its return to a way the robot moves, and is not on it yet.
+        let moves_on_it = moving && self.beliefs.track.course == Course::Known;
+        let on_way = self.beliefs.way.is_some() && (moves_on_it || self.on_way(inputs).is_some());
         let half_way = self.beliefs.exchange.is_some() || self.beliefs.drum.is_some();
         if self.place().is_some() || half_way || on_way {
             Whereabouts::Known

@@ -7,9 +7,9 @@ use rcs_core::{
     Plain,
     name::{Name10, Name16},
 };
-use taskdata::files::{LocptId, Reference, TaskData};
+use taskdata::files::TaskData;
 
-use crate::places::{Missing, named};
+use crate::places::{Missing, is_in_mbd, named};
 
 /// Commands of Task (V.4.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -364,12 +364,4 @@ impl Location {
     fn is_in_mbd(&self, data: &TaskData<'_>) -> bool {
         is_in_mbd(self.record, data)
     }
-}
-
-/// True if a record of LOCPT is one of the MBD's.
-#[must_use]
-pub fn is_in_mbd(record: Option<u32>, data: &TaskData<'_>) -> bool {
-    let point = LocptId::from_option(record);
-    let owner = data.owner_named(&Name10::clipped(named::MBD)).filter(|_| !point.is_null());
-    owner.is_some_and(|owner| data.is_member(owner, Reference::location_point(point)))
 }

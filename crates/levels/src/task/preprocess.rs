@@ -11,7 +11,7 @@ use taskdata::files::TaskData;
 use super::{
     goals::proof,
     ledger::{Part, Placed, is_from_elsewhere, is_taken, placed, resumed},
-    plan::{Found, Plan, Resumed, Site, TOOL_GRIPPER, TaskVerb, is_in_mbd},
+    plan::{Found, Plan, Resumed, Site, TOOL_GRIPPER, TaskVerb},
     state::State,
     tables::{
         Drum, Ends, Ordered, Orders, Request, Seen, Situation, Station, Takeover, Tool, Way,
@@ -23,7 +23,7 @@ use crate::{
     execution::{Asked, Work},
     halt::{Above, Below, BoxState, Intake, Kind, Replaced},
     held::Held,
-    places::{named, place_of},
+    places::{is_in_mbd, named, place_of},
 };
 
 impl State {

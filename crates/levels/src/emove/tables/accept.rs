@@ -54,8 +54,9 @@ decision_table! {
         42: route: ForwardOnly                                         => Refuse(ForwardOnly);
         43: route: InDrum                                              => Refuse(NotPrepared);
         44: route: NoTrajectory                                        => Refuse(NoTrajectory);
-        45: route: Planned, joystick: Off                              => consult;
-        46: route: Planned, joystick: On, verb: Pause                  => consult;
-        47: route: Planned, joystick: On                               => Manual;
+        45: route: OffPlace                                            => Refuse(OffPlace);
+        46: route: Planned, joystick: Off                              => consult;
+        47: route: Planned, joystick: On, verb: Pause                  => consult;
+        48: route: Planned, joystick: On                               => Manual;
     }
 }

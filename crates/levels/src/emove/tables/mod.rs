@@ -21,7 +21,9 @@ pub mod release;
 pub mod release_tool;
 pub mod remove_tool;
 pub mod resume;
+pub mod returning;
 pub mod search;
+pub mod track;
 mod variables;
 pub mod withdraw;
 
@@ -336,7 +338,8 @@ commands! {
     /// Consult the tables of a command.
     pub fn of_command(EmoveVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, EFFECT, attend::ATTEND, search::SEARCH, resume::RESUME,
-            drum::DRUM, carried::CARRIED, ordered::ORDERED, CONFIRM;
+            drum::DRUM, carried::CARRIED, ordered::ORDERED, CONFIRM, returning::RETURN, track::TRACK,
+            resume::STANCE;
         None | Pause: goals::REST           => e_pause::e_pause;
         MovToLoc: goals::PLACE              => motion::motion;
         MovToObj: goals::PLACE              => mov_to_obj::mov_to_obj then motion::motion;

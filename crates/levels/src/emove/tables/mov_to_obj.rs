@@ -3,12 +3,16 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// MOV-TO-OBJ (V.2.1): like MOV-TO-LOC, with the fingers opened for the goal. A robot that
-    /// holds the object is at it; one that holds anything else, or may hold it, must not open the fingers.
+    /// MOV-TO-OBJ (V.2.1): like MOV-TO-LOC, with the fingers opened for the goal. A robot that holds the object is at
+    /// it, once it stands at the goal; one that is elsewhere with it, or holds anything else, or may hold it, must not
+    /// open the fingers.
     pub MOV_TO_OBJ: fn mov_to_obj(super::Situation) -> super::Action or () {
-        1: held: Right              => Finish;
-        2: held: Other | Something  => Fail(AlreadyHolding);
-        3: held: NotKnown           => Fail(HeldNotKnown);
-        4: held: Nothing            => consult;
+        1: held: Nothing                                     => consult;
+        2: held: Other | Something                           => Fail(AlreadyHolding);
+        3: held: NotKnown                                    => Fail(HeldNotKnown);
+        4: held: Right, work: Busy                           => consult;
+        5: held: Right, ahead: Beside                        => consult;
+        6: held: Right, ahead: Nothing                       => Finish;
+        7: held: Right, ahead: Through | Stop | Missing      => Fail(AlreadyHolding);
     }
 }

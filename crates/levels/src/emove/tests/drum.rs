@@ -44,7 +44,7 @@ pub const SCENARIOS: &[fn()] = &[
 ];
 
 /// Size of the tool, 0.01 in.
-const SIZE: i32 = 248;
+pub const SIZE: i32 = 248;
 
 fn run(bench: &mut Bench, verb: EmoveVerb) -> (StatusReport, Reason) {
     bench.run(verb, "CUTTER", 1, "TOOL-TRNS", 3)

@@ -11,6 +11,7 @@ mod motion;
 mod nonsense;
 mod pausing;
 mod recovery;
+mod returning;
 mod together;
 mod written;
 
@@ -26,12 +27,13 @@ fn every_row_fires() {
         exchange::SCENARIOS,
         drum::SCENARIOS,
         recovery::SCENARIOS,
+        returning::SCENARIOS,
         exchange_again::SCENARIOS,
     ];
     scenarios.concat().iter().for_each(|scenario| scenario());
     let mut silent = ROWS.with_borrow(|rows| rows.missing(TABLES));
     // Of these no header tells: tests of their own consult them.
-    let elsewhere = ["ATTEND", "SEARCH", "RESUME", "DRUM"];
+    let elsewhere = ["ATTEND", "SEARCH", "RESUME", "DRUM", "RETURN", "TRACK", "STANCE"];
     silent.retain(|row| !elsewhere.iter().any(|name| row.starts_with(name)));
     assert_eq!(silent, [""; 0]);
 }

@@ -536,13 +536,15 @@ fn a_motion_begins_where_the_robot_is() {
         for &back in WayBack::ALL {
             for &leg in LegNow::ALL {
                 let another = match (leg, back) {
-                    (LegNow::Depart, _) => (4, Beginning::GoOut),
-                    (LegNow::Later, WayBack::Free) => (5, Beginning::GoBack),
-                    (LegNow::Later, WayBack::Closed) => (6, Beginning::RefuseBack),
+                    (LegNow::Depart, _) => (5, Beginning::GoOut),
+                    (LegNow::Later, WayBack::Free) => (6, Beginning::GoBack),
+                    (LegNow::Later, WayBack::Closed) => (7, Beginning::RefuseBack),
                 };
-                let on_way = if goal == GoalOf::Way { (3, Beginning::GoOn) } else { another };
-                assert_eq!(row(Robot::AtPlace, goal, back, leg), (1, Beginning::Depart));
-                assert_eq!(row(Robot::Lost, goal, back, leg), (2, Beginning::RefuseStart));
+                let on_way = if goal == GoalOf::Way { (4, Beginning::GoOn) } else { another };
+                let here = goal == GoalOf::Place;
+                let at_place = if here { (2, Beginning::Settle) } else { (1, Beginning::Depart) };
+                assert_eq!(row(Robot::AtPlace, goal, back, leg), at_place);
+                assert_eq!(row(Robot::Lost, goal, back, leg), (3, Beginning::RefuseStart));
                 assert_eq!(row(Robot::OnWay, goal, back, leg), on_way);
             }
         }

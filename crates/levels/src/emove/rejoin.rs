@@ -1,0 +1,322 @@
+//! Return of a robot to its place or its path (docs/design/recovery.md "Return").
+//!
+//! ```text
+//!   at its place     within 0.02 in: there; within 0.5 in: straight back, unless what it holds may be clamped
+//!   off its path     to the nearest point of the segment
+//!   moved farther    back along the record of how the joystick box has moved it; or straight to a resting place;
+//!                    or out of a nest, against its approach
+//! ```
+
+use geometry::{
+    frame::{Frame, Vector, norm},
+    pose::Pose,
+};
+use interfaces::{
+    emove::{GoneTo, RobotPlace, Way},
+    process::Inputs,
+    subtask::LocationKind,
+    track::{Course, Track},
+};
+use rcs_core::Plain;
+use taskdata::files::{Locpt, LocptId, Target, TaskData, TrajParaId};
+
+use super::{
+    robot_place::{commanded_pose, place, present_frame},
+    route::{Planning, Route, THERE_INCHES, THERE_RADIANS, approach_to, near},
+    state::State,
+    surroundings::is_plain,
+    tables::{
+        Knowledge,
+        resume::{Offset, Stance, Standing, stance},
+        returning::{Freight, Lost, Near, Origin, Return, returning},
+    },
+    track,
+    way::{Flight, foot, route_of, segment},
+};
+use crate::places::{is_in_mbd, place_of};
+
+/// A vise or the pedestal that closes on a part shifts the hand that holds it by this much at most, in: the part has
+/// 0.06 in of play in the vise (docs/cell.md "Budget"), and the fingers yield …
+const CLAMP_INCHES: f64 = 0.1;
+/// … and turns it by this much, radians (half a degree).
+const CLAMP_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0;
+/// A robot goes straight to a resting place from within this, in: the short distance of IV.3.3 step 19 (ASSUMED) …
+const RESTING_INCHES: f64 = 12.0;
+/// … and this, radians (45 degrees).
+const RESTING_RADIANS: f64 = 45.0 * core::f64::consts::PI / 180.0;
+/// It leaves a nest against the direction of the approach if it is this near to its line, in …
+const NEST_INCHES: f64 = 2.0;
+/// … and turned by no more than this, radians (10 degrees).
+const NEST_RADIANS: f64 = 10.0 * core::f64::consts::PI / 180.0;
+
+/// The points to which the robot goes before its route begins: first back along the record of how the joystick box has
+/// moved it.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Rejoin {
+    /// Points of the record that lie ahead; the last of them is the next one.
+    pub track: u8,
+    /// The points after them.
+    pub points: [Option<Pose>; 2],
+    /// Parameters of the motions.
+    pub parameters: TrajParaId,
+}
+
+impl Rejoin {
+    /// Straight to a pose.
+    pub(super) fn to(pose: Pose, parameters: TrajParaId) -> Self {
+        Self { track: 0, points: [None, Some(pose)], parameters }
+    }
+
+    /// How many points lie ahead.
+    pub(super) fn ahead(&self) -> u8 {
+        self.points.iter().flatten().fold(self.track, |ahead, _| ahead.saturating_add(1))
+    }
+
+    /// Take the next point.
+    pub(super) fn next(&mut self, record: &Track) -> Option<Pose> {
+        if record.course != Course::Tracked {
+            // The robot has come back into the neighbourhood of its place or path, which is gone to straight.
+            self.track = 0;
+        }
+        if let Some(before) = self.track.checked_sub(1) {
+            self.track = before;
+            return record.points.get(usize::from(before)).copied();
+        }
+        self.points.iter_mut().find_map(Option::take)
+    }
+}
+
+/// From where a motion begins, and how the robot comes there first.
+pub(super) struct Origination {
+    /// The place.
+    pub place: Option<RobotPlace>,
+    /// Or the path, of which a motion was interrupted.
+    pub way: Option<Way>,
+    /// The present frame, seen from the place.
+    pub offset: Offset,
+    /// How the robot comes there.
+    pub rejoin: Option<Rejoin>,
+    /// It comes to the end of the depart leg.
+    pub is_out: bool,
+}
+
+/// Parameters of the last motion to a place: those of the stop line of its approach; where none is written, those of the
+/// last point of a trajectory that leads there, as for a motion that goes there (SPECNOTES).
+pub(super) fn parameters_at(at: &RobotPlace, data: &TaskData<'_>) -> Option<TrajParaId> {
+    let last = |path| Some(data.path(path).last()?.para);
+    approach_to(at, data).and_then(last).or_else(|| {
+        let leads_there = |end| data.aliases(&place(at)).any(|alias| alias == end);
+        data.trajectories.iter().filter(|trajectory| leads_there(trajectory.end)).find_map(|it| last(it.path))
+    })
+}
+
+/// May a part that has been brought to a place, or is gripped there, be clamped? A tray does not clamp what lies in its
+/// sectors. No sensor reads the vises, nor the pedestal's hand to the hundredth of an inch.
+fn clamps(at: &RobotPlace, data: &TaskData<'_>) -> bool {
+    let is_tray = at.sector.is_some() || is_in_mbd(at.record, data);
+    matches!(at.gone_to, GoneTo::Object(_) | GoneTo::Brought(_)) && !is_tray
+}
+
+/// A robot may go straight to a resting place: a location whose approach, as such, has no points.
+fn is_resting(id: LocptId, locpt: &Locpt, data: &TaskData<'_>) -> bool {
+    let at = place_of(LocationKind::Point, id.to_option(), None);
+    let approach = data.approach_location(&at).map(|path| data.path(path));
+    is_plain(&locpt.name, &at, data) && approach.is_some_and(|path| path.len() == 1)
+}
+
+/// The resting place to which a robot may go straight: it is near, and no other location is nearer. So the robot comes
+/// no nearer to any other location on the way than it goes to this one.
+fn resting_place(present: &Frame, data: &TaskData<'_>) -> Option<RobotPlace> {
+    let off = |locpt: &Locpt| norm(&(locpt.frame.position - present.position));
+    let numbered = (1..).map(LocptId::new).zip(data.locpts);
+    let (id, nearest) = numbered.min_by(|(_, a), (_, b)| off(a).total_cmp(&off(b)))?;
+    let is_near = near(&nearest.frame, present, RESTING_INCHES, RESTING_RADIANS);
+    (is_near && is_resting(id, nearest, data)).then(|| RobotPlace {
+        gone_to: GoneTo::Location,
+        location: nearest.name,
+        kind: LocationKind::Point,
+        record: id.to_option(),
+        array: None,
+        sector: None,
+        pose: Pose::from_frame(&nearest.frame),
+    })
+}
+
+/// How a robot beside the approach of a nest leaves it: out against the direction of the approach until it is level with
+/// its outermost point, and to that point.
+fn out_of(nest: &RobotPlace, present: &Frame, data: &TaskData<'_>) -> Option<[Frame; 2]> {
+    let seat = nest.pose.to_frame().ok()?;
+    let first = data.path(approach_to(nest, data)?).first().filter(|point| point.target != Target::Stop)?;
+    let outermost = data.point_frame(first, &seat)?;
+    let out: Vector = outermost.position - seat.position;
+    let length = norm(&out);
+    if length <= 0.0 || present.distance(&seat).radians > NEST_RADIANS {
+        return None;
+    }
+    let along = (present.position - seat.position).dot(&out) / length;
+    let aside = norm(&(present.position - seat.position - out * (along / length)));
+    let is_beside = (-THERE_INCHES..=length + NEST_INCHES).contains(&along) && aside <= NEST_INCHES;
+    let level = Frame { position: present.position + out * ((length - along).max(0.0) / length), ..*present };
+    is_beside.then_some([level, outermost])
+}
+
+/// The point of its path to which a robot at a frame returns that a person has moved: the nearest one of its segment,
+/// with the parameters of that.
+fn on_segment(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<(Frame, TrajParaId)> {
+    let (start, end, [_, parameters]) = segment(way, data)?;
+    Some((foot(present, &start, &end), parameters))
+}
+
+/// How a robot at a frame comes back to its path, if it is beside it.
+fn to_way(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<Rejoin> {
+    let (foot, parameters) = on_segment(present, way, data)?;
+    let beside = !near(present, &foot, THERE_INCHES, THERE_RADIANS);
+    beside.then(|| Rejoin::to(Pose::from_frame(&foot), parameters))
+}
+
+impl State {
+    /// The present frame, seen from the place of the robot. A closing vise shifts the hand, and leaves the commanded
+    /// pose where it is; the joystick box moves both.
+    pub(super) fn offset(&self, at: &RobotPlace, inputs: &Inputs<'_, TaskData<'_>>) -> Offset {
+        let Ok(goal) = at.pose.to_frame() else { return Offset::Unseen };
+        let is_there = |frame: &Frame| near(frame, &goal, THERE_INCHES, THERE_RADIANS);
+        let commanded = commanded_pose(inputs.memory).and_then(|pose| pose.to_frame().ok());
+        let is_sent_there = commanded.is_some_and(|frame| is_there(&frame));
+        let gripped = self.holding(inputs.memory).is_held() && clamps(at, inputs.data);
+        let clamped = gripped || at.gone_to == GoneTo::Drum;
+        match present_frame(inputs.memory) {
+            Some(present) if is_there(&present) => Offset::There,
+            Some(present)
+                if clamped && is_sent_there && near(&present, &goal, CLAMP_INCHES, CLAMP_RADIANS) =>
+            {
+                Offset::There
+            }
+            Some(_) if clamped => Offset::Clamped,
+            Some(_) => Offset::Beside,
+            None if is_sent_there => Offset::There,
+            None => Offset::Unseen,
+        }
+    }
+
+    /// How a robot at its place goes back to it before something else is done.
+    ///
+    /// # Errors
+    /// Why it must not.
+    pub(super) fn settle_at(
+        &self,
+        at: &RobotPlace,
+        offset: Offset,
+        data: &TaskData<'_>,
+    ) -> Result<Option<Rejoin>, Planning> {
+        match stance((), &Standing { offset }).action {
+            Stance::Stay => Ok(None),
+            Stance::Correct => {
+                let parameters = parameters_at(at, data).ok_or(Planning::NoSpeed)?;
+                Ok(Some(Rejoin::to(at.pose, parameters)))
+            }
+            Stance::RefuseOff => Err(Planning::OffPlace),
+            Stance::RefuseStart => Err(Planning::NoStart),
+        }
+    }
+
+    /// A command that does its work where the robot stands: how the robot comes back to its place before.
+    ///
+    /// # Errors
+    /// Why it must not.
+    pub(super) fn stand_still(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Flight, Planning> {
+        let Some(at) = self.place() else { return Ok(Flight::default()) };
+        let rejoin = self.settle_at(&at, self.offset(&at, inputs), inputs.data)?;
+        Ok(Flight { rejoin, ..Flight::default() })
+    }
+
+    /// From where a motion begins.
+    ///
+    /// # Errors
+    /// Why the robot cannot come there.
+    pub(super) fn origination(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Origination, Planning> {
+        let data = inputs.data;
+        let nowhere =
+            Origination { place: None, way: None, offset: Offset::There, rejoin: None, is_out: false };
+        if let Some(place) = self.place() {
+            return Ok(Origination { place: Some(place), offset: self.offset(&place, inputs), ..nowhere });
+        }
+        let present = present_frame(inputs.memory);
+        if let Some(way) = self.on_way(inputs) {
+            let rejoin = present.filter(|_| way.by_hand).and_then(|present| to_way(&present, &way, data));
+            return Ok(Origination { way: Some(way), rejoin, ..nowhere });
+        }
+        let present = present.unwrap_or_else(Frame::identity);
+        let (left, way) = (self.beliefs.place, self.beliefs.way);
+        let resting = resting_place(&present, data);
+        let out = left.and_then(|nest| out_of(&nest, &present, data));
+        let back = Origination { offset: Offset::Beside, ..nowhere };
+        let to_place =
+            |place: RobotPlace, rejoin| Origination { place: Some(place), rejoin: Some(rejoin), ..back };
+        let parameters = |at: &RobotPlace| parameters_at(at, data).ok_or(Planning::NoSpeed);
+        let record = &self.beliefs.track;
+        match (returning((), &self.lost(resting.is_some(), out.is_some(), inputs)).action, left, way) {
+            (Return::Retrace, Some(left), _) => {
+                let back = Rejoin { track: record.count, ..Rejoin::to(left.pose, parameters(&left)?) };
+                Ok(to_place(left, back))
+            }
+            (Return::Retrace, None, Some(way)) => {
+                let way = Way { by_hand: true, ..way };
+                let begins = track::points(record).next().and_then(|pose| pose.to_frame().ok());
+                let foot =
+                    begins.and_then(|begins| on_segment(&begins, &way, data)).ok_or(Planning::NoStart)?;
+                let back = Rejoin::to(Pose::from_frame(&foot.0), route_of(&way, data)?.stop);
+                let rejoin = Rejoin { track: record.count, ..back };
+                Ok(Origination { way: Some(way), rejoin: Some(rejoin), ..nowhere })
+            }
+            (Return::Straight, ..) => {
+                let place = resting.ok_or(Planning::NoStart)?;
+                Ok(to_place(place, Rejoin::to(place.pose, parameters(&place)?)))
+            }
+            (Return::Out, Some(nest), _) => {
+                let points = out.ok_or(Planning::NoStart)?.map(|frame| Some(Pose::from_frame(&frame)));
+                let rejoin = Rejoin { track: 0, points, parameters: parameters(&nest)? };
+                Ok(Origination { is_out: true, ..to_place(nest, rejoin) })
+            }
+            (Return::Retrace | Return::Out | Return::Refuse, ..) => Err(Planning::NoStart),
+        }
+    }
+
+    /// The state variables of RETURN.
+    fn lost(&self, resting: bool, nest: bool, inputs: &Inputs<'_, TaskData<'_>>) -> Lost {
+        let left = self.beliefs.place;
+        let clampable =
+            left.is_some_and(|left| clamps(&left, inputs.data)) && self.holding(inputs.memory).is_held();
+        Lost {
+            resolvers: match present_frame(inputs.memory) {
+                Some(_) => Knowledge::Known,
+                None => Knowledge::Unknown,
+            },
+            course: self.beliefs.track.course,
+            origin: match (left.map(|left| left.gone_to), self.beliefs.way) {
+                (Some(GoneTo::Drum), _) => Origin::Drum,
+                (Some(_), _) => Origin::Place,
+                (None, Some(_)) => Origin::Way,
+                (None, None) => Origin::None,
+            },
+            freight: if clampable { Freight::Clampable } else { Freight::Free },
+            near: match (nest, resting) {
+                (true, _) => Near::Nest,
+                (false, true) => Near::Resting,
+                (false, false) => Near::Nothing,
+            },
+        }
+    }
+}
+
+/// The whole way from a place whose depart leg is complete.
+///
+/// # Errors
+/// Why there is none.
+pub(super) fn from_outside(
+    from: &RobotPlace,
+    to: &RobotPlace,
+    data: &TaskData<'_>,
+) -> Result<Route, Planning> {
+    let route = Route::between(from, to, data)?;
+    Ok(Route { commanded: route.depart_points(data), ..route })
+}

@@ -1,0 +1,203 @@
+//! The path on which the joystick box moves the robot (docs/design/recovery.md "Return").
+//!
+//! ```text
+//!   known place . - - point ---- point            the robot is at the end; what it has gone out and
+//!                       |                         back in between is cut off
+//!                     point ------------ end
+//! ```
+//!
+//! The resolvers are recorded, thinned to straight segments.
+
+use geometry::{
+    frame::{Distance, Vector, norm},
+    pose::{POINT_DISTANCE, Pose},
+    units::inches,
+};
+use interfaces::{
+    CommonMemory,
+    prim::PrimVerb,
+    track::{Course, Track},
+};
+
+use super::{
+    robot_place::{is_cut_off, is_led},
+    state::State,
+    tables::{
+        Knowledge, Whereabouts,
+        track::{Line, Mover, Record, Step, Tracking, track},
+    },
+};
+
+/// The robot moves no farther from one record to the next, in: the joystick box moves it 0.2 in in a tick, and a
+/// process may miss one or two.
+const STEP_INCHES: f64 = 0.6;
+/// … and turns no farther, radians.
+const STEP_RADIANS: f64 = 0.05;
+/// A pose is recorded when it is this far from the last one, in …
+const SPACING_INCHES: f64 = 0.1;
+/// … or turned so far, radians (1 degree).
+const SPACING_RADIANS: f64 = core::f64::consts::PI / 180.0;
+/// The line of a segment is that to the pose which is this far from its beginning, in: a pose is rounded to 0.01 in.
+const AIM_INCHES: f64 = 0.5;
+/// The segment is extended as long as the robot stays this near to the line, in; less than the spacing, so that a corner
+/// is one …
+const ASIDE_INCHES: f64 = 0.05;
+/// … and turns no farther on it, radians (2 degrees).
+const TURN_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
+/// The robot is on a segment that was recorded before if it is [`ASIDE_INCHES`] from it at most, and turned off it by no
+/// more than this, radians (half a degree).
+const AGAIN_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0;
+
+fn vector([x, y, z]: [i32; 3]) -> Vector {
+    Vector::new(inches(x), inches(y), inches(z))
+}
+
+/// How far two poses are apart, from their points: exact enough for small turns.
+fn apart(a: &Pose, b: &Pose) -> Distance {
+    let [tool, wrist, finger] =
+        [(a.tool, b.tool), (a.wrist, b.wrist), (a.finger, b.finger)].map(|(a, b)| vector(b) - vector(a));
+    let turned = norm(&(tool - wrist)).max(norm(&(finger - tool)));
+    Distance { inches: norm(&tool), radians: turned / POINT_DISTANCE }
+}
+
+/// Where a pose is on a line from a point on: how far along it, and how far beside it, in.
+fn on_line(pose: &Pose, from: &Pose, heading: &Vector) -> (f64, f64) {
+    let offset = vector(pose.tool) - vector(from.tool);
+    let along = offset.dot(heading);
+    (along, norm(&(offset - heading * along)))
+}
+
+/// The direction from one pose to another; zero if they coincide.
+fn heading(from: &Pose, to: &Pose) -> Vector {
+    let way = vector(to.tool) - vector(from.tool);
+    let length = norm(&way);
+    if length > 0.0 { way / length } else { Vector::zeros() }
+}
+
+/// The points that count, the first one first.
+pub(super) fn points(track: &Track) -> impl DoubleEndedIterator<Item = &Pose> + ExactSizeIterator {
+    track.points.get(..usize::from(track.count)).unwrap_or_default().iter()
+}
+
+/// The last point.
+fn last(track: &Track) -> Option<&Pose> {
+    points(track).next_back()
+}
+
+/// Is a pose on a segment?
+fn is_on(pose: &Pose, from: &Pose, to: &Pose) -> bool {
+    let (along, aside) = on_line(pose, from, &heading(from, to));
+    let length = apart(from, to);
+    let turned = apart(pose, from).radians + apart(pose, to).radians;
+    (-ASIDE_INCHES..=length.inches + ASIDE_INCHES).contains(&along)
+        && aside <= ASIDE_INCHES
+        && turned <= length.radians + AGAIN_RADIANS
+}
+
+/// The recorded segment that a pose is on, by the number of points up to its beginning.
+fn found(track: &Track, pose: &Pose) -> Option<u8> {
+    let ends = points(track).skip(1).chain([&track.end]);
+    let on = points(track).zip(ends).position(|(from, to)| is_on(pose, from, to));
+    u8::try_from(on?.saturating_add(1)).ok()
+}
+
+/// Cut the record off at a pose on the segment that begins with its `count`th point.
+fn cut(track: &mut Track, count: u8, pose: &Pose) {
+    let next = track.points.get(usize::from(count)).filter(|_| count < track.count).copied();
+    let to = next.unwrap_or(track.end);
+    track.count = count;
+    if let Some(from) = last(track) {
+        track.heading = heading(from, &to).into();
+    }
+    track.end = *pose;
+}
+
+/// Begin a record with a pose.
+fn begin(track: &mut Track, pose: &Pose) {
+    let [first, ..] = &mut track.points;
+    *first = track.end;
+    track.count = 1;
+    track.heading = heading(&track.end, pose).into();
+    track.end = *pose;
+    track.course = Course::Tracked;
+}
+
+/// Add a pose. False if the record is full.
+fn add(track: &mut Track, pose: &Pose) -> bool {
+    let moved = apart(&track.end, pose);
+    if moved.inches < SPACING_INCHES && moved.radians < SPACING_RADIANS {
+        return true;
+    }
+    let line = Vector::from(track.heading);
+    if let Some(from) = last(track) {
+        let (along, aside) = on_line(pose, from, &line);
+        if along >= 0.0 && aside <= ASIDE_INCHES && apart(from, pose).radians <= TURN_RADIANS {
+            if along <= AIM_INCHES {
+                track.heading = heading(from, pose).into();
+            }
+            track.end = *pose;
+            return true;
+        }
+    }
+    if let Some(count) = found(track, pose) {
+        cut(track, count, pose);
+        return true;
+    }
+    let (end, count) = (track.end, track.count);
+    let Some(free) = track.points.get_mut(usize::from(count)) else { return false };
+    *free = end;
+    track.count = count.saturating_add(1);
+    track.heading = heading(&end, pose).into();
+    track.end = *pose;
+    true
+}
+
+const fn is_motion(order: PrimVerb) -> bool {
+    matches!(
+        order,
+        PrimVerb::GoThru | PrimVerb::GotoPt | PrimVerb::GoUntil | PrimVerb::GoWhile | PrimVerb::DeltaMove
+    )
+}
+
+impl State {
+    /// Once a tick: record how the joystick box moves the robot away from its place or way.
+    pub(super) fn sense_track(&mut self, place: Whereabouts, memory: &CommonMemory) {
+        let Some(present) = memory.prim.status.sensor_pose.and_then(|pose| memory.changing_pose(pose)) else {
+            return;
+        };
+        let record = &mut self.beliefs.track;
+        let (led, sent) = (is_led(memory), is_motion(memory.emove.prim.command));
+        record.by_hand = led || (record.by_hand && !sent);
+        let gap = apart(&record.end, present);
+        let near = gap.inches <= STEP_INCHES && gap.radians <= STEP_RADIANS;
+        let back = if near || record.course != Course::Tracked { None } else { found(record, present) };
+        let tracking = Tracking {
+            place: if place == Whereabouts::Known { Knowledge::Known } else { Knowledge::Unknown },
+            course: record.course,
+            mover: match record.by_hand {
+                _ if sent && !led => Mover::Emove,
+                true => Mover::Box,
+                false => Mover::Hold,
+            },
+            line: if is_cut_off(memory) { Line::Failed } else { Line::Sound },
+            step: match back {
+                _ if near => Step::Near,
+                Some(_) => Step::Back,
+                None => Step::Far,
+            },
+        };
+        match track((), &tracking).action {
+            Record::Keep => {}
+            Record::Note if record.course == Course::Known => record.end = *present,
+            Record::Note => {
+                let by_hand = record.by_hand;
+                *record = Track { course: Course::Known, by_hand, end: *present, ..Track::default() };
+            }
+            Record::Begin => begin(record, present),
+            Record::Add if add(record, present) => {}
+            Record::Shorten => cut(record, back.unwrap_or_default(), present),
+            Record::Add | Record::Break => record.course = Course::Broken,
+            Record::Drift => record.course = Course::Adrift,
+        }
+    }
+}
