@@ -21,8 +21,8 @@ use rcs_core::Plain;
 use taskdata::files::{Locpt, LocptId, Target, TaskData, TrajParaId};
 
 use super::{
-    robot_place::{commanded_pose, place, present_frame},
-    route::{Planning, Route, THERE_INCHES, THERE_RADIANS, approach_to, near},
+    robot_place::{THERE_INCHES, THERE_RADIANS, commanded_pose, place, present_frame},
+    route::{Planning, Route, approach_to, near},
     state::State,
     surroundings::is_plain,
     tables::{

@@ -20,10 +20,6 @@ use super::{
 /// Opening, 0.01 in, when pictures are taken: the camera looks between the open fingers (V.2.1 MOV-TO-VU).
 /// The parts gripper opens as wide; the others open to their stop.
 pub const FULL_OPENING: i32 = 500;
-/// The robot is at a goal if it is within this many inches …
-pub const THERE_INCHES: f64 = 0.02;
-/// … and this many radians (0.1 degree) of it.
-pub const THERE_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0;
 
 /// What planning the way of a motion command came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]

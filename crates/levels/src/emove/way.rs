@@ -27,8 +27,8 @@ use taskdata::files::{TaskData, TrajParaId};
 use super::{
     back::Back,
     rejoin::{Origination, Rejoin, from_outside},
-    robot_place::{commanded_pose, is_cut_off, place, present_frame},
-    route::{Ahead, Goal, Leg, LegGoal, Planning, Route, THERE_INCHES, THERE_RADIANS, near, same_location},
+    robot_place::{THERE_INCHES, THERE_RADIANS, commanded_pose, is_cut_off, place, present_frame},
+    route::{Ahead, Goal, Leg, LegGoal, Planning, Route, near, same_location},
     state::State,
     tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
     whereabouts::{LOST_INCHES, LOST_RADIANS},

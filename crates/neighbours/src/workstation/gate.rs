@@ -285,8 +285,12 @@ mod tests {
     fn the_distances_of_a_failure_are_those_of_its_tick() {
         let mut bench = Bench::new();
         let mut memory = CommonMemory::default();
-        let near =
-            |inches| [Some(NearPlace { location: Name10::clipped("HOME"), inches, degrees: 0.0, offset: [0.0; 3] }), None];
+        let near = |inches| {
+            [
+                Some(NearPlace { location: Name10::clipped("HOME"), inches, degrees: 0.0, offset: [0.0; 3] }),
+                None,
+            ]
+        };
         (memory.task.status.report, memory.task.status.reason) = (HwsReport::Error, Reason::UnknownStart);
         memory.emove.nearest = near(2.5);
         assert!(bench.gate.write(&memory, TaskState::Runs));
