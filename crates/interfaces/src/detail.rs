@@ -4,7 +4,7 @@ use core::fmt;
 
 use rcs_core::name::{Name10, Name16};
 
-use crate::{CommonMemory, Fault, HwsCommand, ProcessId, Reason, StatusReport, emove::NearPlace};
+use crate::{CommonMemory, Fault, HwsCommand, ProcessId, Reason, StatusReport, emove::NearPlace, t3i::PathLeft};
 
 /// Details of a reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub enum Detail {
     Pair(Name10, Name16),
     /// The known places that are nearest to the robot.
     Near([Option<NearPlace>; 2]),
+    /// The commanded and the fed-back pose of a robot that left its path.
+    Left(PathLeft),
 }
 
 impl Detail {
@@ -33,6 +35,7 @@ impl Detail {
                     Self::Pair(from.location, Name16::clipped(memory.subtask.emove.location.as_str()))
                 })
             }
+            (_, Fault::Reason(Reason::OffPath)) => memory.t3i.status.left.map_or(Self::None, Self::Left),
             // The POSITION of Task refuses by itself: V.4.1.
             (ProcessId::Task, Fault::Reason(Reason::NoTrajectory)) => {
                 let ends = memory.subtask.status.at.zip(hws.source.or(hws.destination));
@@ -59,6 +62,7 @@ impl fmt::Display for Detail {
         match self {
             Self::None => return Ok(()),
             Self::Pair(from, to) => write!(f, ": none leads from {from} to {to}")?,
+            Self::Left(left) => write!(f, ": {left}")?,
             Self::Near(places) => {
                 let mut separator = ": ";
                 for place in places.iter().flatten() {

@@ -269,6 +269,8 @@ pub enum Reason {
     ReleaseNotEnded,
     /// The object lies too near to the edge of its tray for the open fingers.
     AtTrayEdge,
+    /// The robot is off its commanded path.
+    OffPath,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.
@@ -322,6 +324,7 @@ impl CommonMemory {
     pub fn device_outputs(&self) -> DeviceOutputs {
         DeviceOutputs {
             link_tx: self.t3i.link_tx,
+            robot_stop: self.t3i.status.following == t3i::Following::OffPath,
             grip: self.grip.valves,
             quick_change: self.quick_change.valves,
             vision: self.emove.vision,
