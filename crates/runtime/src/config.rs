@@ -367,7 +367,7 @@ mod tests {
         let robot = |text: &str| text.parse::<RobotConfig>();
         assert_eq!(robot("sim").ok(), Some(RobotConfig { kind: RobotKind::Sim, silence: None, lag: None }));
         let kind = RobotKind::Serial(SerialSettings::new("/dev/ttyS0"));
-        let port = RobotConfig { kind, silence: None };
+        let port = RobotConfig { kind, silence: None, lag: None };
         assert_eq!((robot("serial:/dev/ttyS0").ok(), port.patience()), (Some(port.clone()), None));
         let patient = RobotConfig { silence: Some(90), ..port };
         assert_eq!(robot("serial:/dev/ttyS0,silence=90,stop=1").ok(), Some(patient.clone()));
