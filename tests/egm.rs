@@ -88,6 +88,74 @@ fn a_silence_in_a_motion_ends_it_and_the_command_goes_on_when_it_is_sent_again()
     assert!(most < 1.0, "the robot never was farther from its target than {most} mm");
 }
 
+/// Far behind its target in a motion, and stopped before that matters: in 4 s of the job instead of at its end.
+#[test]
+fn a_robot_that_falls_behind_is_stopped_while_the_distance_is_small() {
+    for (job, deviation) in [("turned-part", "6"), ("linkbar", "2"), ("tool-change", "9")] {
+        let robot = format!("egm:sim,deviation={deviation}");
+        let (status, result) = run(&[job, "--robot", &robot, "--log", "none"]);
+        let text = result["failure"]["text"].as_str().expect("a reason");
+        assert!(status == 1 && text.contains("the robot is off its commanded path"), "{job}: {status}, {text}");
+        assert!(text.contains("from the commanded pose (") && text.contains("in), fed back ("), "{text}");
+        assert!(!text.contains("ran into"), "{text}");
+        let (_, most) = error_mm(&result);
+        assert!(most < 80.0, "{job}: {most} mm behind its target");
+    }
+}
+
+/// PAUSE takes the position of the robot over, and the command goes on: this robot falls behind at full speed only.
+#[test]
+fn after_a_robot_fell_behind_pause_takes_its_position_over() {
+    let line = "== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0";
+    let text = std::fs::read_to_string(root().join("data/jobs/linkbar.job")).expect("the linkbar");
+    let slow = "** joystick velocity 300";
+    let again = format!("{line} expect error\n== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n{slow}\n{line}");
+    let text = text.replace(line, &again);
+    assert!(text.contains(slow));
+    let folder = tempfile::tempdir().expect("a folder");
+    let job = folder.path().join("again.job");
+    std::fs::write(&job, text).expect("a job");
+    let job = job.to_str().expect("UTF-8");
+    let result = finished(&[job, "--robot", "egm:sim,deviation=12", "--log", "none"]);
+    assert_eq!(result["egm"]["interrupted"], 1);
+}
+
+/// Sends datagrams to a run that waits for a robot: what comes of them is on the terminal and in the result.
+#[test]
+fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
+    for (option, datagram, counter, reason) in [
+        ("", &b"no message of EGM"[..], "refused", "from 127.0.0.1:"),
+        (",from=192.0.2.1", &b"\x0a\x04\x08\x01\x10\x01"[..], "elsewhere", "not the address that from= names"),
+    ] {
+        let socket = UdpSocket::bind("127.0.0.1:0").expect("a socket");
+        let port = UdpSocket::bind("127.0.0.1:0").and_then(|socket| socket.local_addr()).expect("a port").port();
+        let robot = format!("egm:127.0.0.1:{port}{option}");
+        let run = Command::new(rcs_run())
+            .current_dir(root())
+            .args(["linkbar", "--json", "--shared-memory", "off", "--clock", "real", "--wait", "3"])
+            .args(["--log", "none", "--robot", &robot])
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .expect("rcs-run can be started");
+        for _ in 0..600 {
+            // Before the run listens nobody receives it.
+            let _ = socket.send_to(datagram, ("127.0.0.1", port));
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        let output = run.wait_with_output().expect("it ends");
+        let result: Value = serde_json::from_slice(&output.stdout).expect("a result");
+        let terminal = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{terminal}");
+        assert!(result["egm"][counter].as_u64() > Some(100), "{}", result["egm"]);
+        assert_eq!(result["egm"]["received"], 0);
+        for text in [result["egm"]["last_refused"].as_str(), result["failure"]["text"].as_str(), Some(&*terminal)] {
+            assert!(text.is_some_and(|text| text.contains(reason)), "{text:?}");
+        }
+        assert!(terminal.contains("datagrams refused, the last from 127.0.0.1:"), "{terminal}");
+    }
+}
+
 /// A robot whose program has ended meanwhile is lost, with its reason.
 #[test]
 fn a_robot_that_has_ended_egm_is_lost() {

@@ -45,7 +45,8 @@ impl Gateway {
         pty: Pty,
     ) -> Result<Self, String> {
         let Peer::Udp(address) = options.peer else { return Err("--egm needs a port to listen at".into()) };
-        let placement = options.placement(data).map_err(|error| error.to_string())?;
+        let file = options.file(data).map_err(|error| error.to_string())?;
+        let placement = file.placement;
         let mut settings = options.settings(&placement);
         settings.times.period = u64::from(limits.period_us()) * 1000;
         let line =
@@ -56,7 +57,7 @@ impl Gateway {
             host: HostLine::new(pty),
             cadence: Cadence::new(limits.period_us(), 0),
             robot: Line::Udp(Box::new(line)),
-            bridge: Bridge::new(limits, placement),
+            bridge: Bridge::new(limits, placement).supervised(file.lag_ms.unwrap_or(options.lag_ms())),
             said: None,
         })
     }
@@ -85,7 +86,7 @@ impl Gateway {
         let now = self.now();
         let rx = self.host.arrived(now);
         self.robot.reports(|_| ());
-        let out = self.bridge.step(&mut self.robot, &rx, self.host.has_host());
+        let out = self.bridge.step(&mut self.robot, &rx, self.host.has_host(), false);
         self.host.send(now, out.tx.as_slice());
         self.cadence.stepped(now, out.busy);
         let state = self.bridge.trouble().unwrap_or("the robot follows");

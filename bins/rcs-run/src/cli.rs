@@ -118,8 +118,9 @@ pub struct RunArguments {
     /// egm:PORT[,OPTION...] or egm:ADDRESS:PORT[,OPTION...]: an ABB robot that sends EGM to this UDP port
     ///
     /// Options, with defaults in brackets: silence=SECONDS (60), how long to wait for a robot controller that does not
-    /// answer although its DTR is on. For a serial port also baud=N (9600), parity=none|even|odd (none), stop=1|2 (1),
-    /// cts=watch|ignore (watch; ignore is for cables of three wires). A robot at a port needs --clock real.
+    /// answer although its DTR is on; lag=MS, the time that a robot may be behind its points (200, or what its file
+    /// states). For a serial port also baud=N (9600), parity=none|even|odd (none), stop=1|2 (1), cts=watch|ignore
+    /// (watch; ignore is for cables of three wires). A robot at a port needs --clock real.
     ///
     /// Options of EGM: robot=NAME|FILE, the robot's frames (data/robots/NAME.toml); from=ADDRESS, ignore datagrams from
     /// other addresses; speed-ref=on|off (on); slack=MS (10), how late a tick may be. egm:sim[,OPTION...] is an

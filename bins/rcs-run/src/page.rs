@@ -85,6 +85,18 @@ impl fmt::Display for Page<'_> {
         for fault in &result.cell_faults {
             writeln!(f, "fault      {fault}")?;
         }
+        if let Some(egm) = &result.egm {
+            write!(
+                f,
+                "egm        {} messages, {} refused, {} from other addresses; the robot was {:.1} mm from its target \
+                 at most",
+                egm.received, egm.refused, egm.elsewhere, egm.error_max_mm
+            )?;
+            match &egm.last_refused {
+                Some(last) => writeln!(f, "\n           the last refused {last}")?,
+                None => writeln!(f)?,
+            }
+        }
         if let Some(port) = &result.port {
             let TickTimes { p50, p99, max } = port.deviation_us;
             writeln!(

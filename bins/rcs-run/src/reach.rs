@@ -82,7 +82,7 @@ impl Reach {
     /// If the file of the robot, the task data or the cell cannot be used.
     pub fn of(data: &Path, robot: &str) -> Result<Self, Error> {
         let path = robot_path(robot, data);
-        let RobotFile { placement, arm } = RobotFile::load(&path).map_err(StartError::from)?;
+        let RobotFile { placement, arm, .. } = RobotFile::load(&path).map_err(StartError::from)?;
         let Some(arm) = arm else {
             return Err(Error::Reach(format!(
                 "{} has no [arm]: add lengths, limits and speeds of the axes, as data/robots/irb6700.toml has them",

@@ -40,7 +40,8 @@ pub trait Robot {
         None
     }
 
-    /// Stop: no further point follows, because the function has ended or waits for an answer to a warning.
+    /// Stop: no further point follows, because the function has ended or waits for an answer to a warning, or because
+    /// the host has found the robot off its path. From then on [`Self::present`] gives the place where it comes to rest.
     fn stop(&mut self) {}
 }
 

@@ -16,6 +16,7 @@
 //! * [`receive`]: byte-by-byte receivers of both ends;
 //! * [`limit`], [`step`]: the velocity limits, and steps that respect them;
 //! * [`host`], [`controller`]: the two ends; [`warning`]: the warnings of the controller;
+//! * [`track`]: the path that was sent last, and the distance of a robot from it;
 //! * [`exact`]: the unrounded frames, for a robot with a finer resolution than 0.01 in;
 //! * [`fault`]: faults on the line between the ends, from a plan and a seed.
 //!
@@ -46,6 +47,7 @@ pub mod link;
 pub mod plate;
 pub mod receive;
 pub mod step;
+pub mod track;
 pub mod warning;
 pub mod wire;
 

@@ -9,6 +9,7 @@
 //! | motors off; RAPID or EGM stopped | ended: no answers, DTR off |
 //! | follows, and rests at its last target | can begin, with a report of that position |
 //! | no message for 3 ticks | warns: no answers; DTR stays on, because the robot's program may still run |
+//! | off its path | is held where it is; warns |
 //! | path interrupted, or not at its last target | warns; answers the host's restart when the robot is at rest |
 
 use depc::{
@@ -16,6 +17,7 @@ use depc::{
     controller::{Controller, ControllerInputs, ControllerState, Refusal, Robot},
     exact::ExactFrames,
     link::LinkBytes,
+    track::{LIMIT_INCHES, Track},
     warning::Warning,
 };
 use egm::{LinkState, Pose, Sample};
@@ -38,6 +40,14 @@ pub struct BridgeOutputs {
 pub struct Bridge {
     controller: Controller,
     robot: Border,
+    /// The supervision of the robot, if the host does not supervise it.
+    supervision: Option<Supervision>,
+}
+
+/// The path of the robot, and its expected lag, ms.
+struct Supervision {
+    track: Track,
+    lag_ms: u16,
 }
 
 /// The robot as the DEPC function sees it.
@@ -82,12 +92,20 @@ impl Robot for Border {
     }
 
     fn stop(&mut self) {
-        self.path = None;
-        self.order = Some(Order::Stop { at: self.now });
+        if self.path.take().is_some() {
+            self.order = Some(Order::Stop { at: self.now });
+        }
     }
 }
 
 impl Border {
+    /// Holds the robot where it is, and ends its path.
+    fn hold(&mut self) {
+        if self.path.take().is_some() {
+            (self.order, self.warning) = (Some(Order::Hold), Some(Warning::OffPath));
+        }
+    }
+
     /// Evaluates the newest sample for the path; `now` is ns of the line's clock.
     fn look(&mut self, sample: Sample, now: u64) {
         // A path that began in the previous tick is moving by now, unless the robot has refused it.
@@ -120,7 +138,15 @@ impl Bridge {
                 order: None,
                 now: 0,
             },
+            supervision: None,
         }
+    }
+
+    /// Supervises the robot: one that is off the path of its expected lag is held where it is. For hosts that get no
+    /// feedback from the robot; the T3 Interface of a run does it by itself (docs/design/link.md "Following").
+    #[must_use]
+    pub fn supervised(self, lag_ms: u16) -> Self {
+        Self { supervision: Some(Supervision { track: Track::default(), lag_ms }), ..self }
     }
 
     /// The controller's side of DEPC.
@@ -163,13 +189,17 @@ impl Bridge {
     }
 
     /// Executes one tick: passes the host's bytes and its DTR (here `cts`) to the DEPC function, with the newest
-    /// sample.
-    pub fn step(&mut self, line: &mut Line, rx: &LinkBytes, cts: bool) -> BridgeOutputs {
+    /// sample. With `hold` the robot stays where it is, until the host begins a path again.
+    pub fn step(&mut self, line: &mut Line, rx: &LinkBytes, cts: bool, hold: bool) -> BridgeOutputs {
         self.robot.look(line.sample(), line.now());
+        if hold || self.is_off_path() {
+            self.robot.hold();
+        }
         if matches!(self.robot.sample.link, LinkState::Waiting | LinkState::Standby(_)) {
             // The robot's program has ended, so the DEPC function ends too.
             self.controller = Controller::new(*self.controller.limits());
             self.robot.path = None;
+            self.follow();
             return BridgeOutputs::default();
         }
         let state = self.controller.state();
@@ -185,6 +215,24 @@ impl Bridge {
         if let Some(order) = &self.robot.order {
             line.order(order);
         }
+        self.follow();
         BridgeOutputs { tx: out.tx, dtr: out.dtr, busy: out.moving || out.tx.length > 0 }
+    }
+    /// True if the robot is supervised, and off the path of its expected lag.
+    fn is_off_path(&self) -> bool {
+        let Some(Supervision { track, lag_ms }) = &self.supervision else { return false };
+        let here = self.robot.placement.tool_frame(&self.robot.sample.feedback);
+        let period = u16::try_from(self.controller.limits().period_us() / 1000).unwrap_or(u16::MAX);
+        track.distance(&here, *lag_ms, period, &T3).is_some_and(|inches| inches > LIMIT_INCHES)
+    }
+
+    /// Adds the position of this tick to the supervised path.
+    fn follow(&mut self) {
+        let Some(Supervision { track, .. }) = &mut self.supervision else { return };
+        match self.robot.path {
+            Some((words, _)) if track.newest().is_none() => track.begin(words),
+            Some((words, _)) => track.push(words),
+            None => *track = Track::default(),
+        }
     }
 }

@@ -29,7 +29,7 @@ pub mod udp;
 
 pub use self::{
     bridge::{Bridge, BridgeOutputs},
-    line::{Line, Order, Report},
+    line::{Cause, Line, Order, Refusals, Refused, Report},
     options::{EgmOptions, Peer},
     placement::{Placement, RobotFile},
 };

@@ -1,4 +1,6 @@
-//! The link between the bridge and a robot: takes orders, gives samples.
+//! The link between the bridge and a robot: takes orders, gives samples, counts refused datagrams.
+
+use std::{fmt, net::SocketAddr};
 
 use egm::{Error, Host, Pose, Sample};
 
@@ -21,11 +23,13 @@ pub enum Order {
         /// Target pose.
         to: Pose,
     },
-    /// Come to rest.
+    /// Come to rest on the path.
     Stop {
         /// Time of the order, ns of the line's clock.
         at: u64,
     },
+    /// Stay where the robot is: it has left its path.
+    Hold,
 }
 
 impl Order {
@@ -36,6 +40,10 @@ impl Order {
             Self::Point { at, to } => host.push(*at, to),
             Self::Stop { at } => {
                 host.stop(*at);
+                Ok(())
+            }
+            Self::Hold => {
+                host.hold();
                 Ok(())
             }
         }
@@ -51,6 +59,68 @@ pub struct Report {
     pub cycle: Option<u64>,
     /// Time from the message to its answer, ns.
     pub answered: u64,
+}
+
+/// Why a datagram was refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cause {
+    /// It is not a valid message of a robot.
+    Message(Error),
+    /// It is not from the address that `from=` names.
+    NotAllowed,
+    /// A robot at another address was heard first.
+    OtherRobot(SocketAddr),
+}
+
+/// A refused datagram.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refused {
+    /// The sender.
+    pub from: SocketAddr,
+    /// Why it was refused.
+    pub cause: Cause,
+}
+
+/// The refused datagrams since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Refusals {
+    /// Number of datagrams that are not valid messages of a robot.
+    pub invalid: u64,
+    /// Number of datagrams from other addresses than that of the robot.
+    pub elsewhere: u64,
+    /// The last one; `None` without any, and for an emulated robot in this process.
+    pub last: Option<Refused>,
+}
+
+impl Refusals {
+    /// Number of refused datagrams.
+    #[must_use]
+    pub const fn count(&self) -> u64 {
+        self.invalid.saturating_add(self.elsewhere)
+    }
+}
+
+/// `from 10.0.0.7:6510: the field ... is missing`.
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "from {}: ", self.from)?;
+        match &self.cause {
+            Cause::Message(error) => error.fmt(f),
+            Cause::NotAllowed => f.write_str("not the address that from= names"),
+            Cause::OtherRobot(robot) => write!(f, "the robot is the one at {robot}, which was heard first"),
+        }
+    }
+}
+
+/// `12 datagrams refused, the last from 10.0.0.7:6510: the field ... is missing`.
+impl fmt::Display for Refusals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.count() {
+            1 => f.write_str("1 datagram refused")?,
+            count => write!(f, "{count} datagrams refused")?,
+        }
+        self.last.map_or(Ok(()), |last| write!(f, ", the last {last}"))
+    }
 }
 
 /// The link to a robot: real or emulated.
@@ -101,6 +171,16 @@ impl Line {
         match self {
             Self::Udp(line) => line.sample(),
             Self::Simulated(line) => line.sample(),
+        }
+    }
+    /// The refused datagrams since the start.
+    #[must_use]
+    pub fn refusals(&self) -> Refusals {
+        match self {
+            Self::Udp(line) => line.refusals(),
+            Self::Simulated(line) => {
+                Refusals { invalid: line.sample().counters.refused, ..Refusals::default() }
+            }
         }
     }
 }

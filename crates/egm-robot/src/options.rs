@@ -8,6 +8,7 @@ use std::{
     time::Duration,
 };
 
+use depc::track::LAG_MS;
 use egm::host::Settings;
 use os_io::files;
 
@@ -21,6 +22,8 @@ use crate::{
 
 /// Subdirectory of the data directory with the files of the robots.
 const ROBOTS: &str = "robots";
+/// Time constant of the robot's position loop at the default gain of 5, ms.
+const LOOP_MS: u16 = 200;
 /// Permitted slack, ms.
 const SLACK_MS: RangeInclusive<u64> = 0..=200;
 
@@ -185,13 +188,28 @@ impl EgmOptions {
         set
     }
 
+    /// The robot's file; that of a robot in the place of the T3 if none is named.
+    ///
+    /// # Errors
+    /// [`PlacementError`] if the file cannot be used.
+    pub fn file(&self, data: &Path) -> Result<RobotFile, PlacementError> {
+        let Some(robot) = &self.robot else { return Ok(RobotFile::default()) };
+        RobotFile::load(&robot_path(robot, data))
+    }
+
     /// The frames of the robot.
     ///
     /// # Errors
     /// [`PlacementError`] if the file cannot be used.
     pub fn placement(&self, data: &Path) -> Result<Placement, PlacementError> {
-        let Some(robot) = &self.robot else { return Ok(Placement::default()) };
-        RobotFile::load(&robot_path(robot, data)).map(|file| file.placement)
+        self.file(data).map(|file| file.placement)
+    }
+
+    /// Expected lag of a robot whose file states none, ms: that of a robot that gets the speed of its target, or in
+    /// addition the time constant of a position loop with a gain of 5.
+    #[must_use]
+    pub const fn lag_ms(&self) -> u16 {
+        if self.speed_ref { LAG_MS } else { LAG_MS + LOOP_MS }
     }
 
     /// Settings of the host.

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use depc::{Plate, plate::HALF_TURN};
+use depc::{Plate, plate::HALF_TURN, track::MOST_LAG_MS};
 use diagnostics::{
     Diagnostics, Problem, Source,
     toml::{Document, FileKind, element, join},
@@ -84,22 +84,46 @@ struct Space {
     high: [f64; 3],
 }
 
+/// How the robot follows its targets.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Following {
+    /// Expected lag behind the positions sent, ms.
+    lag: f64,
+}
+
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Text {
     world: Place,
     tool: Place,
     space: Option<Space>,
+    following: Option<Following>,
     arm: Option<ArmText>,
 }
 
-/// Contents of a robot's file.
-#[derive(Clone, Debug)]
+/// Contents of a robot's file. By default it is at the place of the T3.
+#[derive(Clone, Debug, Default)]
 pub struct RobotFile {
     /// The frames of the robot.
     pub placement: Placement,
+    /// Expected lag behind the positions sent, ms, if the file states it.
+    pub lag_ms: Option<u16>,
     /// The arm of the robot, if the file describes it.
     pub arm: Option<Arm>,
+}
+
+impl Following {
+    /// The lag; adds an error to `problems`.
+    fn lag_ms(self, problems: &mut Vec<Problem>) -> Option<u16> {
+        let whole = (0.0..=f64::from(MOST_LAG_MS)).contains(&self.lag) && self.lag.fract() == 0.0;
+        if !whole {
+            let expected = format!("a whole number of ms from 0 to {MOST_LAG_MS}");
+            problems.push(Problem::unlike(KIND.value, "following.lag", &expected, self.lag));
+        }
+        // A whole number up to 1000.
+        whole.then_some(self.lag as u16)
+    }
 }
 
 impl RobotFile {
@@ -124,9 +148,10 @@ impl RobotFile {
             let mut found = Vec::new();
             let placement = Placement::from_text(text, &mut found);
             let arm = text.arm.as_ref().map(|arm| Arm::from_text(arm, &mut found));
+            let lag_ms = text.following.and_then(|following| following.lag_ms(&mut found));
             found.retain(|problem| problem.entry.as_ref().is_none_or(|entry| stand_ins.trusts(entry)));
             problems.extend(found);
-            file = placement.map(|placement| Self { placement, arm: arm.flatten() });
+            file = placement.map(|placement| Self { placement, lag_ms, arm: arm.flatten() });
         })?;
         let unusable = || Problem::of_entry(KIND.value, "", "the file has no frames".to_owned());
         file.ok_or_else(|| Diagnostics::of_file(unusable().into(), source))
@@ -260,6 +285,7 @@ mod tests {
         for (wrong, word) in [
             (TEXT.replace("0.7071068, 0.0", "0.9, 0.0"), "world.orientation"),
             (TEXT.replace("[tool]", "[tools]"), "tools"),
+            (format!("{TEXT}[following]\nlag = 1001.0\n"), "following.lag"),
             (format!("{TEXT}[space]\nlow = [0.0, 0.0, 0.0]\nhigh = [1.0, 1.0, 0.0]\n"), "space.low"),
         ] {
             let said = RobotFile::from_toml(&source(&wrong)).unwrap_err().in_line();

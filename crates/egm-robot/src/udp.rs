@@ -15,12 +15,14 @@ use std::{
 use egm::{Host, LinkState, Sample, host::Settings, message::MOST_BYTES};
 use rtrb::{Consumer, Producer, RingBuffer};
 
-use crate::line::{Order, Report};
+use crate::line::{Cause, Order, Refusals, Refused, Report};
 
 /// Capacity of the ring of orders: several ticks.
 const MOST_ORDERS: usize = 16;
 /// Capacity of the ring of reports: one second.
 const MOST_REPORTS: usize = 256;
+/// Capacity of the ring of refused datagrams: the last one of a tick that has more is not the newest.
+const MOST_REFUSED: usize = 64;
 /// Longest wait for a datagram before the thread checks for orders and for the time.
 const WAIT: Duration = Duration::from_millis(4);
 /// Longest datagram of EGM, bytes.
@@ -34,14 +36,23 @@ pub struct UdpError {
     source: std::io::Error,
 }
 
+/// Numbers of refused datagrams, of both threads.
+#[derive(Default)]
+struct Counts {
+    invalid: AtomicU64,
+    elsewhere: AtomicU64,
+}
+
 /// The link to a robot over UDP.
 pub struct UdpLine {
     origin: Instant,
     orders: Producer<Order>,
     reports: Consumer<Report>,
     sample: Sample,
-    /// Number of datagrams from other senders than the robot.
-    strangers: Arc<AtomicU64>,
+    counts: Arc<Counts>,
+    refused: Consumer<Refused>,
+    /// The last refused datagram.
+    last: Option<Refused>,
     stop: Arc<AtomicBool>,
     address: SocketAddr,
     thread: Option<JoinHandle<()>>,
@@ -65,7 +76,8 @@ impl UdpLine {
         let address = socket.local_addr().map_err(failed)?;
         let (orders, to_do) = RingBuffer::new(MOST_ORDERS);
         let (done, reports) = RingBuffer::new(MOST_REPORTS);
-        let (stop, strangers) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
+        let (refusing, refused) = RingBuffer::new(MOST_REFUSED);
+        let (stop, counts) = (Arc::new(AtomicBool::new(false)), Arc::<Counts>::default());
         let origin = Instant::now();
         let host = Host::new(settings);
         let mut worker = Worker {
@@ -76,7 +88,8 @@ impl UdpLine {
             reports: done,
             allowed: peer,
             robot: None,
-            strangers: Arc::clone(&strangers),
+            counts: Arc::clone(&counts),
+            refused: refusing,
             heard: None,
             lost: false,
         };
@@ -91,7 +104,8 @@ impl UdpLine {
             })
             .map_err(failed)?;
         let sample = Sample::default();
-        Ok(Self { origin, orders, reports, sample, strangers, stop, address, thread: Some(thread) })
+        let thread = Some(thread);
+        Ok(Self { origin, orders, reports, sample, counts, refused, last: None, stop, address, thread })
     }
 
     /// The address on which the line listens.
@@ -100,10 +114,10 @@ impl UdpLine {
         self.address
     }
 
-    /// Number of ignored datagrams from other senders than the robot.
-    #[must_use]
-    pub fn strangers(&self) -> u64 {
-        self.strangers.load(Ordering::Relaxed)
+    pub(crate) fn refusals(&self) -> Refusals {
+        let [invalid, elsewhere] =
+            [&self.counts.invalid, &self.counts.elsewhere].map(|count| count.load(Ordering::Relaxed));
+        Refusals { invalid, elsewhere, last: self.last }
     }
 
     pub(crate) fn now(&self) -> u64 {
@@ -123,6 +137,9 @@ impl UdpLine {
         while let Ok(report) = self.reports.pop() {
             self.sample = report.sample;
             take(&report);
+        }
+        while let Ok(refused) = self.refused.pop() {
+            self.last = Some(refused);
         }
     }
 }
@@ -151,7 +168,8 @@ struct Worker {
     allowed: Option<IpAddr>,
     /// Address of the robot: the sender of the first valid message.
     robot: Option<SocketAddr>,
-    strangers: Arc<AtomicU64>,
+    counts: Arc<Counts>,
+    refused: Producer<Refused>,
     heard: Option<u64>,
     /// The loss of the robot has been reported.
     lost: bool,
@@ -183,14 +201,15 @@ impl Worker {
     }
 
     fn answer(&mut self, now: u64, datagram: &[u8], sender: SocketAddr) {
-        let is_stranger = self.robot.is_some_and(|robot| robot != sender)
-            || self.allowed.is_some_and(|allowed| allowed != sender.ip());
-        if is_stranger {
-            self.strangers.fetch_add(1, Ordering::Relaxed);
-            return;
+        if let Some(cause) = self.stranger(sender) {
+            return self.refuse(sender, cause);
         }
         let mut buffer = [0; MOST_BYTES];
-        let Ok(Some(answer)) = self.host.receive(now, datagram, &mut buffer) else { return };
+        let answer = match self.host.receive(now, datagram, &mut buffer) {
+            Ok(Some(answer)) => answer,
+            Ok(None) => return,
+            Err(error) => return self.refuse(sender, Cause::Message(error)),
+        };
         self.robot = Some(sender);
         // An answer that cannot be sent counts as a lost datagram.
         let _ = self.socket.send_to(answer, sender);
@@ -198,5 +217,22 @@ impl Worker {
         let cycle = self.heard.replace(now).map(|before| now.saturating_sub(before));
         // If the ring is full, the newest report is dropped; the next tick brings newer ones.
         let _ = self.reports.push(Report { sample: self.host.sample(), cycle, answered });
+    }
+    /// Why datagrams of a sender are refused.
+    fn stranger(&self, sender: SocketAddr) -> Option<Cause> {
+        if self.allowed.is_some_and(|allowed| allowed != sender.ip()) {
+            return Some(Cause::NotAllowed);
+        }
+        self.robot.filter(|robot| *robot != sender).map(Cause::OtherRobot)
+    }
+
+    fn refuse(&mut self, from: SocketAddr, cause: Cause) {
+        let count = match cause {
+            Cause::Message(_) => &self.counts.invalid,
+            Cause::NotAllowed | Cause::OtherRobot(_) => &self.counts.elsewhere,
+        };
+        count.fetch_add(1, Ordering::Relaxed);
+        // If the ring is full, the count is right, and one of the last ones is shown.
+        let _ = self.refused.push(Refused { from, cause });
     }
 }

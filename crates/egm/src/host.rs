@@ -217,6 +217,15 @@ impl Host {
         }
     }
 
+    /// Makes the position of the last message the target, at rest: the robot stops by its own means, and does not move
+    /// on to a target that it has not reached. The target jumps to the robot, never away from it.
+    pub fn hold(&mut self) {
+        if !matches!(self.path.motion(), Motion::Still(_)) {
+            self.interrupt();
+        }
+        self.rest_at_feedback();
+    }
+
     /// The present state.
     #[must_use]
     pub fn sample(&self) -> Sample {

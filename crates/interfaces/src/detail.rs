@@ -4,7 +4,7 @@ use core::fmt;
 
 use rcs_core::name::{Name10, Name16};
 
-use crate::{CommonMemory, Fault, HwsCommand, ProcessId, Reason, StatusReport, emove::NearPlace};
+use crate::{CommonMemory, Fault, HwsCommand, ProcessId, Reason, StatusReport, emove::NearPlace, t3i::PathLeft};
 
 /// Distance along an axis that is shown, inches: as exactly as a pose is written (VII.1).
 const LEAST_SHOWN: f64 = 0.005;
@@ -20,6 +20,8 @@ pub enum Detail {
     Near([Option<NearPlace>; 2]),
     /// The place off which the robot has been moved.
     Off(NearPlace),
+    /// The commanded and the fed-back pose of a robot that left its path.
+    Left(PathLeft),
 }
 
 impl Detail {
@@ -41,6 +43,7 @@ impl Detail {
             (ProcessId::Emove, Fault::Reason(Reason::OffPlace)) => {
                 off_place(memory).map_or(Self::None, Self::Off)
             }
+            (_, Fault::Reason(Reason::OffPath)) => memory.t3i.status.left.map_or(Self::None, Self::Left),
             // The POSITION of Task refuses by itself: V.4.1.
             (ProcessId::Task, Fault::Reason(Reason::NoTrajectory)) => {
                 let ends = memory.subtask.status.at.zip(hws.source.or(hws.destination));
@@ -74,6 +77,7 @@ impl fmt::Display for Detail {
         match self {
             Self::None => return Ok(()),
             Self::Pair(from, to) => write!(f, ": none leads from {from} to {to}")?,
+            Self::Left(left) => write!(f, ": {left}")?,
             Self::Near(places) => {
                 let mut separator = ": ";
                 for place in places.iter().flatten() {

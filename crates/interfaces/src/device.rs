@@ -262,6 +262,9 @@ pub struct DeviceInputs {
     /// Ticks that the host waits for an answer while the robot's DTR is on; the 60 s of `depc::host` if
     /// nothing is set (`--robot`).
     pub link_patience: Option<u16>,
+    /// Time by which the robot is expected to lag behind the positions sent, ms; 200 ms if nothing is set
+    /// (`--robot`, docs/design/link.md "Following").
+    pub robot_lag: Option<u16>,
     /// Joint resolvers.
     pub resolvers: Resolvers,
     /// The attached gripper. All three have their potentiometer on the same connections (III.3.7, III.3.8);
@@ -286,6 +289,9 @@ pub struct DeviceInputs {
 pub struct DeviceOutputs {
     /// To the DEPC line.
     pub link_tx: LinkBytes,
+    /// The robot is to stop by its own means, and to stay where it is: T3I has found it off its path. The T3 has no
+    /// such input; a robot with EGM and one of the caller of the library have (extension).
+    pub robot_stop: bool,
     /// Parts gripper.
     pub grip: GripValves,
     /// Quick change.

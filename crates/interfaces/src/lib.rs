@@ -274,6 +274,8 @@ pub enum Reason {
     AtTrayEdge,
     /// The robot has been moved off its place, and what it holds may be clamped there.
     OffPlace,
+    /// The robot is off its commanded path.
+    OffPath,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.
@@ -327,6 +329,7 @@ impl CommonMemory {
     pub fn device_outputs(&self) -> DeviceOutputs {
         DeviceOutputs {
             link_tx: self.t3i.link_tx,
+            robot_stop: self.t3i.status.following == t3i::Following::OffPath,
             grip: self.grip.valves,
             quick_change: self.quick_change.valves,
             vision: self.emove.vision,

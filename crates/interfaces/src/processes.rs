@@ -63,7 +63,7 @@ macro_rules! for_each_process {
                 commander: Prim, prim.t3i;
                 reads: [
                     "devices.link_ready", "devices.link_rx.length", "devices.link_unsent",
-                    "devices.link_patience", "devices.resolvers.valid"
+                    "devices.link_patience", "devices.robot_lag", "devices.resolvers.valid"
                 ];
             }
             /// Quick Change (VI.2).

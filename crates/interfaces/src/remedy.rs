@@ -74,6 +74,7 @@ impl Reason {
             }
             Self::UnknownStart => "move the robot to one of the known places with the joystick box",
             Self::RobotElsewhere => "check where the robot is; PAUSE takes its position over",
+            Self::OffPath => "check where the robot is and what holds it; PAUSE takes its position over",
             Self::LinkOff => {
                 "press Hold again or cycle start at the robot controller's panel, if it shows HOLD; \
                  else start it up there"

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use geometry::pose::WireFrame;
+use geometry::{frame::Distance, pose::WireFrame, units::inches};
 use rcs_core::{Plain, handshake::Lower, tick::Tick};
 
 pub use depc::link::{LinkCounters, LinkFault};
@@ -64,6 +64,30 @@ pub enum ReportCheck {
     Elsewhere,
 }
 
+/// Is the robot on the path that it is sent along? What T3I makes of the resolvers while the link runs (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Following {
+    /// The link begins, and the resolvers have not been near the reported position yet.
+    Joining,
+    /// It is, or the resolvers are not valid.
+    #[text = "on path"]
+    OnPath,
+    /// It was not, and was stopped: nothing is sent until RESTART.
+    #[text = "off path"]
+    OffPath,
+}
+
+/// Where a robot that left its path was found (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PathLeft {
+    /// Tool frame of the position sent last.
+    pub commanded: WireFrame,
+    /// Tool frame of the resolvers.
+    pub fed_back: WireFrame,
+    /// Distance of the resolvers from the path of the expected lag, 0.01 in; a radian counts as 14 in.
+    pub deviation: i32,
+}
+
 /// The last two positions sent, in words of the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct SentWords {
@@ -108,6 +132,13 @@ pub struct T3iStatus {
     pub check: ReportCheck,
     /// The last two positions sent, for a T3I that is restarted (extension).
     pub sent: Option<SentWords>,
+    /// Is the robot on its path (extension)?
+    pub following: Following,
+    /// Distance of the resolvers from the path of the expected lag, 0.01 in; 0 without a link or valid resolvers
+    /// (extension).
+    pub deviation: i32,
+    /// Where the robot left its path, until RESTART (extension).
+    pub left: Option<PathLeft>,
     /// Counters (extension).
     pub counters: LinkCounters,
 }
@@ -123,6 +154,20 @@ pub struct T3iOutputs {
     pub link_tx: LinkBytes,
 }
 
+/// `2.31 in and 0.4 degrees from the commanded pose (1.00, 2.00, 3.00 in), fed back (1.00, 4.31, 3.00 in)`.
+impl fmt::Display for PathLeft {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let (Ok(commanded), Ok(fed_back)) = (self.commanded.to_frame(), self.fed_back.to_frame()) {
+            let Distance { inches, radians } = commanded.distance(&fed_back);
+            write!(f, "{inches:.2} in and {:.1} degrees from ", radians.to_degrees())?;
+        }
+        let [x, y, z] = self.commanded.tool.map(inches);
+        write!(f, "the commanded pose ({x:.2}, {y:.2}, {z:.2} in)")?;
+        let [x, y, z] = self.fed_back.tool.map(inches);
+        write!(f, ", fed back ({x:.2}, {y:.2}, {z:.2} in)")
+    }
+}
+
 impl T3iStatus {
     /// Possible causes of a line without answers, as text; `None` if there is no trouble.
     #[must_use]
@@ -132,6 +177,8 @@ impl T3iStatus {
                 "the robot controller does not answer, but its DTR is on: Hold, a warning D1 to D6 on its screen, a dead receiver or a \
                  cut wire; a re-start is sent every second",
             )
+        } else if matches!(self.following, Following::OffPath) {
+            Some("the robot has left its commanded path and was stopped; PAUSE takes its position over")
         } else if matches!(self.check, ReportCheck::Elsewhere) {
             Some(
                 "the robot is not where it was sent, or its controller was off; PAUSE takes its position over",

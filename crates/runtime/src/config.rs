@@ -3,7 +3,10 @@
 use std::{collections::BTreeMap, fmt, path::PathBuf, str::FromStr, sync::Arc, sync::atomic::AtomicBool};
 
 use ::live::Origin;
-use depc::host::RESTART_TICKS;
+use depc::{
+    host::RESTART_TICKS,
+    track::{LAG_MS, MOST_LAG_MS},
+};
 use egm_robot::{EgmOptions, Peer};
 use executive::{
     memory::{OnStuck, RunName},
@@ -111,7 +114,7 @@ impl RunConfig {
             speed: 1,
             overrun: Policy::Count,
             cpu: None,
-            robot: RobotConfig { kind: RobotKind::Sim, silence: None },
+            robot: RobotConfig { kind: RobotKind::Sim, silence: None, lag: None },
             faults: None,
             boards: Boards::One,
             program: "rcs-run".into(),
@@ -218,6 +221,8 @@ pub struct RobotConfig {
     pub kind: RobotKind,
     /// Seconds for which a controller may be silent while its DTR is on; `None` for the default.
     pub silence: Option<u16>,
+    /// Time by which the robot is expected to lag behind its points, ms; `None` for what the robot states, or 200 ms.
+    pub lag: Option<u16>,
 }
 
 /// Upper limit of the silence, s.
@@ -239,7 +244,8 @@ impl fmt::Display for RobotConfig {
             RobotKind::Egm(options) => options.fmt(f),
             RobotKind::Own => f.write_str("own"),
         }?;
-        self.silence.map_or(Ok(()), |seconds| write!(f, ",silence={seconds}"))
+        self.silence.map_or(Ok(()), |seconds| write!(f, ",silence={seconds}"))?;
+        self.lag.map_or(Ok(()), |ms| write!(f, ",lag={ms}"))
     }
 }
 
@@ -247,9 +253,11 @@ impl FromStr for RobotConfig {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let is_silence = |part: &&str| part.starts_with("silence=");
-        let silence = text.split(',').find(is_silence).map(silence).transpose()?;
-        let rest: Vec<&str> = text.split(',').filter(|part| !is_silence(part)).collect();
+        let option = |name: &str| text.split(',').find_map(|part| part.strip_prefix(name)?.strip_prefix('='));
+        let silence = option("silence").map(silence).transpose()?;
+        let lag = option("lag").map(lag).transpose()?;
+        let is_of_kind = |part: &&str| !(part.starts_with("silence=") || part.starts_with("lag="));
+        let rest: Vec<&str> = text.split(',').filter(is_of_kind).collect();
         let rest = rest.join(",");
         let kind = match rest.split_once(':') {
             None if rest == "sim" => RobotKind::Sim,
@@ -257,19 +265,25 @@ impl FromStr for RobotConfig {
             Some(("egm", robot)) => RobotKind::Egm(Box::new(robot.parse()?)),
             _ => {
                 let expected =
-                    "sim[,silence=SECONDS], serial:PATH[,OPTION...] or egm:[ADDRESS:]PORT[,OPTION...]";
+                    "sim[,silence=SECONDS][,lag=MS], serial:PATH[,OPTION...] or egm:[ADDRESS:]PORT[,OPTION...]";
                 return Err(format!("{expected} was expected"));
             }
         };
-        Ok(Self { kind, silence })
+        Ok(Self { kind, silence, lag })
     }
 }
 
-/// Read `silence=SECONDS`.
-fn silence(part: &str) -> Result<u16, String> {
-    let seconds = part.trim_start_matches("silence=");
+/// Read the value of `silence=SECONDS`.
+fn silence(seconds: &str) -> Result<u16, String> {
     seconds.parse().ok().filter(|seconds| (1..=LONGEST_SILENCE).contains(seconds)).ok_or_else(|| {
         format!("silence is a number of seconds from 1 to {LONGEST_SILENCE}, such as 60; found {seconds}")
+    })
+}
+
+/// Read the value of `lag=MS`.
+fn lag(ms: &str) -> Result<u16, String> {
+    ms.parse().ok().filter(|ms| *ms <= MOST_LAG_MS).ok_or_else(|| {
+        format!("lag is a number of milliseconds from 0 to {MOST_LAG_MS}, such as {LAG_MS}; found {ms}")
     })
 }
 
@@ -351,13 +365,16 @@ mod tests {
     #[test]
     fn a_robot_is_simulated_or_at_a_port() {
         let robot = |text: &str| text.parse::<RobotConfig>();
-        assert_eq!(robot("sim").ok(), Some(RobotConfig { kind: RobotKind::Sim, silence: None }));
+        assert_eq!(robot("sim").ok(), Some(RobotConfig { kind: RobotKind::Sim, silence: None, lag: None }));
         let kind = RobotKind::Serial(SerialSettings::new("/dev/ttyS0"));
-        let port = RobotConfig { kind, silence: None };
+        let port = RobotConfig { kind, silence: None, lag: None };
         assert_eq!((robot("serial:/dev/ttyS0").ok(), port.patience()), (Some(port.clone()), None));
         let patient = RobotConfig { silence: Some(90), ..port };
         assert_eq!(robot("serial:/dev/ttyS0,silence=90,stop=1").ok(), Some(patient.clone()));
         assert_eq!(patient.patience(), Some(90 * 25));
+        let both = robot("sim,lag=300,silence=5").map(|robot| robot.to_string());
+        assert_eq!(both, Ok("sim,silence=5,lag=300".into()));
+        assert!(robot("sim,lag=1001").is_err() && robot("egm:sim,lag=x").is_err());
         assert_eq!(robot("sim,silence=5").ok().and_then(|robot| robot.patience()), Some(125));
         for wrong in [
             "serial",

@@ -8,7 +8,7 @@ use std::{
 
 use ::egm::{LinkState, Pose, Sample, host::Counters};
 use depc::{Limits, Plate, link::LinkBytes};
-use egm_robot::{Bridge, BridgeOutputs, EgmOptions, Line, Peer, udp::UdpLine};
+use egm_robot::{Bridge, BridgeOutputs, EgmOptions, Line, Peer, Refusals, udp::UdpLine};
 use executive::{
     histogram::{Histogram, Summary},
     realtime,
@@ -28,6 +28,8 @@ pub const FRAMES: [&str; 2] = ["egm_feedback", "egm_target"];
 /// A robot with EGM.
 pub struct EgmPort {
     options: EgmOptions,
+    /// Expected lag, ms.
+    lag_ms: u16,
     line: Line,
     bridge: Bridge,
     outputs: BridgeOutputs,
@@ -58,7 +60,8 @@ impl EgmPort {
         config: &RunConfig,
         observer: &mut dyn Observer,
     ) -> Result<Self, StartError> {
-        let placement = options.placement(&config.data)?;
+        let file = options.file(&config.data)?;
+        let placement = file.placement;
         let line = match options.peer {
             Peer::Simulated => Line::Simulated(Box::new(options.simulated(&placement))),
             Peer::Udp(address) => {
@@ -82,6 +85,7 @@ impl EgmPort {
         };
         Ok(Self {
             options: options.clone(),
+            lag_ms: file.lag_ms.unwrap_or(options.lag_ms()),
             line,
             bridge: Bridge::new(Limits::NBS, placement),
             outputs: BridgeOutputs::default(),
@@ -106,12 +110,13 @@ impl EgmPort {
             }
             let trouble = trouble(&sample);
             if started.elapsed() >= limit {
-                observer.message(&format!("EGM: after {} s: {trouble}", config.wait));
+                observer.message(&format!("EGM: after {} s: {}", config.wait, self.with_refusals(trouble)));
                 return;
             }
-            if said != Some(trouble) {
-                observer.message(&format!("waiting for the EGM robot: {trouble}"));
-                said = Some(trouble);
+            let state = (trouble, self.line.refusals().last);
+            if said != Some(state) {
+                observer.message(&format!("waiting for the EGM robot: {}", self.with_refusals(trouble)));
+                said = Some(state);
             }
             thread::sleep(Duration::from_millis(10));
         }
@@ -130,14 +135,14 @@ impl EgmPort {
         inputs.resolvers = self.resolvers;
     }
 
-    /// After the controller's tick: pass the host's bytes to the DEPC function. `exact` is the tool frame that Prim has
-    /// commanded, as T3I gets it and exactly.
-    pub fn send(&mut self, tx: &LinkBytes, exact: Option<(WireFrame, Frame)>) {
+    /// After the controller's tick: pass the host's bytes to the DEPC function, or hold the robot where it is. `exact`
+    /// is the tool frame that Prim has commanded, as T3I gets it and exactly.
+    pub fn send(&mut self, tx: &LinkBytes, hold: bool, exact: Option<(WireFrame, Frame)>) {
         if let Some((wire, exact)) = exact {
             self.bridge.offer(&wire, &exact);
         }
         self.read();
-        self.outputs = self.bridge.step(&mut self.line, tx, true);
+        self.outputs = self.bridge.step(&mut self.line, tx, true, hold);
     }
 
     /// Advance simulated time.
@@ -151,10 +156,30 @@ impl EgmPort {
         self.bridge.feedback()
     }
 
-    /// The trouble that prevents the robot from following, as text.
+    /// The trouble that prevents the robot from following, as text, with the refused datagrams.
     #[must_use]
-    pub fn trouble(&self) -> Option<&'static str> {
-        self.bridge.trouble()
+    pub fn trouble(&self) -> Option<String> {
+        self.bridge.trouble().map(|trouble| self.with_refusals(trouble))
+    }
+
+    /// A trouble, and the refused datagrams if there are any.
+    fn with_refusals(&self, trouble: &str) -> String {
+        match self.line.refusals() {
+            refusals if refusals.count() == 0 => trouble.to_owned(),
+            refusals => format!("{trouble}; {refusals}"),
+        }
+    }
+
+    /// Expected lag behind the positions sent, ms.
+    #[must_use]
+    pub const fn lag_ms(&self) -> u16 {
+        self.lag_ms
+    }
+
+    /// The refused datagrams since the start.
+    #[must_use]
+    pub fn refusals(&self) -> Refusals {
+        self.line.refusals()
     }
 
     /// Poses of robot and target, as the T3's end plate in its world: [`FRAMES`].

@@ -16,7 +16,8 @@ use neighbours::{
         player::{JobFailure, Retry, WaitReason},
     },
 };
-use plant::CellEvent;
+use depc::warning::Warning;
+use plant::{CellEvent, t3::explained};
 use record::Level;
 
 use crate::contacts::Collision;
@@ -35,6 +36,8 @@ pub enum Event {
     LineFaults(Vec<&'static str>),
     /// The state of the line to the robot has changed.
     Link(&'static str),
+    /// The robot of the caller refuses a point, or reports a fault.
+    RobotRefuses(Warning),
     /// A neighbour has connected, disconnected or was refused.
     Network(NetEvent),
     /// The Data System refuses a command, for this reason.
@@ -99,6 +102,7 @@ impl Event {
             Self::CameFree(_) => "contact.ends",
             Self::LineFaults(_) => "fault.line",
             Self::Link(_) => "link.trouble",
+            Self::RobotRefuses(_) => "robot.refuses",
             Self::Network(event) => event.code(),
             Self::DataBaseRefuses(_) => "data-system.refuses",
             Self::DataSystem(remark) => remark.code(),
@@ -127,7 +131,7 @@ impl Event {
     #[must_use]
     pub fn level(&self) -> Level {
         match self {
-            Self::Cell(CellEvent::Warning(_) | CellEvent::ViseStuck) => Level::Error,
+            Self::Cell(CellEvent::Warning(_) | CellEvent::ViseStuck) | Self::RobotRefuses(_) => Level::Error,
             Self::Cell(event) if event.is_harm() => Level::Error,
             Self::Collides(_) | Self::CameFree(_) | Self::CellStatusUnsent(_) | Self::Stops => Level::Error,
             Self::RealTime { complete: true, .. } => Level::Info,
@@ -152,6 +156,7 @@ impl Event {
             Self::Cell(_) | Self::Collides(_) | Self::CameFree(_) => "cell",
             Self::CellLineRefused(_) | Self::CellStatusUnsent(_) => "cell",
             Self::Link(_) => "T3I",
+            Self::RobotRefuses(_) => "robot",
             Self::Network(_) => "network",
             Self::DataBaseRefuses(_) | Self::DataSystem(_) => "Data System",
             Self::Pedestal(_) => "Active Pedestal",
@@ -187,6 +192,9 @@ impl fmt::Display for Event {
             }
             Self::LineFaults(kinds) => write!(f, "on the line: {}", kinds.join(", ")),
             Self::Link(trouble) => f.write_str(trouble),
+            Self::RobotRefuses(warning) => {
+                write!(f, "the robot does not accept the commanded position: {}", explained(*warning))
+            }
             Self::Network(event) => event.fmt(f),
             Self::DataBaseRefuses(why) => write!(f, "the Data System refuses: {why}"),
             Self::DataSystem(remark) => remark.fmt(f),

@@ -1,9 +1,12 @@
 //! A robot that the caller of the library provides, behind a DEPC function in this process.
 
+use std::time::Duration;
+
 use depc::{
     Limits, Plate,
     controller::{Controller, ControllerInputs, ControllerOutputs, ControllerState, Robot},
     link::LinkBytes,
+    track::{LAG_MS, MOST_LAG_MS},
     warning::Warning,
 };
 use interfaces::device::DeviceInputs;
@@ -13,6 +16,10 @@ use plant::t3::explained;
 ///
 /// The calls of a tick are first [`advance`](Self::advance), then at most one point ([`Robot::accept`]) or request for
 /// the present position ([`Robot::present`]), then [`position`](Self::position).
+///
+/// The robot is supervised while it moves (docs/design/link.md "Following"): T3 Interface compares `position` with the
+/// path of the last points. A robot that is off this path gets no further point, and [`Robot::stop`] is called once: it
+/// must come to rest where it is, and from then on [`Robot::present`] must give that position.
 pub trait OwnRobot: Robot {
     /// A tick of 40 ms begins: move towards the last accepted point.
     fn advance(&mut self);
@@ -20,6 +27,12 @@ pub trait OwnRobot: Robot {
     /// Position of the end plate, `None` while unknown. The arm of the simulated cell, and everything that it carries,
     /// follows it.
     fn position(&self) -> Option<Plate>;
+
+    /// Time by which the robot is expected to lag behind its points, at most 1 s. A robot that lags more at a speed
+    /// that matters (0.5 in and what it moves in this time) is stopped.
+    fn lag(&self) -> Duration {
+        Duration::from_millis(LAG_MS.into())
+    }
 }
 
 /// The robot, and its DEPC function.
@@ -27,12 +40,17 @@ pub struct OwnPort {
     robot: Box<dyn OwnRobot>,
     function: Controller,
     outputs: ControllerOutputs,
+    /// The robot was told to stop, and no path has begun since.
+    held: bool,
+    /// The warning of this tick, if it is new.
+    news: Option<Warning>,
 }
 
 impl OwnPort {
     /// The function has not started.
     pub fn new(robot: Box<dyn OwnRobot>) -> Self {
-        Self { robot, function: Controller::new(Limits::NBS), outputs: ControllerOutputs::default() }
+        let (function, outputs) = (Controller::new(Limits::NBS), ControllerOutputs::default());
+        Self { robot, function, outputs, held: false, news: None }
     }
 
     /// Before the controller's tick: pass on the answers of the function.
@@ -42,15 +60,32 @@ impl OwnPort {
         inputs.link_unsent = false;
     }
 
-    /// After the controller's tick: pass the host's bytes to the function. It starts again whenever the robot reports
-    /// no trouble.
-    pub fn send(&mut self, tx: &LinkBytes) {
+    /// After the controller's tick: pass the host's bytes to the function, or stop the robot where it is. The function
+    /// starts again whenever the robot reports no trouble.
+    pub fn send(&mut self, tx: &LinkBytes, hold: bool) {
         self.robot.advance();
+        if hold && !self.held {
+            self.robot.stop();
+        }
+        self.held = hold;
         let running = matches!(self.function.state(), ControllerState::Running | ControllerState::Warning);
         let start = !running && self.robot.warning().is_none();
         let inputs =
             ControllerInputs { rx: *tx, cts: true, board: true, start, ..ControllerInputs::default() };
+        let before = self.function.warning();
         self.outputs = self.function.step(&inputs, &mut *self.robot);
+        let warning = self.function.warning();
+        self.news = (warning != before && warning != Warning::None).then_some(warning);
+    }
+
+    /// The warning that the function shows since this tick: the robot has refused a point, or reports a fault.
+    pub const fn news(&self) -> Option<Warning> {
+        self.news
+    }
+
+    /// Expected lag of the robot, ms.
+    pub fn lag_ms(&self) -> u16 {
+        u16::try_from(self.robot.lag().as_millis()).unwrap_or(u16::MAX).min(MOST_LAG_MS)
     }
 
     /// Position of the robot.

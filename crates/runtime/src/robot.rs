@@ -4,7 +4,8 @@
 //! With the simulated controller, the bytes of a tick go through the fault injector, if there is a fault plan, and then
 //! through the cell. With a serial port they go to the port; the rest of the cell (gripper, camera, tray, vise,
 //! resolvers) is still simulated, and follows the position that the robot has acknowledged. A robot with EGM reports
-//! its position, which the cell follows and the resolvers read.
+//! its position, which the cell follows and the resolvers read. A robot with EGM and one of the caller can be stopped
+//! where they are.
 
 use std::{
     sync::atomic::Ordering,
@@ -15,6 +16,7 @@ use std::{
 use depc::{
     Plate,
     fault::{Counts, Injector, Plan},
+    warning::Warning,
     wire::FRAME_BYTES,
 };
 use executive::{
@@ -144,8 +146,8 @@ impl Robot {
         match self {
             Self::Simulated(_) => {}
             Self::Serial(port) => port.send(&outputs.link_tx),
-            Self::Egm(egm) => egm.send(&outputs.link_tx, exact()),
-            Self::Own(own) => own.send(&outputs.link_tx),
+            Self::Egm(egm) => egm.send(&outputs.link_tx, outputs.robot_stop, exact()),
+            Self::Own(own) => own.send(&outputs.link_tx, outputs.robot_stop),
         }
     }
 
@@ -170,6 +172,22 @@ impl Robot {
         }
     }
 
+    /// Expected lag of the robot behind the positions sent, ms; `None` for that of the T3.
+    #[must_use]
+    pub fn lag_ms(&self) -> Option<u16> {
+        match self {
+            Self::Simulated(_) | Self::Serial(_) => None,
+            Self::Egm(egm) => Some(egm.lag_ms()),
+            Self::Own(own) => Some(own.lag_ms()),
+        }
+    }
+
+    /// The warning that the DEPC function of a robot of the caller shows since this tick.
+    #[must_use]
+    pub const fn news(&self) -> Option<Warning> {
+        if let Self::Own(own) = self { own.news() } else { None }
+    }
+
     /// Number of injected faults, both directions together.
     #[must_use]
     pub fn faults(&self) -> Option<Counts> {
@@ -185,13 +203,19 @@ impl Robot {
         !matches!(self, Self::Simulated(_))
     }
 
+    /// True if the caller of the library provides the robot.
+    #[must_use]
+    pub const fn is_own(&self) -> bool {
+        matches!(self, Self::Own(_))
+    }
+
     /// The trouble of the connection to a robot outside the cell, as text; `None` if there is none.
     #[must_use]
     pub fn trouble(&self) -> Option<String> {
         match self {
             Self::Simulated(_) => None,
             Self::Serial(port) => port.trouble(),
-            Self::Egm(egm) => egm.trouble().map(str::to_owned),
+            Self::Egm(egm) => egm.trouble(),
             Self::Own(own) => own.trouble(),
         }
     }

@@ -200,6 +200,7 @@ impl Run {
     fn external(&self) -> ExternalInputs {
         let mut devices = self.pace.inputs(self.inputs);
         devices.link_patience = self.first_patience.or(self.patience);
+        devices.robot_lag = self.config.robot.lag.or_else(|| self.robot.lag_ms());
         devices.joystick = self.operator.at_the_box(devices.joystick);
         if self.ramp.is_some() {
             devices.joystick.velocity = 0;

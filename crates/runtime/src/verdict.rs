@@ -3,10 +3,13 @@
 use ::neighbours::workstation::player::{JobFailure, Workstation as _};
 use executive::failure::{self, Failure};
 use interfaces::{ExternalInputs, t3i::LinkFault};
-use levels::ladder::Ladder;
+use levels::{ladder::Ladder, prim::state::RESTART_TICKS};
 use rcs_core::tick::Tick;
 
 use crate::Run;
+
+/// Ticks between a warning of a robot and the failure that it explains: the time in which Prim restarts the link.
+const EXPLAINS_TICKS: u64 = RESTART_TICKS;
 
 /// How a run ended.
 pub enum Ending {
@@ -80,10 +83,13 @@ impl Run {
         })
     }
 
-    /// The failure of a lost link, with the T3 controller's warning that caused it.
+    /// The failure of a lost link, or of a robot of the caller that is elsewhere, with the warning that caused it.
     fn warned(&self, failure: Failure) -> Failure {
+        let recent = |tick: Tick| tick <= failure.tick && failure.tick.since(tick) <= EXPLAINS_TICKS;
         match &self.warning {
-            Some((tick, warning)) if failure.stopped && *tick <= failure.tick => {
+            Some((tick, warning))
+                if *tick <= failure.tick && (failure.stopped || self.robot.is_own() && recent(*tick)) =>
+            {
                 Failure { text: format!("{warning} at tick {tick}; {}", failure.text), ..failure }
             }
             _ => failure,

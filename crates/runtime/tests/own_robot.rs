@@ -2,9 +2,11 @@
 
 use depc::{
     Plate,
-    controller::{Refusal, Robot, joints_for},
+    controller::{JointProblem, Refusal, Robot, joints_for},
     warning::Warning,
 };
+use std::{collections::VecDeque, time::Duration};
+
 use geometry::kinematics::{HOME_JOINTS, Joints, T3};
 use runtime::{Ending, LogTarget, OwnRobot, Run, RunConfig, RunOutcome, StartError};
 
@@ -70,6 +72,163 @@ fn what_it_complains_of_ends_the_job_in_words() {
     let outcome = run(300);
     let Ending::Failed(failure) = &outcome.ending else { panic!("it was stopped") };
     assert!(failure.text.contains("the robot has left its path"), "{}", failure.text);
+}
+
+/// Shows its position some ticks late, and may have a fault.
+struct Lagging {
+    robot: Follower,
+    lag: Lag,
+    /// Positions that it has not shown yet.
+    path: VecDeque<Plate>,
+    stopped: bool,
+}
+
+/// How a robot lags: its fault begins when it has accepted so many points.
+#[derive(Clone, Copy)]
+struct Lag {
+    ticks: usize,
+    stated: Duration,
+    fault: Fault,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Fault {
+    None,
+    /// It stays where it is.
+    Frozen(u32),
+    /// It stays for 1 s, and catches up.
+    Waits(u32),
+    /// It is 3 in higher at once.
+    Jumps(u32),
+}
+
+/// More points than a linkbar has before its first motion: it moves.
+const MOVES: u32 = 150;
+
+impl Robot for Lagging {
+    fn present(&mut self) -> Plate {
+        if std::mem::take(&mut self.stopped) {
+            // The robot stays where it is.
+            self.path.clear();
+            self.robot.goal = self.robot.at;
+        }
+        self.robot.goal
+    }
+
+    fn accept(&mut self, goal: &Plate) -> Result<(), Refusal> {
+        assert!(!self.stopped, "a robot that was stopped gets no point");
+        self.robot.accept(goal)
+    }
+
+    fn stop(&mut self) {
+        self.stopped = true;
+    }
+}
+
+impl OwnRobot for Lagging {
+    fn advance(&mut self) {
+        let since = |from: u32| self.robot.points.checked_sub(from);
+        if self.stopped {
+            return;
+        }
+        self.path.push_back(self.robot.goal);
+        let wait = match self.lag.fault {
+            Fault::Frozen(from) => since(from).is_some(),
+            Fault::Waits(from) => since(from).is_some_and(|points| points < 25),
+            Fault::None | Fault::Jumps(_) => false,
+        };
+        while !wait && self.path.len() > self.lag.ticks.max(1) {
+            self.robot.at = self.path.pop_front().unwrap();
+        }
+        if let Fault::Jumps(from) = self.lag.fault
+            && since(from).is_some()
+        {
+            self.robot.at.words[2] += 300;
+        }
+    }
+
+    fn position(&self) -> Option<Plate> {
+        Some(self.robot.at)
+    }
+
+    fn lag(&self) -> Duration {
+        self.lag.stated
+    }
+}
+
+fn lagging(ticks: usize, stated_ms: u64, fault: Fault) -> RunOutcome {
+    let at = Plate::from_frame(&T3.forward_plate(&HOME_JOINTS), &Plate::default()).unwrap();
+    let robot = Follower { joints: HOME_JOINTS, goal: at, at, points: 0, complains_after: u32::MAX };
+    let lag = Lag { ticks, stated: Duration::from_millis(stated_ms), fault };
+    let robot = Lagging { robot, lag, path: VecDeque::new(), stopped: false };
+    Run::with_robot(config(), Box::new(robot), Box::new(())).unwrap().complete()
+}
+
+#[test]
+fn a_robot_with_the_lag_that_it_states_does_the_job() {
+    for (ticks, stated) in [(1, 0), (2, 200), (4, 200), (8, 400)] {
+        let outcome = lagging(ticks, stated, Fault::None);
+        assert!(outcome.is_finished(), "{ticks} ticks: {:?}", outcome.result.failure);
+    }
+}
+
+#[test]
+fn a_robot_that_does_not_follow_is_stopped_and_reported() {
+    let constant = [9, 13, 25, 75].map(|ticks| (ticks, Fault::None));
+    let faults = [Fault::Frozen(MOVES), Fault::Waits(MOVES), Fault::Jumps(MOVES)].map(|fault| (2, fault));
+    for (ticks, fault) in constant.into_iter().chain(faults) {
+        let outcome = lagging(ticks, 200, fault);
+        let Ending::Failed(failure) = &outcome.ending else { panic!("{ticks} ticks: it was not stopped") };
+        let text = &failure.text;
+        assert!(text.starts_with("Prim: the robot is off its commanded path: "), "{ticks} ticks: {text}");
+        let inches: f64 = text.split(": ").nth(2).unwrap().split(' ').next().unwrap().parse().unwrap();
+        assert!((0.4..4.5).contains(&inches), "{ticks} ticks: {text}");
+        assert!(text.contains(" in), fed back ("), "{text}");
+    }
+}
+
+/// Refuses points from a number on, as a robot at a joint limit does, and is then found where it was before.
+struct Refusing(Follower, Plate);
+
+impl Robot for Refusing {
+    fn present(&mut self) -> Plate {
+        self.0.at
+    }
+
+    fn accept(&mut self, goal: &Plate) -> Result<(), Refusal> {
+        if self.0.points >= MOVES {
+            self.0.at = self.1;
+            return Err(Refusal::Joints(JointProblem::ShoulderUp));
+        }
+        self.0.accept(goal)
+    }
+}
+
+impl OwnRobot for Refusing {
+    fn advance(&mut self) {
+        self.0.advance();
+    }
+
+    fn position(&self) -> Option<Plate> {
+        self.0.position()
+    }
+}
+
+#[test]
+fn the_refusal_of_a_point_is_in_the_last_line_and_in_the_log() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("refused.mcap");
+    let config = RunConfig { log: LogTarget::File(log.clone()), ..config() };
+    let at = Plate::from_frame(&T3.forward_plate(&HOME_JOINTS), &Plate::default()).unwrap();
+    let robot = Follower { joints: HOME_JOINTS, goal: at, at, points: 0, complains_after: u32::MAX };
+    let outcome =
+        Run::with_robot(config, Box::new(Refusing(robot, at)), Box::new(())).unwrap().complete();
+    let Ending::Failed(failure) = &outcome.ending else { panic!("it was stopped") };
+    let refused = "the robot does not accept the commanded position: P05 (joint 2, the shoulder";
+    assert!(failure.text.starts_with(refused), "{}", failure.text);
+    let log = record::Log::open(&log).unwrap();
+    let line = log.lines().find(|line| line.text.starts_with(refused)).expect("a line of the log");
+    assert_eq!((line.source.as_str(), line.code.as_str()), ("robot", "robot.refuses"));
 }
 
 #[test]

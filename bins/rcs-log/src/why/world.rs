@@ -36,7 +36,8 @@ pub struct World {
 /// The first thing that went wrong; `None` if nothing did.
 pub fn first(log: &Log, history: &History) -> Option<World> {
     // The cell reports an event with the tick after it.
-    let grave = log.lines().find(|line| line.source == "cell" && line.level == Level::Error);
+    let of_world = |source: &str| matches!(source, "cell" | "robot");
+    let grave = log.lines().find(|line| of_world(&line.source) && line.level == Level::Error);
     let (tick, text, code) = match grave {
         Some(line) => (line.tick.0.saturating_sub(1), line.text, line.code),
         None => {
@@ -61,7 +62,7 @@ pub fn first(log: &Log, history: &History) -> Option<World> {
 fn mover(code: &str, memory: &CommonMemory) -> ProcessId {
     let by_parts_gripper = memory.emove.prim.end_effector_id == Some(PARTS_GRIPPER);
     match code {
-        "cell.warning" => ProcessId::T3i,
+        "cell.warning" | "robot.refuses" => ProcessId::T3i,
         "cell.dropped" if by_parts_gripper => ProcessId::Grip,
         _ => ProcessId::Prim,
     }

@@ -12,7 +12,7 @@ use interfaces::{
     device::{JoystickBox, single_step},
     prim::{PrimCommand, PrimVerb},
     process::Inputs,
-    t3i::{LinkFault, ReportCheck, T3iCommand, T3iReport, T3iStatus, T3iVerb},
+    t3i::{Following, LinkFault, ReportCheck, T3iCommand, T3iReport, T3iStatus, T3iVerb},
 };
 use rcs_core::handshake::{Arrival, Lower, successor};
 use taskdata::files::{MovtabId, SensorPara, TaskData, TrajParaId};
@@ -306,6 +306,7 @@ const fn report(interface: Interface, status: &T3iStatus) -> ReportCheck {
 /// What a fault of T3I stands for.
 const fn fault(status: &T3iStatus) -> Interface {
     match status.fault {
+        _ if matches!(status.following, Following::OffPath) => Interface::OffPath,
         LinkFault::NotResponding => silence(status),
         LinkFault::InvalidCommand => Interface::Refused,
         LinkFault::None | LinkFault::DepcError | LinkFault::Checksum | LinkFault::NotTransmitted => {

@@ -17,8 +17,12 @@
 //! When the link starts again the controller reports the position of the robot. T3I compares the words of the report
 //! with those that it sent, and publishes the result (`check`): Prim continues, or a person decides.
 //!
-//! Three tables decide in a tick: REPORT for the report of the controller, RECEIVE for the command in the buffer, then
-//! the table of the current command for the output.
+//! While the link runs, T3I compares the resolvers with the path that it has sent in the time of the expected lag. A
+//! robot that is off this path is stopped (`following`, `left`): the rest of the way to the last position would be a
+//! short cut.
+//!
+//! Four tables decide in a tick: REPORT for the report of the controller, RECEIVE for the command in the buffer, FOLLOW
+//! for the robot, then the table of the current command for the output.
 //!
 //! ```text
 //!                 a point that is missing or cannot be sent
@@ -45,7 +49,9 @@ use rcs_core::table::Table;
 
 pub use self::state::State;
 use self::tables::{
-    Action, Seen, number, of_command,
+    Action, Seen,
+    follow::follow,
+    number, of_command,
     receive::{Intake, receive},
     report::report,
 };
@@ -97,6 +103,10 @@ impl<Data: ?Sized> Process<Data> for T3i {
         let taken = receive(state.receive, &seen.request);
         state.receive = taken.next;
         state.take(taken.action, seen);
+        let followed = follow(state.following, &seen.feedback);
+        state.rows.beside(&followed.of(number::FOLLOW));
+        state.following = followed.next;
+        state.supervise(followed.action, seen);
         let choice = of_command(state.command, state.step, &state.situation(seen));
         state.step = choice.next;
         // The last row decides: that of RECEIVE if it refuses the command.
@@ -118,7 +128,7 @@ impl<Data: ?Sized> Process<Data> for T3i {
         outputs: &mut T3iOutputs,
     ) {
         let link_tx = self.state.send(action, seen);
-        *outputs = self.state.outputs(action, link_tx, inputs);
+        *outputs = self.state.outputs(action, link_tx, seen, inputs);
     }
 
     fn state(&self) -> &State {

@@ -12,7 +12,7 @@ use interfaces::{
     T3iOutputs,
     device::{LinkBytes, RESOLVER_COUNTS, Resolvers},
     process::Inputs,
-    t3i::{LinkFault, SentWords, T3iReport, T3iStatus},
+    t3i::{LinkFault, PathLeft, SentWords, T3iReport, T3iStatus},
 };
 use rcs_core::handshake::Arrival;
 
@@ -20,6 +20,7 @@ use super::{
     state::State,
     tables::{
         Action, Before, Seen, Step,
+        follow::Supervision,
         receive::{Intake, ReceiveStep},
         report::Comparison,
     },
@@ -40,6 +41,7 @@ impl State {
             Intake::Restart => {
                 self.empty();
                 self.host.forgive();
+                self.left = None;
             }
             Intake::Pause | Intake::Refuse => self.empty(),
             Intake::Append => self.append(seen.command.frame),
@@ -53,6 +55,21 @@ impl State {
             Comparison::TakeRepeated => {
                 let here = self.position.plate.words;
                 self.sent = Some(SentWords { last: here, before: here });
+            }
+        }
+    }
+
+    /// Do with the motion what FOLLOW says.
+    pub(super) fn supervise(&mut self, supervision: Supervision, seen: &Seen) {
+        match supervision {
+            Supervision::Continue => {}
+            Supervision::Stop => {
+                self.empty();
+                self.left = Some(PathLeft {
+                    commanded: WireFrame::from_frame(&self.position.plate.to_tool(&T3)),
+                    fed_back: seen.resolvers,
+                    deviation: self.deviation,
+                });
             }
         }
     }
@@ -98,6 +115,9 @@ impl State {
                 self.host.transmit(&command(&self.position), &mut tx);
             }
         }
+        if self.host.is_running() {
+            self.track.push(self.position.plate);
+        }
         tx
     }
 
@@ -106,10 +126,10 @@ impl State {
         &self,
         action: Action,
         link_tx: LinkBytes,
+        seen: &Seen,
         inputs: &Inputs<'_, Data>,
     ) -> T3iOutputs {
-        let resolvers = &inputs.external.devices.resolvers;
-        let resolver_frame = resolver_frame(resolvers);
+        let resolver_frame = seen.resolvers;
         let running = self.host.is_running();
         let header = self.rows.header(inputs.tick, self.step.text());
         let status = T3iStatus {
@@ -129,12 +149,15 @@ impl State {
             },
             scale_factor: i32::try_from(RESOLVER_COUNTS).unwrap_or(i32::MAX),
             joint_limit: 0,
-            resolver_frame: Some(resolver_frame).filter(|_| resolvers.valid),
+            resolver_frame: Some(resolver_frame).filter(|_| inputs.external.devices.resolvers.valid),
             link_running: running,
             controller_ready: self.host.has_dtr(),
             silent: self.host.is_silent(),
             check: self.check,
             sent: self.sent,
+            following: self.following,
+            deviation: self.deviation,
+            left: self.left,
             counters: *self.host.counters(),
         };
         T3iOutputs { header, status, link_tx }
@@ -155,7 +178,7 @@ impl Action {
 }
 
 /// The tool frame at the angles of the resolvers; counts beyond 17 bits are turns too many and do not matter.
-fn resolver_frame(resolvers: &Resolvers) -> WireFrame {
+pub(super) fn resolver_frame(resolvers: &Resolvers) -> WireFrame {
     let turn = 2.0 * PI / f64::from(RESOLVER_COUNTS);
     WireFrame::from_frame(
         &T3.forward(&resolvers.counts.map(|counts| f64::from(counts % RESOLVER_COUNTS) * turn)),

@@ -4,25 +4,29 @@ use depc::{
     Plate,
     host::{HostEvent, PATIENCE_TICKS},
     step::{Position, Step, step},
+    track,
 };
-use geometry::{kinematics::T3, pose::WireFrame};
+use geometry::{kinematics::T3, pose::WireFrame, units::hundredths};
 use interfaces::{
     T3iOutputs,
     process::Inputs,
-    t3i::{LinkFault, SentWords, T3iCommand, T3iVerb},
+    t3i::{Following, LinkFault, SentWords, T3iCommand, T3iVerb},
 };
 use rcs_core::handshake::{Arrival, successor};
 
 use super::{
-    state::State,
+    postprocess::resolver_frame,
+    state::{GRACE_TICKS, State},
     tables::{
-        Above, Answer, Dtr, Line, Link, Point, Queue, Reported, Request, Seen, Situation, Start, Trouble,
-        Way, Words, receive::ReceiveStep,
+        Above, Answer, Dtr, Feedback, Followed, Grace, Line, Link, Point, Queue, Reported, Request, Restarting,
+        Seen, Situation, Start, Trouble, Way, Words, receive::ReceiveStep,
     },
 };
 
 /// Counts of a word by which a report may be beside what was sent: both ends round.
 const NEAR_COUNTS: i32 = 2;
+/// Length of a tick, ms.
+const TICK_MS: u16 = 40;
 
 impl State {
     /// Read the line and the command buffer. `outputs` holds what was written in the tick before: a T3I that
@@ -30,7 +34,11 @@ impl State {
     pub(super) fn sense<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>, outputs: &T3iOutputs) -> Seen {
         if !self.receiver.started {
             (self.sent, self.check) = (outputs.status.sent, outputs.status.check);
+            (self.following, self.left) = (outputs.status.following, outputs.status.left);
         }
+        // Before the line is read: a position of this tick has not reached the robot.
+        let resolvers = resolver_frame(&inputs.external.devices.resolvers);
+        let followed = self.followed(&resolvers, inputs);
         let (event, place) = self.receive_bytes(inputs);
         let prim = &inputs.memory.prim;
         let command = prim.t3i;
@@ -59,9 +67,16 @@ impl State {
         } else {
             Line::Down
         };
+        let feedback = Feedback {
+            restart: if restart { Restarting::Asked } else { Restarting::Before },
+            place: followed,
+            grace: if self.reported < GRACE_TICKS { Grace::Running } else { Grace::Over },
+        };
         Seen {
             request: Request { arrival, command: command.command, point, link: self.link() },
             answer,
+            feedback,
+            resolvers,
             command,
             prim: if live { Above::Live } else { Above::Still },
             line,
@@ -79,12 +94,30 @@ impl State {
         match event {
             HostEvent::Started => {
                 self.position = Position::reported(self.host.position(), &T3);
+                self.track.begin(self.position.plate);
+                self.reported = 0;
                 self.empty();
             }
             HostEvent::Lost => self.empty(),
             HostEvent::None | HostEvent::Acknowledged => {}
         }
         (event, self.place())
+    }
+
+    /// Is the robot within the limit of the path that it was sent along?
+    fn followed<Data: ?Sized>(&mut self, resolvers: &WireFrame, inputs: &Inputs<'_, Data>) -> Followed {
+        let devices = &inputs.external.devices;
+        self.reported = self.reported.saturating_add(1).min(GRACE_TICKS);
+        let known = devices.resolvers.valid && self.host.is_running();
+        let here = resolvers.to_frame().ok().filter(|_| known);
+        let lag = devices.robot_lag.unwrap_or(track::LAG_MS);
+        let distance = here.and_then(|here| self.track.distance(&here, lag, TICK_MS, &T3));
+        self.deviation = hundredths(distance.unwrap_or(0.0));
+        match distance {
+            None => Followed::Unknown,
+            Some(inches) if inches <= track::LIMIT_INCHES => Followed::Near,
+            Some(_) => Followed::Far,
+        }
     }
 
     /// Is the position that was reported last on the way to which the robot was sent?
@@ -112,6 +145,7 @@ impl State {
 
     fn link(&self) -> Link {
         match self.host.fault() {
+            _ if self.following == Following::OffPath => Link::Failed,
             LinkFault::None if self.host.is_running() => Link::Running,
             LinkFault::None => Link::Starting,
             _ => Link::Failed,
@@ -129,7 +163,9 @@ impl State {
     /// The state variables of the command's table, once RECEIVE has decided.
     pub(super) fn situation(&self, seen: &Seen) -> Situation {
         Situation {
-            trouble: if self.host.fault() != LinkFault::None {
+            trouble: if self.following == Following::OffPath {
+                Trouble::OffPath
+            } else if self.host.fault() != LinkFault::None {
                 Trouble::Fault
             } else if self.receive == ReceiveStep::Refusing {
                 Trouble::Refusal

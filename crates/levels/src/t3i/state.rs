@@ -4,9 +4,10 @@ use depc::{
     Limits,
     host::{ANSWER_TICKS, Host},
     step::Position,
+    track::Track,
 };
 use geometry::pose::WireFrame;
-use interfaces::t3i::{ReportCheck, SentWords, T3iVerb};
+use interfaces::t3i::{Following, PathLeft, ReportCheck, SentWords, T3iVerb};
 use rcs_core::{Plain, handshake::Receiver};
 
 use super::tables::{Before, Step, receive::ReceiveStep};
@@ -15,6 +16,9 @@ use crate::rows::Rows;
 /// Points that wait for the line (docs/design/link.md "Queue"): one that is being sent, one that was allowed,
 /// one that is on its way, and one to spare.
 pub const QUEUE_POINTS: usize = 4;
+
+/// Ticks that the resolvers have to come near a reported position: 1 s.
+pub const GRACE_TICKS: u8 = 25;
 
 /// State of T3I.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -39,6 +43,16 @@ pub struct State {
     pub check: ReportCheck,
     /// What was sent in the tick before.
     pub before: Before,
+    /// Step of FOLLOW: is the robot on its path?
+    pub following: Following,
+    /// The path that was sent.
+    pub track: Track,
+    /// Ticks since the last report of the robot controller, up to [`GRACE_TICKS`].
+    pub reported: u8,
+    /// Distance of the resolvers from the path, 0.01 in.
+    pub deviation: i32,
+    /// Where the robot left its path.
+    pub left: Option<PathLeft>,
     /// Points that wait; the first `queued` are valid, the oldest first.
     pub queue: [WireFrame; QUEUE_POINTS],
     /// How many.

@@ -4,6 +4,7 @@ use std::{collections::BTreeMap, fmt};
 
 use ::egm::host::Counters;
 use depc::fault::{Counts, FaultKind};
+use egm_robot::Refusals;
 use executive::serial::SerialCounts;
 use interfaces::t3i::LinkCounters;
 use serde::Serialize;
@@ -89,14 +90,18 @@ impl From<&Port> for PortResult {
 }
 
 /// Counts and times of the line to a robot with EGM.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct EgmResult {
     /// New messages received.
     pub received: u64,
     /// Messages received too late or twice.
     pub old: u64,
-    /// Datagrams that were not messages of a robot.
+    /// Datagrams that were not valid messages of a robot.
     pub refused: u64,
+    /// Datagrams from other addresses than that of the robot.
+    pub elsewhere: u64,
+    /// Address and reason of the last refused datagram.
+    pub last_refused: Option<String>,
     /// Targets sent.
     pub sent: u64,
     /// Points that were added to a path.
@@ -117,13 +122,16 @@ pub struct EgmResult {
 
 impl From<&EgmPort> for EgmResult {
     fn from(port: &EgmPort) -> Self {
-        let Counters { received, old, refused, sent, points, interrupted, beyond } = port.counters();
+        let Counters { received, old, sent, points, interrupted, beyond, .. } = port.counters();
+        let Refusals { invalid, elsewhere, last } = port.refusals();
         let [error_rms_mm, error_max_mm] = port.errors();
         let (cycle_us, answer_us) = (port.cycles().into(), port.answers().into());
         Self {
             received,
             old,
-            refused,
+            refused: invalid,
+            elsewhere,
+            last_refused: last.map(|last| last.to_string()),
             sent,
             points,
             interrupted,

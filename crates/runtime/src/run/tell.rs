@@ -73,6 +73,10 @@ impl Run {
             self.warning = Some((tick, warning));
         }
         self.fresh = events.into_iter().map(Event::Cell).collect();
+        if let Some(event) = self.robot.news().map(Event::RobotRefuses) {
+            self.warning = Some((tick, event.to_string()));
+            self.fresh.push(event);
+        }
         self.fresh.extend(self.check.look(tick, self.workstation.cell.contacts(), commands));
         self.workstation.cell.watch_clearance(self.check.margin());
         for event in &self.fresh {

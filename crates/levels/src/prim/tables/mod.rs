@@ -51,6 +51,8 @@ pub enum Interface {
     LinkSilent,
     /// The DEPC link has another error.
     LinkError,
+    /// The robot has left its path, and T3I has stopped it.
+    OffPath,
     /// It refused a command.
     Refused,
 }

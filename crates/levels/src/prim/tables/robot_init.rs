@@ -4,12 +4,13 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// ROBOT-INIT (V.1.1): RESTART to T3I. It clears the errors of the link, so that only those count which
-    /// come after the RESTART. The position that is reported is taken over wherever it is: the way on after
-    /// the robot was moved by other means. The joystick box does not hinder it: nothing moves.
+    /// come after the RESTART, and ends the stop of a robot that left its path. The position that is reported is
+    /// taken over wherever it is: the way on after the robot was moved by other means. The joystick box does not
+    /// hinder it: nothing moves.
     pub ROBOT_INIT: fn robot_init(enum RobotInitStep, super::Situation) -> super::Action {
         /// Nothing sent yet.
         Start {
-            1:  t3i: LinkOff | LinkSilent | LinkError | Refused => Restart          -> Restarting;
+            1:  t3i: LinkOff | LinkSilent | LinkError | OffPath | Refused => Restart -> Restarting;
         }
         any {
             2:  t3i: Silent                                 => Fail(InterfaceSilent);
@@ -19,16 +20,17 @@ decision_table! {
             6:  t3i: LinkSilent | LinkError, restarts: Many => Fail(LinkError);
             7:  t3i: LinkSilent | LinkError, restarts: Few  => Recover;
             8:  t3i: Refused                                => Fail(InterfaceRefused);
-            9:  emove: Lost                                 => Fail(NeighbourLost);
+            9:  t3i: OffPath                                => Fail(OffPath);
+            10: emove: Lost                                 => Fail(NeighbourLost);
         }
         Start {
-            10: posture: Unpositioned | Standing            => Restart          -> Restarting;
-            11: posture: Moving | Ending                    => Halt;
+            11: posture: Unpositioned | Standing            => Restart          -> Restarting;
+            12: posture: Moving | Ending                    => Halt;
         }
         /// RESTART is sent. A link that fails again after its report is restarted again.
         Restarting {
-            12: link: Down                                  => Wait;
-            13: link: Running                               => TakePosition;
+            13: link: Down                                  => Wait;
+            14: link: Running                               => TakePosition;
         }
     }
 }

@@ -310,6 +310,36 @@ fn a_robot_that_was_led_away_meanwhile_is_not_moved_before_robot_init() {
 }
 
 #[test]
+fn a_robot_that_lags_too_far_is_stopped_and_pause_takes_its_position_over() {
+    let mut bench = Bench::initialized();
+    bench.steps(30);
+    bench.command(PrimVerb::GotoPt, 1);
+    let frozen = bench.external.devices.resolvers.counts;
+    for _ in 0..60 {
+        bench.step();
+        bench.external.devices.resolvers.counts = frozen;
+    }
+    let is_off_path = |bench: &Bench| {
+        let status = bench.memory.prim.status;
+        assert_eq!((status.report, status.reason), (PrimReport::Error, Reason::OffPath));
+        assert!(!status.link_running && status.present_pose.is_none(), "nothing is ramped down");
+    };
+    is_off_path(&bench);
+    let stood = bench.robot.at;
+    assert!((0.5..1.5).contains(&bench.off(&home())), "{}", bench.off(&home()));
+    // The resolvers tell the truth again: only ROBOT-INIT, which PAUSE sends, lets the robot move.
+    assert_eq!(bench.run(PrimVerb::GotoPt, 1), PrimReport::Error);
+    is_off_path(&bench);
+    assert_eq!(bench.run(PrimVerb::Pause, 0), PrimReport::Error);
+    is_off_path(&bench);
+    assert_eq!(bench.robot.at, stood);
+    assert_eq!(bench.run(PrimVerb::RobotInit, 0), PrimReport::Done);
+    assert_eq!((bench.robot.at, bench.memory.t3i.status.left), (stood, None));
+    assert_eq!(bench.run(PrimVerb::GotoPt, 1), PrimReport::Done);
+    assert!(bench.off(&goals()[0]) < 0.03);
+}
+
+#[test]
 fn a_restarted_t3i_is_restarted_by_prim_in_the_middle_of_a_motion() {
     for after in [2, 30, 60] {
         let mut bench = Bench::initialized();

@@ -19,7 +19,7 @@ use interfaces::{
     ChangingPose, CommonMemory, ExternalInputs, Header, PrimOutputs, Reason, T3iOutputs, pose_range,
     prim::{PrimReport, PrimVerb},
     process::{Inputs, Process},
-    t3i::{LinkFault, ReportCheck, T3iReport, T3iVerb},
+    t3i::{Following, LinkFault, ReportCheck, T3iReport, T3iVerb},
 };
 use rcs_core::{
     handshake::{Arrival, FIRST_STEP, Receiver, successor},
@@ -66,6 +66,10 @@ struct ModelT3i {
     held: bool,
     /// It reads no command, and goes on with the last one.
     deaf: bool,
+    /// The robot has left its path.
+    left: bool,
+    /// It is off its path again after each RESTART.
+    astray: bool,
 }
 
 impl ModelT3i {
@@ -84,9 +88,10 @@ impl ModelT3i {
             match command.command {
                 T3iVerb::Restart => {
                     (self.fault, self.running, self.starting) = (LinkFault::None, false, Some(7));
+                    self.left = self.astray;
                     self.queue.clear();
                 }
-                T3iVerb::Point if self.fault != LinkFault::None => {}
+                T3iVerb::Point if self.fault != LinkFault::None || self.left => {}
                 T3iVerb::Point => {
                     assert_eq!(command.number, expected, "a point is missing");
                     assert!(self.running, "a point before the link runs");
@@ -116,6 +121,9 @@ impl ModelT3i {
             self.running = false;
             self.queue.clear();
         }
+        if self.left {
+            self.queue.clear();
+        }
         if !stalled && let Some(point) = self.queue.pop_front() {
             self.output = point;
             self.path.push(point);
@@ -131,12 +139,13 @@ impl ModelT3i {
         status.command = self.command;
         status.fault = self.fault;
         status.report = match self.queue.len() {
-            _ if self.fault != LinkFault::None => T3iReport::Error,
+            _ if self.fault != LinkFault::None || self.left => T3iReport::Error,
             _ if self.starting.is_some() => T3iReport::Executing,
             0 => T3iReport::Finished,
             1 | 2 => T3iReport::Ready,
             _ => T3iReport::Executing,
         };
+        status.following = if self.left { Following::OffPath } else { Following::OnPath };
         status.frame_feedback = self.output;
         let mut seen = self.output;
         seen.tool[0] += self.off;

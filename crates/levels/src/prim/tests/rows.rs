@@ -40,6 +40,7 @@ fn hindered(fired: &mut Fired) {
             fired.during(verb, 4, |rig| rig.t3i.fault = fault);
         }
         fired.during(verb, 2, |rig| rig.t3i.dead = true);
+        fired.during(verb, 4, |rig| rig.t3i.left = true);
         fired.during(verb, 2, |rig| rig.emove_dead = true);
         fired.during(verb, 2, |rig| {
             rig.frame_switch(joystick_frame::TOOL);
@@ -52,6 +53,11 @@ fn hindered(fired: &mut Fired) {
         });
     }
     fired.during(PrimVerb::GotoPt, 20, |rig| {
+        rig.run(PrimVerb::RobotInit, 0);
+    });
+    fired.run(Rig::paused(), |rig| {
+        (rig.t3i.left, rig.t3i.astray) = (true, true);
+        rig.steps(3);
         rig.run(PrimVerb::RobotInit, 0);
     });
     // ROBOT-INIT whose link fails for ever, or again and again.

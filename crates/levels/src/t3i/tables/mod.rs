@@ -1,6 +1,7 @@
-//! Decision tables of T3I: commands from Prim, reports of the robot controller, rows common to all commands, and one
-//! file per command.
+//! Decision tables of T3I: commands from Prim, reports of the robot controller, supervision of the robot, rows common
+//! to all commands, and one file per command.
 
+pub mod follow;
 pub mod pause;
 pub mod point;
 pub mod receive;
@@ -10,6 +11,7 @@ pub mod trouble;
 
 use super::goals;
 use depc::step::Step as Advance;
+use geometry::pose::WireFrame;
 use interfaces::t3i::{T3iCommand, T3iReport, T3iVerb};
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
@@ -86,11 +88,42 @@ pub enum Before {
     Repeated,
 }
 
+/// A RESTART, for [`follow::FOLLOW`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Restarting {
+    /// Prim has sent none in this tick.
+    Before,
+    /// Prim has sent one in this tick.
+    Asked,
+}
+
+/// The resolvers and the path of the expected lag.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Followed {
+    /// The link does not run, or the resolvers are not valid.
+    Unknown,
+    /// The robot is within the limit of the path.
+    Near,
+    /// It is not.
+    Far,
+}
+
+/// The time that the resolvers have to come near a reported position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Grace {
+    /// It is not over.
+    Running,
+    /// It is over.
+    Over,
+}
+
 /// What there is to report as an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Trouble {
     /// Nothing.
     None,
+    /// The robot has left its path.
+    OffPath,
     /// A command was refused.
     Refusal,
     /// The link has failed since the last RESTART.
@@ -165,6 +198,17 @@ pub struct Answer {
     pub before: Before,
 }
 
+/// The state variables of [`follow::FOLLOW`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Feedback {
+    /// A RESTART of Prim.
+    pub restart: Restarting,
+    /// The resolvers and the path.
+    pub place: Followed,
+    /// The time for a reported position.
+    pub grace: Grace,
+}
+
 /// The state variables of a tick, for the tables of the commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
@@ -187,6 +231,10 @@ pub struct Seen {
     pub request: Request,
     /// What came from the robot controller.
     pub answer: Answer,
+    /// What the resolvers say.
+    pub feedback: Feedback,
+    /// Tool frame of the resolvers.
+    pub resolvers: WireFrame,
     /// The command.
     pub command: T3iCommand,
     /// Does Prim work?
@@ -215,7 +263,7 @@ pub enum Action {
 commands! {
     /// Consult the tables of a command.
     pub fn of_command(T3iVerb, enum Step, Situation) -> Action {
-        others: receive::RECEIVE, report::REPORT, trouble::TROUBLE;
+        others: receive::RECEIVE, report::REPORT, follow::FOLLOW, trouble::TROUBLE;
         None | Pause: goals::REST   => trouble::trouble then pause::pause;
         Restart: goals::RESTARTED   => trouble::trouble then restart::restart;
         Point: goals::SENT          => trouble::trouble then point::point;

@@ -2,6 +2,7 @@
 
 use nalgebra::Rotation3;
 
+mod follow;
 mod rows;
 
 use depc::{
@@ -285,6 +286,8 @@ fn beside_the_end_of_the_words() -> (Bench, Frame) {
         rotation: Rotation3::from_axis_angle(&Vector::z_axis(), degrees.to_radians()),
     };
     let mut bench = Bench::running();
+    // The robot of the bench is at HOME.
+    bench.external.devices.resolvers.valid = false;
     let at = Plate::from_tool(&turned(100.0), &T3, &Plate::default()).unwrap();
     bench.t3i.state.position = Position::reported(at, &T3);
     (bench, turned(260.0))

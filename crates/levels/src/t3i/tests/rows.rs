@@ -129,6 +129,19 @@ fn every_row_fires() {
     bench.ticks(2);
     fired.append(&mut bench.rows);
 
+    // The resolvers leave the path, and never come near a reported position.
+    let mut bench = Bench::running();
+    bench.ticks(2);
+    let elsewhere = counts(&HOME_JOINTS.map(|joint| joint + 0.1));
+    for _ in 0..80 {
+        bench.external.devices.resolvers.counts = elsewhere;
+        bench.tick();
+        if bench.tick == Tick(40) {
+            bench.command(T3iVerb::Restart);
+        }
+    }
+    fired.append(&mut bench.rows);
+
     // Points are taken only while the link runs, and a link that is lost is a fault.
     assert_eq!(fired.missing(tables::TABLES), ["POINT 1"]);
 }

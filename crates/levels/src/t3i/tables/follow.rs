@@ -1,0 +1,37 @@
+//! Supervision of the robot while it moves: a table of every tick, for all commands.
+
+use rcs_core::{Actions, Plain, decision_table};
+
+/// What happens to the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
+pub enum Supervision {
+    /// It continues.
+    Continue,
+    /// The queue is emptied, nothing more is sent, and the robot stops by its own means.
+    Stop,
+}
+
+decision_table! {
+    /// FOLLOW (docs/design/link.md "Following"): is the robot on the path that it is sent along? A robot that is not
+    /// is stopped where it is; only a RESTART, which Prim sends for ROBOT-INIT, ends that. After a start of the link
+    /// the resolvers have a second to come near the reported position: those of the simulated cell follow a robot at
+    /// a serial port, and see it for the first time then.
+    pub FOLLOW: fn follow(interfaces::t3i::Following, super::Feedback) -> Supervision {
+        any {
+            1: restart: Asked                                       => Continue -> Joining;
+        }
+        Joining {
+            2: restart: Before, place: Unknown                      => Continue;
+            3: restart: Before, place: Near                         => Continue -> OnPath;
+            4: restart: Before, place: Far, grace: Running          => Continue;
+            5: restart: Before, place: Far, grace: Over             => Stop     -> OffPath;
+        }
+        OnPath {
+            6: restart: Before, place: Unknown | Near               => Continue;
+            7: restart: Before, place: Far                          => Stop     -> OffPath;
+        }
+        OffPath {
+            8: restart: Before                                      => Continue;
+        }
+    }
+}
