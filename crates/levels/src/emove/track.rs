@@ -87,11 +87,12 @@ fn last(track: &Track) -> Option<&Pose> {
 /// Is a pose on a segment?
 fn is_on(pose: &Pose, from: &Pose, to: &Pose) -> bool {
     let (along, aside) = on_line(pose, from, &heading(from, to));
+    if aside > ASIDE_INCHES || along < -ASIDE_INCHES {
+        return false;
+    }
     let length = apart(from, to);
     let turned = apart(pose, from).radians + apart(pose, to).radians;
-    (-ASIDE_INCHES..=length.inches + ASIDE_INCHES).contains(&along)
-        && aside <= ASIDE_INCHES
-        && turned <= length.radians + AGAIN_RADIANS
+    along <= length.inches + ASIDE_INCHES && turned <= length.radians + AGAIN_RADIANS
 }
 
 /// The recorded segment that a pose is on, by the number of points up to its beginning.
@@ -170,7 +171,8 @@ impl State {
         record.by_hand = led || (record.by_hand && !sent);
         let gap = apart(&record.end, present);
         let near = gap.inches <= STEP_INCHES && gap.radians <= STEP_RADIANS;
-        let back = if near || record.course != Course::Tracked { None } else { found(record, present) };
+        let has_left = !near && record.course == Course::Tracked && (led || !sent);
+        let back = if has_left { found(record, present) } else { None };
         let tracking = Tracking {
             place: if place == Whereabouts::Known { Knowledge::Known } else { Knowledge::Unknown },
             course: record.course,
