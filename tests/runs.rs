@@ -4,6 +4,7 @@
 mod boards;
 mod command_lines;
 mod contacts;
+mod drum;
 mod egm;
 mod estop;
 mod faults;

@@ -4,7 +4,9 @@ use core::fmt;
 
 use rcs_core::name::{Name10, Name16};
 
-use crate::{CommonMemory, Fault, HwsCommand, ProcessId, Reason, StatusReport, emove::NearPlace, t3i::PathLeft};
+use crate::{
+    CommonMemory, Fault, HwsCommand, ProcessId, Reason, StatusReport, emove::NearPlace, t3i::PathLeft,
+};
 
 /// Distance along an axis that is shown, inches: as exactly as a pose is written (VII.1).
 const LEAST_SHOWN: f64 = 0.005;
@@ -44,6 +46,10 @@ impl Detail {
                 off_place(memory).map_or(Self::None, Self::Off)
             }
             (_, Fault::Reason(Reason::OffPath)) => memory.t3i.status.left.map_or(Self::None, Self::Left),
+            // RELEASE-TOOL and REMOVE-TOOL of Task end at the drum, and go to the end-at location from there.
+            (ProcessId::Task, Fault::Reason(Reason::NoTrajectory)) if leaves_drum(hws) => {
+                hws.end_at.map_or(Self::None, |to| Self::Pair(Name10::clipped(DRUM), to))
+            }
             // The POSITION of Task refuses by itself: V.4.1.
             (ProcessId::Task, Fault::Reason(Reason::NoTrajectory)) => {
                 let ends = memory.subtask.status.at.zip(hws.source.or(hws.destination));
@@ -69,6 +75,15 @@ fn off_place(memory: &CommonMemory) -> Option<NearPlace> {
     let place = memory.emove.beliefs.place?;
     let present = memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()?;
     Some(NearPlace::seen(place.location, &place.pose.to_frame().ok()?, &present))
+}
+
+/// Location of the tool drum (V.4.1).
+const DRUM: &str = "TOOL-TRNS";
+
+/// Is it a command that ends with the way from the drum to its end-at location?
+fn leaves_drum(hws: &HwsCommand) -> bool {
+    let word = Name10::clipped(hws.command.as_str());
+    ["RELEASE-TOOL", "REMOVE-TOOL"].iter().any(|command| Name10::clipped(command) == word)
 }
 
 /// `: none leads from BENCH to VISE (...)`, to be written behind the reason; without the remedy in `{:#}`.

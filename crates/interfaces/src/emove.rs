@@ -365,6 +365,17 @@ pub struct Beliefs {
     pub drum: Option<RobotPlace>,
     /// The path from the last known place or way.
     pub track: Track,
+    /// Where the robot was when the force sensor was last ordered to be calibrated.
+    pub calibrated: CalibratedAt,
+}
+
+/// Where the force sensor was calibrated (V.1.1 CAL-SENSOR; extension).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum CalibratedAt {
+    /// At the drum, where the fingers or a held tool may touch something.
+    Drum,
+    /// At TOOL-SAFE, where nothing is touched.
+    Safe,
 }
 
 /// A known place, and how far the robot is from it (extension).

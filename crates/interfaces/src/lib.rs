@@ -276,6 +276,12 @@ pub enum Reason {
     OffPlace,
     /// The robot is off its commanded path.
     OffPath,
+    /// The tool meets something in front of the drum: its place is not free.
+    DrumOccupied,
+    /// The tool is not in the drum: the fingers closed on nothing of its size there.
+    NoToolInDrum,
+    /// The force sensor has not been calibrated at TOOL-SAFE, and the robot is no longer there.
+    ForceUncalibrated,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

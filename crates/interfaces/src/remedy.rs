@@ -90,6 +90,17 @@ impl Reason {
             Self::InDrum => "send the interrupted tool command again",
             Self::ReleaseNotEnded => "send the command that releases the object again",
             Self::AtTrayEdge => "put the object farther from the edge of its tray",
+            Self::DrumOccupied => {
+                "send REMOVE-TOOL with the end-at location TOOL-SAFE, take the other tool out of the drum, and \
+                 send INSERT-TOOL again"
+            }
+            Self::NoToolInDrum => {
+                "send RELEASE-TOOL with the end-at location TOOL-SAFE, put the tool into the drum, and send \
+                 ACQUIRE-TOOL again"
+            }
+            Self::ForceUncalibrated => {
+                "send REMOVE-TOOL with the end-at location TOOL-SAFE, and then INSERT-TOOL again"
+            }
             Self::SentAway => "send the next command",
             Self::ForwardOnly => "send the interrupted command again",
             Self::NotDetected | Self::Detected => {

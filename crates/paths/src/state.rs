@@ -204,8 +204,13 @@ impl<'a> State<'a> {
                         _ => "INSERT-TOOL",
                     },
                 };
-                // Moves that begin at the end of a guarded move also have an unknown position.
-                let known = !phase.guarded && !matches!(name, "QCD-UP" | "REL-BACK");
+                // Moves that begin at the end of a guarded move also have an unknown position. INS-NEAR ends at its
+                // goal, or has failed.
+                let known = match name {
+                    "QCD-UP" | "REL-BACK" => false,
+                    "INS-NEAR" => true,
+                    _ => !phase.guarded,
+                };
                 self.fly(phase, [verb, verb], known)
             }
             Step::Locate => {

@@ -129,7 +129,7 @@ pub fn steps(
             });
             maker.position(&mut steps)?;
         }
-        "INSERT-TOOL" => maker.relative(&mut steps, &["INS-NEAR", "INS-IN"])?,
+        "INSERT-TOOL" => maker.relative(&mut steps, &["INS-FAR", "INS-NEAR", "INS-IN"])?,
         "RELEASE-TOOL" => {
             steps.push(Step::LetGoTool);
             maker.relative(&mut steps, &["REL-SLIDE", "REL-BACK"])?;

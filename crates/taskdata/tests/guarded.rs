@@ -49,7 +49,7 @@ fn move_at(data: &TaskData<'_>, name: &str, location: &str) -> Option<(i32, Name
 fn sensors_and_relative_moves_are_found_by_name_and_location() {
     let store = load(&format!(
         "{CELL}BLOCK# 602 OFFSET 21000
-  -rel- INS-NEAR lpt TOOL-TRNS 4 20 8 0 IN
+  -rel- INS-FAR lpt TOOL-TRNS 4 20 8 0 IN
   -rel- INS-IN   lpt TOOL-TRNS 4 10 8 0 IN   INS-FX
   -rel- QCD-DOWN own HOLSTER   4 12 8 0 IN   HOL-R-NEAR
   -rel- QCD-DOWN lpt HOLSTER-L 4  9 8 0 ...  BEAM
@@ -63,7 +63,7 @@ fn sensors_and_relative_moves_are_found_by_name_and_location() {
     assert_eq!(data.sensor(&Name16::clipped("HOL-R-NEAR")).unwrap().which, 1);
     assert!(data.sensor(&Name16::clipped("INS-FY")).is_none());
     let named = Name10::clipped;
-    assert_eq!(move_at(&data, "INS-NEAR", "TOOL-TRNS"), Some((20, Name10::EMPTY)));
+    assert_eq!(move_at(&data, "INS-FAR", "TOOL-TRNS"), Some((20, Name10::EMPTY)));
     assert_eq!(move_at(&data, "INS-IN", "TOOL-TRNS"), Some((10, named("INS-FX"))));
     assert_eq!(move_at(&data, "QCD-DOWN", "HOLSTER-R"), Some((12, named("HOL-R-NEAR"))), "by its owner");
     assert_eq!(move_at(&data, "QCD-DOWN", "HOLSTER-L"), Some((9, named("BEAM"))), "the exact entry wins");
@@ -126,7 +126,7 @@ fn a_sensor_can_trip_and_does_not_always_hold() {
 #[test]
 fn a_misspelt_beginning_is_no_sensor() {
     assert_eq!(
-        said("  -rel- INS-IN lpt TOOL-TRNS 4 10 8 0 IN\n  -rle- INS-NEAR lpt TOOL-TRNS 4 10 8 0 IN"),
+        said("  -rel- INS-IN lpt TOOL-TRNS 4 10 8 0 IN\n  -rle- INS-FAR lpt TOOL-TRNS 4 10 8 0 IN"),
         [
             "a compiling word or a number was expected, -rle- found",
             "help: the nearest compiling word is -rel-",
@@ -176,12 +176,12 @@ fn relative_moves_are_those_that_commands_look_for() {
         ]
     );
     assert_eq!(
-        warned("  -rel- INS-NEAR lpt TOOL-TRNS 4 1 8 0 IN INS-FX"),
-        ["INS-NEAR is no guarded move: nothing watches INS-FX", "leave the sensor out"]
+        warned("  -rel- INS-FAR lpt TOOL-TRNS 4 1 8 0 IN INS-FX"),
+        ["INS-FAR is no guarded move: nothing watches INS-FX", "leave the sensor out"]
     );
     assert_eq!(
         said("  -rel- INS-NAER lpt TOOL-TRNS 4 1 8 0 IN"),
-        ["no command looks for a relative move INS-NAER", "help: the nearest known name is INS-NEAR"]
+        ["no command looks for a relative move INS-NAER", "help: the nearest known name is INS-FAR"]
     );
 }
 

@@ -16,7 +16,7 @@ use geometry::{
 };
 use interfaces::{
     CommonMemory,
-    emove::{EmoveCommand, EmoveVerb, GoneTo, RobotPlace},
+    emove::{CalibratedAt, EmoveCommand, EmoveVerb, GoneTo, RobotPlace},
     process::Inputs,
 };
 use taskdata::files::{LocptId, TaskData};
@@ -28,7 +28,7 @@ use super::{
     route::{near, same_location},
     state::State,
     tables::{
-        AtDrum,
+        AtDrum, Bias,
         drum::{AtTheDrum, Belief, Tool, drum},
         number,
     },
@@ -149,6 +149,15 @@ impl State {
                 locate(drum, inputs.memory, inputs.data)
             }
             _ => AtDrum::Off,
+        }
+    }
+
+    /// What the force sensor reads without a force, and where that was taken.
+    pub(super) const fn bias(&self, memory: &CommonMemory) -> Bias {
+        match (memory.prim.bias, self.beliefs.calibrated) {
+            (None, _) => Bias::Missing,
+            (Some(_), CalibratedAt::Drum) => Bias::AtDrum,
+            (Some(_), CalibratedAt::Safe) => Bias::AtSafe,
         }
     }
 

@@ -42,11 +42,12 @@ const fn ordered(action: Action) -> Option<Ordered> {
         | Action::GoThru
         | Action::GotoPt
         | Action::DeltaMove(_)
-        | Action::GoWhile(_)
-        | Action::CalSensor
+        | Action::CalSensor(_)
         | Action::Centre
         | Action::Align => Some(Ordered::Prim),
         Action::GoUntil(_) => Some(Ordered::GoUntil),
+        Action::GoWhile(Relative::InsNear) => Some(Ordered::Nearing),
+        Action::GoWhile(_) => Some(Ordered::Prim),
         Action::OpenToApproach
         | Action::Close
         | Action::OpenToDepart
@@ -72,7 +73,8 @@ impl State {
         let command = &inputs.memory.subtask.emove;
         if let Some(ordered) = ordered(action) {
             self.ordered = ordered;
-            self.uses_prim |= matches!(ordered, Ordered::Prim | Ordered::GoUntil | Ordered::All);
+            self.uses_prim |=
+                matches!(ordered, Ordered::Prim | Ordered::GoUntil | Ordered::Nearing | Ordered::All);
         }
         match action {
             Action::Wait => {}
@@ -99,7 +101,10 @@ impl State {
             Action::DeltaMove(by) => self.send_relative(PrimVerb::DeltaMove, by, command, inputs, outputs),
             Action::GoUntil(by) => self.send_relative(PrimVerb::GoUntil, by, command, inputs, outputs),
             Action::GoWhile(by) => self.send_relative(PrimVerb::GoWhile, by, command, inputs, outputs),
-            Action::CalSensor => self.send_prim(PrimVerb::CalSensor, inputs, outputs),
+            Action::CalSensor(at) => {
+                self.beliefs.calibrated = at;
+                self.send_prim(PrimVerb::CalSensor, inputs, outputs);
+            }
             Action::Lock => self.send_quick_change(QuickChangeVerb::Lock, inputs, outputs),
             Action::Unlock => self.send_quick_change(QuickChangeVerb::Unlock, inputs, outputs),
             Action::Open

@@ -235,7 +235,11 @@ impl State {
             } else {
                 Lower::Done
             },
-            contact: if self.undetected > PATIENCE { Contact::Missed } else { Contact::Awaited },
+            contact: match memory.prim.status.report {
+                PrimReport::DetectedErr => Contact::Met,
+                _ if self.undetected > PATIENCE => Contact::Missed,
+                _ => Contact::Awaited,
+            },
             opening: self.opening(gripper, inputs),
             gripper,
             ring: self.ring(inputs),
@@ -271,6 +275,7 @@ impl State {
             shut: self.shut(command, inputs),
             at: self.at(command),
             drum: self.at_drum(command, inputs),
+            bias: self.bias(memory),
             sight: sight(self.beliefs.place.as_ref(), inputs),
             aim: known(self.aim(command, inputs).is_some()),
             reach: self.reach(command, inputs),

@@ -39,7 +39,9 @@ pub enum Relative {
     QcaUp,
     /// WITHDRAW.
     Withdraw,
-    /// INSERT-TOOL: to the drum.
+    /// INSERT-TOOL: to the last point at which nothing can be touched.
+    InsFar,
+    /// INSERT-TOOL: to the fingers of the drum, unless something is in the way.
     InsNear,
     /// INSERT-TOOL: in, unless the insertion force is too great.
     InsIn,
@@ -102,6 +104,7 @@ impl Relative {
             | Self::QcaBack
             | Self::QcaLift
             | Self::QcaUp
+            | Self::InsFar
             | Self::InsNear
             | Self::InsIn
             | Self::AcqNear
@@ -116,6 +119,7 @@ impl Relative {
             self,
             Self::QcdDown
                 | Self::QcdSeat
+                | Self::InsNear
                 | Self::InsIn
                 | Self::RelSlide
                 | Self::RelSlideOn
@@ -151,14 +155,14 @@ pub enum RelativeMoves {
 #[must_use]
 pub const fn moves_of(verb: EmoveVerb) -> &'static [Relative] {
     use Relative::{
-        AcqNear, AcqSlide, AcqStrike, InsIn, InsNear, QcaBack, QcaFast, QcaLift, QcaSlow, QcaUp, QcdDown,
-        QcdSeat, QcdUp, RelBack, RelSlide, RemOut, Withdraw,
+        AcqNear, AcqSlide, AcqStrike, InsFar, InsIn, InsNear, QcaBack, QcaFast, QcaLift, QcaSlow, QcaUp,
+        QcdDown, QcdSeat, QcdUp, RelBack, RelSlide, RemOut, Withdraw,
     };
     match verb {
         EmoveVerb::QcDetach => &[QcdDown, QcdSeat, QcdUp],
         EmoveVerb::QcAttach => &[QcaFast, QcaSlow, QcaBack, QcaLift, QcaUp],
         EmoveVerb::Withdraw => &[Withdraw],
-        EmoveVerb::InsertTool => &[InsNear, InsIn],
+        EmoveVerb::InsertTool => &[InsFar, InsNear, InsIn],
         EmoveVerb::ReleaseTool => &[RelSlide, RelBack],
         EmoveVerb::AcquireTool => &[AcqNear, AcqStrike, AcqSlide],
         EmoveVerb::RemoveTool => &[RemOut],

@@ -9,7 +9,11 @@ use rcs_core::{
 };
 use taskdata::files::TaskData;
 
-use crate::places::{Missing, is_in_mbd, named};
+use super::tables::WayOut;
+use crate::{
+    emove::route::same_location,
+    places::{Missing, is_in_mbd, named, place_of},
+};
 
 /// Commands of Task (V.4.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -198,6 +202,8 @@ pub struct Found {
     pub gripper: Gripper,
     /// How the pedestal takes the object.
     pub pedestal: PedestalData,
+    /// The way from the tool drum to the end-at location.
+    pub way_out: WayOut,
 }
 
 impl TaskVerb {
@@ -265,7 +271,22 @@ impl Plan {
         };
         let pedestal = object.is_none_or(|object| data.ped_para(&object).is_some());
         let pedestal = if pedestal { PedestalData::Found } else { PedestalData::Missing };
-        Found { plan, missing, gripper, pedestal }
+        Found { plan, missing, gripper, pedestal, way_out: plan.way_out(data) }
+    }
+
+    /// The way to the end-at location of a command that ends at the tool drum.
+    fn way_out(&self, data: &TaskData<'_>) -> WayOut {
+        let leaves = matches!(self.verb, TaskVerb::ReleaseTool | TaskVerb::RemoveTool);
+        let Some(end_at) = self.end_at.location.filter(|_| leaves) else { return WayOut::Leads };
+        let Some(drum) = data.place_named::<10, 16>(&Name10::clipped(named::TOOL_TRNS), None) else {
+            return WayOut::Leads;
+        };
+        let to = place_of(end_at.kind, end_at.record, end_at.array);
+        if same_location(&drum, &to) || data.trajectory(&drum, &to).is_some() {
+            WayOut::Leads
+        } else {
+            WayOut::NoTrajectory
+        }
     }
 
     /// Is an object to be handled?

@@ -162,6 +162,7 @@ fn request(found: &Found) -> Request {
         grips: plan.grips(),
         pedestal: found.pedestal,
         near: plan.destination.near_drum(),
+        way_out: found.way_out,
         control: Control::Automatic,
     }
 }

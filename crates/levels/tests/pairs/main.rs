@@ -261,6 +261,7 @@ fn emove_and_prim_with_a_fault() {
 const CHANGING_TOOLS: &[prim::Line] = &[
     (EmoveVerb::AcquireTool, prim::DRUM),
     (EmoveVerb::RemoveTool, prim::DRUM),
+    (EmoveVerb::MovToLoc, "TOOL-SAFE"),
     (EmoveVerb::InsertTool, prim::DRUM),
     (EmoveVerb::ReleaseTool, prim::DRUM),
     (EmoveVerb::Pause, ""),
@@ -278,18 +279,18 @@ fn guards(name: &str, commands: usize, (unusual, motions, faults): (u8, u8, u8),
 #[test]
 fn emove_and_prim_change_tools() {
     let (unusual, any) = if is_full() { (2, 82) } else { (1, 61) };
-    guards("E-move and Prim, tools", 4, (unusual, 0, 0), any);
+    guards("E-move and Prim, tools", 5, (unusual, 0, 0), any);
 }
 
 #[test]
 fn emove_and_prim_change_tools_with_an_interruption() {
     let (unusual, any) = if is_full() { (1, 63) } else { (0, 32) };
-    guards("E-move and Prim, tools, an interruption", 5, (unusual, 1, 0), any);
+    guards("E-move and Prim, tools, an interruption", 6, (unusual, 1, 0), any);
 }
 
 #[test]
 fn emove_and_prim_change_tools_with_a_fault() {
-    let commands = if is_full() { 5 } else { 3 };
+    let commands = if is_full() { 6 } else { 4 };
     guards("E-move and Prim, tools, a fault", commands, (0, 0, 1), 34);
 }
 

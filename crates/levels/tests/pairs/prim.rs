@@ -118,6 +118,8 @@ pub struct Pair {
     stops: bool,
     /// Ticks for which the robot has moved since.
     brakes: u32,
+    /// The bias of the force sensor was taken at TOOL-SAFE, if there is one.
+    biased_at_safe: Option<bool>,
 }
 
 /// What makes time go on singly again: what the processes say, and whether the robot is commanded to move.
@@ -173,6 +175,7 @@ impl Pair {
             contact: false,
             stops: false,
             brakes: 0,
+            biased_at_safe: None,
         };
         pair.tick(Link::Goes, Happens::Nothing).expect("nothing is wrong at the start");
         pair

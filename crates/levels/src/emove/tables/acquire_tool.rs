@@ -33,7 +33,7 @@ decision_table! {
         }
         /// The robot is moving towards the machine tool.
         Approaching {
-            15: work: Over                                 => CalSensor            -> Calibrating;
+            15: work: Over                                 => CalSensor(Drum)      -> Calibrating;
         }
         /// The force sensor is being calibrated for the contact.
         Calibrating {
@@ -41,7 +41,7 @@ decision_table! {
         }
         /// The robot is moving into contact with the strike plate.
         Striking {
-            17: work: Over                                 => CalSensor            -> Recalibrating;
+            17: work: Over                                 => CalSensor(Drum)      -> Recalibrating;
         }
         /// The force sensor is being calibrated for the slide.
         Recalibrating {
@@ -54,7 +54,7 @@ decision_table! {
         /// The gripper is closing.
         Grasping {
             20: fingers: Gripping                          => Acquired;
-            21: fingers: Empty                             => Fail(GraspMissed);
+            21: fingers: Empty                             => Fail(NoToolInDrum);
         }
     }
 }

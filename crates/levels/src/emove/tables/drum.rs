@@ -2,8 +2,36 @@
 
 use rcs_core::{Actions, Plain, Variables, decision_table};
 
-use super::AtDrum;
 use crate::execution::Outcome;
+
+/// Where the robot is at the drum of the command, if a tool command was interrupted there, by the resolvers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum AtDrum {
+    /// Nowhere there, or no tool command was interrupted.
+    Off,
+    /// Before it: neither a held tool nor the fingers touch anything, unless the place in the drum is not
+    /// free.
+    Before,
+    /// On the way in: a held tool may touch the drum.
+    Entering,
+    /// Where a held tool is in its place, and empty fingers are around one.
+    Inside,
+    /// Between there and the strike plate: the fingers are half around the tool in the drum.
+    Sliding,
+    /// To the right of the tool, clear of it, at the strike plate or before it.
+    Beside,
+}
+
+/// The bias of the force sensor: the reading that counts as no force (V.1.1 CAL-SENSOR).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Bias {
+    /// None was taken, or the sensor has been without power since.
+    Missing,
+    /// It was taken at the drum, where the fingers or the tool may have touched something.
+    AtDrum,
+    /// It was taken at TOOL-SAFE, where nothing is touched.
+    AtSafe,
+}
 
 /// What the fingers have in the drum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]

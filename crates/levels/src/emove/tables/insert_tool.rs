@@ -3,10 +3,13 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// INSERT-TOOL (V.2.1): DELTA-MOVE, CAL-SENSOR, and a GO-WHILE that the insertion force ends. Done at
-    /// once if the tool is in the drum, and not half let go. The robot comes from before the drum: nothing
-    /// else is known to be a way. Sent again after an interruption it goes on from where the robot is at the
-    /// drum (docs/design/recovery.md "Drum"); the sensor is calibrated only where the tool touches nothing.
+    /// INSERT-TOOL (V.2.1): CAL-SENSOR at TOOL-SAFE, DELTA-MOVE to the last point at which nothing can be
+    /// touched, and two GO-WHILE. The first leads to the fingers of the drum and fails at any contact, the
+    /// second leads into the drum and fails if the insertion force is too great. Done at once if the tool is
+    /// in the drum, and its release has not begun. The robot comes from before the drum: no other way is
+    /// known. Sent again after an interruption, the command continues from where the robot is at the drum
+    /// (docs/design/recovery.md "Drum"). The force sensor is calibrated only at TOOL-SAFE: nothing is touched
+    /// there, and the weight on the sensor has the same direction as at the drum.
     pub INSERT_TOOL: fn insert_tool(enum InsertToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                 => Wait;
@@ -17,22 +20,30 @@ decision_table! {
             3:  held: NotKnown                             => Fail(HeldNotKnown);
             4:  held: Right, fingers: Empty                => Fail(ReleaseNotEnded);
             5:  at: InDrum                                 => Finish;
-            6:  at: Before | There                         => DeltaMove(InsNear) -> Approaching;
-            7:  drum: Before                               => DeltaMove(InsNear) -> Approaching;
-            8:  drum: Entering | Inside                    => GoWhile(InsIn)     -> Inserting;
-            9:  drum: Off | Sliding | Beside               => Fail(NotPrepared);
-        }
-        /// The tool is moving to the drum.
-        Approaching {
-            10: work: Over                                 => CalSensor          -> Calibrating;
+            6:  at: Before                                 => CalSensor(Safe)    -> Calibrating;
+            7:  at: There, bias: Missing | AtDrum          => Fail(ForceUncalibrated);
+            8:  at: There, bias: AtSafe                    => DeltaMove(InsFar)  -> Approaching;
+            9:  drum: Before, bias: Missing | AtDrum       => Fail(ForceUncalibrated);
+            10: drum: Before, bias: AtSafe                 => DeltaMove(InsFar)  -> Approaching;
+            11: drum: Entering | Inside, bias: Missing     => Fail(ForceUncalibrated);
+            12: drum: Entering | Inside, bias: AtDrum | AtSafe => GoWhile(InsIn) -> Inserting;
+            13: drum: Off | Sliding | Beside               => Fail(NotPrepared);
         }
         /// The force sensor is being calibrated.
         Calibrating {
-            11: work: Over                                 => GoWhile(InsIn)     -> Inserting;
+            14: work: Over                                 => DeltaMove(InsFar)  -> Approaching;
+        }
+        /// The tool is moving to the last point at which it touches nothing.
+        Approaching {
+            15: work: Over                                 => GoWhile(InsNear)   -> Nearing;
+        }
+        /// The tool is moving to the fingers of the drum.
+        Nearing {
+            16: work: Over                                 => GoWhile(InsIn)     -> Inserting;
         }
         /// The tool is moving into the drum.
         Inserting {
-            12: work: Over                                 => StandInDrum;
+            17: work: Over                                 => StandInDrum;
         }
     }
 }

@@ -27,15 +27,20 @@ pub mod track;
 mod variables;
 pub mod withdraw;
 
-use interfaces::{Reason, emove::EmoveVerb, prim::JoystickGrip};
+use interfaces::{
+    Reason,
+    emove::{CalibratedAt, EmoveVerb},
+    prim::JoystickGrip,
+};
 use rcs_core::{
     Actions, Variables, commands,
     handshake::{Arrival, Lower},
     table::Choice,
 };
 
+pub use self::drum::{AtDrum, Bias};
 pub use self::variables::{
-    Along, At, AtDrum, Attached, Contact, Coupling, Exchange, Fingers, Holster, HolsterData, Initialization,
+    Along, At, Attached, Contact, Coupling, Exchange, Fingers, Holster, HolsterData, Initialization,
     Knowledge, Link, Load, Lock, Mate, Motion, Opening, Ordered, Pause, Reach, Readiness, Record, Ring, Shut,
     Sight, Spread, Target, ToolWork, Tooling, Tries, Vision, Whereabouts,
 };
@@ -111,7 +116,7 @@ pub struct Orders {
     pub ordered: Ordered,
     /// Status of Prim; done as long as the command does not need it.
     pub prim: Lower,
-    /// The condition of a GO-UNTIL.
+    /// The condition of a guarded move.
     pub contact: Contact,
     /// The opening of the fingers for the goal.
     pub opening: Opening,
@@ -154,6 +159,8 @@ pub struct Situation {
     pub at: At,
     /// Is it half way at the drum?
     pub drum: AtDrum,
+    /// What the force sensor reads without a force.
+    pub bias: Bias,
     /// What vision has answered.
     pub sight: Sight,
     /// Where the camera is to go next.
@@ -228,8 +235,8 @@ pub enum Action {
     GoUntil(Relative),
     /// GO-WHILE to Prim, with the sensor that task data name.
     GoWhile(Relative),
-    /// CAL-SENSOR to Prim.
-    CalSensor,
+    /// CAL-SENSOR to Prim, and where the robot is then.
+    CalSensor(CalibratedAt),
     /// QC-LOCK to Quick Change.
     Lock,
     /// QC-UNLOCK to Quick Change.
@@ -320,7 +327,7 @@ impl Commander for Action {
                 | Self::DeltaMove(_)
                 | Self::GoUntil(_)
                 | Self::GoWhile(_)
-                | Self::CalSensor
+                | Self::CalSensor(_)
                 | Self::Lock
                 | Self::Unlock
                 | Self::Open

@@ -5,23 +5,25 @@ use rcs_core::decision_table;
 decision_table! {
     /// ORDERED: the process with the last order is busy with it, or has done it. A failure ends the command;
     /// so does a failure of Prim while the ring turns or the fingers move in a holster, and one of fingers
-    /// that open on the way.
+    /// that open on the way. A contact of the held tool before the fingers of the drum means that the drum is
+    /// occupied.
     pub ORDERED: fn ordered(super::Orders) -> super::Action or crate::execution::Work {
         1:  ordered: Nothing | All                                                 => consult(Over);
         2:  opening: Failed                                                        => FailGrip;
-        3:  ordered: Prim | GoUntil, prim: Error | Joystick | Lost                 => PassUp;
-        4:  ordered: QuickChange | GripperInHolster, prim: Error | Joystick | Lost => PassUp;
-        5:  ordered: GoUntil, prim: Pending | Executing, contact: Missed           => Fail(NotDetected);
-        6:  ordered: Prim | GoUntil, prim: Pending | Executing                     => consult(Busy);
-        7:  ordered: Prim | GoUntil, prim: Done                                    => consult(Over);
-        8:  ordered: QuickChange, ring: Busy                                       => consult(Busy);
-        9:  ordered: QuickChange, ring: Locked | Unlocked                          => consult(Over);
-        10: ordered: QuickChange, ring: Faulty                                     => FailRing;
-        11: ordered: Gripper | GripperInHolster, gripper: Pending | Executing      => consult(Busy);
-        12: ordered: Gripper | GripperInHolster, gripper: Done                     => consult(Over);
-        13: ordered: Gripper | GripperInHolster, gripper: Error | Joystick | Lost  => FailGrip;
-        14: ordered: Vision, vision: Waiting                                       => consult(Busy);
-        15: ordered: Vision, vision: Answered                                      => consult(Over);
-        16: ordered: Vision, vision: Silent                                        => Fail(VisionSilent);
+        3:  ordered: Nearing, prim: Error, contact: Met                            => Fail(DrumOccupied);
+        4:  ordered: Prim | GoUntil | Nearing, prim: Error | Joystick | Lost       => PassUp;
+        5:  ordered: QuickChange | GripperInHolster, prim: Error | Joystick | Lost => PassUp;
+        6:  ordered: GoUntil, prim: Pending | Executing, contact: Missed           => Fail(NotDetected);
+        7:  ordered: Prim | GoUntil | Nearing, prim: Pending | Executing           => consult(Busy);
+        8:  ordered: Prim | GoUntil | Nearing, prim: Done                          => consult(Over);
+        9:  ordered: QuickChange, ring: Busy                                       => consult(Busy);
+        10: ordered: QuickChange, ring: Locked | Unlocked                          => consult(Over);
+        11: ordered: QuickChange, ring: Faulty                                     => FailRing;
+        12: ordered: Gripper | GripperInHolster, gripper: Pending | Executing      => consult(Busy);
+        13: ordered: Gripper | GripperInHolster, gripper: Done                     => consult(Over);
+        14: ordered: Gripper | GripperInHolster, gripper: Error | Joystick | Lost  => FailGrip;
+        15: ordered: Vision, vision: Waiting                                       => consult(Busy);
+        16: ordered: Vision, vision: Answered                                      => consult(Over);
+        17: ordered: Vision, vision: Silent                                        => Fail(VisionSilent);
     }
 }

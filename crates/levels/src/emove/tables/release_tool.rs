@@ -25,7 +25,7 @@ decision_table! {
         }
         /// The gripper is opening.
         Opening {
-            11: work: Over                                 => CalSensor            -> Calibrating;
+            11: work: Over                                 => CalSensor(Drum)      -> Calibrating;
         }
         /// The force sensor is being calibrated.
         Calibrating {

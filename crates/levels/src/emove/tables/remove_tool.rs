@@ -6,8 +6,8 @@ decision_table! {
     /// REMOVE-TOOL (V.2.1): CAL-SENSOR and a guarded move that the extraction force ends: a GO-WHILE, though
     /// the manual says GO-UNTIL, for the force is what must not come (SPECNOTES.md, contradiction 18). Done
     /// at once if the tool is out. A tool that is half let go is not pulled. Sent again after an interruption
-    /// it goes on pulling, without calibrating the sensor against a tool that is half out
-    /// (docs/design/recovery.md "Drum").
+    /// it goes on pulling (docs/design/recovery.md "Drum"). The sensor is calibrated against a tool that is
+    /// half out only if its calibration has been lost with its power: no other command leads out.
     pub REMOVE_TOOL: fn remove_tool(enum RemoveToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                 => Wait;
@@ -19,18 +19,19 @@ decision_table! {
             4:  held: Right, fingers: Empty                => Fail(ReleaseNotEnded);
             5:  at: There                                  => Finish;
             6:  at: Before                                 => Fail(NotPrepared);
-            7:  at: InDrum                                 => CalSensor          -> Calibrating;
-            8:  drum: Inside | Entering | Sliding          => GoWhile(RemOutOn)  -> Removing;
-            9:  drum: Before                               => Stand;
-            10: drum: Off | Beside                         => Fail(NotPrepared);
+            7:  at: InDrum                                 => CalSensor(Drum)    -> Calibrating;
+            8:  drum: Inside | Entering | Sliding, bias: Missing => CalSensor(Drum) -> Calibrating;
+            9:  drum: Inside | Entering | Sliding, bias: AtDrum | AtSafe => GoWhile(RemOutOn) -> Removing;
+            10: drum: Before                               => Stand;
+            11: drum: Off | Beside                         => Fail(NotPrepared);
         }
         /// The force sensor is being calibrated.
         Calibrating {
-            11: work: Over                                 => GoWhile(RemOut)    -> Removing;
+            12: work: Over                                 => GoWhile(RemOut)    -> Removing;
         }
         /// The tool is being pulled out.
         Removing {
-            12: work: Over                                 => Stand;
+            13: work: Over                                 => Stand;
         }
     }
 }

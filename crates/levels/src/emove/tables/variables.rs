@@ -104,6 +104,8 @@ pub enum Ordered {
     Prim,
     /// Prim, with a GO-UNTIL that may be in vain.
     GoUntil,
+    /// Prim, with the GO-WHILE up to the fingers of the drum.
+    Nearing,
     /// The attached gripper.
     Gripper,
     /// The attached gripper, in a holster: Prim holds the robot there.
@@ -116,11 +118,13 @@ pub enum Ordered {
     All,
 }
 
-/// The condition of a GO-UNTIL.
+/// The condition of a guarded move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Contact {
-    /// It may still come.
+    /// It has not come.
     Awaited,
+    /// It has ended a GO-WHILE.
+    Met,
     /// The robot stands at the goal, and the condition has not come for a second.
     Missed,
 }
@@ -232,23 +236,6 @@ pub enum At {
     There,
     /// There, with the fingers around a tool in the drum.
     InDrum,
-}
-
-/// Where the robot is at the drum of the command, if a tool command was interrupted there, by the resolvers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum AtDrum {
-    /// Nowhere there, or no tool command was interrupted.
-    Off,
-    /// Before it: neither a held tool nor the fingers touch anything.
-    Before,
-    /// On the way in: a held tool may touch the drum.
-    Entering,
-    /// Where a held tool is in its place, and empty fingers are around one.
-    Inside,
-    /// Between there and the strike plate: the fingers are half around the tool in the drum.
-    Sliding,
-    /// To the right of the tool, clear of it, at the strike plate or before it.
-    Beside,
 }
 
 /// A tool command.

@@ -11,7 +11,7 @@ use interfaces::{
     grip::{Felt, GripReport, GripVerb},
     jaws::{JawsCommand, JawsReport, JawsVerb},
     pose_range,
-    prim::{JoystickGrip, PrimReport, PrimVerb},
+    prim::{FORCE_AXES, JoystickGrip, PrimReport, PrimVerb},
     quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
 };
 use rcs_core::{
@@ -188,6 +188,8 @@ pub struct Prim {
     pub restarts: bool,
     pub report: PrimReport,
     pub reason: Reason,
+    /// The force sensor has been calibrated, and has had power ever since.
+    pub calibrated: bool,
     link: bool,
     poses: u32,
 }
@@ -277,7 +279,8 @@ impl Prim {
         }
         match command.command {
             PrimVerb::RobotInit => self.link = self.report == PrimReport::Done,
-            PrimVerb::None | PrimVerb::Pause | PrimVerb::CalSensor => {}
+            PrimVerb::CalSensor => self.calibrated |= self.report == PrimReport::Done,
+            PrimVerb::None | PrimVerb::Pause => {}
             _ if matches!(self.report, PrimReport::Done | PrimReport::NotDetected) => {
                 world.frame = Self::goal(memory, data).expect("Prim is sent to records that exist");
                 world.moved(text, memory.subtask.emove.end_effector_id.unwrap_or(1));
@@ -295,6 +298,7 @@ impl Prim {
         }
         outputs.poses[1].pose =
             Pose::from_frame(&Frame { position: world.frame.position - self.sag, ..world.frame });
+        outputs.bias = self.calibrated.then_some([0.0; FORCE_AXES]);
         let status = &mut outputs.status;
         status.restarting = self.restarts;
         status.echo = self.receiving.receiver.echo;

@@ -38,10 +38,17 @@ pub const SCENARIOS: &[fn()] = &[
     an_interrupted_release_goes_on,
     an_interrupted_acquisition_goes_on,
     an_interrupted_removal_goes_on,
+    acquire_tool_at_an_empty_drum_names_it_and_release_tool_leads_out,
+    a_contact_before_the_drum_means_that_it_is_occupied,
+    insert_tool_needs_a_force_sensor_that_was_calibrated_at_tool_safe,
     a_robot_half_way_at_the_drum_goes_nowhere_else,
     what_is_unknown_is_neither_inserted_nor_let_go,
     a_robot_that_is_taken_away_is_no_longer_half_way,
 ];
+
+/// The orders of INSERT-TOOL.
+const INSERTION: &[&str] =
+    &["CAL-SENSOR", "DELTA-MOVE INS-FAR", "GO-WHILE INS-NEAR INS-ANY", "GO-WHILE INS-IN INS-FX"];
 
 /// Size of the tool, 0.01 in.
 pub const SIZE: i32 = 248;
@@ -86,7 +93,7 @@ fn acquire(bench: &mut Bench) -> (StatusReport, Reason) {
 fn a_tool_is_put_into_the_drum_and_left() {
     let mut bench = loaded();
     assert_eq!(run(&mut bench, InsertTool), DONE);
-    assert_eq!(bench.log(), ["DELTA-MOVE INS-NEAR", "CAL-SENSOR", "GO-WHILE INS-IN INS-FX"]);
+    assert_eq!(bench.log(), INSERTION);
     assert!(bench.off(&moved(frame_of("TOOL-TRNS"), &["INS-IN"])) < 0.02);
     assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), "TOOL-TRNS");
     assert_eq!(run(&mut bench, InsertTool), DONE, "it is in");
@@ -213,7 +220,86 @@ fn a_tool_that_slips_is_noticed() {
         assert_eq!(bench.finish(), error(Reason::ObjectLost), "{verb}");
     }
     let mut bench = empty();
-    assert_eq!(run(&mut bench, AcquireTool), error(Reason::GraspMissed), "there is no tool");
+    assert_eq!(run(&mut bench, AcquireTool), error(Reason::NoToolInDrum), "there is no tool");
+}
+
+#[test]
+fn acquire_tool_at_an_empty_drum_names_it_and_release_tool_leads_out() {
+    let mut bench = empty();
+    assert_eq!(run(&mut bench, AcquireTool), error(Reason::NoToolInDrum));
+    assert_eq!(run(&mut bench, AcquireTool), error(Reason::NoToolInDrum), "sent again");
+    assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), error(Reason::InDrum));
+    assert_eq!(run(&mut bench, ReleaseTool), DONE);
+    assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
+    assert_eq!(acquire(&mut bench), DONE, "a tool has been put into the drum");
+}
+
+/// The orders of the last command, without the pauses of a failure.
+fn orders(bench: &Bench) -> Vec<&str> {
+    bench.log().into_iter().filter(|order| *order != "PAUSE").collect()
+}
+
+#[test]
+fn a_contact_before_the_drum_means_that_it_is_occupied() {
+    let detected = Mishap::Prim(PrimReport::DetectedErr, Reason::Detected);
+    let mut bench = loaded();
+    bench.spoil("INS-NEAR", detected);
+    assert_eq!(run(&mut bench, InsertTool), error(Reason::DrumOccupied));
+    assert_eq!(orders(&bench), INSERTION[..3]);
+    assert!(bench.memory.emove.status.held.is_held());
+    // Sent again, the command goes back to where nothing is touched, and is not calibrated on the contact.
+    assert_eq!(run(&mut bench, InsertTool), error(Reason::DrumOccupied));
+    assert_eq!(orders(&bench), INSERTION[1..3]);
+    bench.world.mishaps.clear();
+    assert_eq!(run(&mut bench, InsertTool), DONE, "the drum has been emptied");
+    assert_eq!(orders(&bench), &INSERTION[1..]);
+    // REMOVE-TOOL leads away, too.
+    let mut bench = loaded();
+    bench.spoil("INS-NEAR", detected);
+    assert_eq!(run(&mut bench, InsertTool), error(Reason::DrumOccupied));
+    assert_eq!(run(&mut bench, RemoveTool), DONE);
+    assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
+    // A sensor that fails on the way says nothing about the drum.
+    let mut bench = loaded();
+    bench.spoil("INS-NEAR", Mishap::Prim(PrimReport::SensorError, Reason::SensorError));
+    assert_eq!(run(&mut bench, InsertTool), error(Reason::SensorError));
+}
+
+#[test]
+fn insert_tool_needs_a_force_sensor_that_was_calibrated_at_tool_safe() {
+    let refused = error(Reason::ForceUncalibrated);
+    for (word, frame) in [("INS-NEAR", at(-3.0, 0.0)), ("INS-IN", at(-1.0, 0.0)), ("INS-IN", at(-0.1, 0.0))] {
+        let mut bench = loaded();
+        interrupt(&mut bench, InsertTool, word, frame);
+        bench.prim.calibrated = false;
+        assert_eq!(run(&mut bench, InsertTool), refused, "{word}: the sensor was without power");
+        assert!(orders(&bench).is_empty(), "{:?}", bench.log());
+        // The remedy.
+        assert_eq!(run(&mut bench, RemoveTool), DONE, "{word}");
+        assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
+        assert_eq!(run(&mut bench, InsertTool), DONE, "{word}");
+        assert_eq!(bench.log(), INSERTION, "{word}");
+    }
+    // REMOVE-TOOL at once, from before the drum, leaves the calibration of TOOL-SAFE.
+    let mut bench = loaded();
+    interrupt(&mut bench, InsertTool, "INS-NEAR", at(-3.0, 0.0));
+    assert_eq!(run(&mut bench, RemoveTool), DONE);
+    assert_eq!(run(&mut bench, InsertTool), DONE);
+    assert_eq!(bench.log(), &INSERTION[1..]);
+    // REMOVE-TOOL has calibrated it at the drum.
+    let mut bench = inserted();
+    assert_eq!(run(&mut bench, RemoveTool), DONE);
+    assert_eq!(run(&mut bench, InsertTool), refused, "the robot stands before the drum");
+    let mut bench = inserted();
+    interrupt(&mut bench, RemoveTool, "REM-OUT", at(-3.0, 0.0));
+    assert_eq!(run(&mut bench, InsertTool), refused, "the robot is on its way out");
+    // What E-move believes of the calibration outlives a restart of E-move.
+    let mut bench = loaded();
+    interrupt(&mut bench, InsertTool, "INS-NEAR", at(-3.0, 0.0));
+    bench.process = crate::emove::Emove::default();
+    bench.steps(2);
+    assert_eq!(run(&mut bench, InsertTool), DONE);
+    assert_eq!(bench.log(), &INSERTION[1..]);
 }
 
 #[test]
@@ -244,7 +330,7 @@ fn a_failing_gripper_ends_the_command() {
 fn a_failing_motion_ends_the_command() {
     let failed = Mishap::Prim(PrimReport::SensorError, Reason::SensorError);
     for (verb, words) in [
-        (InsertTool, &["INS-NEAR", "CAL-SENSOR", "INS-IN"][..]),
+        (InsertTool, &["CAL-SENSOR", "INS-FAR", "INS-NEAR", "INS-IN"][..]),
         (ReleaseTool, &["CAL-SENSOR", "REL-SLIDE", "REL-BACK"]),
         (AcquireTool, &["ACQ-NEAR", "CAL-SENSOR", "ACQ-STRIKE", "ACQ-SLIDE"]),
         (RemoveTool, &["CAL-SENSOR", "REM-OUT"]),
@@ -281,16 +367,17 @@ fn interrupt(bench: &mut Bench, verb: EmoveVerb, word: &str, frame: Frame) {
 
 #[test]
 fn an_interrupted_insertion_goes_on() {
-    const WHOLE: &[&str] = &["DELTA-MOVE INS-NEAR", "CAL-SENSOR", "GO-WHILE INS-IN INS-FX"];
-    for (word, x, orders) in [
-        ("INS-NEAR", -5.0, WHOLE),
-        ("CAL-SENSOR", -2.0, WHOLE),
-        ("INS-IN", -1.0, &WHOLE[2..]),
-        ("INS-IN", -0.25, &WHOLE[2..]),
-        ("INS-IN", -0.1, &WHOLE[2..]),
+    for (word, frame, orders) in [
+        ("CAL-SENSOR", frame_of("TOOL-SAFE"), INSERTION),
+        ("INS-FAR", at(-5.0, 0.0), &INSERTION[1..]),
+        ("INS-NEAR", at(-3.3, 0.0), &INSERTION[1..]),
+        ("INS-IN", at(-1.0, 0.0), &INSERTION[3..]),
+        ("INS-IN", at(-0.25, 0.0), &INSERTION[3..]),
+        ("INS-IN", at(-0.1, 0.0), &INSERTION[3..]),
     ] {
+        let x = frame.position - frame_of("TOOL-TRNS").position;
         let mut bench = loaded();
-        interrupt(&mut bench, InsertTool, word, at(x, 0.0));
+        interrupt(&mut bench, InsertTool, word, frame);
         assert!(!bench.memory.emove.status.drum, "{word} {x}");
         assert_eq!(run(&mut bench, InsertTool), DONE, "{word} {x}");
         assert_eq!(bench.log(), orders, "{word} {x}");
@@ -308,7 +395,7 @@ fn an_interrupted_insertion_goes_on() {
     assert!(!bench.log().contains(&"CAL-SENSOR"), "nothing is calibrated against a force");
     assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
     let mut bench = loaded();
-    interrupt(&mut bench, InsertTool, "INS-NEAR", at(-5.0, 0.0));
+    interrupt(&mut bench, InsertTool, "INS-FAR", at(-5.0, 0.0));
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared), "the tool is not in the drum");
     assert_eq!(run(&mut bench, RemoveTool), DONE);
     assert!(!bench.log().iter().any(|order| order.contains("REM-OUT")), "the tool is out");

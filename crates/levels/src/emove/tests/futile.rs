@@ -8,8 +8,8 @@ use crate::{
     emove::{
         route::Ahead,
         tables::{
-            Action, Along, At, AtDrum, Fingers, Held, Holster, Knowledge, Link, Lock, Mate, Motion, Opening,
-            Reach, Readiness, Shut, Sight, Situation, Spread, Tooling, Tries, Whereabouts,
+            Action, Along, At, AtDrum, Bias, Fingers, Held, Holster, Knowledge, Link, Lock, Mate, Motion,
+            Opening, Reach, Readiness, Shut, Sight, Situation, Spread, Tooling, Tries, Whereabouts,
             qc_attach::{QcAttachStep, qc_attach},
             qc_detach::{QcDetachStep, qc_detach},
         },
@@ -45,6 +45,7 @@ fn situations() -> impl Iterator<Item = Situation> {
                         shut,
                         at,
                         drum: AtDrum::Off,
+                        bias: Bias::Missing,
                         sight: Sight::Missing,
                         aim: Knowledge::Unknown,
                         reach: Reach::Inside,

@@ -68,6 +68,7 @@ BLOCK# 5 OFFSET 21000
 BLOCK# 6 OFFSET 21000
 -traj   UT1-PFIX       lpt     UNIT_1  lpt    PFIXTURE
   -ppt     4      100      8      300     mtb    -1050ty
+-traj   TRNS-TOOLS     lpt     TOOL-TRNS  lpt    TOOL-SAFE
 BLOCK# 1 OFFSET 20000
   -obj-  PART             1     300     60     30     350
   -obj-  PART            -1     310     61     31     351

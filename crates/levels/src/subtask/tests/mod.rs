@@ -399,7 +399,7 @@ fn what_goes_wrong_with_a_tool_is_named() {
     assert_eq!(bench.run(SubtaskVerb::AcquireTool, "TOOL-1", (1, 1), ""), DONE);
     assert_eq!(bench.sent(), ["ACQUIRE-TOOL"], "whether it is held in the drum, E-move senses");
     assert_eq!(bench.run(SubtaskVerb::AcquireTool, "PART", (1, 1), ""), error(Reason::AlreadyHolding));
-    let store = without(&["-pt-  TOOL-TRNS"]);
+    let store = without(&["-pt-  TOOL-TRNS", "TRNS-TOOLS"]);
     let mut bench = Bench::with(store.view());
     assert_eq!(bench.run(SubtaskVerb::AcquireTool, "TOOL-1", (1, 1), ""), error(Reason::UnknownLocation));
 }

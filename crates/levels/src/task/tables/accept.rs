@@ -30,8 +30,9 @@ decision_table! {
         21: verb: Transfer | Refixture | Move, grips: Different, pedestal: Missing  => Fail(NoPedestalData);
         22: verb: Refixture, grips: Same                                            => Fail(EqualGrips);
         23: verb: AcquireTool, near: No                                             => Fail(NotNearDrum);
-        24: verb: Pause                                                             => consult;
-        25: control: Manual                                                         => Fail(JoystickOn);
-        26: control: Automatic                                                      => consult;
+        24: verb: ReleaseTool | RemoveTool, way_out: NoTrajectory                   => Fail(NoTrajectory);
+        25: verb: Pause                                                             => consult;
+        26: control: Manual                                                         => Fail(JoystickOn);
+        27: control: Automatic                                                      => consult;
     }
 }

@@ -25,7 +25,7 @@ use rcs_core::{
     table::Choice,
 };
 
-pub use self::variables::{DataBase, Drum, Ends, Goal, Ordered, Station, Tool, Update, Way};
+pub use self::variables::{DataBase, Drum, Ends, Goal, Ordered, Station, Tool, Update, Way, WayOut};
 use self::{accept::accept, joystick::Control, ordered::ordered};
 use super::{
     goals,
@@ -95,6 +95,8 @@ pub struct Request {
     pub pedestal: PedestalData,
     /// Is the destination near the tool drum?
     pub near: Near,
+    /// The way from the tool drum to the end-at location.
+    pub way_out: WayOut,
     /// What has the robot.
     pub control: Control,
 }

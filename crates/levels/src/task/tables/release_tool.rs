@@ -5,9 +5,10 @@ use rcs_core::decision_table;
 decision_table! {
     /// RELEASE-TOOL (V.4.1): let go of a tool in the transfer location, then go to the end-at location; done
     /// at once if the tool gripper is free and there. Sent again after an interruption it goes on: fingers
-    /// that have let go are led out of the drum. Without an end-at location the robot stays there, and one
-    /// that has been sent away since cannot be finished. The data base is told of a tool that it knows as the
-    /// robot's (an extension: SPECNOTES.md).
+    /// that have let go are led out of the drum, and a robot with a free gripper that stands before the drum
+    /// has only to leave. Without an end-at location the robot stays there, and one that has been sent
+    /// away since cannot be finished. The data base is told of a tool that it knows as the robot's (an
+    /// extension: SPECNOTES.md).
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                                => Wait;
@@ -21,29 +22,28 @@ decision_table! {
             6:  tool: Unsure                                              => Fail(UnknownHeld);
             7:  tool: Free, station: Unplaced, resumed: AtTool            => ReleaseTool  -> Releasing;
             8:  tool: Free, ends: There                                   => Wait         -> Leaving;
-            9:  tool: Free, station: Transfer, ends: Here,
-                resumed: AtTool | Leaving                                 => Wait         -> Leaving;
-            10: tool: Free, resumed: AtTool | Leaving, ends: Elsewhere    => GotoEndpt    -> Leaving;
-            11: tool: Free, station: Safe | Elsewhere | Unplaced, ends: Here,
-                resumed: AtTool | Leaving                                 => Fail(SentAway);
-            12: tool: Free, resumed: Not | Begun, ends: Here | Elsewhere  => Fail(NotPrepared);
+            9:  tool: Free, station: Transfer, ends: Here                 => Wait         -> Leaving;
+            10: tool: Free, station: Transfer, ends: Elsewhere            => GotoEndpt    -> Leaving;
+            11: tool: Free, resumed: AtTool | Leaving, ends: Elsewhere    => GotoEndpt    -> Leaving;
+            12: tool: Free, resumed: AtTool | Leaving, ends: Here         => Fail(SentAway);
+            13: tool: Free, resumed: Not | Begun, ends: Here | Elsewhere  => Fail(NotPrepared);
         }
         /// The tool is being let go.
         Releasing {
-            13: ends: There | Elsewhere                                   => GotoEndpt    -> Leaving;
-            14: ends: Here, update: None | Due                            => Finish;
+            14: ends: There | Elsewhere                                   => GotoEndpt    -> Leaving;
+            15: ends: Here, update: None | Due                            => Finish;
         }
         /// The robot is on its way to the end-at location, or where it is to stay.
         Leaving {
-            15: update: None | Due                                        => Finish;
+            16: update: None | Due                                        => Finish;
         }
         Releasing | Leaving {
-            16: update: Owed                                              => TellOwed     -> Telling;
+            17: update: Owed                                              => TellOwed     -> Telling;
         }
         /// The data base is being told where the tool is.
         Telling {
-            17: update: Owed                                              => TellOwed;
-            18: update: None | Due                                        => Finish;
+            18: update: Owed                                              => TellOwed;
+            19: update: None | Due                                        => Finish;
         }
     }
 }

@@ -88,6 +88,15 @@ pub enum Way {
     NoStart,
 }
 
+/// The way from the tool drum to the end-at location of RELEASE-TOOL and REMOVE-TOOL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum WayOut {
+    /// The task data have it, or the command needs none.
+    Leads,
+    /// They have no trajectory from the drum to that location.
+    NoTrajectory,
+}
+
 /// A location of the command, to which POSITION goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Goal {

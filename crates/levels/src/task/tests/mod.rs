@@ -142,6 +142,18 @@ fn a_tool_is_acquired_and_removed() {
 }
 
 #[test]
+fn a_free_gripper_before_the_drum_only_leaves() {
+    for (line, sent) in [(RELEASE, &["GOTO-ENDPT"][..]), ("RELEASE-TOOL TOOL-1 +1 -- 0 0 -- 0 -- 0", &[])] {
+        let mut bench = Bench::default();
+        bench.set(3, "", "TOOL-TRNS");
+        bench.subtask.outputs.status.drum = false;
+        bench.step();
+        assert_eq!(bench.run(line), FINISHED, "{line}");
+        assert_eq!(bench.sent(), sent, "{line}");
+    }
+}
+
+#[test]
 fn a_tool_command_without_an_end_stays_where_it_is_and_without_a_name_means_the_tool_held() {
     let mut bench = Bench::default();
     bench.set(3, "TOOL-1", "TOOL-TRNS");
@@ -210,6 +222,9 @@ const REFUSED: &[(&str, Reason)] = &[
     ("ACQUIRE-TOOL TOOL-1 0 -- 0 +1 HOME 0 -- 0", Reason::NotNearDrum),
     ("REFIXTURE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0", Reason::EqualGrips),
     ("INSERT-TOOL PART +1 TOOL-SAFE 0 0 -- 0 -- 0", Reason::WrongGripper),
+    ("RELEASE-TOOL TOOL-1 +1 -- 0 0 -- 0 HOME 0", Reason::NoTrajectory),
+    ("REMOVE-TOOL TOOL-1 +1 -- 0 0 -- 0 HOME 0", Reason::NoTrajectory),
+    ("REMOVE-TOOL TOOL-1 +1 -- 0 0 -- 0 UNIT_1 2", Reason::NoTrajectory),
 ];
 
 #[test]

@@ -558,6 +558,12 @@ pub(super) fn all_rows(rows: &mut Coverage) {
             play(&mut bench);
         }
     }
+    let mut bench = Bench::default();
+    bench.set(3, "", "TOOL-TRNS");
+    bench.subtask.outputs.status.drum = false;
+    bench.step();
+    bench.run(RELEASE);
+    play(&mut bench);
     for holding in [Holding::Something, Holding::NotKnown] {
         for line in [INSERT, RELEASE, ACQUIRE, REMOVE, "REFIXTURE PART +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0"] {
             let mut bench = Bench::default();

@@ -7,7 +7,7 @@ use interfaces::{
 };
 use levels::{emove::relative::Relative, execution::Outcome};
 
-use super::{LATE, Pair};
+use super::{ASIDE, LATE, Pair};
 use crate::{
     data::{data, place},
     emove::is_done,
@@ -30,6 +30,14 @@ impl Pair {
             return;
         }
         let executes = |it: &Self| it.prim.execution.outcome == Outcome::Executing;
+        if self.prim.calibration.bias.is_none() {
+            self.biased_at_safe = None;
+        } else if self.prim.target.verb == PrimVerb::CalSensor
+            && self.prim.execution.outcome == Outcome::Done
+            && executes(before)
+        {
+            self.biased_at_safe = Some(self.is_at_safe());
+        }
         let taken = self.prim.execution.receiver.echo != before.prim.execution.receiver.echo;
         if taken || (!executes(before) && !self.is_moving()) {
             (self.contact, self.stops) = (false, false);
@@ -56,6 +64,7 @@ impl Pair {
         if self.prim.calibration.samples > before.prim.calibration.samples && before.is_moving() {
             return Err("the force sensor is calibrated while the robot moves");
         }
+        self.judge_calibration(before)?;
         if matches!(before.aside, 1..=LATE) {
             return Ok(());
         }
@@ -93,6 +102,28 @@ impl Pair {
                 }
                 None => self.judge_tool(before, &stands),
             },
+        }
+    }
+
+    fn is_at_safe(&self) -> bool {
+        place("TOOL-SAFE").frame.distance(&self.stands()).inches <= ASIDE
+    }
+
+    /// INSERT-TOOL takes the bias of the force sensor at TOOL-SAFE only, and nears the drum only with that bias.
+    fn judge_calibration(&self, before: &Self) -> Result<(), Wrong> {
+        let order = &self.emove_out.prim;
+        let is_new = order.number != before.emove_out.prim.number;
+        if !is_new || self.command.command != EmoveVerb::InsertTool {
+            return Ok(());
+        }
+        let safe = before.is_at_safe();
+        let near = Relative::InsNear.record(&self.command, &data()).map(|near| near.sensor);
+        match order.command {
+            PrimVerb::CalSensor if !safe => Err("INSERT-TOOL calibrates where it may touch something"),
+            PrimVerb::GoWhile if order.sensor == near && before.biased_at_safe != Some(true) => {
+                Err("INSERT-TOOL nears the drum without a bias that was taken at TOOL-SAFE")
+            }
+            _ => Ok(()),
         }
     }
 

@@ -49,6 +49,7 @@ impl Pair {
         image.add(&status.report);
         image.add(&status.restarting);
         image.add(&status.link_running);
+        image.bytes.push(u8::from(it.prim_out.bias.is_some()));
         image.add(&it.quick_change);
         image.add(&it.t3i);
         image.bytes.extend([u8::from(it.silent), it.aside, u8::from(it.halved), it.left.0, it.left.1]);
@@ -64,6 +65,7 @@ impl Pair {
         }
         if it.is_guarded() {
             image.bytes.extend([u8::from(it.contact), u8::from(it.stops), it.unusual]);
+            image.bytes.push(it.biased_at_safe.map_or(2, u8::from));
             image.add(&it.brakes);
         }
         image.bytes

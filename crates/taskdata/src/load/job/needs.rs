@@ -269,7 +269,7 @@ impl Needs<'_, '_> {
     fn moves(&mut self) {
         let command = self.command;
         let names: &[&str] = match command.verb {
-            "INSERT-TOOL" => &["INS-NEAR", "INS-IN"],
+            "INSERT-TOOL" => &["INS-FAR", "INS-NEAR", "INS-IN"],
             "RELEASE-TOOL" => &["REL-SLIDE", "REL-BACK"],
             "ACQUIRE-TOOL" => &["ACQ-NEAR", "ACQ-STRIKE", "ACQ-SLIDE"],
             _ => &["REM-OUT"],
