@@ -2,7 +2,7 @@
 
 use interfaces::{
     EmoveOutputs, Unconfirmed,
-    emove::{EmoveCommand, EmoveVerb, Holding},
+    emove::{EmoveCommand, EmoveVerb, Holding, Offset, RobotPlace},
     grip::Felt,
     process::Inputs,
 };
@@ -13,7 +13,7 @@ use super::{
     gripper::Gripper,
     robot_place::{commanded_pose, offset},
     state::State,
-    tables::{Fingers, Holster, Lock, Mate, Situation},
+    tables::{Fingers, Holster, Lock, Mate, Situation, resume},
 };
 use crate::{
     confirm::{Evidence, Proof},
@@ -135,8 +135,11 @@ impl State {
         };
         let at_goal = || {
             let [_, goal, ..] = &outputs.poses;
-            let pose = self.route.as_ref().map_or(&goal.pose, |route| &route.to.pose);
-            Proof::at(offset(pose, memory))
+            let seen = self.route.as_ref().map_or_else(
+                || offset(&goal.pose, memory),
+                |route| self.offset_of_place(&route.to, inputs),
+            );
+            Proof::at(seen)
         };
         let at_command = || {
             commanded_pose(memory)
@@ -175,6 +178,16 @@ impl State {
             EmoveVerb::InsertTool => is_held().and(at_command()).and_unsensed(Unconfirmed::ToolInDrum),
             EmoveVerb::ReleaseTool => is_free().and(at_command()).and_unsensed(Unconfirmed::ToolInDrum),
             EmoveVerb::RemoveTool => is_held().and(at_command()),
+        }
+    }
+
+    /// How far the robot is from a place. A vise or the pedestal that has closed on the part in the fingers may have
+    /// shifted the hand: the robot is there then, as it is for the next command.
+    pub(super) fn offset_of_place(&self, at: &RobotPlace, inputs: &Inputs<'_, TaskData<'_>>) -> Offset {
+        let is_there = self.offset(at, inputs) == resume::Offset::There;
+        match offset(&at.pose, inputs.memory) {
+            Offset::Slight | Offset::Off if is_there => Offset::None,
+            seen => seen,
         }
     }
 

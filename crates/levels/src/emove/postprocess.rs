@@ -17,7 +17,7 @@ use super::{
     gripper::Gripper,
     order::{FingerOrder, FingerVerb},
     relative::{Reference, Relative},
-    robot_place::{commanded_pose, offset, standing},
+    robot_place::{commanded_pose, standing},
     route::LegGoal,
     state::State,
     tables::{Action, Ordered, Seen},
@@ -364,7 +364,7 @@ impl State {
                 inputs.memory.quick_change.status.end_effector_id
             },
             at: self.place().as_ref().map(standing),
-            offset: self.place().map_or(Offset::None, |place| offset(&place.pose, inputs.memory)),
+            offset: self.place().map_or(Offset::None, |place| self.offset_of_place(&place, inputs)),
             exchange: self.changing(inputs.memory),
             drum: self.is_around_tool(inputs.memory, inputs.data),
         };
