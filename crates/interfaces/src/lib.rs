@@ -269,6 +269,8 @@ pub enum Reason {
     ReleaseNotEnded,
     /// The object lies too near to the edge of its tray for the open fingers.
     AtTrayEdge,
+    /// The command does not pass the check against the task data.
+    CheckFailed,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

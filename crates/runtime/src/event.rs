@@ -51,6 +51,8 @@ pub enum Event {
     OperatorJobFailed(JobFailure),
     /// A command of the workstation controller is refused.
     CommandRefused(workstation::Refusal),
+    /// A command does not pass its check, for this reason; Task refuses it.
+    CommandFailsCheck(String),
     /// A line of the workstation controller for the cell is refused, for this reason.
     CellLineRefused(String),
     /// The status of the cell cannot be written for the workstation controller.
@@ -107,6 +109,7 @@ impl Event {
             Self::Retries(_) => "command.again",
             Self::OperatorJobFailed(_) => "operator.job-failed",
             Self::CommandRefused(_) => "command.refused",
+            Self::CommandFailsCheck(_) => "command.check",
             Self::CellLineRefused(_) => "workstation.refused",
             Self::CellStatusUnsent(_) => "workstation.unsent",
             Self::HandedOver => "command.handed-over",
@@ -159,6 +162,7 @@ impl Event {
             Self::Retries(_)
             | Self::OperatorJobFailed(_)
             | Self::CommandRefused(_)
+            | Self::CommandFailsCheck(_)
             | Self::HandedOver
             | Self::TakenBack => "HWSC",
             Self::Waits(_) => "operator",
@@ -195,6 +199,7 @@ impl fmt::Display for Event {
             Self::Retries(retry) => retry.fmt(f),
             Self::OperatorJobFailed(failure) => write!(f, "the job of the operator has failed: {failure}"),
             Self::CommandRefused(refusal) => write!(f, "a command is refused: {refusal}"),
+            Self::CommandFailsCheck(why) => write!(f, "a command does not pass its check: {why}"),
             Self::CellLineRefused(why) => write!(f, "a line of the workstation is refused: {why}"),
             Self::CellStatusUnsent(error) => error.fmt(f),
             Self::HandedOver => f.write_str("the workstation controller commands from here on"),

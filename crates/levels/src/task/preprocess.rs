@@ -2,6 +2,7 @@
 
 use interfaces::{
     emove::{Holding, Standing},
+    hws::Checked,
     process::Inputs,
     subtask::SubtaskVerb,
 };
@@ -42,7 +43,7 @@ impl State {
             let plan = Plan { resumed: resumed(command, ledger), ..found.plan };
             let replaces = plan.is_about_something() && plan.resumed == Resumed::Not;
             self.follow_object(plan.verb, replaces, inputs);
-            (self.plan(&plan, inputs), request(&found))
+            (self.plan(&plan, inputs), request(&found, command.checked))
         } else {
             self.follow_object(self.plan.verb, false, inputs);
             (self.plan, Request::default())
@@ -148,7 +149,7 @@ impl State {
 }
 
 /// What a new command needs.
-fn request(found: &Found) -> Request {
+fn request(found: &Found, checked: Checked) -> Request {
     let plan = &found.plan;
     Request {
         asked: Asked::Now,
@@ -164,6 +165,7 @@ fn request(found: &Found) -> Request {
         grips: plan.grips(),
         pedestal: found.pedestal,
         near: plan.destination.near_drum(),
+        checked,
         control: Control::Automatic,
     }
 }

@@ -70,7 +70,8 @@ crate::layout! {
     "task-state"           (task)           Coded<2>,
         "CHOSEN: 0 Task runs, 1 its switch on the joystick box holds it (III.3.3), 2 it is lost";
     "reason"               (reason)         Text<REASON>,
-        "CHOSEN: why the mailgram was refused, or else why the command failed, with names and distances";
+        "CHOSEN: why the mailgram was refused, or else what is wrong with the command, or why it failed, with names \
+         and distances";
 }
 
 /// `status-length>w`; decoding ignores it.
@@ -91,26 +92,37 @@ impl Codec<'_, ()> for Length {
     }
 }
 
-/// Encodes a status as the data of its mailbox. `detail` adds names and distances to the reason.
+/// The contents of the field `reason`.
+#[derive(Clone, Copy, Debug)]
+pub enum Why<'a> {
+    /// The mailgram was refused.
+    Mailgram(&'a Refusal),
+    /// The command does not pass its check; what is wrong with it.
+    Command(&'a str),
+    /// The reason of Task's status, with names and distances.
+    Reason(Detail),
+}
+
+/// Encodes a status as the data of its mailbox.
 #[must_use]
 pub fn encode(
     status: &HwsStatus,
-    detail: Detail,
+    why: Why<'_>,
     task: TaskState,
     mailgram_echo: u16,
-    refused: Option<&Refusal>,
 ) -> [u8; StatusLayout::BYTES] {
     let reason = status.reason.text();
-    let sentence = refused.map_or_else(
-        || Sentence::<REASON>::of(&format_args!("{reason}{detail:#}")),
-        |refused| Sentence::of(refused),
-    );
+    let sentence = match why {
+        Why::Mailgram(refused) => Sentence::<REASON>::of(refused),
+        Why::Command(wrong) => Sentence::of(&wrong),
+        Why::Reason(detail) => Sentence::of(&format_args!("{reason}{detail:#}")),
+    };
     StatusLayout::encode(&Status {
         command: status.command,
         report: status.report,
         echo: command_number(status.echo),
         mailgram_echo,
-        verdict: refused.map_or(0, Refusal::code),
+        verdict: if let Why::Mailgram(refused) = why { refused.code() } else { 0 },
         code: status.reason,
         task,
         reason: sentence.as_str(),
@@ -151,7 +163,7 @@ mod tests {
             format!("{:160}", "the fingers closed on nothing").as_bytes(),
         ]
         .concat();
-        let bytes = encode(&failed(), Detail::None, TaskState::Held, 9, None);
+        let bytes = encode(&failed(), Why::Reason(Detail::None), TaskState::Held, 9);
         assert_eq!(bytes, &expected[..]);
         let status = decode(&bytes).unwrap();
         assert_eq!((status.echo, status.report, status.code), (7, HwsReport::Error, Reason::GraspMissed));
@@ -163,8 +175,8 @@ mod tests {
     fn every_report_and_reason_comes_back_whole() {
         for &report in HwsReport::ALL {
             for &reason in Reason::ALL {
-                let bytes =
-                    encode(&HwsStatus { report, reason, ..failed() }, Detail::None, TaskState::Lost, 0, None);
+                let failed = HwsStatus { report, reason, ..failed() };
+                let bytes = encode(&failed, Why::Reason(Detail::None), TaskState::Lost, 0);
                 let status = decode(&bytes).unwrap();
                 assert_eq!((status.report, status.code, status.reason), (report, reason, reason.text()));
             }
@@ -175,7 +187,7 @@ mod tests {
     fn a_reason_is_told_with_its_names_and_without_its_remedy() {
         let detail = Detail::Pair(Name10::clipped("BENCH"), Name16::clipped("VISE"));
         let failed = HwsStatus { reason: Reason::NoTrajectory, ..failed() };
-        let bytes = encode(&failed, detail, TaskState::Runs, 0, None);
+        let bytes = encode(&failed, Why::Reason(detail), TaskState::Runs, 0);
         let told = format!("{}: none leads from BENCH to VISE", Reason::NoTrajectory.text());
         assert_eq!(decode(&bytes).unwrap().reason, told);
     }

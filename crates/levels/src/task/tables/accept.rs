@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACCEPT: a new command is refused if a name or a record that it needs is missing, and while the
-    /// operator has the robot. PAUSE is what an operator needs; anything else would move the robot under
+    /// ACCEPT: a new command is refused if a name or a record that it needs is missing, if it does not pass the
+    /// check against the task data that precedes Task, and while the operator has the robot. PAUSE is what an operator needs; anything else would move the robot under
     /// manual control.
     pub ACCEPT: fn accept(super::Request) -> super::Action or () {
         1:  asked: Before                                                           => consult;
@@ -31,7 +31,8 @@ decision_table! {
         22: verb: Refixture, grips: Same                                            => Fail(EqualGrips);
         23: verb: AcquireTool, near: No                                             => Fail(NotNearDrum);
         24: verb: Pause                                                             => consult;
-        25: control: Manual                                                         => Fail(JoystickOn);
-        26: control: Automatic                                                      => consult;
+        25: checked: Fails                                                          => Fail(CheckFailed);
+        26: control: Manual                                                         => Fail(JoystickOn);
+        27: control: Automatic                                                      => consult;
     }
 }

@@ -18,7 +18,7 @@ pub mod startup;
 pub mod transfer;
 pub mod variables;
 
-use interfaces::Reason;
+use interfaces::{Reason, hws::Checked};
 use rcs_core::{
     Actions, Plain, Variables, commands,
     handshake::{Arrival, Lower},
@@ -93,6 +93,8 @@ pub struct Request {
     pub pedestal: PedestalData,
     /// Is the destination near the tool drum?
     pub near: Near,
+    /// Verdict of the check against the task data.
+    pub checked: Checked,
     /// What has the robot.
     pub control: Control,
 }
