@@ -418,6 +418,40 @@ fn a_job_on_stand_by_begins_when_it_may_and_one_that_nobody_attends_ends_with_it
     assert_repeats_with(|config| RunConfig { stand_by: true, ..config }, &outcome, &log, &directory);
 }
 
+/// A command that a job could not contain is refused with the text that the job would give.
+#[test]
+fn request_gets_the_verdict_of_a_job_line() {
+    let cell = Cell::start(TO_SAFE_AND_HOME, |config| RunConfig { stand_by: true, ..config });
+    let mut client = cell.client("anna");
+    wait_for(&mut client, "the job waits");
+    let refused = client.ask("TRANSFER LINKBAR1_BH +2 UNIT_1 4 +2 UNIT_1 3 UNIT_1 2").unwrap().unwrap_err();
+    let expected = "sector 2 of UNIT_1 needs an object, which says how the tray is divided";
+    assert!(refused.ends_with(expected), "{refused}");
+    go_on(&mut client);
+    drop(client);
+    assert!(cell.end().0.result.failure.is_none());
+}
+
+/// Data with an error keep no run on stand-by from starting, and no command that does not use them.
+#[test]
+fn stand_by_starts_with_wrong_data_and_refuses_only_their_commands() {
+    let data = tempfile::tempdir().unwrap();
+    copy(&root().join("data"), data.path());
+    let file = data.path().join("objects/linkbar.blk");
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, text.replacen("LK-GRP-FX1", "LK-GPR-FX1", 1)).unwrap();
+    let path = data.path().to_owned();
+    let cell = Cell::start(TO_SAFE_AND_HOME, |config| RunConfig { stand_by: true, data: path, ..config });
+    let mut client = cell.client("anna");
+    wait_for(&mut client, "the job waits");
+    let refused = client.ask("ACQUIRE LINKBAR1_BH +2 UNIT_1 4 +0 -- 0 -- 0").unwrap().unwrap_err();
+    assert!(refused.contains("no movetable is named LK-GPR-FX1"), "{refused}");
+    ask(&mut client, &["MOVE -- 0 -- 0 0 SAFE 0 -- 0"]);
+    go_on(&mut client);
+    drop(client);
+    assert!(cell.end().0.result.failure.is_none());
+}
+
 /// IV.1 step 3, at the panel of the rotary table's controller; the table has calibrated itself before.
 #[test]
 fn the_rotary_table_is_started_up_at_its_panel() {

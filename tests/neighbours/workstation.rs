@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use interfaces::HwsCommand;
+use interfaces::{HwsCommand, Reason};
 use neighbours::{
     mailbox::HWSC_COMMAND,
     workstation::{
@@ -10,6 +10,7 @@ use neighbours::{
         command,
     },
 };
+use rcs_core::name::Name16;
 use rustix::process::{Pid, Signal, kill_process};
 use whole_system_tests::{rcs_neighbour, root};
 
@@ -102,6 +103,37 @@ fn refused_commands_say_why_and_nothing_moves() {
         assert_eq!((workstation.status().verdict, workstation.status().report.text()), (0, "finished"));
     });
     assert_eq!(disturbed, quiet);
+}
+
+/// A command that a job could not contain ends as a refused command, with the reason that the job would give.
+#[test]
+fn command_that_fails_its_check_is_refused_with_the_reason_of_a_job_line() {
+    let controller = Controller::start("verdict", "workstation", &["--json"]);
+    let mut workstation = Workstation::connect(&controller);
+    assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
+    let name = |text| Some(Name16::clipped(text));
+    let to_sector = HwsCommand {
+        object: name("LINKBAR1_BH"),
+        source_grip: 2,
+        source: name("UNIT_1"),
+        source_sector: Some(4),
+        destination_grip: 2,
+        destination: name("UNIT_1"),
+        destination_sector: Some(3),
+        end_at: name("UNIT_1"),
+        end_at_sector: Some(2),
+        ..bare(2, "TRANSFER")
+    };
+    let (report, _) = workstation.carry_out(&to_sector);
+    let status = workstation.status();
+    assert_eq!((report.as_str(), status.echo, status.verdict), ("error", 2, 0));
+    assert_eq!(status.reason, "sector 2 of UNIT_1 needs an object, which says how the tray is divided");
+    assert_eq!(status.code, Reason::CheckFailed);
+    let home = HwsCommand { destination: name("HOME"), ..bare(3, "MOVE") };
+    assert_eq!(workstation.carry_out(&home).0, "finished");
+    drop(workstation);
+    let ended = controller.end();
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
 }
 
 /// Every mailgram with a line for the cell is answered: with its number, and a sentence if it is refused.

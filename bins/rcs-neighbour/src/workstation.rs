@@ -71,8 +71,8 @@ fn unreadable(error: LayoutError) -> Error {
 fn job(arguments: &WorkstationArguments) -> Result<Job, Error> {
     let unusable = |what: String| move |report| Error::Data { what, report };
     let data = &arguments.data;
-    let (store, _) =
-        Store::load(data).map_err(unusable(format!("the task data under {}", data.display())))?;
+    // The controller refuses a command whose data have errors.
+    let (store, _) = Store::load_with_faults(data);
     let named = data.join("jobs").join(&arguments.job).with_added_extension("job");
     let path = if files::is_file(&named) { named } else { PathBuf::from(&arguments.job) };
     let (job, _) = Job::load(&path, &store).map_err(unusable(format!("the job {}", path.display())))?;

@@ -43,7 +43,7 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
             Arc::new(AtomicBool::new(false))
         }
     };
-    let TaskFiles { store, job, .. } = TaskFiles::load(&arguments.data, arguments.played())?;
+    let TaskFiles { store, job, .. } = TaskFiles::load(&arguments.data, arguments.played(), true)?;
     let fingerprint = boards::fingerprint(&store, &job);
     // Generation 0 is the task data loaded before the first tick; each reload by the job or an operator is the next
     // one.

@@ -10,13 +10,15 @@ mod variants;
 
 use std::{
     collections::HashMap,
-    io,
+    io::{self, IsTerminal as _},
     path::{Path, PathBuf},
     process::ExitCode,
     sync::{Arc, Mutex, PoisonError},
 };
 
-use diagnostics::{Diagnostic, Diagnostics, Finding, Problems, Severity, Source, amount};
+use diagnostics::{
+    Blame, Diagnostic, Diagnostics, Finding, Group, Problems, Severity, Source, amount, grouped,
+};
 use egm_robot::{RobotFile, placement::PlacementError};
 use os_io::{
     console, files,
@@ -54,12 +56,26 @@ struct Outcome {
     records: serde_json::Map<String, serde_json::Value>,
     jobs: Vec<String>,
     findings: Vec<Finding>,
+    /// The findings by the datum that is probably wrong, the worst datum first.
+    data: Vec<OfDatum>,
     /// Reach of the arm of `--robot`.
     #[serde(skip_serializing_if = "Option::is_none")]
     reach: Option<Reach>,
 }
 
-/// Load and report. Exit status 0 if a run could begin, else 2.
+/// The findings of a datum.
+#[derive(Serialize)]
+struct OfDatum {
+    datum: String,
+    /// Number of its findings, and of all findings.
+    findings: usize,
+    of: usize,
+    errors: usize,
+    /// Positions of its findings in `findings`, errors first.
+    positions: Vec<usize>,
+}
+
+/// Load and report. Exit status 0 if there is no error, else 2.
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     let named = arguments.directory.clone().unwrap_or_else(|| arguments.data.clone());
     let arguments = &CheckArguments { data: named, ..arguments.clone() };
@@ -84,8 +100,9 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     let mut outcome = checked.outcome();
     let robot = arguments.robot.as_ref().filter(|_| outcome.ok);
     outcome.reach = robot.map(|robot| Reach::of(&arguments.data, robot)).transpose()?;
-    let in_words =
-        || text(&checked.reports) + &outcome.reach.as_ref().map_or_else(String::new, ToString::to_string);
+    let in_words = || {
+        checked.text(arguments.all) + &outcome.reach.as_ref().map_or_else(String::new, ToString::to_string)
+    };
     console::answer(&if arguments.json { long_json(&outcome)? } else { in_words() })?;
     let is_reached = outcome.reach.as_ref().is_none_or(Reach::is_complete);
     if let Some(robot) = arguments.robot.as_ref().filter(|_| !is_reached) {
@@ -189,6 +206,48 @@ impl Checked {
         Self { reports, jobs: names, cell: cell.map(|(cell, _)| cell) }
     }
 
+    /// All findings, in the order of the reports.
+    fn findings(&self) -> Vec<&Diagnostic> {
+        self.reports.iter().flat_map(|(_, report)| report.diagnostics()).collect()
+    }
+
+    /// The findings by the datum that is probably wrong, the worst datum first.
+    fn by_datum(&self) -> Vec<OfDatum> {
+        let blames: Vec<Blame> = self.findings().into_iter().map(Diagnostic::blame).collect();
+        let of_datum = |Group { datum, findings, errors }| OfDatum {
+            datum,
+            findings: findings.len(),
+            of: blames.len(),
+            errors,
+            positions: findings,
+        };
+        grouped(&blames).into_iter().map(of_datum).collect()
+    }
+
+    /// The findings of each datum, the worst datum first, and a summary of each report. Only the first finding of a
+    /// datum is printed, unless `all` are.
+    fn text(&self, all: bool) -> String {
+        let graphical = io::stdout().is_terminal();
+        let findings = self.findings();
+        let mut text = String::new();
+        let mut left_out = 0;
+        for OfDatum { datum, findings: count, of, positions, .. } in self.by_datum() {
+            text += &format!("{datum}: {count} of {}\n", amount(of, "finding"));
+            let shown = if all { count } else { 1 };
+            left_out += count - shown;
+            for one in positions.iter().take(shown).filter_map(|&at| findings.get(at)) {
+                text += &one.render(graphical);
+            }
+        }
+        if left_out > 0 {
+            text += &format!("{left_out} more of these data: --all prints them\n");
+        }
+        for (what, report) in &self.reports {
+            text += &format!("{what}: {}\n", report.summary().trim_end());
+        }
+        text
+    }
+
     /// The findings as JSON.
     fn outcome(&self) -> Outcome {
         let all = || self.reports.iter().map(|(_, report)| report);
@@ -207,6 +266,7 @@ impl Checked {
             records: loaded.map(|one| (one.file.to_owned(), one.records.into())).collect(),
             jobs: self.jobs.clone(),
             findings: all().flat_map(|report| report.diagnostics()).map(Finding::from).collect(),
+            data: self.by_datum(),
             reach: None,
         }
     }
@@ -281,12 +341,4 @@ fn one(path: &Path, error: &dyn std::error::Error) -> Diagnostics {
     let mut problems = Problems::default();
     problems.general("file", format!("{}: {error}", path.display()));
     Diagnostics::without_text(problems)
-}
-
-fn text(reports: &[(String, Diagnostics)]) -> String {
-    use std::io::IsTerminal as _;
-    let graphical = io::stdout().is_terminal();
-    let line =
-        |(what, report): &(String, Diagnostics)| format!("{what}: {}\n", report.render(graphical).trim_end());
-    reports.iter().map(line).collect()
 }

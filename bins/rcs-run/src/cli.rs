@@ -191,6 +191,9 @@ pub struct RunArguments {
     /// Wait for an operator before the first line of the job
     #[arg(long)]
     pub stand_by: bool,
+    /// Execute commands also if `rcs-run check` finds errors in the data that they use
+    #[arg(long)]
+    pub unchecked: bool,
     /// Replay the operator's inputs of this log, each in its tick
     #[arg(long, value_name = "LOG")]
     pub inputs: Option<PathBuf>,
@@ -266,6 +269,7 @@ impl RunArguments {
             operator: own.operator,
             inputs: own.inputs,
             stand_by: own.stand_by,
+            unchecked: own.unchecked,
             live: own.live,
             live_origins: own.live_origin,
             shared_memory: own.shared_memory == Switch::On,
@@ -281,6 +285,7 @@ impl CheckArguments {
         Self {
             data: data.to_owned(),
             directory: None,
+            all: false,
             json: false,
             urdf: None,
             explain: None,
@@ -436,6 +441,9 @@ pub struct CheckArguments {
     /// The same as --data DIR
     #[arg(value_name = "DIR", conflicts_with = "data", value_parser = shipped_path())]
     pub directory: Option<PathBuf>,
+    /// Print all findings of each datum, not only the first
+    #[arg(long)]
+    pub all: bool,
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
     pub json: bool,

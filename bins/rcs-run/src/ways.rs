@@ -60,6 +60,7 @@ fn of_job(job: &Job, walked: &WalkedJob) -> Diagnostics {
             problems.warning(finding.code, at, finding.message.clone(), finding.help.clone());
         }
         problems.same_as(finding.key.clone());
+        problems.about(finding.data.iter().map(|datum| datum.name.clone()).collect());
     }
     Diagnostics::of_file(problems, job.source())
 }

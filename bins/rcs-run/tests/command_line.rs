@@ -201,6 +201,102 @@ fn the_data_of_the_repository_is_good() {
     assert!(found["records"]["POSE"].as_u64().unwrap() > 0, "{found}");
 }
 
+/// A copy of the data directory with one text of a file replaced.
+fn data_with(place: &Place, file: &str, from: &str, to: &str) -> String {
+    let data = place.data();
+    let path = data.join(file);
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(text.contains(from), "{file} has no {from:?}");
+    fs::write(&path, text.replacen(from, to, 1)).unwrap();
+    data.display().to_string()
+}
+
+const NEEDS_OBJECT: &str = "sector 2 of UNIT_1 needs an object, which says how the tray is divided";
+
+#[test]
+fn job_line_and_explained_command_get_the_same_verdict() {
+    let place = Place::new();
+    let command = "TRANSFER LINKBAR1_BH +2 UNIT_1 4 +2 UNIT_1 3 UNIT_1 2";
+    let job = place.job("end-at-sector", &format!("** tray UNIT_1 4 LINKBAR1_BH\n== {command}\n"));
+    for arguments in [&[job.as_str(), "--log", "none"][..], &["check", "--explain", command]] {
+        let output = rcs_run(arguments);
+        assert_eq!(output.status.code(), Some(2));
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains(NEEDS_OBJECT), "{said}");
+    }
+}
+
+#[test]
+fn tool_command_without_a_path_to_its_end_at_location_is_refused() {
+    for verb in ["RELEASE-TOOL", "REMOVE-TOOL"] {
+        let refused = rcs_run(&["check", "--explain", &format!("{verb} ENDMILL-1 +1 -- 0 +1 -- 0 HOME 0")]);
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert_eq!(refused.status.code(), Some(2), "{said}");
+        assert!(said.contains("no trajectory leads from TOOL-TRNS to HOME"), "{said}");
+        let safe = rcs_run(&["check", "--explain", &format!("{verb} ENDMILL-1 +1 -- 0 +1 -- 0 TOOL-SAFE 0")]);
+        assert!(!String::from_utf8_lossy(&safe.stderr).contains("refuse"), "{verb} to TOOL-SAFE");
+    }
+}
+
+/// The approach A/D-15 leads down instead of up: the fingers run into the floor of the tray.
+const DOWN: [&str; 2] = [
+    "    1    t    -1500        0      0      -mtb-   A/D-15\n",
+    "    1    t      300        0      0      -mtb-   A/D-15\n",
+];
+
+#[test]
+fn run_refuses_a_job_that_uses_a_wrong_datum_and_names_it() {
+    let place = Place::new();
+    let data = data_with(&place, "movetables.blk", DOWN[0], DOWN[1]);
+    let run = |more: &[&str]| rcs_run(&[&["--log", "none", "--data", &data], more].concat());
+    let refused = run(&["linkbar"]);
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(2), "{said}");
+    assert!(said.contains("line 23, `== TRANSFER LINKBAR1") && said.contains("A/D-15"), "{said}");
+    assert!(last_line(&refused).contains("--unchecked runs it"), "{}", last_line(&refused));
+    let unchecked = run(&["linkbar", "--unchecked", "--ticks", "5", "--json"]);
+    assert_eq!((unchecked.status.code(), &json(&unchecked)["ticks"]), (Some(0), &5.into()));
+    // A job that does not pass there is run.
+    let other = place.job("other", "== MOVE -- 0 -- 0 0 HOME 0 -- 0\n");
+    assert_eq!(run(&[&other]).status.code(), Some(0), "{}", last_line(&run(&[&other])));
+}
+
+#[test]
+fn run_starts_in_spite_of_an_unrelated_datum() {
+    let place = Place::new();
+    let data = data_with(&place, "objects/linkbar.blk", "LK-GRP-FX1", "LK-GPR-FX1");
+    let run = |job: &str| rcs_run(&[job, "--log", "none", "--ticks", "5", "--data", &data]);
+    let clevis = run("clevis");
+    let said = String::from_utf8_lossy(&clevis.stderr).into_owned();
+    assert_eq!(clevis.status.code(), Some(0), "{said}");
+    assert!(said.contains("in the task data; commands that use these data are refused"), "{said}");
+    let linkbar = run("linkbar");
+    assert_eq!(linkbar.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&linkbar.stderr).into_owned();
+    assert!(said.contains("no movetable is named LK-GPR-FX1"), "{said}");
+}
+
+#[test]
+fn findings_are_grouped_by_datum() {
+    let place = Place::new();
+    let data = data_with(&place, "movetables.blk", DOWN[0], DOWN[1]);
+    let found = json(&rcs_run(&["check", "--json", &data]));
+    let all = found["findings"].as_array().unwrap().len();
+    let groups = found["data"].as_array().unwrap();
+    let of_all: u64 = groups.iter().map(|group| group["findings"].as_u64().unwrap()).sum();
+    assert_eq!(of_all, all as u64, "each finding is in one group");
+    let worst = &groups[0];
+    assert_eq!((&worst["datum"], &worst["of"]), (&"A/D-15".into(), &all.into()), "{worst}");
+    let count = worst["findings"].as_u64().unwrap();
+    assert!(count > 1, "{worst}");
+    let short = stdout(&rcs_run(&["check", &data]));
+    assert!(short.starts_with(&format!("A/D-15: {count} of {all} findings\nerror: ")), "{short}");
+    assert!(short.contains("--all prints them"), "{short}");
+    let long = stdout(&rcs_run(&["check", "--all", &data]));
+    let errors = |text: &str| text.matches("error: ").count() + text.matches("warning: ").count();
+    assert_eq!((errors(&short), errors(&long)), (groups.len(), all));
+}
+
 #[test]
 fn a_data_error_is_shown_with_its_place_and_nothing_runs() {
     let place = Place::new();

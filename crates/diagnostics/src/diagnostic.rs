@@ -28,6 +28,8 @@ pub struct Diagnostic {
     position: Option<Position>,
     text: String,
     line_text: String,
+    /// The rest of the last underlined line.
+    rest: String,
     source: Option<NamedSource<Arc<str>>>,
 }
 
@@ -37,6 +39,8 @@ impl Diagnostic {
         let position = problem.at.and_then(|at| places.position(at));
         let text = source.zip(problem.at).and_then(|(s, at)| s.text.get(range(at))).unwrap_or_default();
         let line = source.zip(position).map(|(s, position)| line_from(&s.text, position.begin));
+        let end = problem.at.map_or(0, |at| at.start.saturating_add(at.length));
+        let rest = source.map_or("", |s| line_from(&s.text, end));
         let elsewhere = problem.elsewhere.take().map(|(before, at)| format!("{before} {}", places.words(at)));
         problem.help = problem.help.or(elsewhere);
         Self {
@@ -44,6 +48,7 @@ impl Diagnostic {
             position,
             text: text.to_owned(),
             line_text: line.unwrap_or_default().to_owned(),
+            rest: rest.to_owned(),
             source: source.map(|s| NamedSource::new(&s.name, Arc::clone(&s.text))),
             problem,
         }
@@ -137,6 +142,11 @@ impl Diagnostic {
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// The text from the underlined piece to the end of its line.
+    pub(super) const fn rest(&self) -> &str {
+        self.rest.as_str()
     }
 
     /// File, block, line and column as text.

@@ -11,6 +11,7 @@
 
 mod diagnostic;
 mod finding;
+mod groups;
 mod names;
 mod places;
 mod problem;
@@ -21,6 +22,7 @@ pub mod toml;
 
 pub use diagnostic::Diagnostic;
 pub use finding::Finding;
+pub use groups::{Blame, Group, grouped};
 pub use names::{distance, nearest};
 pub use places::{Places, Position};
 pub use problem::{Problem, Problems, Severity};

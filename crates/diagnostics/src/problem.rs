@@ -49,6 +49,8 @@ pub struct Problem {
     pub nearest: Option<String>,
     /// Key that equal problems in several lines share; `None`: the message is the key.
     pub same: Option<String>,
+    /// Names of the data one of which is probably wrong; empty: what is underlined.
+    pub data: Vec<String>,
 }
 
 impl Problem {
@@ -65,6 +67,7 @@ impl Problem {
             found: None,
             nearest: None,
             same: None,
+            data: Vec::new(),
         }
     }
 
@@ -212,6 +215,13 @@ impl Problems {
     pub fn same_as(&mut self, key: String) {
         if let Some(last) = self.list.last_mut() {
             last.same = Some(key);
+        }
+    }
+
+    /// Sets the data one of which is probably the reason of the last problem.
+    pub fn about(&mut self, data: Vec<String>) {
+        if let Some(last) = self.list.last_mut() {
+            last.data = data;
         }
     }
 

@@ -35,6 +35,34 @@ pub struct Diagnostics {
     pub(crate) told: usize,
 }
 
+impl Diagnostic {
+    /// The finding as text: with source frame and colour if `graphical`, else in plain text.
+    #[must_use]
+    pub fn render(&self, graphical: bool) -> String {
+        if !graphical {
+            return Plain(self).to_string();
+        }
+        let colourless = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        let theme = if colourless { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
+        let handler = GraphicalReportHandler::new_themed(theme);
+        let mut out = String::new();
+        // Writing to a String cannot fail; a finding that cannot be drawn is given as plain text.
+        if handler.render_report(&mut out, self).is_err() {
+            out.push_str(self.message());
+        }
+        out + "\n"
+    }
+}
+
+/// A finding in plain text.
+struct Plain<'a>(&'a Diagnostic);
+
+impl fmt::Display for Plain<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.plain(f)
+    }
+}
+
 impl Diagnostics {
     /// A report of the problems in the sources.
     #[must_use]
@@ -90,18 +118,8 @@ impl Diagnostics {
         if !graphical {
             return self.to_string();
         }
-        let colourless = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-        let theme = if colourless { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
-        let handler = GraphicalReportHandler::new_themed(theme);
-        let mut out = String::new();
-        for diagnostic in &self.diagnostics {
-            // Writing to a String cannot fail; a diagnostic that cannot be drawn is given as plain text.
-            if handler.render_report(&mut out, diagnostic).is_err() {
-                out.push_str(diagnostic.message());
-            }
-            out.push('\n');
-        }
-        out + &self.summary()
+        let all: String = self.diagnostics.iter().map(|diagnostic| diagnostic.render(true)).collect();
+        all + &self.summary()
     }
 
     /// All findings in one line: each with its place, message and help.

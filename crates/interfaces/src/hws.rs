@@ -38,6 +38,17 @@ pub struct HwsCommand {
     pub end_at: Option<Name16>,
     /// `endatsector#`, from 1, if one is named.
     pub end_at_sector: Option<i32>,
+    /// Verdict of the check against the task data, which precedes Task (extension; docs/neighbours.md "Verdict").
+    pub checked: Checked,
+}
+
+/// Verdict of the check of a command against the task data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Checked {
+    /// The command passes, or was not checked.
+    Passes,
+    /// It does not pass: Task refuses it.
+    Fails,
 }
 
 /// `"status"` to the HWSC. The manual has `executing` and `finished`; the others are extensions

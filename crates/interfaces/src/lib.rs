@@ -282,6 +282,8 @@ pub enum Reason {
     NoToolInDrum,
     /// The force sensor has not been calibrated at TOOL-SAFE, and the robot is no longer there.
     ForceUncalibrated,
+    /// The command does not pass the check against the task data.
+    CheckFailed,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

@@ -65,6 +65,7 @@ impl Reason {
             | Self::NoPedestalData
             | Self::PedestalCannot
             | Self::TableLimit
+            | Self::CheckFailed
             | Self::InterfaceRefused => "correct the command in the job, or the task data",
             Self::NotPrepared => "send the commands that must precede it again, or correct the job",
             Self::NeighbourLost | Self::InterfaceSilent => "restart the lost process",

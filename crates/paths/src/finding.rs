@@ -2,7 +2,10 @@
 
 use serde::Serialize;
 
-use crate::{plan::Phase, survey::Passing};
+use crate::{
+    plan::{Datum, Phase},
+    survey::Passing,
+};
 
 /// A problem of a path.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -17,6 +20,9 @@ pub struct Finding {
     pub message: String,
     /// Suggested remedy.
     pub help: Option<String>,
+    /// The records that give the two ends of the segment: one of them is probably wrong. Empty if the finding is about
+    /// the order of the lines.
+    pub data: Vec<Datum>,
     /// Identifies the same finding in other walks.
     #[serde(skip)]
     pub key: String,

@@ -103,10 +103,19 @@ impl WalkedJob {
     }
 }
 
-/// Walks a job. The task data must be valid, and the job checked against them. `known` is the cache of flights in the
-/// same cell.
+/// Walks a job. The job must be checked against the task data. `known` is the cache of flights in the same cell.
 #[must_use]
 pub fn walk_job(job: &Job, store: &Store, room: &Room, known: &Known) -> WalkedJob {
+    walk(job, store, room, known, true)
+}
+
+/// Walks a job with each part in the middle of its sector only: a quarter of the time of [`walk_job`].
+#[must_use]
+pub fn walk_job_once(job: &Job, store: &Store, room: &Room) -> WalkedJob {
+    walk(job, store, room, &Known::default(), false)
+}
+
+fn walk(job: &Job, store: &Store, room: &Room, known: &Known, tries: bool) -> WalkedJob {
     let mut walked = WalkedJob { job: job.name.clone(), ..WalkedJob::default() };
     let Some(mut state) = start(store, room, known) else {
         walked.not_checked.push("the job: the robot does not start at a location point".to_owned());
@@ -119,7 +128,7 @@ pub fn walk_job(job: &Job, store: &Store, room: &Room, known: &Known) -> WalkedJ
         let mut unknown = None;
         match &line.step {
             Line::Command(command) => {
-                let (done, findings) = command_line(&mut state, command, line.line, &line.text);
+                let (done, findings) = command_line(&mut state, command, line, tries);
                 walked.lines.push(done);
                 walked.findings.extend(findings);
                 if let Some(store) = loaded.take() {
@@ -170,26 +179,28 @@ fn start<'a>(store: &'a Store, room: &'a Room, known: &'a Known) -> Option<State
     Some(State::new(room, known, Walk::new(store, &location), robot))
 }
 
-/// Walks a command. If its part lies at random in its sector, several positions of the part are checked.
+/// Walks a command. If its part lies at random in its sector, and with `tries_all`, several positions of the part are
+/// checked.
 fn command_line(
     state: &mut State<'_>,
     command: &HwsCommand,
-    line: u32,
-    text: &str,
+    of_job: &taskdata::load::job::JobLine,
+    tries_all: bool,
 ) -> (JobLine, Vec<Finding>) {
+    let line = of_job.line;
     let random = state.random.iter().position(|part| Some(part.object) == command.object);
     let random = random.map(|at| state.random.remove(at));
     let mut tries = vec![state.clone()];
     let (phases, findings) = run(state, command);
     let mut done = JobLine {
         line,
-        text: text.to_owned(),
+        text: of_job.text.clone(),
         phases,
         holds: state.held.map(|(object, grip)| format!("{object} with grip {grip:+}")),
         tried: 1,
     };
     let mut all: Vec<(usize, Finding)> = findings.into_iter().map(|one| (0, one)).collect();
-    if let Some(part) = random {
+    if let Some(part) = random.filter(|_| tries_all) {
         let greatest = state.room.cell().tray_shape.random_offset;
         for [x, y, angle] in TRIED {
             let Some(mut other) = tries.first().cloned() else { break };

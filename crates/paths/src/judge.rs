@@ -16,7 +16,7 @@ use crate::{
     finding::{Finding, Segment, Walked},
     flight::Trouble,
     known::{Asked, Outcome, Points},
-    plan::{Leg, Phase},
+    plan::{Datum, Leg, Phase},
     state::State,
     steps::Step,
 };
@@ -80,6 +80,7 @@ impl State<'_> {
                 beside.abs()
             ),
             help: Some(format!("move the movetable of this grip by {beside:.2} in along tool Y")),
+            data: Vec::new(),
             key: format!("path.grip {}", phase.what),
             depth: beside.abs(),
         })
@@ -120,14 +121,14 @@ impl State<'_> {
         &self,
         phase: &Phase,
         outcome: &Outcome,
-        names: &[(String, String, Option<String>)],
+        names: &[Ends],
         prefix: &str,
         clear: bool,
     ) -> Vec<Finding> {
         let mut findings = Vec::new();
         let last = outcome.flown.len().saturating_sub(1);
         for (leg, (flown, seen)) in outcome.flown.iter().zip(&outcome.seen).enumerate() {
-            let Some((from, to, entry)) = names.get(leg) else { continue };
+            let Some(Ends { from, to, entry, data }) = names.get(leg) else { continue };
             let place =
                 entry.as_ref().map_or(String::new(), |entry| format!(" ({to} is entered in {entry})"));
             let way = format!("{prefix}{}, from {from} to {to}", phase.what);
@@ -138,6 +139,7 @@ impl State<'_> {
                     line: 0,
                     message: format!("{way}: {what}{place}"),
                     help: None,
+                    data: data.iter().flatten().cloned().collect(),
                     key: format!("{code} {prefix}{} {from} {to} {key}", phase.what),
                     depth,
                 });
@@ -209,10 +211,29 @@ fn vias<'a>(data: &TaskData<'a>) -> impl Iterator<Item = (Name10, Frame)> + use<
     poses.into_iter()
 }
 
-/// Name of the start, name of the end, and entry of each segment.
-fn names(phase: &Phase) -> Vec<(String, String, Option<String>)> {
-    let starts = [&phase.start].into_iter().chain(phase.legs.iter().map(|leg| &leg.point));
-    starts.zip(&phase.legs).map(|(from, leg)| (from.clone(), end(leg), leg.entry.clone())).collect()
+/// The ends of a segment.
+struct Ends {
+    /// Name of the start.
+    from: String,
+    /// Name of the end.
+    to: String,
+    /// Entry of the end.
+    entry: Option<String>,
+    /// The records that give the end and the start.
+    data: [Option<Datum>; 2],
+}
+
+/// The ends of each segment.
+fn names(phase: &Phase) -> Vec<Ends> {
+    let starts = [(&phase.start, None)].into_iter();
+    let starts = starts.chain(phase.legs.iter().map(|leg| (&leg.point, leg.datum.as_ref())));
+    let ends = starts.zip(&phase.legs).map(|((from, start), leg)| Ends {
+        from: from.clone(),
+        to: end(leg),
+        entry: leg.entry.clone(),
+        data: [leg.datum.clone(), start.cloned()],
+    });
+    ends.collect()
 }
 
 fn end(leg: &Leg) -> String {
@@ -221,7 +242,7 @@ fn end(leg: &Leg) -> String {
 
 fn segments(phase: &Phase, outcome: &Outcome) -> Vec<Segment> {
     let all = names(phase).into_iter().zip(&phase.legs).zip(outcome.flown.iter().zip(&outcome.seen));
-    all.map(|(((from, to, _), leg), (flown, seen))| Segment {
+    all.map(|((Ends { from, to, .. }, leg), (flown, seen))| Segment {
         from,
         to,
         part: leg.part,
@@ -233,7 +254,7 @@ fn segments(phase: &Phase, outcome: &Outcome) -> Vec<Segment> {
 }
 
 /// The path back from the goal to the end of the depart leg; each segment has the slower parameters of its ends.
-fn backwards(phase: &Phase, departs: usize) -> (Points, Vec<(String, String, Option<String>)>) {
+fn backwards(phase: &Phase, departs: usize) -> (Points, Vec<Ends>) {
     let legs = &phase.legs;
     let mut list = Vec::new();
     let mut names = Vec::new();
@@ -241,7 +262,12 @@ fn backwards(phase: &Phase, departs: usize) -> (Points, Vec<(String, String, Opt
         let (Some(from), Some(to)) = (legs.get(at), legs.get(at - 1)) else { continue };
         let slower = if to.vel_max < from.vel_max { to } else { from };
         list.push((to.frame, slower.parameters()));
-        names.push((end(from), to.point.clone(), to.entry.clone()));
+        names.push(Ends {
+            from: end(from),
+            to: to.point.clone(),
+            entry: to.entry.clone(),
+            data: [to.datum.clone(), from.datum.clone()],
+        });
     }
     (Points { list, opens: 0 }, names)
 }

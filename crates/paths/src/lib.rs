@@ -12,6 +12,7 @@
 //!   judge     a phase checked forward and back: its findings, and a via point that helps
 //!   job       the lines of a job in order, with the positions of the parts and the held part
 //!   stored    each segment of the stored trajectories
+//!   uses      the records of the task data that a command uses
 //! ```
 //!
 //! This crate starts no program, reads no clock and simulates no forces. [`job::NOT_CHECKED`] lists what a walk cannot
@@ -19,6 +20,7 @@
 
 #![forbid(unsafe_code)]
 
+mod entries;
 pub mod finding;
 pub mod flight;
 pub mod job;
@@ -31,4 +33,5 @@ pub mod state;
 pub mod steps;
 pub mod stored;
 pub mod survey;
+pub mod uses;
 pub mod walk;

@@ -3,7 +3,10 @@
 use geometry::frame::Frame;
 use interfaces::emove::EmoveCommand;
 use serde::Serialize;
-use taskdata::files::{Location, TrajPara};
+use taskdata::{
+    files::{Location, TrajPara},
+    load::At,
+};
 
 /// An entry of the task data that a path uses.
 #[derive(Clone, Debug, Serialize)]
@@ -12,6 +15,16 @@ pub struct Entry {
     pub what: &'static str,
     /// File, block and line.
     pub at: String,
+}
+
+/// A record of the task data that has a name.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Datum {
+    /// Its name.
+    pub name: String,
+    /// Where it is entered.
+    #[serde(skip)]
+    pub at: At,
 }
 
 /// One point of a path.
@@ -41,6 +54,9 @@ pub struct Leg {
     pub margin_deg: Option<f64>,
     /// File, block and line of the point.
     pub entry: Option<String>,
+    /// The pose, movetable or location point that gives the point.
+    #[serde(skip)]
+    pub datum: Option<Datum>,
     /// Tool frame, inches, world.
     #[serde(skip)]
     pub frame: Frame,
@@ -67,6 +83,9 @@ pub struct Phase {
     pub legs: Vec<Leg>,
     /// Why the phase cannot be planned; `None` if it can.
     pub missing: Option<String>,
+    /// The places of all records that it uses.
+    #[serde(skip)]
+    pub used: Vec<At>,
     /// Name of the point at its start.
     #[serde(skip)]
     pub start: String,
@@ -88,6 +107,7 @@ impl Phase {
             entries: Vec::new(),
             legs: Vec::new(),
             missing: None,
+            used: Vec::new(),
             start: String::new(),
             from: Frame::identity(),
             guarded: false,

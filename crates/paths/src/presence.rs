@@ -95,6 +95,7 @@ fn finding(message: String, help: &str) -> Finding {
         line: 0,
         message,
         help: Some(help.to_owned()),
+        data: Vec::new(),
         key,
         depth: 0.0,
     }

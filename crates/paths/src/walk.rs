@@ -32,8 +32,9 @@ use taskdata::{
 };
 
 use crate::{
+    entries::Point,
     flight::time,
-    plan::{Entry, Leg, Phase, described},
+    plan::{Leg, Phase, described},
     steps::Step,
 };
 
@@ -46,8 +47,8 @@ const GOAL: u32 = u32::MAX;
 /// State of a walk.
 #[derive(Clone, Debug)]
 pub struct Walk<'a> {
-    store: &'a Store,
-    data: TaskData<'a>,
+    pub(crate) store: &'a Store,
+    pub(crate) data: TaskData<'a>,
     place: RobotPlace,
     /// The frame of the object that vision has found, for the next motion.
     found: Option<Frame>,
@@ -57,7 +58,12 @@ impl<'a> Walk<'a> {
     /// Begins at a location without an object.
     #[must_use]
     pub fn new(store: &'a Store, start: &Location) -> Self {
-        let place = robot_at(GoneTo::Location, start, &start.frame);
+        Self::at(store, robot_at(GoneTo::Location, start, &start.frame))
+    }
+
+    /// Begins where the robot is.
+    #[must_use]
+    pub fn at(store: &'a Store, place: RobotPlace) -> Self {
         Self { store, data: store.view(), place, found: None }
     }
 
@@ -90,7 +96,8 @@ impl<'a> Walk<'a> {
         let view = self.view_stop();
         if let Some(parameters) = view.filter(|_| over.distance(&here).inches > 0.0) {
             phase.from = here;
-            let leg = self.leg("goal", "over the object".to_owned(), None, &over, parameters);
+            let point = Point::new("goal", "over the object".to_owned());
+            let leg = self.leg(point, &over, parameters);
             phase.legs = timed(&here, vec![leg]);
             self.place.pose = Pose::from_frame(&over);
         }
@@ -137,6 +144,7 @@ impl<'a> Walk<'a> {
         let command = self.command(verb, object, grip, location);
         let mut phase = self.moving(described(&command, location));
         self.location_entries(&mut phase, location);
+        self.use_object(&mut phase, &command, location);
         let (gone_to, frame) = match self.goal_and_route(&command, location) {
             Ok((goal, route)) => {
                 self.route(&mut phase, &command, &goal, route);
@@ -205,7 +213,8 @@ impl<'a> Walk<'a> {
         let departure = self.place.pose.to_frame().unwrap_or_else(|_| Frame::identity());
         let (depart, between, approach) = (route.depart, route.between, route.approach);
         self.path_entries(phase, command, depart, between, approach);
-        let mut names = self.names(depart, between, approach).into_iter();
+        let end = self.end_datum(command);
+        let mut points = self.points(depart, between, approach, end).into_iter();
         let mut legs = Vec::new();
         while let Some(leg) = route.leg(&self.data) {
             let frame = match leg.at {
@@ -219,53 +228,18 @@ impl<'a> Walk<'a> {
                 }
                 LegGoal::Computed(frame) => Some(frame),
             };
-            let (part, point, at) = names.next().unwrap_or(("goal", "goal".to_owned(), None));
+            let point = points.next().unwrap_or_else(|| Point::new("goal", "goal".to_owned()));
+            phase.used.extend(point.at.into_iter().chain(point.datum.as_ref().map(|datum| datum.at)));
             let Some(frame) = frame else { break };
-            legs.push(self.leg(part, point, at, &frame, leg.parameters));
+            legs.push(self.leg(point, &frame, leg.parameters));
             route.advance(&self.data);
         }
         phase.legs = timed(&departure, legs);
         phase.opening_in = goal.opening.map(|opening| f64::from(opening) / 100.0);
     }
 
-    /// Part, name and entry of each point of a route except the goal.
-    fn names(
-        &self,
-        depart: PathId,
-        between: PathId,
-        approach: PathId,
-    ) -> Vec<(&'static str, String, Option<At>)> {
-        let mut names = Vec::new();
-        for (part, path) in [("depart", depart), ("trajectory", between), ("approach", approach)] {
-            let first = path.of(self.data.paths).and_then(|p| usize::try_from(p.first).ok()).unwrap_or(0);
-            for (i, point) in self.data.path(path).iter().enumerate() {
-                if point.target != Target::Stop {
-                    let at = self.store.origins().path_points.get(first + i).copied();
-                    names.push((part, self.point_name(point), at));
-                }
-            }
-        }
-        let stop = self.data.path(approach).last().filter(|point| point.target == Target::Stop);
-        let at = stop.and_then(|_| {
-            let path = approach.of(self.data.paths)?;
-            let last = path.first.checked_add(path.count)?.checked_sub(1)?;
-            self.store.origins().path_points.get(usize::try_from(last).ok()?).copied()
-        });
-        names.push(("goal", if stop.is_some() { "stop" } else { "goal" }.to_owned(), at));
-        names
-    }
-
-    fn point_name(&self, point: &PathPoint) -> String {
-        let data = &self.data;
-        match point.target {
-            Target::Movetable(id) => id.of(data.movetables).map_or("...".to_owned(), |m| m.name.to_string()),
-            Target::Pose(id) => data.pose(id).map_or(String::new(), |p| p.name.to_string()),
-            Target::LocationPoint(id) => data.locpt(id).map_or(String::new(), |l| l.name.to_string()),
-            Target::Stop => "stop".to_owned(),
-        }
-    }
-
-    fn leg(&self, part: &'static str, point: String, at: Option<At>, frame: &Frame, para: TrajParaId) -> Leg {
+    fn leg(&self, point: Point, frame: &Frame, para: TrajParaId) -> Leg {
+        let Point { part, name: point, at, datum } = point;
         let para = self.data.traj_para(para).copied().unwrap_or_default();
         let joints = T3.inverse(frame, &HOME_JOINTS).map(|joints| T3.margin(&T3.within_limits(&joints)));
         let p = frame.position;
@@ -282,6 +256,7 @@ impl<'a> Walk<'a> {
             joint: joints.ok().and_then(|m| JOINT_NAMES.get(m.joint).copied()),
             margin_deg: joints.ok().map(|m| m.radians.to_degrees()),
             entry: at.map(|at| self.store.place(at)),
+            datum,
             frame: *frame,
         }
     }
@@ -301,67 +276,17 @@ impl<'a> Walk<'a> {
         };
         let frame = self.data.moved(&base, record.movetable);
         let what = if record.sensor.is_empty() { "move" } else { "until" };
-        let point =
-            record.movetable.of(self.data.movetables).map_or("...".to_owned(), |m| m.name.to_string());
-        phase.legs = timed(&here, vec![self.leg(what, point, at, &frame, record.para)]);
+        let name = record.movetable.of(self.data.movetables).map_or("...".to_owned(), |m| m.name.to_string());
+        let datum = self.datum(Target::Movetable(record.movetable));
+        phase.used.extend(at.into_iter().chain(datum.as_ref().map(|datum| datum.at)));
+        self.location_use(&mut phase, location);
+        phase.legs = timed(&here, vec![self.leg(Point { part: what, name, at, datum }, &frame, record.para)]);
         if !record.sensor.is_empty() {
             phase.what = format!("{} guarded by {}", phase.what, record.sensor);
             phase.guarded = true;
         }
         self.place = robot_at(GoneTo::Location, location, &frame);
         phase
-    }
-
-    fn entry(&self, phase: &mut Phase, what: &'static str, origins: &[At], position: Option<usize>) {
-        if let Some(at) = position.and_then(|i| origins.get(i)) {
-            phase.entries.push(Entry { what, at: self.store.place(*at) });
-        }
-    }
-
-    fn location_entries(&self, phase: &mut Phase, location: &Location) {
-        let origins = self.store.origins();
-        let place = location.place;
-        self.entry(phase, "location", &origins.locpts, place.locpt.index());
-        self.entry(phase, "array", &origins.arrays, place.array.index());
-        let pose = self.data.locpt(place.locpt).and_then(|point| point.pose.index());
-        self.entry(phase, "pose", &origins.poses, pose);
-    }
-
-    /// Adds the entries of grip, view, depart, trajectory and approach.
-    fn path_entries(
-        &self,
-        phase: &mut Phase,
-        command: &EmoveCommand,
-        depart: PathId,
-        between: PathId,
-        approach: PathId,
-    ) {
-        let (data, origins) = (&self.data, self.store.origins());
-        let place = place_of(command.location_kind, command.location_record, command.location_array);
-        match command.command {
-            EmoveVerb::MovToVu => {
-                let view = command
-                    .object
-                    .and_then(|object| data.view(&object, &place))
-                    .and_then(|(id, _)| id.index());
-                self.entry(phase, "view", &origins.visions, view);
-            }
-            EmoveVerb::MovToLoc => {}
-            _ => {
-                let object = command.object.as_ref();
-                let grip = object.and_then(|object| data.grip_loc(object, command.grip, &place));
-                self.entry(phase, "grip", &origins.grip_locs, grip.and_then(|id| id.index()));
-                let sizes = object
-                    .and_then(|object| data.object(object, command.grip))
-                    .and_then(|(id, _)| id.index());
-                self.entry(phase, "sizes", &origins.end_effs, sizes);
-            }
-        }
-        let directed = |path: PathId| data.appr_depts.iter().position(|r| !path.is_null() && r.path == path);
-        self.entry(phase, "depart", &origins.appr_depts, directed(depart));
-        let flown = data.trajectories.iter().position(|r| !between.is_null() && r.path == between);
-        self.entry(phase, "trajectory", &origins.trajectories, flown);
-        self.entry(phase, "approach", &origins.appr_depts, directed(approach));
     }
 }
 

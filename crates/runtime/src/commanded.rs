@@ -20,10 +20,11 @@ use neighbours::{
     },
 };
 use rcs_core::tick::Tick;
-use taskdata::load::{BlockNumber, Store};
+use taskdata::load::BlockNumber;
 
 use crate::{
     event::Event,
+    judge::CommandJudge,
     neighbours::{Emulator, Neighbours, WorkstationSource},
     outside::OutsideWorkstation,
     switched::obstacle,
@@ -77,16 +78,15 @@ impl Commanded {
         &mut self,
         tick: Tick,
         gate: &mut Gate,
-        task: &TaskOutputs,
         workstation: &mut SimulatedWorkstation,
-        store: &Store,
+        judge: &CommandJudge<'_>,
         events: &mut Vec<Event>,
     ) -> Progress {
         let Some(emulator) = &mut self.alone else {
-            return self.outside.step(tick, gate, task, workstation, store, events);
+            return self.outside.step(tick, gate, workstation, judge, events);
         };
         self.outside.attend(tick, events);
-        match emulator.step(tick, gate, workstation, events) {
+        match emulator.step(tick, gate, workstation, judge, events) {
             Progress::Running => {}
             Progress::Over => emulator.hwsc.wait_without_job(),
             Progress::Failed(failure) => {

@@ -26,6 +26,17 @@ pub enum StartError {
         /// All findings.
         report: Box<Diagnostics>,
     },
+    /// Commands of the job use records of the task data that have errors.
+    #[error(
+        "the job {job} cannot be run: {} with errors in the data; rcs-run check shows all errors, --unchecked runs it",
+        amount(.wrong.len(), "command")
+    )]
+    WrongData {
+        /// Name of the job.
+        job: String,
+        /// A line for each command, with its first error.
+        wrong: Vec<String>,
+    },
     /// The job does not exist.
     #[error("there is no job {job}: {}", known_jobs(.known))]
     NoJob {
@@ -140,6 +151,7 @@ impl StartError {
     pub fn details(&self) -> String {
         match self {
             Self::Data { report, .. } => report.render_for_stderr(),
+            Self::WrongData { wrong, .. } => wrong.iter().map(|line| format!("{line}\n")).collect(),
             _ => String::new(),
         }
     }

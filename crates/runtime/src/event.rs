@@ -54,6 +54,8 @@ pub enum Event {
     OperatorJobFailed(JobFailure),
     /// A command of the workstation controller is refused.
     CommandRefused(workstation::Refusal),
+    /// A command does not pass its check, for this reason; Task refuses it.
+    CommandFailsCheck(String),
     /// A line of the workstation controller for the cell is refused, for this reason.
     CellLineRefused(String),
     /// The status of the cell cannot be written for the workstation controller.
@@ -111,6 +113,7 @@ impl Event {
             Self::Retries(_) => "command.again",
             Self::OperatorJobFailed(_) => "operator.job-failed",
             Self::CommandRefused(_) => "command.refused",
+            Self::CommandFailsCheck(_) => "command.check",
             Self::CellLineRefused(_) => "workstation.refused",
             Self::CellStatusUnsent(_) => "workstation.unsent",
             Self::HandedOver => "command.handed-over",
@@ -164,6 +167,7 @@ impl Event {
             Self::Retries(_)
             | Self::OperatorJobFailed(_)
             | Self::CommandRefused(_)
+            | Self::CommandFailsCheck(_)
             | Self::HandedOver
             | Self::TakenBack => "HWSC",
             Self::Waits(_) => "operator",
@@ -203,6 +207,7 @@ impl fmt::Display for Event {
             Self::Retries(retry) => retry.fmt(f),
             Self::OperatorJobFailed(failure) => write!(f, "the job of the operator has failed: {failure}"),
             Self::CommandRefused(refusal) => write!(f, "a command is refused: {refusal}"),
+            Self::CommandFailsCheck(why) => write!(f, "a command does not pass its check: {why}"),
             Self::CellLineRefused(why) => write!(f, "a line of the workstation is refused: {why}"),
             Self::CellStatusUnsent(error) => error.fmt(f),
             Self::HandedOver => f.write_str("the workstation controller commands from here on"),

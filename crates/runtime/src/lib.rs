@@ -28,6 +28,7 @@ pub mod contacts;
 mod egm;
 pub mod error;
 pub mod event;
+pub mod judge;
 mod live;
 mod load;
 pub mod loads;

@@ -44,6 +44,8 @@ pub const DATA_BASE: &str = "data_base_in";
 pub const IN_MEMORY: &str = "memory";
 /// Key: the job waited for an operator before its first line.
 pub const STAND_BY: &str = "stand_by";
+/// Metadata key: the run executes commands also if the records that they use have errors.
+pub const UNCHECKED: &str = "unchecked";
 /// Key: number of ticks after which the run was to stop.
 pub const TICKS: &str = "ticks";
 
@@ -322,5 +324,6 @@ fn metadata(config: &RunConfig, job: &Job, attachments: &[Attachment]) -> BTreeM
     let own = entries.into_iter().map(|(key, value)| (key.to_owned(), value));
     let limit = config.ticks.map(|ticks| (TICKS.to_owned(), ticks.to_string()));
     let stand_by = config.stand_by.then(|| (STAND_BY.to_owned(), "yes".to_owned()));
-    own.chain(limit).chain(stand_by).chain(config.remarks.clone()).collect()
+    let unchecked = config.unchecked.then(|| (UNCHECKED.to_owned(), "yes".to_owned()));
+    own.chain(limit).chain(stand_by).chain(unchecked).chain(config.remarks.clone()).collect()
 }

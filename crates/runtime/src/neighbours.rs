@@ -36,6 +36,7 @@ use crate::{
     config::{ClockKind, RunConfig},
     error::StartError,
     event::Event,
+    judge::{CommandJudge, read_command},
     network::Network,
     observer::Observer,
 };
@@ -77,6 +78,8 @@ pub struct Neighbours {
     /// Accepts neighbours during the run; `None` if no neighbour is another process.
     pub(crate) network: Option<Network>,
     pub(crate) events: Vec<Event>,
+    /// True if errors in the records that a command uses do not count.
+    unchecked: bool,
     /// True if no more commands are accepted.
     is_ending: bool,
 }
@@ -99,8 +102,15 @@ impl Neighbours {
             vision,
             network,
             events: Vec::new(),
+            unchecked: false,
             is_ending: false,
         }
+    }
+
+    /// Execute commands also if the records that they use have errors.
+    #[must_use]
+    pub fn unchecked(self, unchecked: bool) -> Self {
+        Self { unchecked, ..self }
     }
 
     /// Wait for neighbours in other processes, until the time limit or an interruption, which the run handles. On the
@@ -294,24 +304,20 @@ impl Neighbours {
         self.events.extend(self.network.iter().flat_map(Network::events).map(Event::Network));
         self.step_vision(tick, memory, workstation);
         self.gate.write(memory, task_state(&memory.task.header, tick));
+        let judge = CommandJudge { store, memory, unchecked: self.unchecked };
         let progress = match &mut self.workstation {
             _ if self.is_ending => Progress::Running,
             WorkstationSource::Emulator(emulator) => {
-                emulator.step(tick, &mut self.gate, workstation, &mut self.events)
+                emulator.step(tick, &mut self.gate, workstation, &judge, &mut self.events)
             }
             WorkstationSource::Outside(commanded) => {
-                let (gate, task) = (&mut self.gate, &memory.task);
-                commanded.step(tick, gate, task, workstation, store, &mut self.events)
+                commanded.step(tick, &mut self.gate, workstation, &judge, &mut self.events)
             }
             WorkstationSource::Switched(switched) => {
                 let data_system = self.network.iter().flat_map(|network| &network.handles);
                 let mut data_system = data_system.filter(|handle| handle.role() == Role::DataSystem);
-                let around = Around {
-                    tick,
-                    memory,
-                    store,
-                    has_data_system: data_system.all(EndpointHandle::is_connected),
-                };
+                let around =
+                    Around { tick, judge, has_data_system: data_system.all(EndpointHandle::is_connected) };
                 switched.step(&around, &mut self.gate, workstation, &mut self.events)
             }
         };
@@ -346,6 +352,7 @@ impl Emulator {
         tick: Tick,
         gate: &mut Gate,
         workstation: &mut SimulatedWorkstation,
+        judge: &CommandJudge<'_>,
         events: &mut Vec<Event>,
     ) -> Progress {
         let before = self.hwsc.retried().len();
@@ -355,11 +362,16 @@ impl Emulator {
         };
         let retries = self.hwsc.retried().iter().skip(before);
         events.extend(retries.cloned().map(Event::Retries));
-        self.post(gate).unwrap_or(progress)
+        self.post(gate, judge, events).unwrap_or(progress)
     }
 
     /// Send the command through the mailbox. Returns the failure if it does not fit.
-    fn post(&mut self, gate: &mut Gate) -> Option<Progress> {
+    fn post(
+        &mut self,
+        gate: &mut Gate,
+        judge: &CommandJudge<'_>,
+        events: &mut Vec<Event>,
+    ) -> Option<Progress> {
         let mut failure = None;
         if let Some(command) = self.hwsc.mailgram() {
             let written = neighbours::workstation::command::encode(command)
@@ -368,16 +380,23 @@ impl Emulator {
             failure = written.err().map(|why| Progress::Failed(JobFailure::Refused(why)));
         }
         // The emulator learns from its status which commands the gate refuses.
-        gate.read(&self.command_box);
+        read_command(gate, &self.command_box, judge, events);
         failure
     }
 
     /// Return the command to the job: its mailbox is initialized, as every mailbox is when a neighbour connects (IX.1).
-    pub fn take_back(&mut self, tick: Tick, gate: &mut Gate, commands: Vec<BegunStep>) -> Progress {
+    pub fn take_back(
+        &mut self,
+        tick: Tick,
+        gate: &mut Gate,
+        commands: Vec<BegunStep>,
+        judge: &CommandJudge<'_>,
+        events: &mut Vec<Event>,
+    ) -> Progress {
         self.command_box.initialize();
         gate.initialize();
         self.hwsc.take_back(tick, gate.command().number, commands);
-        self.post(gate).unwrap_or(Progress::Running)
+        self.post(gate, judge, events).unwrap_or(Progress::Running)
     }
 }
 

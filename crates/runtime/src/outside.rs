@@ -17,7 +17,12 @@ use neighbours::{
 use rcs_core::{name::Name16, tick::Tick};
 use taskdata::load::{BlockNumber, Store, job};
 
-use crate::{event::Event, load, workstation::SimulatedWorkstation};
+use crate::{
+    event::Event,
+    judge::{CommandJudge, read_command},
+    load,
+    workstation::SimulatedWorkstation,
+};
 
 /// Number of commands that a run remembers, so that a run of a year does not fill the memory.
 const REMEMBERED: usize = 10_000;
@@ -144,11 +149,11 @@ impl OutsideWorkstation {
         &mut self,
         tick: Tick,
         gate: &mut Gate,
-        task: &TaskOutputs,
         workstation: &mut SimulatedWorkstation,
-        store: &Store,
+        judge: &CommandJudge<'_>,
         events: &mut Vec<Event>,
     ) -> Progress {
+        let task = &judge.memory.task;
         self.follow(tick, gate.command(), task);
         self.endpoint.outgoing(HWSC_STATUS).clone_from(gate.status_box());
         self.write_cell(workstation, events);
@@ -158,13 +163,13 @@ impl OutsideWorkstation {
             gate.initialize();
         }
         let before = gate.command().number;
-        if let Some(refusal) = gate.read(self.endpoint.incoming(HWSC_COMMAND)) {
+        if let Some(refusal) = read_command(gate, self.endpoint.incoming(HWSC_COMMAND), judge, events) {
             events.push(Event::CommandRefused(refusal));
         }
         if gate.command().number != before {
             self.begin(tick, gate.command());
         }
-        self.read_cell(workstation, store, events);
+        self.read_cell(workstation, judge.store, events);
         if gone { self.end(gate.command(), task, workstation) } else { Progress::Running }
     }
 

@@ -15,7 +15,7 @@ use record::{Attachment, Log};
 
 use crate::{
     config::{LogTarget, RobotConfig, RunConfig},
-    log::{DATA_BASE, FAULTS, IN_MEMORY, LOADS, OUTSIDE, RETRY, STAND_BY, TICKS},
+    log::{DATA_BASE, FAULTS, IN_MEMORY, LOADS, OUTSIDE, RETRY, STAND_BY, TICKS, UNCHECKED},
     setup::{CELL, EXTENSION},
 };
 
@@ -110,6 +110,7 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
         retry: number(RETRY).and_then(|retry| u32::try_from(retry).ok()).unwrap_or(0),
         inputs: operated.then(|| log.path().to_owned()),
         stand_by: said(STAND_BY).is_some(),
+        unchecked: said(UNCHECKED).is_some(),
         log: LogTarget::None,
         shared_memory: false,
         ..RunConfig::new(data, job.to_string_lossy())

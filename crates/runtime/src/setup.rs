@@ -25,13 +25,14 @@ use plant::{
     fault::text::{self, FaultFile},
 };
 use record::{LogFile, RecordError};
-use taskdata::load::{Diagnostics, Job, Source, Store};
+use taskdata::load::{Diagnostics, Fault, Job, Source, Store, amount};
 
 use crate::{
     agreement,
     config::{ClockKind, LogTarget, RobotKind, RunConfig},
     egm::EgmPort,
     error::StartError,
+    judge::{add_paths, check_job},
     live::Live,
     neighbours::{Emulator, Neighbours, WorkstationSource},
     network::Network,
@@ -93,10 +94,20 @@ impl Setup {
             return Err(StartError::Speed(config.speed));
         }
         let data = &config.data;
-        let TaskFiles { store, job, job_path, warnings } = TaskFiles::load(data, config.played())?;
-        let CellFile { text: description_text, description, warning } =
-            CellFile::load(data, &store, &job, &job_path)?;
-        warnings.into_iter().chain(warning).for_each(|line| observer.message(&line));
+        let is_lenient = config.stand_by;
+        let mut files = TaskFiles::load(data, config.played(), is_lenient)?;
+        let cell = CellFile::load(data, &mut files, is_lenient || config.unchecked)?;
+        let CellFile { text: description_text, description, warnings: of_cell } = cell;
+        let TaskFiles { mut store, mut job, warnings, .. } = files;
+        let is_sound = store.faults().next().is_none();
+        let walked = (!config.unchecked).then(|| add_paths(&mut store, &mut job, &description));
+        if !config.unchecked && !config.stand_by {
+            check_job(&job, &store, walked.as_ref())?;
+        }
+        warnings.into_iter().chain(of_cell).for_each(|line| observer.message(&line));
+        if !is_sound {
+            observer.message(&errors(&store, config));
+        }
         let (faults, faults_text) = faults(config, &description)?;
         let cell = Cell::with_faults(&description, config.seed, &faults.cell)?;
         let sees_elsewhere = config.outside.contains(&Role::Vision);
@@ -145,31 +156,39 @@ pub struct TaskFiles {
     pub job_path: PathBuf,
     /// Lines that report the number of warnings.
     pub warnings: Vec<String>,
+    /// The findings in the task data.
+    in_data: Diagnostics,
 }
 
 impl TaskFiles {
-    /// Read and check task data and job. Without a job there are no steps: another process commands.
+    /// Read and check task data and job. Without a job there are no steps: another process commands. Task data with
+    /// errors are used, too: [`Store::faults`]. If `is_lenient`, a job with errors is left out.
     ///
     /// # Errors
-    /// [`StartError`], with all errors of the data.
-    pub fn load(data: &Path, job: Option<&str>) -> Result<Self, StartError> {
+    /// [`StartError`], with all errors of the job.
+    pub fn load(data: &Path, job: Option<&str>, is_lenient: bool) -> Result<Self, StartError> {
         if !files::is_directory(data) {
             return Err(StartError::NoData(data.to_owned()));
         }
-        let unusable = |what: String| move |report| StartError::Data { what, report };
-        let (store, in_data) =
-            Store::load(data).map_err(unusable(format!("the task data under {}", data.display())))?;
+        let (store, in_data) = Store::load_with_faults(data);
         let job_path = job.map(|job| job_path(job, data)).transpose()?.unwrap_or_default();
+        let without_lines = |name: String| Job::from_source(Source { name, text: "".into() }, &store);
+        let what = || format!("the job {}", job_path.display());
+        let mut left_out = None;
         let read = match job {
-            Some(_) => Job::load(&job_path, &store),
-            None => {
-                let name = format!("{}.{EXTENSION}", Role::Workstation);
-                Job::from_source(Source { name, text: "".into() }, &store)
-            }
+            Some(_) => Job::load(&job_path, &store).or_else(|report| {
+                if !is_lenient {
+                    // An error of the data is probably the cause.
+                    return Err(Box::new(in_data.clone().with(*report)));
+                }
+                left_out = Some(format!("{} is left out: {}", what(), report.in_line()));
+                without_lines(job_path.display().to_string())
+            }),
+            None => without_lines(format!("{}.{EXTENSION}", Role::Workstation)),
         };
-        let (job, in_job) = read.map_err(unusable(format!("the job {}", job_path.display())))?;
-        let warnings = [warning(&in_data, "the task data"), warning(&in_job, "the job")];
-        Ok(Self { store, job, job_path, warnings: warnings.into_iter().flatten().collect() })
+        let (job, in_job) = read.map_err(|report| StartError::Data { what: what(), report })?;
+        let warnings = [warning(&in_data, "the task data"), warning(&in_job, "the job"), left_out];
+        Ok(Self { store, job, job_path, warnings: warnings.into_iter().flatten().collect(), in_data })
     }
 }
 
@@ -179,16 +198,18 @@ pub struct CellFile {
     pub text: String,
     /// The description.
     pub description: CellDescription,
-    /// Line that reports the number of warnings, if any.
-    pub warning: Option<String>,
+    /// Lines about its warnings and tolerated errors.
+    pub warnings: Vec<String>,
 }
 
 impl CellFile {
-    /// Read the description, and check that task data, job and description describe the same cell.
+    /// Read the description, and check that task data, job and description describe the same cell. An error of a form of
+    /// the task data is added to [`Store::faults`]. If `is_lenient`, errors of entries of the cell are tolerated.
     ///
     /// # Errors
-    /// [`StartError`], with all errors of the data.
-    pub fn load(data: &Path, store: &Store, job: &Job, job_path: &Path) -> Result<Self, StartError> {
+    /// [`StartError`], with all errors.
+    pub fn load(data: &Path, task: &mut TaskFiles, is_lenient: bool) -> Result<Self, StartError> {
+        let TaskFiles { store, job, job_path, in_data, .. } = task;
         let path = data.join(CELL);
         let text =
             files::read_text(&path).map_err(|source| StartError::Read { path: path.clone(), source })?;
@@ -197,15 +218,42 @@ impl CellFile {
             report: Box::new(report),
         })?;
         let source = description::source(&text);
-        let report = agreement::of_cell(source.clone(), &description, store);
-        let report = report.with(agreement::of_job(job, &source, &description, store, &path));
-        if report.has_errors() {
+        let of_cell = agreement::of_cell(source.clone(), &description, store);
+        let of_job = agreement::of_job(job, &source, &description, store, &path);
+        let in_forms: Vec<Fault> = of_cell
+            .errors()
+            .filter(|error| error.block().is_some())
+            .map(|error| Fault::found(error, store))
+            .collect();
+        let in_cell = of_cell.errors().count() - in_forms.len();
+        if of_job.has_errors() || in_cell > 0 && !is_lenient {
             let what = format!("the job {} in the cell of {}", job_path.display(), path.display());
+            // An error of the data is probably the cause.
+            let report = in_data.clone().with(of_cell).with(of_job);
             return Err(StartError::Data { what, report: Box::new(report) });
         }
-        let warning = warning(&report, "the cell description");
-        Ok(Self { text, description, warning })
+        let report = of_cell.with(of_job);
+        let tolerated = (in_cell > 0).then(|| {
+            format!("{} in the cell description; rcs-run check shows them", amount(in_cell, "error"))
+        });
+        let warnings = warning(&report, "the cell description").into_iter().chain(tolerated).collect();
+        for reload in &mut job.reloads {
+            reload.store.add_faults(in_forms.iter().cloned());
+        }
+        store.add_faults(in_forms);
+        Ok(Self { text, description, warnings })
     }
+}
+
+/// The line about errors in the task data, which do not prevent a run.
+fn errors(store: &Store, config: &RunConfig) -> String {
+    let count = amount(store.faults().count(), "error");
+    let effect = if config.unchecked {
+        "--unchecked: commands that use these data are executed"
+    } else {
+        "commands that use these data are refused"
+    };
+    format!("{count} in the task data; {effect}; rcs-run check shows all")
 }
 
 /// The neighbours in this process, and the address for those in other processes.
@@ -250,7 +298,8 @@ fn neighbours(
     let pedestal = regrips.map(|endpoint| Box::new(pedestal::Agent::new(endpoint)));
     let vision =
         sees.map(|endpoint| vision::Port::new(endpoint, config.seed, Analysis::fingerprint(description)));
-    Ok(Neighbours::new(workstation, data_system, pedestal, vision, network))
+    let neighbours = Neighbours::new(workstation, data_system, pedestal, vision, network);
+    Ok(neighbours.unchecked(config.unchecked))
 }
 
 /// The file for updates that wait for a Data System in another process.

@@ -23,10 +23,10 @@ use neighbours::{
     },
 };
 use rcs_core::tick::{TICK_MS, Tick};
-use taskdata::load::Store;
 
 use crate::{
-    event::Event, neighbours::Emulator, outside::OutsideWorkstation, workstation::SimulatedWorkstation,
+    event::Event, judge::CommandJudge, neighbours::Emulator, outside::OutsideWorkstation,
+    workstation::SimulatedWorkstation,
 };
 
 /// Location of the robot when the workstation controller takes over (IV.4.1).
@@ -38,10 +38,8 @@ const PAUSE: &str = "PAUSE";
 pub struct Around<'a> {
     /// The tick.
     pub tick: Tick,
-    /// Common memory after the tick.
-    pub memory: &'a CommonMemory,
-    /// Task data, for reading lines for the cell.
-    pub store: &'a Store,
+    /// Common memory after the tick and the task data, and the verdict on commands.
+    pub judge: CommandJudge<'a>,
     /// True if the Data System is connected, or runs in the controller's process.
     pub has_data_system: bool,
 }
@@ -118,13 +116,13 @@ impl Switched {
             return self.follow(around, gate, workstation, events);
         }
         self.outside.attend(around.tick, events);
-        let progress = self.job.step(around.tick, gate, workstation, events);
+        let progress = self.job.step(around.tick, gate, workstation, &around.judge, events);
         if self.is_handed_over() { self.hand_over(around, gate, events) } else { progress }
     }
 
     /// Carry out the line `** workstation`.
     fn hand_over(&mut self, around: &Around<'_>, gate: &mut Gate, events: &mut Vec<Event>) -> Progress {
-        if let Some(obstacle) = obstacle(around.memory, gate.command(), around.has_data_system) {
+        if let Some(obstacle) = obstacle(around.judge.memory, gate.command(), around.has_data_system) {
             return self.refuse(around.tick, obstacle);
         }
         events.push(Event::HandedOver);
@@ -154,8 +152,8 @@ impl Switched {
         workstation: &mut SimulatedWorkstation,
         events: &mut Vec<Event>,
     ) -> Progress {
-        let task = &around.memory.task;
-        let progress = self.outside.step(around.tick, gate, task, workstation, around.store, events);
+        let task = &around.judge.memory.task;
+        let progress = self.outside.step(around.tick, gate, workstation, &around.judge, events);
         self.was_connected |= self.outside.is_here();
         if !self.was_connected {
             let waited = match self.outside.endpoint().clock() {
@@ -181,7 +179,7 @@ impl Switched {
             return progress;
         }
         events.push(Event::TakenBack);
-        self.job.take_back(around.tick, gate, self.outside.take_steps())
+        self.job.take_back(around.tick, gate, self.outside.take_steps(), &around.judge, events)
     }
 
     fn refuse(&mut self, tick: Tick, why: String) -> Progress {

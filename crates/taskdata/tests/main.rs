@@ -3,6 +3,7 @@
 mod chains;
 mod commands;
 mod data;
+mod faults;
 mod figures;
 mod generations;
 mod guarded;

@@ -28,7 +28,7 @@ use neighbours::{
     data_system::{self, ANSWER_TICKS, DataSystem, Item, Pace},
     mailbox::{HWSC_COMMAND, Mailbox},
     workstation::{
-        Gate, command,
+        Gate, Unchecked, command,
         player::Hwsc,
         status::{self, Status},
     },
@@ -318,7 +318,8 @@ impl<'f> Branch<'f> {
         if let Some(bytes) = command.and_then(|command| command::encode(&command).ok()) {
             let _ = control.command_box.write(&bytes);
         }
-        control.gate.read(&control.command_box);
+        // The job was checked when it was loaded.
+        control.gate.read(&control.command_box, &Unchecked);
     }
 
     /// Make the task data that the job has loaded visible when Task executes no command.

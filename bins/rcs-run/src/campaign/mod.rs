@@ -184,8 +184,9 @@ fn plans(
 
 fn facility(arguments: &CampaignArguments, job: &str) -> Result<Facility, Error> {
     let data = &arguments.data;
-    let TaskFiles { store, job, job_path, .. } = TaskFiles::load(data, Some(job))?;
-    let CellFile { description, .. } = CellFile::load(data, &store, &job, &job_path)?;
+    let mut files = TaskFiles::load(data, Some(job), false)?;
+    let CellFile { description, .. } = CellFile::load(data, &mut files, false)?;
+    let TaskFiles { store, job, .. } = files;
     Ok(Facility { store, job, description, seed: arguments.seed })
 }
 

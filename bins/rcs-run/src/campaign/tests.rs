@@ -32,10 +32,9 @@ const PROCEDURE: Procedure = Procedure { recovery: Recovery::Pause, tries: 3, un
 
 pub(super) fn facility(job: &str) -> Facility {
     let data = Path::new(DATA);
-    let TaskFiles { store, job, job_path, .. } =
-        TaskFiles::load(data, Some(job)).expect("the job is shipped");
-    let CellFile { description, .. } =
-        CellFile::load(data, &store, &job, &job_path).expect("the cell is shipped");
+    let mut files = TaskFiles::load(data, Some(job), false).expect("the job is shipped");
+    let CellFile { description, .. } = CellFile::load(data, &mut files, false).expect("the cell is shipped");
+    let TaskFiles { store, job, .. } = files;
     Facility { store, job, description, seed: 1 }
 }
 

@@ -11,12 +11,13 @@ use os_io::console;
 use paths::{
     plan::{Leg, Phase},
     steps,
+    uses::Present,
     walk::{self, Walk},
 };
 use rcs_core::name::Name16;
-use runtime::StartError;
+use runtime::{StartError, judge};
 use serde::Serialize;
-use taskdata::load::{Diagnostics, Job, Source, Step, Store};
+use taskdata::load::{Diagnostics, Step, Store, job::reported_command};
 
 use crate::{
     cli::CheckArguments,
@@ -41,31 +42,35 @@ struct Explanation {
 /// # Errors
 /// If the command, the start or the task data cannot be read.
 pub fn explain(arguments: &CheckArguments, text: &str) -> Result<ExitCode, Error> {
-    let unusable = |what: String| move |report: Box<Diagnostics>| StartError::Data { what, report };
-    let (store, _) = Store::load(&arguments.data)
-        .map_err(unusable(format!("the task data under {}", arguments.data.display())))?;
-    let command = command_of(text, &store).map_err(unusable(format!("the command {text}")))?;
+    let (store, _) = Store::load_with_faults(&arguments.data);
+    let what = format!("the command {text}");
+    let command = command_of(text, &store).map_err(|report| StartError::Data { what, report })?;
     let explanation = explained(&store, &command, text, &arguments.from)?;
     let complete = explanation.phases.iter().all(|phase| phase.missing.is_none());
     console::answer(&if arguments.json { long_json(&explanation)? } else { explanation.to_string() })?;
     if !complete {
         os_io::stderr_line!("rcs-run: a path is missing: see the lines with MISSING");
     }
-    Ok(ExitCode::from(if complete { 0 } else { UNUSABLE }))
+    let wrong = judge::verdict(&command, &store, &present(&arguments.from, &store), false);
+    if let Some(wrong) = &wrong {
+        os_io::stderr_line!("rcs-run: a run refuses this command: {wrong}");
+    }
+    Ok(ExitCode::from(if complete && wrong.is_none() { 0 } else { UNUSABLE }))
 }
 
-/// Read the nine fields of a command, with or without `==`, as a line of a job.
+/// Read the nine fields of a command, with or without `==`, and check it.
 fn command_of(text: &str, store: &Store) -> Result<HwsCommand, Box<Diagnostics>> {
-    let fields = text.trim_start().trim_start_matches("==");
-    let source = Source { name: "command".to_owned(), text: format!("== {fields}\n").into() };
-    let (job, report) = Job::from_source(source, store)?;
-    job.steps
-        .iter()
-        .find_map(|line| match line.step {
-            Step::Command(command) => Some(command),
-            Step::Workstation(_) | Step::After { .. } => None,
-        })
-        .ok_or_else(|| Box::new(report))
+    match reported_command(text, store)?.step {
+        Step::Command(command) => Ok(command),
+        Step::Workstation(_) | Step::After { .. } => Err(Box::default()),
+    }
+}
+
+/// The robot at a location.
+fn present(from: &str, store: &Store) -> Present {
+    let location = store.view().resolve_location::<16, 16>(&Name16::clipped(from), None, None);
+    let place = location.map(|location| *Walk::new(store, &location).place()).unwrap_or_default();
+    Present { place, ..Present::default() }
 }
 
 fn explained(store: &Store, command: &HwsCommand, text: &str, from: &str) -> Result<Explanation, Error> {

@@ -2,6 +2,7 @@
 
 use interfaces::{
     emove::{Holding, Offset, Standing},
+    hws::Checked,
     process::Inputs,
     subtask::{SubtaskStatus, SubtaskVerb},
 };
@@ -43,7 +44,7 @@ impl State {
             let plan = Plan { resumed: resumed(command, ledger), ..found.plan };
             let replaces = plan.is_about_something() && plan.resumed == Resumed::Not;
             self.follow_object(plan.verb, replaces, inputs);
-            (self.plan(&plan, inputs), request(&found))
+            (self.plan(&plan, inputs), request(&found, command.checked))
         } else {
             self.follow_object(self.plan.verb, false, inputs);
             (self.plan, Request::default())
@@ -146,7 +147,7 @@ impl State {
 }
 
 /// What a new command needs.
-fn request(found: &Found) -> Request {
+fn request(found: &Found, checked: Checked) -> Request {
     let plan = &found.plan;
     Request {
         asked: Asked::Now,
@@ -163,6 +164,7 @@ fn request(found: &Found) -> Request {
         pedestal: found.pedestal,
         near: plan.destination.near_drum(),
         way_out: found.way_out,
+        checked,
         control: Control::Automatic,
     }
 }

@@ -10,15 +10,21 @@
 //! | the one after the last                    | taken                                                                |
 //! | any other                                 | refused; taken if it is the first since the mailboxes were initialized |
 //!
+//! A command that is taken is checked against the task data first ([`Judge`]). One that does not pass is given to Task
+//! with that verdict, and Task refuses it: the status echoes its number with `error`, and says what is wrong with it.
+//!
 //! A workstation controller that (re)connects reads `command-#-echo` in the status and goes on from there (IX.1).
 
 use std::fmt;
 
-use interfaces::{CommonMemory, Detail, HwsCommand, hws::HwsStatus};
+use interfaces::{
+    CommonMemory, Detail, HwsCommand,
+    hws::{Checked, HwsReport, HwsStatus},
+};
 
 use super::{
     command::{self, CommandError},
-    status::{self, TaskState},
+    status::{self, TaskState, Why},
 };
 use crate::{
     fields::successor,
@@ -74,13 +80,31 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Task's end of the two mailboxes. Does not allocate.
+/// Checks commands against the task data before Task reads them.
+pub trait Judge {
+    /// What is wrong with a command, as a sentence; `None` if it passes.
+    fn verdict(&self, command: &HwsCommand) -> Option<String>;
+}
+
+/// No command is checked: Task alone decides.
+#[derive(Clone, Copy, Debug)]
+pub struct Unchecked;
+
+impl Judge for Unchecked {
+    fn verdict(&self, _: &HwsCommand) -> Option<String> {
+        None
+    }
+}
+
+/// Task's end of the two mailboxes. Does not allocate, unless a command does not pass its check.
 #[derive(Clone, Debug)]
 pub struct Gate {
     /// Mailgram number read last.
     read: u16,
     refused: Option<Refusal>,
     command: HwsCommand,
+    /// What is wrong with the command, if it does not pass its check.
+    wrong: Option<String>,
     /// No command was accepted since the mailboxes were initialized.
     fresh: bool,
     /// Task's last status, with the details of its reason at the tick in which it came.
@@ -94,6 +118,7 @@ impl Default for Gate {
             read: 0,
             refused: None,
             command: HwsCommand::default(),
+            wrong: None,
             fresh: true,
             told: (HwsStatus::default(), Detail::None),
             status_box: Mailbox::initialized(HWSC_STATUS),
@@ -112,6 +137,12 @@ impl Gate {
     #[must_use]
     pub const fn refused(&self) -> Option<&Refusal> {
         self.refused.as_ref()
+    }
+
+    /// What is wrong with Task's command, if it did not pass its check.
+    #[must_use]
+    pub fn wrong(&self) -> Option<&str> {
+        self.wrong.as_deref()
     }
 
     /// The data of the mailbox, if they have not been read yet.
@@ -139,22 +170,22 @@ impl Gate {
     }
 
     /// READ-HWS-COMMAND, called once per tick: reads the mailbox. Returns `Some` if a mailgram is refused.
-    pub fn read(&mut self, command_box: &Mailbox) -> Option<Refusal> {
+    pub fn read(&mut self, command_box: &Mailbox, judge: &impl Judge) -> Option<Refusal> {
         debug_assert_eq!(command_box.place(), HWSC_COMMAND);
         let mailgram = command_box.mailgram();
         if mailgram == 0 || mailgram == self.read {
             return None;
         }
         self.read = mailgram;
-        self.refused = self.take(command_box.data()).err();
+        self.refused = self.take(command_box.data(), judge).err();
         self.refused
     }
 
-    fn take(&mut self, data: &[u8]) -> Result<(), Refusal> {
+    fn take(&mut self, data: &[u8], judge: &impl Judge) -> Result<(), Refusal> {
         let command = command::decode(data).map_err(Refusal::Garbled)?;
         let (last, found) = (self.command.number, command.number);
         if found == last {
-            if command == self.command {
+            if command == (HwsCommand { checked: Checked::Passes, ..self.command }) {
                 return Ok(());
             }
             return Err(Refusal::Changed { number: word(found) });
@@ -163,7 +194,9 @@ impl Gate {
         if !self.fresh && word(found) != expected {
             return Err(Refusal::OutOfOrder { expected, found: word(found) });
         }
-        (self.command, self.fresh) = (command, false);
+        self.wrong = judge.verdict(&command);
+        let checked = if self.wrong.is_some() { Checked::Fails } else { Checked::Passes };
+        (self.command, self.fresh) = (HwsCommand { checked, ..command }, false);
         Ok(())
     }
 
@@ -174,7 +207,13 @@ impl Gate {
         if task != self.told.0 {
             self.told = (task, Detail::of_command(task.reason, &self.command, memory));
         }
-        let bytes = status::encode(&task, self.told.1, state, self.read, self.refused.as_ref());
+        let is_refused = task.echo == self.command.number && task.report == HwsReport::Error;
+        let why = match (&self.refused, self.wrong.as_deref().filter(|_| is_refused)) {
+            (Some(refusal), _) => Why::Mailgram(refusal),
+            (None, Some(wrong)) => Why::Command(wrong),
+            (None, None) => Why::Reason(self.told.1),
+        };
+        let bytes = status::encode(&task, why, state, self.read);
         if self.status_box.data() == bytes {
             return false;
         }
@@ -190,9 +229,19 @@ fn word(number: u32) -> u16 {
 #[cfg(test)]
 mod tests {
     use interfaces::{Reason, emove::NearPlace, hws::HwsReport};
-    use rcs_core::name::Name10;
+    use rcs_core::name::{Name10, Name16};
 
     use super::{super::command::tests::transfer, *};
+
+    /// Lets no command pass that goes to VISE.
+    struct Vise;
+
+    impl Judge for Vise {
+        fn verdict(&self, command: &HwsCommand) -> Option<String> {
+            let wrong = command.destination == Some(Name16::clipped("VISE"));
+            wrong.then(|| "no location is named VISE".to_owned())
+        }
+    }
 
     /// A workstation controller that writes what the test specifies.
     struct Bench {
@@ -207,8 +256,8 @@ mod tests {
 
         fn send(&mut self, data: &[u8]) -> Option<String> {
             self.command_box.write(data).unwrap();
-            let refused = self.gate.read(&self.command_box);
-            assert_eq!(self.gate.read(&self.command_box), None, "a mailgram is judged once");
+            let refused = self.gate.read(&self.command_box, &Vise);
+            assert_eq!(self.gate.read(&self.command_box, &Vise), None, "a mailgram is judged once");
             refused.map(|refusal| refusal.to_string())
         }
 
@@ -261,6 +310,20 @@ mod tests {
     }
 
     #[test]
+    fn command_that_fails_its_check_reaches_task_and_status_gives_the_verdict() {
+        let mut bench = Bench::new();
+        let wrong = HwsCommand { destination: Some(Name16::clipped("VISE")), ..transfer(7) };
+        assert_eq!(bench.command(&wrong), None, "the mailgram is in order");
+        assert_eq!(*bench.gate.command(), HwsCommand { checked: Checked::Fails, ..wrong });
+        assert_eq!(bench.gate.wrong(), Some("no location is named VISE"));
+        assert_eq!(bench.status(7, HwsReport::Error).reason, "no location is named VISE");
+        assert_eq!(bench.command(&wrong), None, "it is repeated");
+        assert_eq!(bench.command(&transfer(8)), None);
+        assert_eq!((bench.gate.command(), bench.gate.wrong()), (&transfer(8), None));
+        assert_eq!(bench.status(8, HwsReport::Error).reason, "");
+    }
+
+    #[test]
     fn a_repeated_command_is_answered_and_not_executed_again() {
         let mut bench = Bench::new();
         bench.command(&transfer(7));
@@ -306,7 +369,7 @@ mod tests {
         bench.command(&transfer(7));
         bench.gate.initialize();
         bench.command_box.initialize();
-        assert_eq!(bench.gate.read(&bench.command_box), None);
+        assert_eq!(bench.gate.read(&bench.command_box, &Vise), None);
         assert_eq!(*bench.gate.command(), transfer(7), "Task goes on with what it has");
         assert!(bench.command(&HwsCommand { serial: Default::default(), ..transfer(7) }).is_some());
         assert_eq!(bench.command(&transfer(300)), None);

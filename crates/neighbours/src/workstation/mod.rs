@@ -18,5 +18,5 @@ mod gate;
 pub mod player;
 pub mod status;
 
-pub use gate::{Gate, Refusal};
+pub use gate::{Gate, Judge, Refusal, Unchecked};
 pub use status::{Status, TaskState};

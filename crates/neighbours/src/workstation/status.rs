@@ -74,7 +74,8 @@ crate::layout! {
     "unconfirmed"          (unconfirmed)    Coded<2>,
         "CHOSEN: with finished, what no sensor confirms: 0 nothing, 1 the grasp force, 2 the tool in the drum, 3 the robot's position";
     "reason"               (reason)         Text<REASON>,
-        "CHOSEN: why the mailgram was refused, or else why the command failed, with names and distances, or else what no sensor confirms";
+        "CHOSEN: why the mailgram was refused, or else what is wrong with the command, or why it failed, with names \
+         and distances, or what no sensor confirms";
 }
 
 /// `status-length>w`; decoding ignores it.
@@ -95,29 +96,40 @@ impl Codec<'_, ()> for Length {
     }
 }
 
-/// Encodes a status as the data of its mailbox. `detail` adds names and distances to the reason.
+/// The contents of the field `reason`.
+#[derive(Clone, Copy, Debug)]
+pub enum Why<'a> {
+    /// The mailgram was refused.
+    Mailgram(&'a Refusal),
+    /// The command does not pass its check; what is wrong with it.
+    Command(&'a str),
+    /// The reason of Task's status, with names and distances.
+    Reason(Detail),
+}
+
+/// Encodes a status as the data of its mailbox.
 #[must_use]
 pub fn encode(
     status: &HwsStatus,
-    detail: Detail,
+    why: Why<'_>,
     task: TaskState,
     mailgram_echo: u16,
-    refused: Option<&Refusal>,
 ) -> [u8; StatusLayout::BYTES] {
     let (reason, unconfirmed) = (status.reason.text(), status.unconfirmed);
-    let sentence = match refused {
-        Some(refused) => Sentence::<REASON>::of(refused),
-        None if reason.is_empty() && !unconfirmed.is_none() => {
+    let sentence = match why {
+        Why::Mailgram(refused) => Sentence::<REASON>::of(refused),
+        Why::Command(wrong) => Sentence::of(&wrong),
+        Why::Reason(_) if reason.is_empty() && !unconfirmed.is_none() => {
             Sentence::of(&format_args!("unconfirmed: {unconfirmed}"))
         }
-        None => Sentence::of(&format_args!("{reason}{detail:#}")),
+        Why::Reason(detail) => Sentence::of(&format_args!("{reason}{detail:#}")),
     };
     StatusLayout::encode(&Status {
         command: status.command,
         report: status.report,
         echo: command_number(status.echo),
         mailgram_echo,
-        verdict: refused.map_or(0, Refusal::code),
+        verdict: if let Why::Mailgram(refused) = why { refused.code() } else { 0 },
         code: status.reason,
         task,
         unconfirmed: status.unconfirmed,
@@ -160,7 +172,7 @@ mod tests {
             format!("{:160}", "the fingers closed on nothing").as_bytes(),
         ]
         .concat();
-        let bytes = encode(&failed(), Detail::None, TaskState::Held, 9, None);
+        let bytes = encode(&failed(), Why::Reason(Detail::None), TaskState::Held, 9);
         assert_eq!(bytes, &expected[..]);
         let status = decode(&bytes).unwrap();
         assert_eq!((status.echo, status.report, status.code), (7, HwsReport::Error, Reason::GraspMissed));
@@ -172,8 +184,8 @@ mod tests {
     fn every_report_and_reason_comes_back_whole() {
         for &report in HwsReport::ALL {
             for &reason in Reason::ALL {
-                let bytes =
-                    encode(&HwsStatus { report, reason, ..failed() }, Detail::None, TaskState::Lost, 0, None);
+                let failed = HwsStatus { report, reason, ..failed() };
+                let bytes = encode(&failed, Why::Reason(Detail::None), TaskState::Lost, 0);
                 let status = decode(&bytes).unwrap();
                 assert_eq!((status.report, status.code, status.reason), (report, reason, reason.text()));
             }
@@ -184,7 +196,7 @@ mod tests {
     fn a_reason_is_told_with_its_names_and_without_its_remedy() {
         let detail = Detail::Pair(Name10::clipped("BENCH"), Name16::clipped("VISE"));
         let failed = HwsStatus { reason: Reason::NoTrajectory, ..failed() };
-        let bytes = encode(&failed, detail, TaskState::Runs, 0, None);
+        let bytes = encode(&failed, Why::Reason(detail), TaskState::Runs, 0);
         let told = format!("{}: none leads from BENCH to VISE", Reason::NoTrajectory.text());
         assert_eq!(decode(&bytes).unwrap().reason, told);
     }

@@ -22,7 +22,7 @@ use interfaces::{
     CommonMemory, OperatorInputs,
     device::{JoystickBox, KNOB_FULL},
 };
-use neighbours::workstation::player::Hwsc;
+use neighbours::workstation::{Judge as _, player::Hwsc};
 use plant::{BoxAction, Joystick};
 use rcs_core::tick::Tick;
 use serde::Serialize;
@@ -30,7 +30,7 @@ use taskdata::load::{BlockNumber, Store};
 
 pub use self::source::{Input, Inputs, WORKSTATION};
 use self::{request::Request, terminals::Terminals};
-use crate::{neighbours::Neighbours, workstation::SimulatedWorkstation};
+use crate::{judge::CommandJudge, neighbours::Neighbours, workstation::SimulatedWorkstation};
 
 /// Largest number of requests carried out in a tick; others wait for the next one.
 pub const A_TICK: usize = 16;
@@ -82,6 +82,8 @@ pub struct Around<'a> {
     pub memory: &'a CommonMemory,
     /// Task data, for reading lines of a job.
     pub store: &'a Store,
+    /// Errors in the records that a command uses do not count.
+    pub unchecked: bool,
     /// Directory of the task data.
     pub data: &'a Path,
     /// The source of Task's commands.
@@ -253,6 +255,10 @@ impl Operator {
             Request::GoOn => job(around)?.go_on(tick).map(|()| done).map_err(|error| error.to_string()),
             Request::Skip => job(around)?.skip(tick).map(|()| done).map_err(|error| error.to_string()),
             Request::Command(text, command) => {
+                let (store, memory, unchecked) = (around.store, around.memory, around.unchecked);
+                if let Some(wrong) = (CommandJudge { store, memory, unchecked }).verdict(&command) {
+                    return Err(wrong);
+                }
                 let number = job(around)?.command_by_operator(tick, text, command);
                 number.map(|number| format!("command {number}")).map_err(|error| error.to_string())
             }

@@ -12,6 +12,7 @@ use taskdata::load::{
 
 use super::Run;
 use crate::{
+    judge::check_job,
     load::{Answer, Asker, LoadError},
     operator::{A_TICK, Around, Input, Later, WORKSTATION},
     setup::{EXTENSION, JOBS},
@@ -31,6 +32,7 @@ impl Run {
                 tick,
                 memory: self.runner.memory(),
                 store: self.generations.current(),
+                unchecked: self.config.unchecked,
                 data: &self.config.data,
                 neighbours: &mut self.neighbours,
                 workstation: &mut self.workstation,
@@ -113,6 +115,10 @@ impl Run {
             format!("the job {name} has errors: {}", errors.join("; "))
         })?;
         self.can_be_played(&job)?;
+        if !self.config.unchecked {
+            check_job(&job, self.generations.current(), None)
+                .map_err(|error| format!("{error}: {}", error.details().trim_end().replace('\n', "; ")))?;
+        }
         self.neighbours.job_under_way()?.play(tick, job.steps.clone()).map_err(|error| error.to_string())?;
         self.loads.played = number;
         if let Some(log) = &mut self.log {

@@ -11,7 +11,7 @@
 //!    places.
 //!
 //! [`mod@print`] writes entries as forms. [`job`] reads the job files, which are stored with the blocks, and
-//! [`commands`] reads the blocks with commands for Task.
+//! [`commands`] reads the blocks with commands for Task. [`verdict`] checks a command against the task data.
 
 pub mod alike;
 mod check;
@@ -19,6 +19,7 @@ mod collected;
 pub mod commands;
 pub mod directory;
 pub mod entries;
+pub mod fault;
 pub mod forms;
 pub mod guarded;
 mod index;
@@ -34,12 +35,14 @@ pub mod print;
 pub mod show;
 pub mod source;
 pub mod store;
+pub mod verdict;
 
 use std::{collections::HashSet, path::Path};
 
 use diagnostics::Problems;
 pub use diagnostics::{At, BlockNumber, Diagnostic, Diagnostics, Loaded, Severity, Source, amount};
 
+pub use fault::Fault;
 pub use job::{Job, Step, ViseOpening, Workstation};
 pub use origins::Origins;
 pub use store::Store;
@@ -64,6 +67,19 @@ impl Store {
         Self::default().loaded_with(sources, problems)
     }
 
+    /// As [`Store::load`], but data with errors are used, too: [`Store::faults_of`] tells which errors concern a command.
+    #[must_use]
+    pub fn load_with_faults(directory: &Path) -> (Self, Diagnostics) {
+        Self::load_part(directory).unwrap_or_else(|(part, report)| (part.store, *report))
+    }
+
+    /// As [`Store::load_with_faults`], with texts that were read elsewhere.
+    #[must_use]
+    pub fn from_sources_with_faults(sources: Vec<Source>) -> (Self, Diagnostics) {
+        let loaded = Self::default().loaded_with(sources, Problems::default());
+        loaded.unwrap_or_else(|(part, report)| (part.store, *report))
+    }
+
     /// Load texts that were read elsewhere, such as the attachments of a log.
     ///
     /// # Errors
@@ -85,9 +101,14 @@ impl Store {
     /// only the new part.
     ///
     /// # Errors
-    /// The report, if it has an error; then there is no new generation.
+    /// The report, if it has an error that these data do not have; then there is no new generation.
     pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
-        self.loaded_with(texts, Problems::default()).map_err(|(_, report)| report)
+        let (part, report) = match self.loaded_with(texts, Problems::default()) {
+            Ok(loaded) => return Ok(loaded),
+            Err(failed) => failed,
+        };
+        let is_known = |fault: &Fault| self.faults.iter().any(|known| known.is_same(fault));
+        if part.store.faults.iter().all(is_known) { Ok((part.store, *report)) } else { Err(report) }
     }
 
     /// The next generation; `problems` has the errors of files that could not be read.
@@ -128,7 +149,8 @@ impl Store {
         let commands = self.commands.with(read.commands);
         let count = read.blocks.len();
         let blocks = self.blocks.union(&read.blocks).copied().collect();
-        let store = Self { files, indexes, sources, entries, blocks, origins, commands };
+        let (faults, found) = (Vec::new(), self.found.clone());
+        let store = Self { files, indexes, sources, entries, blocks, origins, commands, faults, found };
         // Checks of several entries need records with known names, so errors of names are reported first.
         let whole = !problems.has_errors();
         check::check(&store.view(), &store.origins, whole, &mut problems);
@@ -151,16 +173,17 @@ struct Linked {
 impl Linked {
     /// The store and its report, or, if the report has an error, the readable part; `before`: number of earlier texts.
     fn reported(self, before: usize) -> Result<(Store, Diagnostics), (Box<Part>, Box<Diagnostics>)> {
-        let Self { store, problems, blocks, unread } = self;
+        let Self { mut store, problems, blocks, unread } = self;
         let failed = problems.has_errors();
         let loaded = if failed { Vec::new() } else { store.loaded() };
         let mut report = Diagnostics::new(problems, store.places(), blocks, loaded);
         report.files = store.sources.len() - before;
+        store.faults = report.errors().map(|error| Fault::found(error, &store)).collect();
         if failed { Err((Box::new(Part { store, unread }), Box::new(report))) } else { Ok((store, report)) }
     }
 }
 
-/// The readable part of task data with errors. No run uses it.
+/// The readable part of task data with errors.
 #[derive(Clone, Debug)]
 pub struct Part {
     store: Store,

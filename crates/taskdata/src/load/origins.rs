@@ -2,7 +2,7 @@
 
 use diagnostics::At;
 
-/// The places of all records, in the order of the record numbers; empty for a load with errors.
+/// The places of all records, in the order of the record numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
     /// POSE: the nine numbers.
@@ -41,4 +41,32 @@ pub struct Origins {
     pub sensors: Vec<At>,
     /// REL-MOVES: the entry.
     pub relative_moves: Vec<At>,
+}
+
+impl Origins {
+    /// True if a record was entered at a place.
+    #[must_use]
+    pub fn contain(&self, at: At) -> bool {
+        let all = [
+            &self.poses,
+            &self.movetables,
+            &self.locpts,
+            &self.arrays,
+            &self.owners,
+            &self.members,
+            &self.trajectories,
+            &self.objects,
+            &self.end_effs,
+            &self.obj_grips,
+            &self.obj_locs,
+            &self.ped_paras,
+            &self.grip_locs,
+            &self.visions,
+            &self.appr_depts,
+            &self.path_points,
+            &self.sensors,
+            &self.relative_moves,
+        ];
+        all.into_iter().any(|places| places.contains(&at))
+    }
 }

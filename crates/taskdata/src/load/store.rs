@@ -13,6 +13,7 @@ use crate::files::{
 use super::{
     collected::Collected,
     commands::Commands,
+    fault::Fault,
     index::{OwnedIndex, OwnedPlaceIndex},
     origins::Origins,
     source::places_in_blocks,
@@ -131,6 +132,10 @@ pub struct Store {
     pub(super) origins: Origins,
     /// Blocks of commands for Task.
     pub(super) commands: Commands,
+    /// Errors of the load.
+    pub(super) faults: Vec<Fault>,
+    /// Errors that other checks have found.
+    pub(super) found: Vec<Fault>,
 }
 
 impl Store {

@@ -4,7 +4,7 @@
 use std::{collections::BTreeSet, path::Path};
 
 use interfaces::operator::Variable;
-use taskdata::load::{BlockNumber, Source, Store, job::TASK_COMMANDS, source::blocks};
+use taskdata::load::{BlockNumber, Source, Store, source::blocks, verdict::TASK_COMMANDS};
 
 /// The names, blocks and jobs of a run's task data.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACCEPT: a new command is refused if a name or a record that it needs is missing, and while the
-    /// operator has the robot. PAUSE is what an operator needs; anything else would move the robot under
+    /// ACCEPT: a new command is refused if a name or a record that it needs is missing, if it does not pass the
+    /// check against the task data that precedes Task, and while the operator has the robot. PAUSE is what an operator needs; anything else would move the robot under
     /// manual control.
     pub ACCEPT: fn accept(super::Request) -> super::Action or () {
         1:  asked: Before                                                           => consult;
@@ -32,7 +32,8 @@ decision_table! {
         23: verb: AcquireTool, near: No                                             => Fail(NotNearDrum);
         24: verb: ReleaseTool | RemoveTool, way_out: NoTrajectory                   => Fail(NoTrajectory);
         25: verb: Pause                                                             => consult;
-        26: control: Manual                                                         => Fail(JoystickOn);
-        27: control: Automatic                                                      => consult;
+        26: checked: Fails                                                          => Fail(CheckFailed);
+        27: control: Manual                                                         => Fail(JoystickOn);
+        28: control: Automatic                                                      => consult;
     }
 }

@@ -18,7 +18,7 @@ pub mod startup;
 pub mod transfer;
 pub mod variables;
 
-use interfaces::Reason;
+use interfaces::{Reason, hws::Checked};
 use rcs_core::{
     Actions, Plain, Variables, commands,
     handshake::{Arrival, Lower},
@@ -97,6 +97,8 @@ pub struct Request {
     pub near: Near,
     /// The way from the tool drum to the end-at location.
     pub way_out: WayOut,
+    /// Verdict of the check against the task data.
+    pub checked: Checked,
     /// What has the robot.
     pub control: Control,
 }

@@ -9,7 +9,7 @@ use rcs_core::{
 };
 use taskdata::{
     files::{Location, Place},
-    load::job::{TASK_COMMANDS, ViseOpening},
+    load::{job::ViseOpening, verdict::TASK_COMMANDS},
 };
 
 /// A Task that executes each command for some ticks.

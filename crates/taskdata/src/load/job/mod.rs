@@ -31,17 +31,15 @@
 //! ** after 50 joystick hold PRIM           any of these, 50 ticks after the next command was sent
 //! ```
 //!
-//! Commands, and the path from each to the next, are checked against the task data: a job that cannot run is refused
-//! before the first tick.
+//! Commands, and the path from each to the next, are checked against the task data ([`verdict`](super::verdict)): a job
+//! that cannot run is refused before the first tick.
 
 mod action;
 mod fields;
-mod needs;
 mod own_line;
 mod read;
 mod reload;
 mod table_panel;
-mod walk;
 mod workstation;
 
 use std::path::Path;
@@ -49,7 +47,7 @@ use std::path::Path;
 use diagnostics::{At, Diagnostics, Places, Problems, Source, lines_of};
 use interfaces::hws::HwsCommand;
 
-pub use own_line::{OwnLineError, is_command, own_command, own_line};
+pub use own_line::{OwnLineError, is_command, own_command, own_line, reported_command};
 pub use reload::Reload;
 
 pub use action::{
@@ -61,22 +59,6 @@ use super::{
     Part, Store,
     source::{SourceLine, read},
 };
-
-/// Input commands of Task (V.4.1).
-pub const TASK_COMMANDS: &[&str] = &[
-    "TRANSFER",
-    "MOVE",
-    "POSITION",
-    "ACQUIRE",
-    "REFIXTURE",
-    "PAUSE",
-    "INSERT-TOOL",
-    "RELEASE-TOOL",
-    "ACQUIRE-TOOL",
-    "REMOVE-TOOL",
-    "STARTUP",
-    "SHUTDOWN",
-];
 
 /// A step of a job.
 #[derive(Clone, Copy, Debug, PartialEq)]

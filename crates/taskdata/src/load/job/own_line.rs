@@ -5,11 +5,11 @@
 
 use std::fmt;
 
-use diagnostics::{At, Diagnostics, Places, Problems, Source};
+use diagnostics::{At, Diagnostics, Problems, Source};
 
 use super::{
-    super::{Store, lex::words_of_line, source::SourceLine},
-    JobLine, Step, TASK_COMMANDS, Workstation,
+    super::{Store, lex::words_of_line, source::SourceLine, verdict::TASK_COMMANDS},
+    JobLine, Step, Workstation,
     fields::Fields,
     read::Reader,
 };
@@ -60,6 +60,14 @@ const SOURCE: &str = "the line";
 /// # Errors
 /// [`OwnLineError`].
 pub fn own_command(text: &str, store: &Store) -> Result<JobLine, OwnLineError> {
+    reported_command(text, store).map_err(|report| unreadable(&report))
+}
+
+/// As [`own_command`], with the places in the text and the remedies of all findings.
+///
+/// # Errors
+/// The report.
+pub fn reported_command(text: &str, store: &Store) -> Result<JobLine, Box<Diagnostics>> {
     let mut text = text.trim().trim_start_matches("==").trim_start().to_owned();
     if ["PAUSE", "STARTUP", "SHUTDOWN"].contains(&text.as_str()) {
         text += " -- 0 -- 0 0 -- 0 -- 0";
@@ -72,7 +80,7 @@ pub fn own_command(text: &str, store: &Store) -> Result<JobLine, OwnLineError> {
     let read = reader.line(1, &line);
     match read.filter(|_| !problems.has_errors()) {
         Some(line) if matches!(line.step, Step::Command(_)) => Ok(line),
-        _ => Err(unreadable(&text, problems)),
+        _ => Err(Box::new(report(&text, problems))),
     }
 }
 
@@ -88,10 +96,11 @@ fn source_line(text: &str) -> SourceLine<'_> {
     SourceLine { text, at: At { source: 0, start: 0, length: u32::try_from(text.len()).unwrap_or(u32::MAX) } }
 }
 
-fn unreadable(text: &str, problems: Problems) -> OwnLineError {
-    let source = Source { name: SOURCE.into(), text: text.into() };
-    let places = Places::in_lines(std::slice::from_ref(&source));
-    let report = Diagnostics::new(problems, places, 0, Vec::new());
+fn report(text: &str, problems: Problems) -> Diagnostics {
+    Diagnostics::of_file(problems, &Source { name: SOURCE.into(), text: text.into() })
+}
+
+fn unreadable(report: &Diagnostics) -> OwnLineError {
     let errors: Vec<_> = report.errors().map(|error| error.message().to_owned()).collect();
     OwnLineError::Unreadable(errors.join("; "))
 }
@@ -114,7 +123,7 @@ pub fn own_line(text: &str, store: &Store) -> Result<Workstation, OwnLineError> 
     let read = Reader::new(store.view(), Vec::new(), &mut problems).own_line(&mut Fields::new(&words));
     match read.filter(|_| !problems.has_errors()) {
         Some(action) => Ok(action),
-        None => Err(unreadable(text, problems)),
+        None => Err(unreadable(&report(text, problems))),
     }
 }
 

@@ -1,17 +1,21 @@
 //! The lines of a job, word by word.
 
 use diagnostics::{At, Problems, Severity, nearest};
-use interfaces::hws::HwsCommand;
+use interfaces::hws::{Checked, HwsCommand};
 use rcs_core::name::Name16;
 
-use crate::files::{Location, LookupError, TaskData};
+use crate::files::{Location, TaskData};
 
 use super::{
-    super::{Part, lex::words_of_line, parser::is_integer, source::SourceLine},
-    JobLine, Step, TASK_COMMANDS, Workstation,
+    super::{
+        Part,
+        lex::words_of_line,
+        parser::is_integer,
+        source::SourceLine,
+        verdict::{self, Before, Finding, Unfound, Verdict, find_location, find_object},
+    },
+    JobLine, Step, Workstation,
     fields::{Field, Fields, Number},
-    needs::{Command, Endpoint, Held, assigned_to, grips_of, places_of},
-    walk::{Visit, Visits, Walk},
 };
 
 /// Reads the lines of a job in their order.
@@ -23,17 +27,16 @@ pub(super) struct Reader<'s, 'p> {
     reloads: std::vec::IntoIter<TaskData<'s>>,
     loaded: u32,
     pub(super) problems: &'p mut Problems,
-    pub(super) walk: Walk,
-    /// The object that the robot holds.
-    held: Held,
+    /// What is known of the robot before the next command.
+    before: Before,
     /// The last line with `after` that no command has followed yet.
     pub(super) after: Option<At>,
 }
 
 impl<'s, 'p> Reader<'s, 'p> {
     pub(super) fn new(data: TaskData<'s>, reloads: Vec<TaskData<'s>>, problems: &'p mut Problems) -> Self {
-        let (walk, held) = (Walk::default(), Held::default());
-        Self { data, part: None, reloads: reloads.into_iter(), loaded: 0, problems, walk, held, after: None }
+        let before = Before::default();
+        Self { data, part: None, reloads: reloads.into_iter(), loaded: 0, problems, before, after: None }
     }
 
     /// Report only errors that the missing data cannot explain; `part` is the readable part of the data.
@@ -43,8 +46,7 @@ impl<'s, 'p> Reader<'s, 'p> {
 
     /// Something other than a command moves the robot: position and held object are then unknown.
     pub(super) fn forget(&mut self) {
-        self.walk.forget();
-        self.held = Held::Unknown;
+        self.before = Before::unknown();
     }
 
     /// A line loads blocks: from here on names are looked up in the new task data. Returns the number of the reload,
@@ -187,39 +189,7 @@ impl Reader<'_, '_> {
         let end_at = self.field(fields, "end-at location")?;
         let end_at_sector = self.integer(fields, "end-at sector")?;
         let serial = self.serial(fields);
-        let known_verb = TASK_COMMANDS.contains(&verb.name.as_str());
-        if !known_verb {
-            self.unknown("command of Task", shown(&verb), verb.at, TASK_COMMANDS);
-        }
-        let known = !object.given() || self.object(object);
-        if self.part.is_some() {
-            for (place, sector) in
-                [(source, source_sector), (destination, destination_sector), (end_at, end_at_sector)]
-            {
-                self.place(place, sector, object.named(), None);
-            }
-        } else if known && known_verb {
-            let place = |name, sector, grip| Endpoint { name, sector, grip };
-            let command = Command {
-                verb: verb.name.as_str(),
-                at: verb.at,
-                object,
-                source: place(source, source_sector, Some(source_grip)),
-                destination: place(destination, destination_sector, Some(destination_grip)),
-                end_at: place(end_at, end_at_sector, None),
-            };
-            // A command that must fail may lack fields or data, and the object held after it is not known.
-            let fails = fields.words.get(fields.next).is_some_and(|word| word.text == "expect");
-            self.held =
-                if fails { Held::Unknown } else { command.check(&self.data, self.held, self.problems) };
-            let thing = object.named();
-            let source = self.visit(source, source_sector, thing, source_grip);
-            let destination = self.visit(destination, destination_sector, thing, destination_grip);
-            let end_at = self.visit(end_at, end_at_sector, None, Number { value: 0, at: end_at.at });
-            let verb = verb.name.as_str();
-            self.walk.command(&self.data, self.problems, verb, Visits { source, destination, end_at });
-        }
-        Some(HwsCommand {
+        let command = HwsCommand {
             number: 0,
             command: verb.name,
             object: object.named(),
@@ -232,7 +202,42 @@ impl Reader<'_, '_> {
             destination_sector: destination_sector.given(),
             end_at: end_at.named(),
             end_at_sector: end_at_sector.given(),
-        })
+            checked: Checked::Passes,
+        };
+        let fails = fields.words.get(fields.next).is_some_and(|word| word.text == "expect");
+        let findings = self.judge(&command, fails);
+        for finding in findings {
+            let at = match finding.field {
+                verdict::Field::Command => verb.at,
+                verdict::Field::Object => object.at,
+                verdict::Field::SourceGrip => source_grip.at,
+                verdict::Field::Source => source.at,
+                verdict::Field::SourceSector => source_sector.at,
+                verdict::Field::DestinationGrip => destination_grip.at,
+                verdict::Field::Destination => destination.at,
+                verdict::Field::DestinationSector => destination_sector.at,
+                verdict::Field::EndAt => end_at.at,
+                verdict::Field::EndAtSector => end_at_sector.at,
+            };
+            self.problems.push(Severity::Error, finding.code, at, finding.message, finding.help);
+        }
+        Some(command)
+    }
+
+    /// What is wrong with a command. Task data with errors only tell which names are probably misspelt.
+    fn judge(&mut self, command: &HwsCommand, fails: bool) -> Vec<Finding> {
+        if let Some(part) = self.part {
+            let mut findings = verdict::names_of(command, &self.data);
+            findings.retain(|finding| {
+                let unknown = finding.unknown.as_ref();
+                unknown.is_none_or(|(name, near)| part.is_slip(name.as_str(), near.as_deref()))
+            });
+            return findings;
+        }
+        let judge = if fails { Verdict::of_failing } else { Verdict::of };
+        let Verdict { findings, after } = judge(command, &self.data, self.before);
+        self.before = after;
+        findings
     }
 
     /// The serial number of the object, if the line has one after its nine fields: `#17`. Another word there is
@@ -252,18 +257,6 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// A location of a command, with the object that is handled there.
-    fn visit(&mut self, field: Field, sector: Number, object: Option<Name16>, grip: Number) -> Option<Visit> {
-        let location = self.place(field, sector, object, Some(grip))?;
-        // A grip that is not known is reported already.
-        let known = |name: &Name16| {
-            let movetable = || self.data.grip_movetable(name, grip.value, &location.place);
-            grip.value != 0 && self.data.object(name, grip.value).is_some() && movetable().is_some()
-        };
-        let object = object.filter(known).map(|name| (name, grip.value));
-        Some(Visit { location, object, at: field.at })
-    }
-
     pub(super) fn unknown(&mut self, what: &str, name: &str, at: At, known: &[&str]) {
         let near = nearest(name, known.iter().copied());
         let help =
@@ -273,83 +266,34 @@ impl Reader<'_, '_> {
 
     /// True if the object is known; otherwise it is reported.
     pub(super) fn object(&mut self, field: Field) -> bool {
-        if self.data.object_named(&field.name).is_some() {
-            return true;
-        }
-        let known: Vec<String> = self.data.objects.iter().map(|o| o.name.to_string()).collect();
-        let near = nearest(field.name.as_str(), known.iter().map(String::as_str));
-        if self.part.is_some_and(|part| !part.is_slip(field.name.as_str(), near)) {
-            return false;
-        }
-        let message = format!("no object is named {}", shown(&field));
-        let help = near.map(|n| format!("the nearest known name is {n}"));
-        self.problems.push(Severity::Error, "name.unknown", field.at, message, help);
-        false
+        find_object(&self.data, &field.name).map_err(|unfound| self.unfound(unfound, field, field.at)).is_ok()
     }
 
     /// A location without sector or object.
     pub(super) fn plain_place(&mut self, field: Field) -> Option<Location> {
-        self.place(field, Number { value: 0, at: field.at }, None, None)
+        self.place(field, Number { value: 0, at: field.at }, None)
     }
 
-    /// A location with its sector, and the grip of the object there if one is given.
-    pub(super) fn place(
-        &mut self,
-        field: Field,
-        sector: Number,
-        object: Option<Name16>,
-        grip: Option<Number>,
-    ) -> Option<Location> {
+    /// A location with its sector.
+    pub(super) fn place(&mut self, field: Field, sector: Number, object: Option<Name16>) -> Option<Location> {
         if !field.given() {
             if sector.value != 0 {
-                self.problems.error(
-                    "job.sector",
-                    sector.at,
-                    format!("sector {} of no location", sector.value),
-                );
+                let message = format!("sector {} of no location", sector.value);
+                self.problems.error("job.sector", sector.at, message);
             }
             return None;
         }
-        let location = match self.data.resolve_location(&field.name, sector.given(), object.as_ref()) {
-            Ok(location) => location,
-            Err(error) => {
-                let unknown = matches!(error, LookupError::UnknownLocation { .. });
-                let wrong_sector =
-                    matches!(error, LookupError::SectorRange { .. } | LookupError::NoSectors { .. });
-                let at = if wrong_sector { sector.at } else { field.at };
-                let near = if unknown { self.near_location(&field.name) } else { None };
-                let slip = |part: &Part| part.is_slip(field.name.as_str(), near.as_deref());
-                if self.part.is_some_and(|part| !slip(part)) {
-                    return None;
-                }
-                let help = match error {
-                    LookupError::NotAssigned { object, .. } => Some(assigned_to(&self.data, &object)),
-                    _ => near.map(|n| format!("the nearest known name is {n}")),
-                };
-                self.problems.push(Severity::Error, "job.location", at, error.to_string(), help);
-                return None;
-            }
-        };
-        if let (Some(object), Some(grip)) = (object, grip.filter(|g| g.value != 0 && self.part.is_none())) {
-            self.grip(grip, &object, &location);
-        }
-        Some(location)
+        let found = find_location(&self.data, &field.name, sector.given(), object.as_ref());
+        found.map_err(|unfound| self.unfound(unfound, field, sector.at)).ok()
     }
 
-    fn grip(&mut self, grip: Number, object: &Name16, location: &Location) {
-        if self.data.object(object, grip.value).is_none() {
-            let message = format!("{object} has no grip {} in an object form", grip.value);
-            self.problems.error_help("grip.unknown", grip.at, message, grips_of(&self.data, object));
-        } else if let Err(error) = self.data.grip_frame(object, grip.value, location) {
-            let help = places_of(&self.data, object, grip.value);
-            self.problems.error_help("grip.unknown", grip.at, error.to_string(), help);
+    /// Report a name that the task data do not have, unless an entry that could not be read may have it.
+    fn unfound(&mut self, unfound: Unfound, field: Field, sector: At) {
+        let Unfound { code, message, help, near, is_sector } = unfound;
+        if self.part.is_none_or(|part| part.is_slip(field.name.as_str(), near.as_deref())) {
+            let at = if is_sector { sector } else { field.at };
+            self.problems.push(Severity::Error, code, at, message, help);
         }
-    }
-
-    fn near_location(&self, name: &Name16) -> Option<String> {
-        let points = self.data.locpts.iter().map(|l| l.name.to_string());
-        let known: Vec<String> = points.chain(self.data.owners.iter().map(|o| o.name.to_string())).collect();
-        nearest(name.as_str(), known.iter().map(String::as_str)).map(str::to_owned)
     }
 }
 
@@ -358,7 +302,3 @@ const NINE_FIELDS: &str = "a command has nine fields: object, grip, location, se
 
 /// Greatest number in a job line.
 pub(super) const MOST: i32 = 36_000;
-
-fn shown(field: &Field) -> &str {
-    if field.given() { field.name.as_str() } else { "--" }
-}

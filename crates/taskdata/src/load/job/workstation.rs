@@ -222,7 +222,7 @@ impl Reader<'_, '_> {
             None
         };
         self.object(object).then_some(())?;
-        let location = self.place(place, sector, Some(object.name), None)?;
+        let location = self.place(place, sector, Some(object.name))?;
         Some(Workstation::Tray { location, object: object.name, offset })
     }
 

@@ -1,11 +1,11 @@
 //! Preconditions of a command: the fields that its verb uses, the grips of its object, the data for a regrip on the
 //! Active Pedestal, a tool in the gripper (V.4.1, V.3.1 FIX-GRIP). Task and Subtask would refuse the command for the
-//! same reasons, but only when the job reaches it.
+//! same reasons, but only when it is sent.
 
-use diagnostics::{At, Problems};
+use interfaces::HwsCommand;
 use rcs_core::name::{Name10, Name16};
 
-use super::fields::{Field, Number};
+use super::{Field, Finding, Held, finding};
 use crate::files::{ArrayId, Direction, LocptId, OwnerId, RefType, Reference, TaskData};
 
 /// Location at which the Active Pedestal grips an object (V.3.1 FIX-GRIP).
@@ -13,40 +13,29 @@ const PEDESTAL: &str = "PEDESTAL";
 /// Location near the tool drum (V.4.1 ACQUIRE-TOOL).
 const NEAR_DRUM: &str = "TOOL-SAFE";
 /// Location where tools are passed to the drum.
-const DRUM: &str = "TOOL-TRNS";
+pub(super) const DRUM: &str = "TOOL-TRNS";
 /// `endeff-id#` of the tool gripper (VII.7.2).
 const TOOL_GRIPPER: i32 = 3;
 
-/// A location of a command with its sector, and the grip there.
-#[derive(Clone, Copy)]
-pub(super) struct Endpoint {
-    pub(super) name: Field,
-    pub(super) sector: Number,
-    pub(super) grip: Option<Number>,
+/// A location of a command: its name, sector and grip, and the fields of the latter.
+struct Place {
+    name: Option<Name16>,
+    sector: Option<i32>,
+    grip: i32,
+    sector_field: Field,
+    grip_field: Field,
 }
 
-/// The fields of a command that are checked together. Unknown names have been reported before.
-#[derive(Clone, Copy)]
-pub(super) struct Command<'v> {
-    pub(super) verb: &'v str,
-    pub(super) at: At,
-    pub(super) object: Field,
-    pub(super) source: Endpoint,
-    pub(super) destination: Endpoint,
-    pub(super) end_at: Endpoint,
+/// Checks a command whose object is known.
+pub(super) struct Needs<'c, 'd> {
+    pub command: &'c HwsCommand,
+    /// The full word of the command.
+    pub verb: &'static str,
+    pub data: &'c TaskData<'d>,
+    pub findings: &'c mut Vec<Finding>,
 }
 
-/// The object that the robot holds between two commands, if there was no error.
-#[derive(Clone, Copy, Default, PartialEq, Eq)]
-pub(super) enum Held {
-    #[default]
-    Nothing,
-    Object(Name16),
-    /// Not known, after actions of the operator or a failed command.
-    Unknown,
-}
-
-impl Command<'_> {
+impl Needs<'_, '_> {
     fn is(&self, verbs: &[&str]) -> bool {
         verbs.contains(&self.verb)
     }
@@ -56,162 +45,179 @@ impl Command<'_> {
     }
 
     fn carries(&self) -> bool {
-        self.is(&["TRANSFER", "REFIXTURE"]) || self.verb == "MOVE" && self.object.given()
+        self.is(&["TRANSFER", "REFIXTURE"]) || self.verb == "MOVE" && self.command.object.is_some()
+    }
+
+    const fn source(&self) -> Place {
+        let command = self.command;
+        Place {
+            name: command.source,
+            sector: command.source_sector,
+            grip: command.source_grip,
+            sector_field: Field::SourceSector,
+            grip_field: Field::SourceGrip,
+        }
+    }
+
+    const fn destination(&self) -> Place {
+        let command = self.command;
+        Place {
+            name: command.destination,
+            sector: command.destination_sector,
+            grip: command.destination_grip,
+            sector_field: Field::DestinationSector,
+            grip_field: Field::DestinationGrip,
+        }
+    }
+
+    const fn end_at(&self) -> Place {
+        let command = self.command;
+        Place {
+            name: command.end_at,
+            sector: command.end_at_sector,
+            grip: 0,
+            sector_field: Field::EndAtSector,
+            grip_field: Field::EndAt,
+        }
     }
 
     /// The locations at which the verb uses a grip.
-    fn gripped(&self) -> Vec<&Endpoint> {
+    fn gripped(&self) -> [Option<Place>; 2] {
         match self.verb {
-            "POSITION" if self.source.name.given() => vec![&self.source],
-            "POSITION" => vec![&self.destination],
-            "ACQUIRE" => vec![&self.source],
-            _ if self.carries() => vec![&self.source, &self.destination],
-            _ => Vec::new(),
+            "POSITION" if self.command.source.is_some() => [Some(self.source()), None],
+            "POSITION" => [Some(self.destination()), None],
+            "ACQUIRE" => [Some(self.source()), None],
+            _ if self.carries() => [Some(self.source()), Some(self.destination())],
+            _ => [None, None],
         }
     }
 
     /// Report what is missing; returns the held object after the command.
-    pub(super) fn check(&self, data: &TaskData<'_>, held: Held, problems: &mut Problems) -> Held {
-        let mut needs = Needs { command: self, data, problems };
-        needs.fields();
-        needs.sectors();
-        needs.grips();
-        needs.regrip();
-        needs.tool(held);
-        let object = Held::Object(self.object.name);
+    pub(super) fn check(&mut self, held: Held) -> Held {
+        self.fields();
+        self.sectors();
+        self.grips();
+        self.regrip();
+        self.pedestal();
+        self.tool(held);
+        let object = self.command.object;
+        let taken = Held::Object(object.unwrap_or_default());
         match self.verb {
             "TRANSFER" | "POSITION" | "RELEASE-TOOL" => Held::Nothing,
-            "ACQUIRE" | "REFIXTURE" | "ACQUIRE-TOOL" | "REMOVE-TOOL" => object,
+            "ACQUIRE" | "REFIXTURE" | "ACQUIRE-TOOL" | "REMOVE-TOOL" => taken,
             // That it was not held is reported.
-            "INSERT-TOOL" if self.object.given() && held == Held::Nothing => object,
-            "MOVE" if self.object.given() => object,
+            "INSERT-TOOL" if object.is_some() && held == Held::Nothing => taken,
+            "MOVE" if object.is_some() => taken,
             _ => held,
         }
     }
-}
 
-struct Needs<'c, 'd> {
-    command: &'c Command<'c>,
-    data: &'c TaskData<'d>,
-    problems: &'c mut Problems,
-}
-
-impl Needs<'_, '_> {
-    fn error(&mut self, at: At, message: String, help: impl Into<String>) {
-        self.problems.error_help("job.needs", at, message, help);
+    fn error(&mut self, field: Field, message: String, help: impl Into<String>) {
+        self.findings.push(finding(field, "job.needs", message, Some(help.into())));
     }
 
     /// Check that the object and the locations that the verb needs are given.
     fn fields(&mut self) {
-        let command = self.command;
-        let verb = command.verb;
-        let takes = command.is(&["TRANSFER", "REFIXTURE", "ACQUIRE"]);
-        if (takes || verb == "ACQUIRE-TOOL") && !command.object.given() {
-            self.error(command.object.at, format!("{verb} needs an object"), "name it in the first field");
+        let (verb, command) = (self.verb, self.command);
+        let takes = self.is(&["TRANSFER", "REFIXTURE", "ACQUIRE"]);
+        if (takes || verb == "ACQUIRE-TOOL") && command.object.is_none() {
+            self.error(Field::Object, format!("{verb} needs an object"), "name it in the first field");
         }
-        let (from, to) = (command.source.name, command.destination.name);
-        if (takes || command.carries()) && !from.given() {
+        let (from, to) = (command.source, command.destination);
+        if (takes || self.carries()) && from.is_none() {
             let help = "name the location where the object is in the third field";
-            self.error(from.at, format!("{verb} needs a source location"), help);
+            self.error(Field::Source, format!("{verb} needs a source location"), help);
         }
-        if (command.carries() || command.is(&["MOVE", "ACQUIRE-TOOL"])) && !to.given() {
+        if (self.carries() || self.is(&["MOVE", "ACQUIRE-TOOL"])) && to.is_none() {
             let help = "name the location in the sixth field";
-            self.error(to.at, format!("{verb} needs a destination location"), help);
+            self.error(Field::Destination, format!("{verb} needs a destination location"), help);
         }
-        if verb == "POSITION" && !from.given() && !to.given() {
-            self.error(from.at, "POSITION needs a location".to_owned(), "name it in the third field");
+        if verb == "POSITION" && from.is_none() && to.is_none() {
+            self.error(Field::Source, "POSITION needs a location".to_owned(), "name it in the third field");
         }
-        if verb == "ACQUIRE-TOOL" && to.given() && to.name.as_str() != NEAR_DRUM {
-            let message = format!("ACQUIRE-TOOL goes to the drum from {NEAR_DRUM}, {} found", to.name);
-            self.error(to.at, message, format!("write {NEAR_DRUM} as the destination"));
+        if verb == "ACQUIRE-TOOL"
+            && let Some(to) = to.filter(|to| to.as_str() != NEAR_DRUM)
+        {
+            let message = format!("ACQUIRE-TOOL goes to the drum from {NEAR_DRUM}, {to} found");
+            self.error(Field::Destination, message, format!("write {NEAR_DRUM} as the destination"));
         }
     }
 
     /// Check that a location in a tray has a sector: the location point of a tray is only its corner (VIII.3).
     fn sectors(&mut self) {
-        let command = self.command;
-        let places = match command.verb {
-            "PAUSE" | "STARTUP" | "SHUTDOWN" => return,
-            "MOVE" | "REFIXTURE" => vec![command.source, command.destination],
-            "ACQUIRE" => vec![command.source],
-            _ => vec![command.source, command.destination, command.end_at],
+        let places = match self.verb {
+            "MOVE" | "REFIXTURE" => [Some(self.source()), Some(self.destination()), None],
+            "ACQUIRE" => [Some(self.source()), None, None],
+            _ => [Some(self.source()), Some(self.destination()), Some(self.end_at())],
         };
-        for place in places.into_iter().filter(|place| place.name.given() && place.sector.value == 0) {
-            let name = place.name.name;
+        let object = self.command.object.unwrap_or_default();
+        for place in places.into_iter().flatten().filter(|place| place.sector.is_none()) {
+            let Some(name) = place.name else { continue };
             let owner = self.data.owner_named(&Name10::clipped(name.as_str()));
             let members = owner.map_or(&[][..], |owner| self.data.members_of(owner));
             if !members.iter().any(|member| member.member.kind == RefType::Array) {
                 continue;
             }
-            let object = self.data.object_named(&command.object.name);
-            let assigned = object.into_iter().flat_map(|object| self.data.object_locations(object));
+            let record = self.data.object_named(&object);
+            let assigned = record.into_iter().flat_map(|record| self.data.object_locations(record));
             let here =
                 assigned.filter(|assigned| members.iter().any(|member| member.member == *assigned)).last();
             let array = here.and_then(|here| self.data.array(ArrayId::new(here.number)));
             let help = match (here.map(|here| here.kind), array) {
                 // The object location form assigns the object to the location point itself.
                 (Some(RefType::LocationPoint), _) => continue,
-                (_, Some(array)) => {
-                    format!("{name} has sectors 1 to {} for {}", array.sectors(), command.object.name)
-                }
+                (_, Some(array)) => format!("{name} has sectors 1 to {} for {object}", array.sectors()),
                 (_, None) => "name a location point beside the tray".to_owned(),
             };
-            self.error(place.sector.at, format!("{name} is a tray and needs a sector, 0 found"), help);
+            self.error(place.sector_field, format!("{name} is a tray and needs a sector, 0 found"), help);
         }
     }
 
     /// Check that a grip is given: +0 is not a grip.
     fn grips(&mut self) {
-        let command = self.command;
-        let null = |place: &&Endpoint| command.object.given() && place.name.given() && place.grip.is_some();
-        for place in command.gripped().into_iter().filter(null) {
-            let Some(grip) = place.grip.filter(|grip| grip.value == 0) else { continue };
-            let name = command.object.name;
-            let message = format!("{} needs a grip of {name} at {}, +0 found", command.verb, place.name.name);
-            let help = grips_of(self.data, &name);
-            self.error(grip.at, message, help);
+        let Some(object) = self.command.object else { return };
+        for place in self.gripped().into_iter().flatten().filter(|place| place.grip == 0) {
+            let Some(name) = place.name else { continue };
+            let message = format!("{} needs a grip of {object} at {name}, +0 found", self.verb);
+            self.error(place.grip_field, message, grips_of(self.data, &object));
         }
     }
 
     /// Check the data for a regrip on the Active Pedestal, which different grips need.
     fn regrip(&mut self) {
-        let command = self.command;
-        let (Some(from), Some(to)) = (command.source.grip, command.destination.grip) else { return };
-        if !command.carries() || !command.object.given() {
-            return;
-        }
-        if from.value == to.value {
-            if command.verb == "REFIXTURE" {
-                let message = format!("REFIXTURE changes the grip, {:+} found twice", from.value);
-                self.error(to.at, message, "write another grip at the destination, or MOVE");
+        let (data, command) = (self.data, self.command);
+        let Some(object) = command.object.filter(|_| self.carries()) else { return };
+        let (from, to) = (command.source_grip, command.destination_grip);
+        if from == to {
+            if self.verb == "REFIXTURE" {
+                let message = format!("REFIXTURE changes the grip, {from:+} found twice");
+                self.error(Field::DestinationGrip, message, "write another grip at the destination, or MOVE");
             }
             return;
         }
-        let (object, data) = (command.object.name, self.data);
         // A grip that no object form has is reported already, and so is +0.
-        if [from, to].iter().any(|grip| data.object(&object, grip.value).is_none()) {
+        if [from, to].iter().any(|grip| data.object(&object, *grip).is_none()) {
             return;
         }
-        let what = format!("from grip {:+} to {:+} {object} goes over the pedestal", from.value, to.value);
+        let what = format!("from grip {from:+} to {to:+} {object} goes over the pedestal");
         match data.ped_para(&object) {
             None => {
                 let help =
                     "add a pedestal form, >FILE PED-PARA (VII.7.4), or use one grip for both locations";
-                self.error(to.at, format!("{what}, and has no PED-PARA record"), help);
+                self.error(Field::DestinationGrip, format!("{what}, and has no PED-PARA record"), help);
             }
             Some((_, record)) if record.flip_angle == 0 => {
                 let help = "give the angle that turns the object from one grip to the other (VII.7.4)";
-                self.error(to.at, format!("{what}, and its ped-flip-angle is 0"), help);
+                self.error(Field::DestinationGrip, format!("{what}, and its ped-flip-angle is 0"), help);
             }
             Some(_) => {}
         }
         let Ok(pedestal) = data.resolve_location(&Name16::clipped(PEDESTAL), None, Some(&object)) else {
             let help = "add it to a location point form (VII.3)";
-            self.error(to.at, format!("{what}, and there is no location {PEDESTAL}"), help);
+            self.error(Field::DestinationGrip, format!("{what}, and there is no location {PEDESTAL}"), help);
             return;
         };
-        for grip in [from, to] {
-            let number = grip.value;
+        for (number, field) in [(from, Field::SourceGrip), (to, Field::DestinationGrip)] {
             let entries = [
                 ("-grip-", "movetable for", data.grip_movetable(&object, number, &pedestal.place).is_some()),
                 ("-appr obj", "approach with", data.approach(&object, number, &pedestal.place).is_some()),
@@ -220,55 +226,70 @@ impl Needs<'_, '_> {
             for (word, what_is, _) in entries.into_iter().filter(|(_, _, there)| !there) {
                 let message = format!("{what}, and has no {what_is} grip {number:+} at {PEDESTAL}");
                 let help = format!("add `{word} {object} {number} lpt {PEDESTAL}`");
-                self.error(grip.at, message, help);
+                self.error(field, message, help);
             }
         }
     }
 
-    /// Check that a tool command handles a tool, and that the gripper holds this tool, or nothing before ACQUIRE-TOOL.
-    fn tool(&mut self, held: Held) {
-        let command = self.command;
-        if !command.is_for_tools() {
+    /// Check that a TRANSFER does not end at the Active Pedestal: its hand grips only during a regrip (V.3.1 FIX-GRIP),
+    /// so the released object would fall.
+    fn pedestal(&mut self) {
+        let to = self.command.destination.filter(|to| self.verb == "TRANSFER" && to.as_str() == PEDESTAL);
+        if to.is_none() {
             return;
         }
-        let (verb, object) = (command.verb, command.object);
-        if object.given() {
-            let id = self.data.obj_grips(&object.name).map_or(0, |grips| grips.endeff_id);
+        let object = self.command.object.unwrap_or_default();
+        let message = format!("TRANSFER releases {object} at {PEDESTAL}, whose hand is not told to grip it");
+        let help = "name a tray, a fixture or a holster as the destination; another grip there regrips the object \
+                    on the pedestal on the way";
+        self.error(Field::Destination, message, help);
+    }
+
+    /// Check that a tool command handles a tool, and that the gripper holds this tool, or nothing before ACQUIRE-TOOL.
+    fn tool(&mut self, held: Held) {
+        if !self.is_for_tools() {
+            return;
+        }
+        let (verb, command) = (self.verb, self.command);
+        if let Some(object) = command.object {
+            let id = self.data.obj_grips(&object).map_or(0, |grips| grips.endeff_id);
             if id != TOOL_GRIPPER {
-                let message = format!("{verb} handles tools; endeff-id# of {} is {id}", object.name);
-                self.error(object.at, message, format!("tools have {TOOL_GRIPPER} in OBJ-GRIPS (VII.7.2)"));
+                let message = format!("{verb} handles tools; endeff-id# of {object} is {id}");
+                self.error(
+                    Field::Object,
+                    message,
+                    format!("tools have {TOOL_GRIPPER} in OBJ-GRIPS (VII.7.2)"),
+                );
                 return;
             }
-            let grips = [command.source.grip, command.destination.grip];
-            let known = |grip: &Number| self.data.object(&object.name, grip.value).is_some();
-            if !grips.iter().flatten().any(known) {
-                let help = grips_of(self.data, &object.name);
-                self.error(object.at, format!("{verb} needs a grip of {}", object.name), help);
+            let grips = [command.source_grip, command.destination_grip];
+            if !grips.iter().any(|grip| self.data.object(&object, *grip).is_some()) {
+                let help = grips_of(self.data, &object);
+                self.error(Field::Object, format!("{verb} needs a grip of {object}"), help);
             }
         }
         self.moves();
         let (found, first) = match held {
             Held::Unknown => return,
-            Held::Object(tool) if !object.given() || tool == object.name => return,
+            Held::Object(tool) if command.object.is_none_or(|object| tool == object) => return,
             Held::Object(other) => (format!("{other} is"), other),
-            Held::Nothing => ("nothing is".to_owned(), object.name),
+            Held::Nothing => ("nothing is".to_owned(), command.object.unwrap_or_default()),
         };
         let before = match verb {
             "INSERT-TOOL" => "a MOVE of the tool to TOOL-SAFE",
             "RELEASE-TOOL" => "an INSERT-TOOL",
             "REMOVE-TOOL" => "an ACQUIRE-TOOL",
-            _ if first == object.name => return,
+            _ if Some(first) == command.object => return,
             _ => "a command that lets it go",
         };
         let what = if verb == "ACQUIRE-TOOL" { "an empty gripper" } else { "a tool in the gripper" };
         let message = format!("{verb} needs {what}; {found} held here");
-        self.error(command.at, message, format!("{before} comes before it"));
+        self.error(Field::Command, message, format!("{before} comes before it"));
     }
 
     /// Check that the relative moves at the drum that the verb makes exist (V.2.1).
     fn moves(&mut self) {
-        let command = self.command;
-        let names: &[&str] = match command.verb {
+        let names: &[&str] = match self.verb {
             "INSERT-TOOL" => &["INS-FAR", "INS-NEAR", "INS-IN"],
             "RELEASE-TOOL" => &["REL-SLIDE", "REL-BACK"],
             "ACQUIRE-TOOL" => &["ACQ-NEAR", "ACQ-STRIKE", "ACQ-SLIDE"],
@@ -280,8 +301,12 @@ impl Needs<'_, '_> {
         };
         if let Some(name) = names.iter().find(|name| !known(name)) {
             let message =
-                format!("{} makes the relative move {name} at {DRUM}, and there is none", command.verb);
-            self.error(command.at, message, format!("add `-rel- {name} lpt {DRUM}`, see data/guarded.blk"));
+                format!("{} makes the relative move {name} at {DRUM}, and there is none", self.verb);
+            self.error(
+                Field::Command,
+                message,
+                format!("add `-rel- {name} lpt {DRUM}`, see data/guarded.blk"),
+            );
         }
     }
 }

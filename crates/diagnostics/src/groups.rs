@@ -1,0 +1,117 @@
+//! Groups findings by the datum that is probably wrong.
+
+use std::collections::BTreeMap;
+
+use crate::{Diagnostic, Severity};
+
+/// The findings of a datum.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// Name of the datum.
+    pub datum: String,
+    /// Positions of its findings in the list that was grouped, errors first.
+    pub findings: Vec<usize>,
+    /// Number of errors among them.
+    pub errors: usize,
+}
+
+/// The data that a finding names, one of which is probably wrong, and whether it is an error.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Blame {
+    /// Names of the data; not empty.
+    pub data: Vec<String>,
+    /// True for an error, false for a warning.
+    pub error: bool,
+}
+
+/// Groups findings: the datum that most findings name gets them all, then the next one. The worst group is the first.
+#[must_use]
+pub fn grouped(blames: &[Blame]) -> Vec<Group> {
+    let mut left: Vec<usize> = (0..blames.len()).collect();
+    let mut groups = Vec::new();
+    while !left.is_empty() {
+        // Errors and findings of each datum, and its first appearance, which decides between equals.
+        let mut counts: BTreeMap<&str, (usize, usize, usize)> = BTreeMap::new();
+        let mut order = 0;
+        for blame in left.iter().filter_map(|&at| blames.get(at)) {
+            for datum in &blame.data {
+                let count = counts.entry(datum).or_insert((0, 0, order));
+                (count.0, count.1) = (count.0 + usize::from(blame.error), count.1 + 1);
+                order += 1;
+            }
+        }
+        let worst =
+            counts.into_iter().max_by_key(|(_, (errors, all, order))| (*errors, *all, usize::MAX - order));
+        let Some((datum, (errors, ..))) = worst else { break };
+        let is_of =
+            |at: &usize| blames.get(*at).is_some_and(|blame| blame.data.iter().any(|name| name == datum));
+        let (mut findings, others): (Vec<_>, Vec<_>) = left.into_iter().partition(is_of);
+        findings.sort_by_key(|&at| blames.get(at).is_none_or(|blame| !blame.error));
+        groups.push(Group { datum: datum.to_owned(), findings, errors });
+        left = others;
+    }
+    groups
+}
+
+impl Diagnostic {
+    /// The data that the finding is about, one of which is probably wrong; never empty.
+    #[must_use]
+    pub fn blame(&self) -> Blame {
+        let data = if self.problem.data.is_empty() { vec![self.named()] } else { self.problem.data.clone() };
+        Blame { data, error: self.severity() == Severity::Error }
+    }
+
+    /// The entry of a TOML file, the name in the underlined text or after it in its line, or else the place.
+    fn named(&self) -> String {
+        if let Some(entry) = self.entry() {
+            return entry.to_owned();
+        }
+        let is_name = |word: &&str| word.bytes().any(|byte| byte.is_ascii_uppercase());
+        let words = || self.text().split_whitespace().chain(self.rest().split_whitespace().rev());
+        let name = self.block().and_then(|_| words().find(is_name));
+        match (name, self.block(), self.line()) {
+            (Some(name), ..) => name.to_owned(),
+            (None, Some(block), Some(line)) => format!("{}: {block}, line {line}", self.file()),
+            (None, None, Some(line)) => format!("{} line {line}", self.file()),
+            _ if self.file().is_empty() => self.message().to_owned(),
+            _ => self.file().to_owned(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn blame(data: &[&str], error: bool) -> Blame {
+        Blame { data: data.iter().map(|name| (*name).to_owned()).collect(), error }
+    }
+
+    #[test]
+    fn datum_of_most_findings_gets_all_of_them_and_comes_first() {
+        let blames = [
+            blame(&["A/D-5", "UNIT-V1"], true),
+            blame(&["HOME"], false),
+            blame(&["UNIT-V1", "SAFE"], true),
+            blame(&["SAFE", "UNIT-V1"], true),
+            blame(&["SAFE"], true),
+            blame(&["HOME"], false),
+        ];
+        let groups = grouped(&blames);
+        let of = |group: &Group| (group.datum.clone(), group.findings.clone(), group.errors);
+        assert_eq!(
+            groups.iter().map(of).collect::<Vec<_>>(),
+            [
+                ("UNIT-V1".to_owned(), vec![0, 2, 3], 3),
+                ("SAFE".to_owned(), vec![4], 1),
+                ("HOME".to_owned(), vec![1, 5], 0),
+            ]
+        );
+    }
+
+    #[test]
+    fn errors_of_a_datum_precede_its_warnings() {
+        let groups = grouped(&[blame(&["A"], false), blame(&["A"], true)]);
+        assert_eq!((groups[0].findings.clone(), groups[0].errors), (vec![1, 0], 1));
+    }
+}

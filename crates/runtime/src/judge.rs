@@ -1,0 +1,163 @@
+//! The verdict on a command before Task reads it, for all sources of commands: the job, an operator, the mailbox of a
+//! workstation controller.
+//!
+//! A command passes if the task data have what it needs ([`Verdict`]), and if `check` has found no error in the records
+//! that it uses. With `--unchecked` the second condition does not count. PAUSE always passes.
+
+use diagnostics::{Blame, Group, grouped};
+use interfaces::{CommonMemory, HwsCommand, emove::Holding};
+use neighbours::{
+    mailbox::Mailbox,
+    workstation::{Gate, Judge, Refusal},
+};
+use paths::{
+    finding::Finding,
+    job::{WalkedJob, walk_job_once},
+    uses::{Present, used},
+};
+use plant::{CellDescription, room::Room};
+use taskdata::load::{
+    At, Fault, Job, Step, Store, Workstation,
+    verdict::{Before, Verdict, in_words},
+};
+
+use crate::{error::StartError, event::Event};
+
+/// Judges the commands of a tick.
+#[derive(Clone, Copy)]
+pub struct CommandJudge<'a> {
+    /// Task data.
+    pub store: &'a Store,
+    /// Common memory after the tick.
+    pub memory: &'a CommonMemory,
+    /// Errors in the records that a command uses do not count.
+    pub unchecked: bool,
+}
+
+impl Judge for CommandJudge<'_> {
+    fn verdict(&self, command: &HwsCommand) -> Option<String> {
+        verdict(command, self.store, &self.present(), self.unchecked)
+    }
+}
+
+/// What is wrong with a command of a robot that is where `present` says, as a sentence; `None` if it passes. If
+/// `unchecked`, errors in the records that it uses do not count.
+#[must_use]
+pub fn verdict(command: &HwsCommand, store: &Store, present: &Present, unchecked: bool) -> Option<String> {
+    let verdict = Verdict::of(command, &store.view(), Before::unknown());
+    if !verdict.passes() {
+        return Some(in_words(&verdict.findings));
+    }
+    if unchecked || store.faults().next().is_none() {
+        return None;
+    }
+    of_faults(&store.faults_of(command, &used(command, store, present)))
+}
+
+impl CommandJudge<'_> {
+    fn present(&self) -> Present {
+        let status = &self.memory.subtask.status;
+        Present {
+            place: self.memory.emove.beliefs.place.unwrap_or_default(),
+            gripper: status.end_effector_id,
+            held: match status.held {
+                Holding::Object(held) => Some((held.object, held.grip)),
+                Holding::Nothing | Holding::Something | Holding::NotKnown => None,
+            },
+        }
+    }
+}
+
+/// Read the command mailbox. Returns `Some` if the mailgram is refused.
+pub fn read_command(
+    gate: &mut Gate,
+    command_box: &Mailbox,
+    judge: &CommandJudge<'_>,
+    events: &mut Vec<Event>,
+) -> Option<Refusal> {
+    let before = gate.command().number;
+    let refused = gate.read(command_box, judge);
+    if let Some(wrong) = gate.wrong().filter(|_| gate.command().number != before) {
+        events.push(Event::CommandFailsCheck(wrong.to_owned()));
+    }
+    refused
+}
+
+/// The reason why a command with these errors in its data is refused; `None` without an error.
+fn of_faults(faults: &[&Fault]) -> Option<String> {
+    let (first, others) = faults.split_first()?;
+    let more = match others.len() {
+        0 => String::new(),
+        1 => "; 1 more error in the data that it uses".to_owned(),
+        count => format!("; {count} more errors in the data that it uses"),
+    };
+    Some(format!("{}{more}", first.in_line()))
+}
+
+/// Find the errors in the paths of a job, and add each to the task data as an error of the record that is probably
+/// wrong, so that no command uses that record.
+pub fn add_paths(store: &mut Store, job: &mut Job, cell: &CellDescription) -> WalkedJob {
+    let walked = walk_job_once(job, store, &Room::new(cell));
+    let expected = |line: u32| job.steps.iter().any(|step| step.line == line && step.expects_error);
+    let findings = walked.findings.iter().filter(|finding| finding.error && !expected(finding.line));
+    let faults = path_faults(&findings.collect::<Vec<_>>(), store);
+    for reload in &mut job.reloads {
+        reload.store.add_faults(faults.iter().cloned());
+    }
+    store.add_faults(faults);
+    walked
+}
+
+/// The errors of paths as errors of records: for each record that is probably wrong, one.
+fn path_faults(findings: &[&Finding], store: &Store) -> Vec<Fault> {
+    let named = |finding: &&&Finding| !finding.data.is_empty();
+    let findings: Vec<&Finding> = findings.iter().filter(named).copied().collect();
+    let blame = |finding: &&Finding| Blame {
+        data: finding.data.iter().map(|datum| datum.name.clone()).collect(),
+        error: true,
+    };
+    let blames: Vec<Blame> = findings.iter().map(blame).collect();
+    let fault = |group: &Group| {
+        let first = findings.get(*group.findings.first()?)?;
+        let datum = first.data.iter().find(|datum| datum.name == group.datum)?;
+        let message = match group.findings.len() {
+            1 => format!("{}: {}", datum.name, first.message),
+            count => format!("{}, {count} findings, the first: {}", datum.name, first.message),
+        };
+        Some(Fault::of_record(datum.at, store.place(datum.at), message))
+    };
+    grouped(&blames).iter().filter_map(fault).collect()
+}
+
+/// Check that no command of a job uses a record with an error.
+///
+/// # Errors
+/// [`StartError::WrongData`] with each command and its first error.
+pub fn check_job(job: &Job, store: &Store, walked: Option<&WalkedJob>) -> Result<(), StartError> {
+    let mut current = store;
+    let mut wrong = Vec::new();
+    for line in &job.steps {
+        match &line.step {
+            Step::Command(command) if !line.expects_error => {
+                let known =
+                    walked.and_then(|walked| walked.lines.iter().find(|known| known.line == line.line));
+                let used: Vec<At> = match known {
+                    _ if current.faults().next().is_none() => continue,
+                    Some(known) => {
+                        known.phases.iter().flat_map(|phase| phase.plan.used.iter().copied()).collect()
+                    }
+                    None => used(command, current, &Present::default()),
+                };
+                if let Some(why) = of_faults(&current.faults_of(command, &used)) {
+                    wrong.push(format!("line {}, `{}`: {why}", line.line, line.text));
+                }
+            }
+            Step::Workstation(Workstation::Load { number })
+            | Step::After { action: Workstation::Load { number }, .. } => {
+                current = job.reload(*number).map_or(current, |reload| &reload.store);
+            }
+            _ => {}
+        }
+    }
+    if wrong.is_empty() { Ok(()) } else { Err(StartError::WrongData { job: job.name.clone(), wrong }) }
+}

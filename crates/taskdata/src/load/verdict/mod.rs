@@ -1,0 +1,208 @@
+//! The verdict on a command to Task, before it is sent (V.4.1, V.4.2): whether the task data have what it names and
+//! needs, and whether its path exists.
+//!
+//! There is one verdict, with one text, for a line of a job, a request of an operator, a block of commands, a command in
+//! the mailbox of a workstation controller and `rcs-run check --explain`. It covers what follows from the command and
+//! the task data alone. What depends on the cell, such as an object that is lost, only Task decides.
+//!
+//! * `names`: object, locations, sectors and grips exist;
+//! * `needs`: the fields that the command uses, and the records that it needs;
+//! * `path`: trajectories, approaches and departures.
+//!
+//! PAUSE, STARTUP and SHUTDOWN use no field, and always pass.
+
+mod names;
+mod needs;
+mod path;
+
+use diagnostics::nearest;
+use interfaces::HwsCommand;
+use rcs_core::name::{Name10, Name16};
+
+use crate::files::TaskData;
+
+use self::{needs::Needs, path::Route};
+
+pub(super) use names::{Unfound, find_location, find_object};
+pub use path::Standing;
+
+/// Input commands of Task (V.4.1).
+pub const TASK_COMMANDS: &[&str] = &[
+    "TRANSFER",
+    "MOVE",
+    "POSITION",
+    "ACQUIRE",
+    "REFIXTURE",
+    "PAUSE",
+    "INSERT-TOOL",
+    "RELEASE-TOOL",
+    "ACQUIRE-TOOL",
+    "REMOVE-TOOL",
+    "STARTUP",
+    "SHUTDOWN",
+];
+
+/// Commands whose fields Task does not read.
+const BARE: &[&str] = &["PAUSE", "STARTUP", "SHUTDOWN"];
+
+/// The field of a command (V.4.2) that a finding is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Field {
+    /// The command itself.
+    Command,
+    /// The object.
+    Object,
+    /// The grip at the source.
+    SourceGrip,
+    /// The source location.
+    Source,
+    /// The sector of the source.
+    SourceSector,
+    /// The grip at the destination.
+    DestinationGrip,
+    /// The destination.
+    Destination,
+    /// The sector of the destination.
+    DestinationSector,
+    /// The end-at location.
+    EndAt,
+    /// The sector of the end-at location.
+    EndAtSector,
+}
+
+/// Something that is wrong with a command.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// The wrong field.
+    pub field: Field,
+    /// Stable short name of the kind of problem.
+    pub code: &'static str,
+    /// One sentence: what was found and what was expected.
+    pub message: String,
+    /// What to do, or the nearest known name.
+    pub help: Option<String>,
+    /// The name that the task data do not have, and the nearest known one, if it is such a finding.
+    pub(super) unknown: Option<(Name16, Option<String>)>,
+}
+
+/// The object that the robot holds between two commands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Held {
+    #[default]
+    Nothing,
+    Object(Name16),
+    /// Not known, after actions of the operator or a failed command.
+    Unknown,
+}
+
+/// What is known of the robot between two commands. The default is the start of a job: the robot holds nothing, and its
+/// location is not known.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Before {
+    held: Held,
+    at: Option<Standing>,
+}
+
+impl Before {
+    /// Nothing is known. The verdict is then the same wherever the robot is, and whatever it holds.
+    #[must_use]
+    pub const fn unknown() -> Self {
+        Self { held: Held::Unknown, at: None }
+    }
+}
+
+/// The verdict on a command.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    /// What is wrong, in the order of the fields; empty if the command passes.
+    pub findings: Vec<Finding>,
+    /// What is known of the robot after the command.
+    pub after: Before,
+}
+
+impl Verdict {
+    /// The verdict on a command. A command that passes costs no allocation.
+    #[must_use]
+    pub fn of(command: &HwsCommand, data: &TaskData<'_>, before: Before) -> Self {
+        Self::judge(command, data, before, false)
+    }
+
+    /// The verdict on a command that has to fail: it may lack fields and records.
+    pub(super) fn of_failing(command: &HwsCommand, data: &TaskData<'_>, before: Before) -> Self {
+        Self::judge(command, data, before, true)
+    }
+
+    fn judge(command: &HwsCommand, data: &TaskData<'_>, before: Before, fails: bool) -> Self {
+        let mut findings = Vec::new();
+        let Some(verb) = verb_of(&command.command) else {
+            return Self { findings: vec![unknown_command(&command.command)], after: Before::unknown() };
+        };
+        if BARE.contains(&verb) {
+            return Self { findings, after: before };
+        }
+        let sites = names::look_up(command, data, &mut findings);
+        let Some(sites) = sites else { return Self { findings, after: before } };
+        let held = if fails {
+            Held::Unknown
+        } else {
+            Needs { command, verb, data, findings: &mut findings }.check(before.held)
+        };
+        let mut route = Route { data, last: before.at, findings: &mut findings };
+        route.command(verb, sites);
+        let at = route.last;
+        findings.sort_by_key(|finding| finding.field);
+        Self { findings, after: Before { held, at } }
+    }
+
+    /// True if nothing is wrong with the command.
+    #[must_use]
+    pub const fn passes(&self) -> bool {
+        self.findings.is_empty()
+    }
+}
+
+/// True for a command that uses no task data, such as PAUSE.
+pub(super) fn is_bare(command: &HwsCommand) -> bool {
+    verb_of(&command.command).is_some_and(|verb| BARE.contains(&verb))
+}
+
+/// Only the names of a command, for task data that have errors.
+pub(super) fn names_of(command: &HwsCommand, data: &TaskData<'_>) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    match verb_of(&command.command) {
+        None => findings.push(unknown_command(&command.command)),
+        Some(verb) if BARE.contains(&verb) => {}
+        Some(_) => names::names(command, data, &mut findings),
+    }
+    findings
+}
+
+/// Findings as one text: the reason of a refusal.
+#[must_use]
+pub fn in_words(findings: &[Finding]) -> String {
+    let messages: Vec<&str> = findings.iter().map(|finding| finding.message.as_str()).collect();
+    messages.join("; ")
+}
+
+/// The command that a word means: all of the word, or its first ten characters, which are what all processes below
+/// compare (SPECNOTES.md, contradiction 22).
+fn verb_of(word: &Name16) -> Option<&'static str> {
+    let means = |known: &&&str| word.as_str() == **known || word.as_str() == Name10::clipped(known).as_str();
+    TASK_COMMANDS.iter().find(means).copied()
+}
+
+fn unknown_command(word: &Name16) -> Finding {
+    let help = nearest(word.as_str(), TASK_COMMANDS.iter().copied()).map_or_else(
+        || format!("there are {}", TASK_COMMANDS.join(", ")),
+        |near| format!("the nearest is {near}"),
+    );
+    let shown = if word.is_empty() { "--" } else { word.as_str() };
+    finding(Field::Command, "name.unknown", format!("no command of Task is named {shown}"), Some(help))
+}
+
+fn finding(field: Field, code: &'static str, message: String, help: Option<String>) -> Finding {
+    Finding { field, code, message, help, unknown: None }
+}
+
+#[cfg(test)]
+mod tests;
