@@ -14,6 +14,7 @@ use levels::{
     emove::{
         route::{Goal, LegGoal, Planning, Route},
         tables::{Action, Request, accept::accept},
+        way::is_same_pose,
     },
     execution::Asked,
     places::{place_of, robot_at},
@@ -24,9 +25,9 @@ use rcs_core::{
     tick::TICK_S,
 };
 use taskdata::{
-    files::{Location, MovtabId, PathId, PathPoint, PoseId, Target, TaskData, TrajParaId},
+    files::{Location, MovtabId, PoseId, Target, TaskData, TrajParaId},
     load::{
-        At, Store,
+        Store,
         guarded::{Beginning, relative_move_named},
     },
 };
@@ -203,7 +204,12 @@ impl<'a> Walk<'a> {
     fn goal_and_route(&self, command: &EmoveCommand, at: &Location) -> Result<(Goal, Route), Planning> {
         let found = self.found.filter(|_| command.command == EmoveVerb::MovToObj);
         let goal = Goal::new(command, &found.unwrap_or(at.frame), &self.data)?;
-        let mut route = Route::plan(command, &goal, &self.place, &self.data)?;
+        let to = goal.place(command);
+        let mut route = if is_same_pose(&self.place, &to) {
+            Route::here(&self.place, &to, goal.opening)
+        } else {
+            Route { opening: goal.opening, ..Route::between(&self.place, &to, &self.data)? }
+        };
         (route.departure, route.goal) = (DEPARTURE, GOAL);
         Ok((goal, route))
     }

@@ -221,8 +221,7 @@ fn the_refusal_of_a_point_is_in_the_last_line_and_in_the_log() {
     let config = RunConfig { log: LogTarget::File(log.clone()), ..config() };
     let at = Plate::from_frame(&T3.forward_plate(&HOME_JOINTS), &Plate::default()).unwrap();
     let robot = Follower { joints: HOME_JOINTS, goal: at, at, points: 0, complains_after: u32::MAX };
-    let outcome =
-        Run::with_robot(config, Box::new(Refusing(robot, at)), Box::new(())).unwrap().complete();
+    let outcome = Run::with_robot(config, Box::new(Refusing(robot, at)), Box::new(())).unwrap().complete();
     let Ending::Failed(failure) = &outcome.ending else { panic!("it was stopped") };
     let refused = "the robot does not accept the commanded position: P05 (joint 2, the shoulder";
     assert!(failure.text.starts_with(refused), "{}", failure.text);

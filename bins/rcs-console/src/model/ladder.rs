@@ -163,13 +163,13 @@ fn process_line(branch: Branch, process: ProcessId, picture: &Picture, story: &S
         status,
         echo: Some(echo(&picture.memory, process)),
         row: row.map_or_else(String::new, |(table, row)| format!("{} {}", table.name, row.number)),
-        text: explanation(&said, row.map(|(_, row)| row)),
+        text: row_text(&said, row.map(|(_, row)| row)),
         age: age(header),
     }
 }
 
 /// The row that fired, after what no sensor confirms about a finished command.
-fn explanation(said: &Said, row: Option<&Row>) -> String {
+fn row_text(said: &Said, row: Option<&Row>) -> String {
     let row = row.map_or_else(String::new, ToString::to_string);
     if said.unconfirmed.is_none() { row } else { format!("unconfirmed: {}; {row}", said.unconfirmed) }
 }

@@ -2,7 +2,7 @@
 //! not a length, angle, force or converter count have no unit.
 
 /// Ends of field names, from specific to general, with their units.
-const UNITS: [(&str, &str); 42] = [
+const UNITS: [(&str, &str); 44] = [
     ("range_mm", "mm"),
     ("nearest.inches", "in"),
     ("nearest.degrees", "deg"),

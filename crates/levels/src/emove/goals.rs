@@ -135,10 +135,10 @@ impl State {
         };
         let at_goal = || {
             let [_, goal, ..] = &outputs.poses;
-            let seen = self.route.as_ref().map_or_else(
-                || offset(&goal.pose, memory),
-                |route| self.offset_of_place(&route.to, inputs),
-            );
+            let seen = self
+                .route
+                .as_ref()
+                .map_or_else(|| offset(&goal.pose, memory), |route| self.offset_of_place(&route.to, inputs));
             Proof::at(seen)
         };
         let at_command = || {

@@ -314,8 +314,9 @@ impl State {
     }
 }
 
-/// Is it the same pose at the same location, whatever is gone to there?
-fn is_same_pose(a: &RobotPlace, b: &RobotPlace) -> bool {
+/// True if both places are the same pose at the same location, whatever the robot goes to there.
+#[must_use]
+pub fn is_same_pose(a: &RobotPlace, b: &RobotPlace) -> bool {
     let (Ok(a_frame), Ok(b_frame)) = (a.pose.to_frame(), b.pose.to_frame()) else { return false };
     same_location(&place(a), &place(b)) && near(&a_frame, &b_frame, THERE_INCHES, THERE_RADIANS)
 }
