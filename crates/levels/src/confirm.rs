@@ -347,6 +347,31 @@ mod tests {
     }
 
     #[test]
+    fn rows_that_end_a_command_of_a_process_with_sensors_ask_for_a_reading() {
+        let ends = ["Finish", "Report", "CalibrateAndFinish"];
+        let readings =
+            ["ring", "stop", "size", "opening", "grasp", "readings", "place", "line", "gripper", "motion"];
+        for (name, least) in
+            [("Quick Change", 3), ("V-Grip", 4), ("Grip", 3), ("Rotary Table", 1), ("T3 Interface", 3)]
+        {
+            let process = Ladder::processes().iter().find(|process| process.name == name).unwrap();
+            let mut rows = 0;
+            // PAUSE commands nothing: its goal is what the process does itself.
+            for table in process.tables.iter().filter(|table| !table.name.ends_with("PAUSE")) {
+                for row in table.rows {
+                    let finished = name == "T3 Interface" && row.argument == Some("Finished");
+                    if ends.contains(&row.action) || finished {
+                        let asks = row.when.iter().any(|asked| readings.contains(&asked.variable));
+                        assert!(asks, "{name}, {} {row}", table.name);
+                        rows += 1;
+                    }
+                }
+            }
+            assert!(rows >= least, "{name}: {rows} rows");
+        }
+    }
+
+    #[test]
     fn every_process_with_statuses_below_consults_confirm() {
         for (name, tables) in Ladder::processes().iter().map(|process| (process.name, process.tables)) {
             let confirms = tables.iter().any(|table| table.name == CONFIRM.name);

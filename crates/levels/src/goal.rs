@@ -22,17 +22,22 @@ pub enum Sensor {
     #[text = "sensor of the guarded move"]
     Guard,
     /// The force sensor at the wrist.
+    #[text = "force sensor"]
     Force,
     /// The potentiometer of the fingers.
     #[text = "potentiometer of the fingers"]
     Fingers,
     /// The strain gages of the fingers.
+    #[text = "strain gages"]
     StrainGages,
     /// The id pins of the quick change.
+    #[text = "id pins"]
     IdPins,
     /// The two sensors of the locking ring.
+    #[text = "ring sensors"]
     RingSensors,
     /// The four sensors of a holster.
+    #[text = "holster sensors"]
     HolsterSensors,
     /// The vision system.
     Camera,
@@ -43,6 +48,7 @@ pub enum Sensor {
     #[text = "counter and potentiometer of the table"]
     Table,
     /// The answers of the Data System.
+    #[text = "Data System"]
     DataSystem,
     /// The statuses of the processes below.
     #[text = "statuses from below"]

@@ -417,6 +417,17 @@ fn a_trajectory_ends_exactly_whatever_stalls() {
 }
 
 #[test]
+fn through_point_is_not_passed_while_the_resolvers_are_far_from_it() {
+    let mut rig = Rig::initialized();
+    rig.t3i.off = 300;
+    assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Done, "a robot that moves follows its command");
+    let mut rig = Rig::initialized();
+    rig.t3i.off = 1000;
+    assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Error);
+    assert_eq!(rig.memory.prim.status.reason, Reason::NotAtGoal);
+}
+
+#[test]
 fn a_through_point_without_a_next_command_is_stopped_at() {
     let mut rig = Rig::initialized();
     assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Done);
