@@ -49,6 +49,8 @@ pub struct WorkstationState {
     stopped: bool,
     /// Numbers of the reloads requested since the last call of `loads`.
     loads: Vec<u32>,
+    /// Numbers of the parts that an action has put into the cell since the last call of `changed_parts`.
+    changed: Vec<u32>,
 }
 
 impl SimulatedWorkstation {
@@ -117,6 +119,11 @@ impl SimulatedWorkstation {
     /// Numbers of the reloads of task data that the job has requested since the last call.
     pub fn loads(&mut self) -> Vec<u32> {
         std::mem::take(&mut self.state.loads)
+    }
+
+    /// Numbers of the parts that an action has put into the cell since the last call.
+    pub fn changed_parts(&mut self) -> Vec<u32> {
+        std::mem::take(&mut self.state.changed)
     }
 
     /// Begin an action of an operator; `line` is its text.
@@ -269,7 +276,9 @@ impl Workstation for SimulatedWorkstation {
             _ => {}
         }
         for action in self.translate(action)? {
+            let next = self.cell.next_part_number();
             self.cell.workstation(&action).map_err(|error| error.to_string())?;
+            self.state.changed.extend(next..self.cell.next_part_number());
         }
         Ok(())
     }
