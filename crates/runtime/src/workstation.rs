@@ -49,8 +49,8 @@ pub struct WorkstationState {
     stopped: bool,
     /// Numbers of the reloads requested since the last call of `loads`.
     loads: Vec<u32>,
-    /// Numbers of the parts that an action has put into the cell since the last call of `changed_parts`.
-    changed: Vec<u32>,
+    /// Numbers of the parts that an action has put into the cell since the last call of `delivered`.
+    delivered: Vec<u32>,
 }
 
 impl SimulatedWorkstation {
@@ -122,8 +122,8 @@ impl SimulatedWorkstation {
     }
 
     /// Numbers of the parts that an action has put into the cell since the last call.
-    pub fn changed_parts(&mut self) -> Vec<u32> {
-        std::mem::take(&mut self.state.changed)
+    pub fn delivered(&mut self) -> Vec<u32> {
+        std::mem::take(&mut self.state.delivered)
     }
 
     /// Begin an action of an operator; `line` is its text.
@@ -278,7 +278,7 @@ impl Workstation for SimulatedWorkstation {
         for action in self.translate(action)? {
             let next = self.cell.next_part_number();
             self.cell.workstation(&action).map_err(|error| error.to_string())?;
-            self.state.changed.extend(next..self.cell.next_part_number());
+            self.state.delivered.extend(next..self.cell.next_part_number());
         }
         Ok(())
     }

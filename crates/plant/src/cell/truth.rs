@@ -3,11 +3,12 @@
 use geometry::frame::{Frame, Vector as Inches};
 
 use super::{
-    Cell,
+    Cell, WorkstationAction, WorkstationError,
     changing::{GripperPlace, ROBOT_HANDS},
     handling::Hand,
 };
 use crate::{
+    convert::to_pose,
     description::{CellDescription, PartType},
     drum::Entering,
 };
@@ -97,17 +98,47 @@ impl Cell {
         }
     }
 
-    /// True if the fingers of the robot's gripper, or those of the pedestal's hand, move.
+    /// True if the fingers of the robot's gripper move.
     #[must_use]
     pub fn fingers_move(&self) -> bool {
-        let robot = self.changer.mated().map(|hand| self.hand(hand).air.speed());
-        [robot, Some(self.pedestal.hand.air.speed())].into_iter().flatten().any(|speed| speed.abs() > STILL)
+        self.changer.mated().is_some_and(|hand| self.hand(hand).air.speed().abs() > STILL)
     }
 
-    /// True if the rotary table of the pedestal moves.
+    /// True if the hand or the rotary table of the pedestal moves.
     #[must_use]
-    pub fn table_moves(&self) -> bool {
-        self.pedestal.table.moving()
+    pub fn pedestal_moves(&self) -> bool {
+        self.pedestal.table.moving() || self.pedestal.hand.air.speed().abs() > STILL
+    }
+
+    /// Take a part away that nothing holds but the tool drum, whose fingers then stay closed.
+    ///
+    /// # Errors
+    /// [`WorkstationError`]; the state is unchanged.
+    pub fn take_part(&mut self, id: u32) -> Result<(), WorkstationError> {
+        if self.index_of(id).is_some_and(|index| self.is_in_drum(index)) {
+            self.free_drum();
+        }
+        self.workstation(&WorkstationAction::Remove { id })
+    }
+
+    /// Move a free part to a frame, world, in.
+    ///
+    /// # Errors
+    /// [`WorkstationError`] if there is no such part, it is held, or the place is occupied; the state is unchanged.
+    pub fn move_part(&mut self, id: u32, frame: &Frame) -> Result<(), WorkstationError> {
+        let index = self.index_of(id).ok_or(WorkstationError::NoSuchPart { id })?;
+        if self.is_had(index) {
+            return Err(WorkstationError::Held { part: self.parts[index].kind.name.clone() });
+        }
+        let kind = self.parts[index].kind.clone();
+        if let Some(by) = self.in_the_way(&kind, frame, Some(id)) {
+            return Err(WorkstationError::Occupied { part: kind.name, by });
+        }
+        let body = &mut self.world.bodies[self.parts[index].body];
+        body.set_position(to_pose(frame), true);
+        body.set_linvel(rapier3d_f64::math::Vector::ZERO, true);
+        body.set_angvel(rapier3d_f64::math::Vector::ZERO, true);
+        Ok(())
     }
 
     fn index_of(&self, id: u32) -> Option<usize> {

@@ -90,7 +90,7 @@ impl Run {
         if self.robot.is_elsewhere() {
             return;
         }
-        self.truth.note_changed(tick, self.workstation.changed_parts());
+        self.truth.note_delivered(tick, self.workstation.delivered());
         let (data, cell) = (&self.generations.current().view(), &self.workstation.cell);
         let scene = Scene { tick, hws: &self.external.hws, memory, data, cell };
         for confirmation in self.truth.look(&scene) {

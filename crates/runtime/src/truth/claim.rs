@@ -1,7 +1,7 @@
 //! The statements about the cell of which the goals of commands are made, and their check.
 
 use geometry::frame::{Frame, Vector, rotation_by};
-use interfaces::pose_range;
+use interfaces::{Unconfirmed, pose_range};
 use plant::{Cell, PartState, RingState, description::PartType, t3::Stage};
 use rcs_core::name::Name16;
 use taskdata::files::{MovtabId, Place, PoseId, TaskData};
@@ -105,8 +105,12 @@ pub enum Claim {
     OutOfDrum(Name16),
     /// The robot or what it holds touches something.
     Touches,
-    /// Nothing moves by a command: robot under pressure, fingers, table.
-    Still,
+    /// The robot is at rest, or has no pressure.
+    RobotStill,
+    /// The fingers of the robot are at rest.
+    FingersStill,
+    /// Hand and table of the pedestal are at rest.
+    PedestalStill,
     /// The robot controller executes the DEPC function.
     Linked,
 }
@@ -150,6 +154,15 @@ fn in_grip(object: &Name16, grip: i32, scene: &Scene<'_>) -> Vec<Frame> {
 }
 
 impl Claim {
+    /// True if a status that names this part of its goal as unconfirmed leaves the claim open.
+    pub const fn is_covered(&self, by: Unconfirmed) -> bool {
+        match by {
+            Unconfirmed::None => false,
+            Unconfirmed::GraspForce => matches!(self, Self::Holds { .. }),
+            Unconfirmed::ToolInDrum => matches!(self, Self::InDrum(_)),
+        }
+    }
+
     /// Compare the claim with the cell.
     ///
     /// # Errors
@@ -172,7 +185,12 @@ impl Claim {
             Self::InDrum(object) => is_in_drum(cell, history, object),
             Self::OutOfDrum(object) => is_out_of_drum(cell, object),
             Self::Touches => touches(cell),
-            Self::Still => is_still(cell),
+            Self::RobotStill => {
+                let moves = cell.t3().arm().has_pressure() && !cell.t3().at_rest();
+                expect(!moves, || "the robot still moves".to_owned())
+            }
+            Self::FingersStill => expect(!cell.fingers_move(), || "the fingers still move".to_owned()),
+            Self::PedestalStill => expect(!cell.pedestal_moves(), || "the pedestal still moves".to_owned()),
             Self::Linked => is_linked(cell),
         }
     }
@@ -493,13 +511,6 @@ fn is_out_of_drum(cell: &Cell, object: &Name16) -> Result<(), Untruth> {
 fn touches(cell: &Cell) -> Result<(), Untruth> {
     let touching = cell.contacts().iter().any(|contact| contact.depth > -TOUCH_INCHES);
     expect(touching, || "neither the robot nor what it holds touches anything".to_owned())
-}
-
-fn is_still(cell: &Cell) -> Result<(), Untruth> {
-    let arm = cell.t3().arm();
-    expect(!arm.has_pressure() || cell.t3().at_rest(), || "the robot still moves".to_owned())?;
-    expect(!cell.fingers_move(), || "fingers still move".to_owned())?;
-    expect(!cell.table_moves(), || "the rotary table still moves".to_owned())
 }
 
 fn is_linked(cell: &Cell) -> Result<(), Untruth> {

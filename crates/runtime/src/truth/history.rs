@@ -26,16 +26,22 @@ pub struct Released {
 pub struct History {
     /// Last tick in which a person has changed a part, by its number.
     changed: BTreeMap<u32, Tick>,
+    /// Tick in which the workstation has delivered a part, by its number.
+    delivered: BTreeMap<u32, Tick>,
     /// The part that the robot held after the last tick, with tool frame and part frame.
     held: Option<(u32, Frame, Frame)>,
-    released: Option<Released>,
+    pub(super) released: Option<Released>,
     /// Tick in which the camera has looked last, and the part's name.
-    looked: Option<(Tick, String)>,
+    pub(super) looked: Option<(Tick, String)>,
 }
 
 impl History {
     pub(super) fn note_changed(&mut self, tick: Tick, parts: impl IntoIterator<Item = u32>) {
         self.changed.extend(parts.into_iter().map(|id| (id, tick)));
+    }
+
+    pub(super) fn note_delivered(&mut self, tick: Tick, parts: impl IntoIterator<Item = u32>) {
+        self.delivered.extend(parts.into_iter().map(|id| (id, tick)));
     }
 
     pub(super) fn look(&mut self, scene: &Scene<'_>) {
@@ -66,17 +72,20 @@ impl History {
         self.changed.get(&id).is_some_and(|changed| *changed >= tick)
     }
 
-    /// True if a person has changed the part at any time.
+    /// True if a person has changed the part since the robot has released it last.
     pub fn is_changed(&self, id: u32) -> bool {
-        self.changed.contains_key(&id)
+        let released = self.released.as_ref().filter(|released| released.id == id);
+        self.is_changed_since(id, released.map_or(Tick(0), |released| released.tick))
     }
 
-    /// True if a person has changed any part since the camera has looked for an object of this name.
+    /// True if a person has changed any part, or one was delivered, since the camera has looked for an object of this name.
     pub fn is_any_changed_since_look(&self, object: &str) -> bool {
         self.looked
             .as_ref()
             .filter(|(_, name)| name == object)
-            .is_some_and(|(tick, _)| self.changed.values().any(|changed| changed >= tick))
+            .is_some_and(|(tick, _)| {
+                self.changed.values().chain(self.delivered.values()).any(|changed| changed >= tick)
+            })
     }
 }
 

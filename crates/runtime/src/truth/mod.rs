@@ -21,24 +21,26 @@ pub mod placement;
 mod prim;
 mod subtask;
 mod task;
+#[cfg(test)]
+mod tests;
 pub mod tolerance;
 
 use std::fmt;
 
 use executive::failure::Failure;
 use interfaces::{
-    CommonMemory, HwsCommand, StatusReport, hws::HwsReport, prim::PrimReport,
+    CommonMemory, HwsCommand, StatusReport, Unconfirmed, hws::HwsReport, prim::PrimReport,
 };
 use plant::Cell;
 use rcs_core::tick::Tick;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use taskdata::files::TaskData;
 
 pub use self::claim::{Claim, Untruth};
 use self::history::History;
 
 /// A process whose confirmations are judged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Level {
     /// Task (V.4).
     Task,
@@ -69,7 +71,7 @@ impl fmt::Display for Level {
 
 /// Why no sensor of the robot can contradict an untrue confirmation. The list is closed: a new entry needs a reason why
 /// the machine of the manual has no sensor for it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NotSensed {
     /// Another part is in the fingers, and it has the size of the commanded one between them; no picture is taken of it,
@@ -81,6 +83,8 @@ pub enum NotSensed {
     /// A person has moved the part in a place without pictures: a nest, the vise, the drum. The fingers centre it
     /// between them and measure its width; nothing measures where along the fingers it is.
     NoPicture,
+    /// The status itself names this part of the goal as unconfirmed, because the machine has no sensor for it.
+    Unconfirmed,
 }
 
 impl NotSensed {
@@ -91,12 +95,13 @@ impl NotSensed {
             Self::EqualPart => "a part of equal size and picture",
             Self::ChangedAfterLook => "changed after the last look",
             Self::NoPicture => "moved where no picture is taken",
+            Self::Unconfirmed => "reported as unconfirmed",
         }
     }
 }
 
 /// The verdict on a confirmation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// All claims are true.
@@ -108,7 +113,7 @@ pub enum Verdict {
 }
 
 /// A judged confirmation. The names of the fields are those of the JSON object.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Confirmation {
     /// Tick in which the status became *finished*.
     pub tick: u64,
@@ -119,7 +124,7 @@ pub struct Confirmation {
     /// The verdict.
     pub verdict: Verdict,
     /// What is true instead, as a sentence; empty if the confirmation is true.
-    #[serde(skip_serializing_if = "String::is_empty")]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub truth: String,
 }
 
@@ -202,6 +207,11 @@ impl TruthCheck {
         self.history.note_changed(tick, parts);
     }
 
+    /// Note that the workstation has delivered these parts in this tick.
+    pub fn note_delivered(&mut self, tick: Tick, parts: impl IntoIterator<Item = u32>) {
+        self.history.note_delivered(tick, parts);
+    }
+
     /// Judge a finished tick. Returns the confirmations that are not true.
     pub fn look(&mut self, scene: &Scene<'_>) -> Vec<Confirmation> {
         self.history.look(scene);
@@ -220,8 +230,11 @@ impl TruthCheck {
                 continue;
             };
             self.result.judged += 1;
-            let found = order.claims.iter().find_map(|claim| claim.check(scene, &self.history).err());
-            let Some(Untruth { text, not_sensed }) = found else { continue };
+            let found = order.claims.iter().find_map(|claim| {
+                Some((claim.check(scene, &self.history).err()?, claim.is_covered(unconfirmed(level, scene))))
+            });
+            let Some((Untruth { text, not_sensed }, covered)) = found else { continue };
+            let not_sensed = not_sensed.or_else(|| covered.then_some(NotSensed::Unconfirmed));
             let verdict = not_sensed.map_or(Verdict::False, Verdict::NotSensed);
             let command = order.text.clone();
             untrue.push(Confirmation { tick: scene.tick.0, level, command, verdict, truth: text });
@@ -285,4 +298,14 @@ fn finished(level: Level, scene: &Scene<'_>) -> Option<u32> {
         Level::Prim => (prim.echo, prim.report == PrimReport::Done),
     };
     (is_finished && echo != 0).then_some(echo)
+}
+
+/// The part of its goal that a level reports as unconfirmed.
+const fn unconfirmed(level: Level, scene: &Scene<'_>) -> Unconfirmed {
+    match level {
+        Level::Task => scene.memory.task.status.unconfirmed,
+        Level::Subtask => scene.memory.subtask.status.unconfirmed,
+        Level::Emove => scene.memory.emove.status.unconfirmed,
+        Level::Prim => Unconfirmed::None,
+    }
 }

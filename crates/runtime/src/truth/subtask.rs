@@ -18,7 +18,7 @@ pub fn claims(command: &SubtaskCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let (source, destination) = (command.source_grip, command.destination_grip);
     let found = match command.command {
         SubtaskVerb::None => vec![],
-        SubtaskVerb::Pause => vec![Some(Claim::Still)],
+        SubtaskVerb::Pause => pause(scene),
         SubtaskVerb::GetEndeff => vec![command.end_effector_id.map(Claim::Wears)],
         SubtaskVerb::GetObject => vec![held(source)],
         SubtaskVerb::PlaceObj => {
@@ -41,4 +41,11 @@ pub fn claims(command: &SubtaskCommand, scene: &Scene<'_>) -> Vec<Claim> {
         SubtaskVerb::RemoveTool => vec![held(destination), object.map(Claim::OutOfDrum)],
     };
     found.into_iter().flatten().collect()
+}
+
+/// What must be true when PAUSE or S-PAUSE is finished. Before its first command the pedestal calibrates itself,
+/// whatever is commanded (VI.5).
+pub fn pause(scene: &Scene<'_>) -> Vec<Option<Claim>> {
+    let pedestal = (scene.memory.subtask.pedestal.number != 0).then_some(Claim::PedestalStill);
+    vec![Some(Claim::RobotStill), Some(Claim::FingersStill), pedestal]
 }

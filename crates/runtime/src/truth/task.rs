@@ -29,7 +29,7 @@ pub fn claims(command: &HwsCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let to = command.destination_grip;
     let there = || destination.as_ref().and_then(|location| at(goal(to, &destination), location.name));
     let found = match command.command.as_str() {
-        "PAUSE" => vec![Some(Claim::Still)],
+        "PAUSE" => super::subtask::pause(scene),
         "TRANSFER" => vec![
             Some(Claim::HoldsNothing),
             lies_at(command, scene.cell.description()),
