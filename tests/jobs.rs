@@ -28,6 +28,9 @@ fn assert_ends_well(job: &str, seed: u64, placed: &[&[Placed]]) {
         assert!(part["error_in"].as_f64().is_some_and(|error| error < *within), "{part}");
     }
     assert_eq!(outcome.result["contacts"], serde_json::json!([]), "{job}, seed {seed}");
+    let truth = &outcome.result["truth"];
+    assert!(truth["judged"].as_u64().is_some_and(|judged| judged > 50), "{truth}");
+    assert_eq!((&truth["false"], &truth["not_sensed"]), (&serde_json::json!([]), &serde_json::json!([])));
     assert_eq!(outcome.result["allocations_after_start"], 0);
     assert_eq!(outcome.result["link"]["naks"], 0);
     assert_replays(&outcome);

@@ -109,7 +109,7 @@ fn a_sample_of_the_campaign_goes_on_and_hurts_nothing() {
             assert!(explained, "{job}: {branch}");
         }
         for row in sample["rows"].as_array().expect("there are rows") {
-            let judged = ["done", "stranded", "apart", "hurt"].map(|name| count(row, name));
+            let judged = ["done", "stranded", "apart", "hurt", "false"].map(|name| count(row, name));
             assert_eq!(judged.iter().sum::<u64>(), count(row, "branches"), "{job}: {row}");
             match row["interruption"].as_str() {
                 // Nothing is found where nothing was interrupted.
@@ -125,4 +125,38 @@ fn a_sample_of_the_campaign_goes_on_and_hurts_nothing() {
     println!("{done} of {branches} branches are done");
     assert!(branches > 200, "{branches} branches are too few");
     assert!(100 * done >= 97 * branches, "{done} of {branches} branches are done");
+}
+
+/// Confirmations of a small draw, and those of its branches alone: a draw repeats, whatever the number of threads, and
+/// each branch is repeated by one command line.
+#[test]
+fn drawn_disturbances_repeat_and_each_branch_is_repeated_alone() {
+    let draw = |threads: &str| {
+        json(&["campaign", "linkbar", "--truth", "6", "--draw", "3", "--threads", threads, "--json"])
+    };
+    let one = draw("1");
+    assert_eq!(one["branches"], draw("2")["branches"]);
+    let branches = one["branches"].as_array().expect("branches are listed");
+    assert_eq!(branches.len(), 6);
+    for branch in branches {
+        let judged = branch["judged"].as_u64().expect("it is counted");
+        assert!(judged > 0, "nothing is judged: {branch}");
+        assert_eq!(branch["verdict"] == "false", branch["untrue"].to_string().contains("\"false\""), "{branch}");
+    }
+    let first = &branches[0];
+    let (at, kind) = (first["at"].to_string(), first["interruption"].as_str().expect("it has a name"));
+    let alone = json(&["campaign", "linkbar", "--at", &at, "--interrupt", kind, "--json"]);
+    assert_eq!(alone["branches"][0]["verdict"], first["verdict"]);
+    assert_eq!(alone["branches"][0]["state"], first["state"], "{kind} at {at}");
+}
+
+/// A part that is taken away before its picture: the command fails, which is true, and goes on when the part is back.
+#[test]
+fn a_true_error_goes_on_after_its_remedy() {
+    let campaign =
+        json(&["campaign", "linkbar", "--at", "300", "--interrupt", "take:1", "--judge", "job", "--json"]);
+    let branch = &campaign["branches"][0];
+    assert_eq!((&branch["verdict"], &branch["remedied"]), (&"done".into(), &true.into()), "{branch}");
+    let ended = branch["ended"].to_string();
+    assert!(ended.contains("vision sees no object"), "{ended}");
 }

@@ -54,7 +54,9 @@ impl Finger {
     /// True if a body that it may touch is nearer than `distance`, m.
     pub fn is_near(&self, world: &PhysicsWorld, distance: Real) -> bool {
         world.narrow_phase.contact_pairs_with(self.collider).any(|pair| {
-            let [one, other] = [&world.colliders[pair.collider1], &world.colliders[pair.collider2]];
+            // The pair with a part that was taken away stays in the list until the next step.
+            let pair = [pair.collider1, pair.collider2].map(|collider| world.colliders.get(collider));
+            let [Some(one), Some(other)] = pair else { return false };
             // The pair with a held part stays in the list, but is not updated any more.
             one.collision_groups().test(other.collision_groups())
                 && one.compute_aabb().loosened(distance).intersects(&other.compute_aabb())

@@ -76,8 +76,8 @@ pub mod t3;
 pub mod vise;
 
 pub use cell::{
-    Cell, CellError, CellEvent, Droop, Link, Placement, RestoreError, SaveError, WorkstationAction,
-    WorkstationError, part_link,
+    Cell, CellError, CellEvent, Droop, Holders, Link, Placement, RestoreError, RingState, SaveError,
+    WorkstationAction, WorkstationError, part_link,
 };
 pub use description::CellDescription;
 pub use joystick::{BoxAction, BoxButton, Joystick};

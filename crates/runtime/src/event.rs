@@ -20,7 +20,7 @@ use neighbours::{
 use plant::{CellEvent, t3::explained};
 use record::Level;
 
-use crate::contacts::Collision;
+use crate::{contacts::Collision, truth::Confirmation};
 
 /// An event of a run.
 #[derive(Debug)]
@@ -58,6 +58,8 @@ pub enum Event {
     CommandFailsCheck(String),
     /// A line of the workstation controller for the cell is refused, for this reason.
     CellLineRefused(String),
+    /// A confirmation that is not true in the cell.
+    Untrue(Confirmation),
     /// The status of the cell cannot be written for the workstation controller.
     CellStatusUnsent(MailboxError),
     /// The job has handed over to the workstation controller.
@@ -115,6 +117,8 @@ impl Event {
             Self::CommandRefused(_) => "command.refused",
             Self::CommandFailsCheck(_) => "command.check",
             Self::CellLineRefused(_) => "workstation.refused",
+            Self::Untrue(confirmation) if confirmation.is_false() => "truth.false",
+            Self::Untrue(_) => "truth.not-sensed",
             Self::CellStatusUnsent(_) => "workstation.unsent",
             Self::HandedOver => "command.handed-over",
             Self::TakenBack => "command.taken-back",
@@ -136,6 +140,7 @@ impl Event {
         match self {
             Self::Cell(CellEvent::Warning(_) | CellEvent::ViseStuck) | Self::RobotRefuses(_) => Level::Error,
             Self::Cell(event) if event.is_harm() => Level::Error,
+            Self::Untrue(confirmation) if confirmation.is_false() => Level::Error,
             Self::Collides(_) | Self::CameFree(_) | Self::CellStatusUnsent(_) | Self::Stops => Level::Error,
             Self::RealTime { complete: true, .. } => Level::Info,
             // The connection of a neighbour and the departure of an operator are no warnings.
@@ -157,7 +162,7 @@ impl Event {
                 "fault"
             }
             Self::Cell(_) | Self::Collides(_) | Self::CameFree(_) => "cell",
-            Self::CellLineRefused(_) | Self::CellStatusUnsent(_) => "cell",
+            Self::CellLineRefused(_) | Self::CellStatusUnsent(_) | Self::Untrue(_) => "cell",
             Self::Link(_) => "T3I",
             Self::RobotRefuses(_) => "robot",
             Self::Network(_) => "network",
@@ -208,6 +213,7 @@ impl fmt::Display for Event {
             Self::OperatorJobFailed(failure) => write!(f, "the job of the operator has failed: {failure}"),
             Self::CommandRefused(refusal) => write!(f, "a command is refused: {refusal}"),
             Self::CommandFailsCheck(why) => write!(f, "a command does not pass its check: {why}"),
+            Self::Untrue(confirmation) => confirmation.fmt(f),
             Self::CellLineRefused(why) => write!(f, "a line of the workstation is refused: {why}"),
             Self::CellStatusUnsent(error) => error.fmt(f),
             Self::HandedOver => f.write_str("the workstation controller commands from here on"),

@@ -40,13 +40,13 @@ mod operator;
 mod outside;
 mod own;
 mod pace;
-mod placement;
 pub mod repeat;
 pub mod result;
 mod robot;
 mod run;
 pub mod setup;
 mod switched;
+pub mod truth;
 mod verdict;
 pub mod workstation;
 

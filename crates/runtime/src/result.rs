@@ -18,6 +18,7 @@ pub use self::{
 use crate::{
     contacts::{Collision, NearMiss},
     operator::Requests,
+    truth::TruthResult,
 };
 
 /// A command for Task.
@@ -169,6 +170,9 @@ pub struct RunResult {
     pub parts: Vec<PartResult>,
     /// Items of the MBD in the Data System.
     pub data_base: Vec<ItemResult>,
+    /// The judge of confirmations: how many commands of all levels were reported as finished, and which are not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub truth: Option<TruthResult>,
     /// Contacts that are not permitted.
     pub contacts: Vec<Collision>,
     /// The nearest miss, if a distance was less than 2 in.

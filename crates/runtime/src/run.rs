@@ -40,9 +40,9 @@ use crate::{
     observer::{Observer, TickReport},
     operator::{Inputs, Operator},
     pace::Pace,
-    placement::PlacementCheck,
     result::Events,
     robot::Robot,
+    truth::{TruthCheck, placement::PlacementCheck},
     verdict::{Ending, outside},
     workstation::SimulatedWorkstation,
 };
@@ -89,6 +89,8 @@ pub struct Run {
     pub(crate) check: ContactCheck,
     /// Check of the parts' places.
     pub(crate) placement: PlacementCheck,
+    /// Judge of the confirmations of the control processes.
+    pub(crate) truth: TruthCheck,
     /// The last warning on the screen of the T3 controller, and its tick.
     pub(crate) warning: Option<(Tick, String)>,
     /// The state of the cell for other programs.
@@ -251,6 +253,7 @@ impl Run {
         let cell = &self.workstation.cell;
         let task = &memory.task.status;
         self.placement.look(tick, &external.hws, task, cell.description(), &cell.parts());
+        self.judge(tick, &memory);
         self.runner.stage_times_mut().mark(Stage::Cell);
         let steps = self.neighbours.begun_steps();
         let (lines, hws) = (self.job.steps.len(), &external.hws);

@@ -48,11 +48,13 @@ impl Ending {
 }
 
 impl Run {
-    /// The ending with the verdicts on the cell: collisions of the robot, and parts that are not at their places.
+    /// The ending with the verdicts on the cell: collisions of the robot, parts that are not at their
+    /// places, and false confirmations.
     pub(super) fn checked(&self, ending: Ending) -> Ending {
         let parts = self.workstation.cell.parts();
         let mut verdicts: Vec<Failure> =
             self.check.verdict().into_iter().chain(self.placement.verdict(&parts)).collect();
+        verdicts.extend(self.truth.verdict());
         verdicts.sort_by_key(|verdict| verdict.tick);
         let simulated = |verdict: Failure| match self.robot.is_elsewhere() {
             true => Failure { text: format!("in the simulated cell, {}", verdict.text), ..verdict },

@@ -49,6 +49,8 @@ pub struct WorkstationState {
     stopped: bool,
     /// Numbers of the reloads requested since the last call of `loads`.
     loads: Vec<u32>,
+    /// Numbers of the parts that an action has put into the cell since the last call of `delivered`.
+    delivered: Vec<u32>,
 }
 
 impl SimulatedWorkstation {
@@ -117,6 +119,11 @@ impl SimulatedWorkstation {
     /// Numbers of the reloads of task data that the job has requested since the last call.
     pub fn loads(&mut self) -> Vec<u32> {
         std::mem::take(&mut self.state.loads)
+    }
+
+    /// Numbers of the parts that an action has put into the cell since the last call.
+    pub fn delivered(&mut self) -> Vec<u32> {
+        std::mem::take(&mut self.state.delivered)
     }
 
     /// Begin an action of an operator; `line` is its text.
@@ -269,7 +276,9 @@ impl Workstation for SimulatedWorkstation {
             _ => {}
         }
         for action in self.translate(action)? {
+            let next = self.cell.next_part_number();
             self.cell.workstation(&action).map_err(|error| error.to_string())?;
+            self.state.delivered.extend(next..self.cell.next_part_number());
         }
         Ok(())
     }

@@ -21,7 +21,8 @@ pub struct CampaignArguments {
     pub seed: u64,
     /// Interruptions, separated by commas: pause, pause-twice, refused, replaced, answer-lost, answer-late,
     /// answer-damaged, hold, nudge, away, estop, held or held:PROCESS, restart or restart:PROCESS, fault or fault:FILE,
-    /// none or all; with --judge rest also cut, lost or lost:PROCESS; hold+35:pause is hold, and pause 35 ticks after
+    /// none or all; jog:X:Y:Z (0.01 in), take:PART, move:PART:X:Y, swap:PART:KIND,
+    /// add:KIND:PLACE:SECTOR, each with :next or :again for the next command or the one before; with --judge rest also cut, lost or lost:PROCESS; hold+35:pause is hold, and pause 35 ticks after
     /// it [with --random: all]
     #[arg(
         long,
@@ -34,6 +35,10 @@ pub struct CampaignArguments {
     /// Draw N branches at random: the tick, and one or several of the interruptions that --interrupt names
     #[arg(long, value_name = "N", conflicts_with_all = ["ticks", "changes", "at", "markdown"])]
     pub random: Option<usize>,
+    /// Draw N branches in which a person leads the robot aside, or moves, exchanges, adds or takes away a part; one in
+    /// ten runs to the end of the job
+    #[arg(long, value_name = "N", conflicts_with_all = ["ticks", "changes", "at", "states", "random"])]
+    pub truth: Option<usize>,
     /// Largest number of interruptions of a branch that is drawn
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(1..=9))]
     pub longest: u8,

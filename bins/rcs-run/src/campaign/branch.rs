@@ -44,6 +44,7 @@ use runtime::{
     StartError,
     contacts::{ContactCheck, FREE},
     neighbours::task_state,
+    truth::{Confirmation, Scene, TruthCheck},
     workstation::{SimulatedWorkstation, WorkstationState},
 };
 
@@ -159,6 +160,7 @@ struct Control {
     gate: Gate,
     command_box: Mailbox,
     check: ContactCheck,
+    truth: TruthCheck,
     inputs: DeviceInputs,
     line: RobotLine,
     /// Generation of the task data, and the requested reloads that wait for the end of a command.
@@ -177,6 +179,8 @@ pub struct Branch<'f> {
     pub workstation: SimulatedWorkstation,
     /// Events in the cell in the last tick.
     pub events: Vec<CellEvent>,
+    /// Confirmations of the last tick that are not true.
+    pub untrue: Vec<Confirmation>,
 }
 
 /// The state of a branch between two ticks.
@@ -199,6 +203,7 @@ impl<'f> Branch<'f> {
             gate: Gate::default(),
             command_box: Mailbox::initialized(HWSC_COMMAND),
             check: ContactCheck::new(facility.description.contact.clone()),
+            truth: TruthCheck::default(),
             inputs: cell.inputs(),
             line: RobotLine::default(),
             generation: 0,
@@ -211,6 +216,7 @@ impl<'f> Branch<'f> {
             data_system: data_system()?,
             workstation: SimulatedWorkstation::new(cell),
             events: Vec::new(),
+            untrue: Vec::new(),
         })
     }
 
@@ -253,6 +259,7 @@ impl<'f> Branch<'f> {
             data_system,
             workstation: SimulatedWorkstation::with_state(cell, fork.workstation.clone()),
             events: Vec::new(),
+            untrue: Vec::new(),
         })
     }
 
@@ -293,6 +300,10 @@ impl<'f> Branch<'f> {
         self.events = self.workstation.events(tick);
         let commands = control.check.commands(control.course.memory());
         control.check.look(tick, self.workstation.cell.contacts(), commands);
+        control.truth.note_delivered(tick, self.workstation.delivered());
+        let (hws, data) = (&control.external.hws, &data(self.facility, control.generation));
+        let (memory, cell) = (control.course.memory(), &self.workstation.cell);
+        self.untrue = control.truth.look(&Scene { tick, hws, memory, data, cell });
         // What passes by without a touch is of no interest here.
         self.workstation.cell.watch_clearance(FREE);
     }
@@ -329,6 +340,18 @@ impl<'f> Branch<'f> {
         if !is_busy(control.course.memory()) && !control.asked.is_empty() {
             control.generation = control.asked.remove(0);
         }
+    }
+
+    /// Note that a person has changed these parts after the last tick.
+    pub fn note_changed(&mut self, parts: Vec<u32>) {
+        let next = self.at().next();
+        self.control.truth.note_changed(next, parts);
+    }
+
+    /// Number of confirmations that were judged so far.
+    #[must_use]
+    pub const fn judged(&self) -> u64 {
+        self.control.truth.result().judged
     }
 
     /// Restart a process: it loses its state.

@@ -2,18 +2,19 @@
 
 use std::{fmt, path::Path, sync::Arc};
 
-use depc::fault::{ALWAYS, FaultKind, Plan, Rule};
-use interfaces::device::{KNOB_FULL, joystick_frame, single_step};
+use depc::fault::FaultKind;
+use interfaces::device::single_step;
 use levels::ladder::ProcessId;
 use plant::{
-    BoxAction, BoxButton, CellDescription, EStop, Key, WorkstationAction,
-    fault::{FaultPlan, What, When, text::FaultFile},
-    t3::Stage,
+    BoxAction, CellDescription, EStop, Key, WorkstationAction,
+    fault::{What, text::FaultFile},
 };
-use rcs_core::tick::Tick;
 use runtime::{StartError, setup::fault_file};
 
-use super::branch::Branch;
+use super::{
+    disturbance::{self, Disturbance},
+    script::{Script, ScriptStep, away, lead, nudge},
+};
 use crate::error::Error;
 
 /// Duration of a Hold, ticks: 3 s.
@@ -24,18 +25,6 @@ const HELD: u64 = 50;
 pub const FAULT: u64 = 20;
 /// Ticks between the emergency stop and its release: the time to walk there.
 const STOPPED: u64 = 100;
-/// Height by which the robot is moved away, in.
-const RISE: f64 = 3.0;
-/// Distance that a robot continues when the button is released on the way back, in.
-const GOES_ON: f64 = 0.8;
-/// Longest time for which a button of the joystick box is held down, ticks.
-const LED: u64 = 100;
-/// Ticks for which a refused key of the panel is tried again.
-const PATIENCE: u64 = 2000;
-/// Ticks from CYCLE START to the DEPC function: the program makes two short motions.
-const REHEARSAL: u64 = 75;
-/// Least probability of a random fault, millionths per tick or byte, so that it occurs within [`FAULT`] ticks.
-const CHANCE: u32 = 50_000;
 
 /// A kind of interruption.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,6 +63,8 @@ pub enum Kind {
     Estop,
     /// The faults of a file for [`FAULT`] ticks, with the name of the file.
     Fault(String, Arc<FaultFile>),
+    /// A person leads the robot aside, or changes the parts in the cell.
+    Disturbed(Disturbance),
 }
 
 /// Kinds without a parameter, with their names.
@@ -107,6 +98,7 @@ impl fmt::Display for Kind {
             Self::Restart(process) => write!(f, "restart:{}", word(*process)),
             Self::Lost(process) => write!(f, "lost:{}", word(*process)),
             Self::Fault(name, _) => write!(f, "fault:{name}"),
+            Self::Disturbed(disturbance) => disturbance.fmt(f),
             plain => f.write_str(PLAIN.iter().find(|(_, kind)| kind == plain).map_or("", |(name, _)| name)),
         }
     }
@@ -146,6 +138,9 @@ impl Kind {
                 .map(|process| vec![Self::Held(process)]),
             Some(("restart", name)) => process(name).map(|process| vec![Self::Restart(process)]),
             Some(("lost", name)) => process(name).map(|process| vec![Self::Lost(process)]),
+            Some((word, _)) if disturbance::WORDS.contains(&word) => {
+                Disturbance::named(text).map(|disturbance| vec![Self::Disturbed(disturbance)])
+            }
             Some(("fault", name)) => {
                 fault(&data.join("faults").join(name).with_added_extension("toml"), cell)?
                     .map(|kind| vec![kind])
@@ -185,6 +180,15 @@ impl Kind {
         matches!(self, Self::Cut | Self::Lost(_))
     }
 
+    /// The disturbance, if it is one.
+    #[must_use]
+    pub const fn disturbance(&self) -> Option<&Disturbance> {
+        match self {
+            Self::Disturbed(disturbance) => Some(disturbance),
+            _ => None,
+        }
+    }
+
     /// The steps of the interruption.
     #[must_use]
     pub fn script(&self) -> Script {
@@ -222,43 +226,11 @@ impl Kind {
                     ScriptStep::StartUp,
                 ]
             }
+            Self::Disturbed(Disturbance { what: disturbance::What::Jog(way), .. }) => lead(*way),
+            Self::Disturbed(Disturbance { what, .. }) => vec![ScriptStep::Change(what.clone())],
         };
-        Script { steps, at: 0, until: None, height: 0.0 }
+        Script::new(steps)
     }
-}
-
-/// An action on a control of the joystick box.
-const fn at_box(action: BoxAction) -> ScriptStep {
-    ScriptStep::Workstation(WorkstationAction::Joystick(action))
-}
-
-/// The actions at the box between the two throws of the frame switch.
-fn joystick(knob: u16, steps: impl IntoIterator<Item = ScriptStep>) -> Vec<ScriptStep> {
-    // A robot in motion ramps down first.
-    let mut all = vec![
-        at_box(BoxAction::Velocity(knob)),
-        at_box(BoxAction::Frame(joystick_frame::WORLD)),
-        ScriptStep::Wait(25),
-    ];
-    all.extend(steps);
-    all.extend([at_box(BoxAction::Frame(0)), at_box(BoxAction::Velocity(KNOB_FULL)), ScriptStep::Wait(5)]);
-    all
-}
-
-/// Deflect the stick along X for some ticks, and back.
-fn nudge() -> Vec<ScriptStep> {
-    const TICKS: u32 = 11;
-    let stick = |x: i16| {
-        [at_box(BoxAction::Stick { x, y: 0, ticks: TICKS }), ScriptStep::Wait(u64::from(TICKS) + 10)]
-    };
-    joystick(100, [1000, -1000].into_iter().flat_map(stick))
-}
-
-/// Stop the robot with the box, move it up, and move it back by eye to the height at which it stopped.
-fn away() -> Vec<ScriptStep> {
-    let stop = [at_box(BoxAction::Press(BoxButton::Up, 2)), ScriptStep::Wait(25)];
-    let lead = [ScriptStep::Rise, ScriptStep::Wait(15), ScriptStep::Sink, ScriptStep::Wait(15)];
-    joystick(500, stop.into_iter().chain(lead))
 }
 
 /// All words of the command line, for messages.
@@ -266,7 +238,8 @@ fn words() -> String {
     let plain = PLAIN.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
     let processes = ProcessId::ALL.iter().map(|process| word(*process)).collect::<Vec<_>>().join(", ");
     format!(
-        "{plain}, held[:PROCESS], restart[:PROCESS], lost[:PROCESS], fault[:FILE] or all; processes are {processes}"
+        "{plain}, held[:PROCESS], restart[:PROCESS], lost[:PROCESS], fault[:FILE], jog:X:Y:Z, take:PART, \
+         move:PART:X:Y, swap:PART:KIND, add:KIND:PLACE:SECTOR or all; processes are {processes}"
     )
 }
 
@@ -286,160 +259,4 @@ fn fault(path: &Path, cell: &CellDescription) -> Result<Option<Kind>, Error> {
     let switchable = file.line.is_some() || file.cell.faults.iter().any(|fault| lasting(&fault.what));
     let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(switchable.then(|| Kind::Fault(name, Arc::new(file))))
-}
-
-/// The faults of the cell in a window, with random faults frequent enough to occur in it.
-fn cell_faults(plan: &FaultPlan, from: u64) -> FaultPlan {
-    let mut plan = plan.clone();
-    plan.faults.retain(|fault| !fault.what.is_delivery());
-    for fault in &mut plan.faults {
-        let rate = fault.when.rate.map(|rate| rate.max(f64::from(CHANCE) / f64::from(ALWAYS)));
-        fault.when = When { from, until: from + FAULT, rate, ..fault.when };
-    }
-    plan
-}
-
-/// The faults of the line in a window.
-fn line_faults(plan: &Plan, from: u64) -> Plan {
-    let mut windowed = Plan::new(plan.seed());
-    for rule in plan.rules() {
-        let single = rule.rate == 0 && rule.until == rule.from + 1;
-        let rule: Rule = match single {
-            true => rule.at(from),
-            false if rule.rate == 0 => rule.window(from, from + FAULT),
-            false => rule.window(from, from + FAULT).rate(rule.rate.max(CHANCE)),
-        };
-        // Rules that do not fit together in this window, only in their own ones, are left out.
-        let _ = windowed.add(rule);
-    }
-    windowed
-}
-
-/// An action between two ticks.
-#[derive(Clone, Debug)]
-enum ScriptStep {
-    Workstation(WorkstationAction),
-    Wait(u64),
-    Restart(ProcessId),
-    Lose(ProcessId),
-    Cut,
-    Answer(FaultKind),
-    Faults(Arc<FaultFile>),
-    /// ENTER, if the robot controller shows a warning.
-    Enter,
-    /// The start-up at the panel, if the robot controller has lost its pressure.
-    StartUp,
-    /// A key of the panel, as soon as the controller accepts it.
-    Key(Key),
-    /// Button D of the joystick box, until the robot is [`RISE`] higher or stops rising.
-    Rise,
-    /// Button E, until the robot is almost back at the height at which it rose.
-    Sink,
-}
-
-impl ScriptStep {
-    const fn key(key: Key) -> Self {
-        Self::Workstation(WorkstationAction::T3(key))
-    }
-}
-
-/// The start-up of IV.3.3 after an emergency stop.
-const START_UP: [Key; 6] =
-    [Key::FaultReset, Key::Hydraulics(true), Key::Manual(true), Key::Align(None), Key::Auto, Key::CycleStart];
-
-/// The steps of an interruption, tick by tick.
-pub struct Script {
-    steps: Vec<ScriptStep>,
-    at: usize,
-    until: Option<Tick>,
-    /// Height of the tool before it was moved away, in.
-    height: f64,
-}
-
-impl Script {
-    /// True if no step is left.
-    #[must_use]
-    pub const fn is_over(&self) -> bool {
-        self.at >= self.steps.len()
-    }
-
-    /// Carry out the steps that come before the next tick. Returns the message of the cell if it refuses one.
-    pub fn step(&mut self, branch: &mut Branch<'_>) -> Option<String> {
-        let mut refused = None;
-        while let Some(step) = self.steps.get(self.at).cloned() {
-            match step {
-                ScriptStep::Wait(ticks) => {
-                    let now = branch.at();
-                    let until = *self.until.get_or_insert(Tick(now.0 + ticks));
-                    if now < until {
-                        return refused;
-                    }
-                    self.until = None;
-                }
-                ScriptStep::Key(key) => {
-                    let now = branch.at();
-                    let until = *self.until.get_or_insert(Tick(now.0 + PATIENCE));
-                    let busy = branch.workstation.cell.t3().busy();
-                    if now < until && (busy || branch.workstation.cell.press(key).is_err()) {
-                        return refused;
-                    }
-                    self.until = None;
-                }
-                ScriptStep::Rise | ScriptStep::Sink => {
-                    let (now, height) = (branch.at(), branch.workstation.cell.tool().position.z);
-                    if self.until.is_none() && matches!(step, ScriptStep::Rise) {
-                        self.height = height;
-                    }
-                    let until = *self.until.get_or_insert(Tick(now.0 + LED));
-                    let (button, there) = match step {
-                        ScriptStep::Rise => (BoxButton::Up, height >= self.height + RISE),
-                        _ => (BoxButton::Down, height <= self.height + GOES_ON),
-                    };
-                    if now < until && !there {
-                        let press = WorkstationAction::Joystick(BoxAction::Press(button, 1));
-                        return branch
-                            .workstation
-                            .cell
-                            .workstation(&press)
-                            .err()
-                            .map(|error| error.to_string());
-                    }
-                    self.until = None;
-                }
-                ScriptStep::Workstation(action) => {
-                    refused =
-                        branch.workstation.cell.workstation(&action).err().map(|error| error.to_string());
-                }
-                ScriptStep::Restart(process) => branch.restart(process),
-                ScriptStep::Lose(process) => branch.lose(process),
-                ScriptStep::Cut => branch.cut(),
-                ScriptStep::Answer(kind) => branch.spoil_answer(kind),
-                ScriptStep::Faults(file) => {
-                    let from = branch.at().0 + 1;
-                    let seed = branch.facility().seed;
-                    branch.workstation.cell.add_faults(&cell_faults(&file.cell, from), seed);
-                    if let Some(plan) = &file.line {
-                        branch.spoil_line(&line_faults(plan, from));
-                    }
-                }
-                ScriptStep::Enter => {
-                    // Only a warning accepts the key.
-                    let _ = branch.workstation.cell.press(Key::Enter);
-                }
-                ScriptStep::StartUp => self.start_up(branch),
-            }
-            self.at += 1;
-        }
-        refused
-    }
-
-    fn start_up(&mut self, branch: &Branch<'_>) {
-        if branch.workstation.cell.t3().stage() == Stage::Depc {
-            return;
-        }
-        for key in START_UP {
-            self.steps.extend([ScriptStep::Key(key), ScriptStep::Wait(1)]);
-        }
-        self.steps.push(ScriptStep::Wait(REHEARSAL));
-    }
 }

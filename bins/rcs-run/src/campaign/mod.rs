@@ -8,13 +8,14 @@
 //!                   interruption ──► PAUSE, the same command, up to three tries ──► next command ──► verdict
 //! ```
 //!
-//! With `--random`, ticks and series of interruptions are drawn. A tick of a branch does what a tick of a run does
+//! With `--truth`, the interruptions are drawn disturbances of robot and parts ([`truth`]). With `--random`, ticks and series of interruptions are drawn. A tick of a branch does what a tick of a run does
 //! ([`branch`]); the campaign knows the control processes only by their interfaces. docs/campaign.md describes the
 //! verdicts.
 
 mod arguments;
 mod branch;
 mod coverage;
+mod disturbance;
 mod harm;
 mod interruption;
 mod invariants;
@@ -29,11 +30,13 @@ mod pool;
 mod random;
 mod report;
 mod runner;
+mod script;
 mod series;
 mod story;
 #[cfg(test)]
 mod tests;
 mod trial;
+mod truth;
 
 use std::{fs, io, process::ExitCode};
 
@@ -95,8 +98,14 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
             (plans, judged, runner.finish())
         }
         None => {
-            let plans = plans(arguments, &facility, &parent, procedure)?;
-            if let ([plan], false) = (&plans[..], arguments.json) {
+            let plans = match arguments.truth {
+                Some(branches) => truth::plans(&facility, &parent, procedure, branches, arguments.draw),
+                None => plans(arguments, &facility, &parent, procedure)?,
+            };
+            if plans.is_empty() {
+                return Err(Error::Campaign("no branch to run: expected at least one".to_owned()));
+            }
+            if let ([plan], false, None) = (&plans[..], arguments.json, arguments.truth) {
                 tell(arguments, &facility, &parent, plan)?;
                 return Ok(None);
             }

@@ -160,6 +160,17 @@ impl<'f> Operator<'f> {
         self.second_pause = second_pause;
     }
 
+    /// Give up the present command of the job: the next line follows the PAUSE. A line that is no command goes on.
+    pub fn give_up(&mut self) {
+        self.has_finished |= self.command_at(self.current).is_some();
+    }
+
+    /// A person follows the remedy of a failed command: all tries are left again, and a PAUSE is next.
+    pub fn retry(&mut self) {
+        self.tried = 0;
+        self.doing = Doing::Failed;
+    }
+
     /// Position in the job.
     #[must_use]
     pub const fn current(&self) -> usize {
@@ -176,6 +187,12 @@ impl<'f> Operator<'f> {
                 _ => None,
             },
         }
+    }
+
+    /// The last command of the job before the current line.
+    #[must_use]
+    pub fn command_before(&self) -> Option<HwsCommand> {
+        (0..self.current).rev().find_map(|line| self.command_at(line))
     }
 
     /// Begin the recovery procedure.

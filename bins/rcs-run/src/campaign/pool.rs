@@ -1,7 +1,10 @@
 //! Runs the branches: one thread runs and forks the undisturbed job, the other threads run the forks.
 
-use std::sync::{Arc, Mutex, PoisonError, mpsc};
-use std::thread;
+use std::{
+    panic::{self, AssertUnwindSafe},
+    sync::{Arc, Mutex, PoisonError, mpsc},
+    thread,
+};
 
 use super::{
     branch::{Branch, Facility, Fork},
@@ -56,7 +59,16 @@ pub fn run<T: Send>(
                         }
                         let Plan { series, procedure, .. } = &plans[at];
                         let mut met = Coverage::default();
-                        outcome = trial::run(facility, parent, &fork, series, *procedure, known, &mut met)
+                        // A branch that panics must end the campaign, and not only its thread.
+                        let run = AssertUnwindSafe(|| {
+                            trial::run(facility, parent, &fork, series, *procedure, known, &mut met)
+                        });
+                        let panicked = |_| {
+                            let at = plans[at].at;
+                            Err(Error::Fork(format!("the branch {series} at {at} has panicked")))
+                        };
+                        outcome = panic::catch_unwind(run)
+                            .unwrap_or_else(panicked)
                             .and_then(|result| done(result, met))
                             .map(|done| {
                                 collected.lock().unwrap_or_else(PoisonError::into_inner).push((at, done))

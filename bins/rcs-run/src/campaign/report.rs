@@ -4,8 +4,11 @@ use std::{collections::BTreeMap, fmt::Write as _, io};
 
 use serde::Serialize;
 
+use runtime::truth::Verdict as TruthVerdict;
+
 use super::{
     coverage::Coverage,
+    disturbance::{self, Follow},
     markdown::Column,
     parent::Parent,
     trial::{BranchResult, Verdict},
@@ -26,6 +29,9 @@ struct Row {
     stranded: usize,
     apart: usize,
     hurt: usize,
+    /// Branches with a false confirmation.
+    #[serde(rename = "false")]
+    lies: usize,
     /// Largest number of ticks from the interruption to rest, if the branches are judged at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     rest_after: Option<u64>,
@@ -41,13 +47,14 @@ impl Row {
             Verdict::Stranded => self.stranded += 1,
             Verdict::Apart => self.apart += 1,
             Verdict::Hurt => self.hurt += 1,
+            Verdict::False => self.lies += 1,
         }
     }
 
     /// Number of branches that are done, and the verdicts of the others.
     fn cell(&self) -> String {
         let mut text = format!("{}/{}", self.done, self.branches);
-        for (count, word) in [(self.stranded, "stranded"), (self.hurt, "hurt"), (self.apart, "apart")] {
+        for (count, word) in [(self.stranded, "stranded"), (self.hurt, "hurt"), (self.lies, "false"), (self.apart, "apart")] {
             if count > 0 {
                 let _ = write!(text, ", {count} {word}");
             }
@@ -63,7 +70,13 @@ impl Row {
 
 /// The row of the table that counts a branch: its interruption, or the number of its interruptions.
 fn title(result: &BranchResult) -> String {
-    match result.interruption.matches('+').count() {
+    let name = result.interruption.as_str();
+    let word = name.split(':').next().unwrap_or_default();
+    match name.matches('+').count() {
+        0 if disturbance::WORDS.contains(&word) => {
+            let end = Follow::ALL[1..].iter().find(|(_, end)| name.ends_with(end));
+            format!("{word}{}", end.map_or("", |(_, end)| end))
+        }
         0 => result.interruption.clone(),
         more => format!("{} interruptions", more + 1),
     }
@@ -147,18 +160,19 @@ impl<'a> CampaignReport<'a> {
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = format!(
-            "{:<24}{:>9}{:>7}{:>10}{:>6}{:>7}{:>8}  no command\n",
-            self.job, "branches", "done", "stranded", "hurt", "apart", "done %"
+            "{:<24}{:>9}{:>7}{:>10}{:>6}{:>7}{:>7}{:>8}  no command\n",
+            self.job, "branches", "done", "stranded", "hurt", "false", "apart", "done %"
         );
         for row in &self.rows {
             let _ = writeln!(
                 text,
-                "{:<24}{:>9}{:>7}{:>10}{:>6}{:>7}{:>8.1}{:>12}{}",
+                "{:<24}{:>9}{:>7}{:>10}{:>6}{:>7}{:>7}{:>8.1}{:>12}{}",
                 row.interruption,
                 row.branches,
                 row.done,
                 row.stranded,
                 row.hurt,
+                row.lies,
                 row.apart,
                 row.share(),
                 row.without_command,
@@ -166,14 +180,41 @@ impl<'a> CampaignReport<'a> {
                     .map_or_else(String::new, |ticks| format!("  at rest after {ticks} ticks at most"))
             );
         }
-        for (verdict, title) in
-            [(Verdict::Hurt, "Hurt"), (Verdict::Stranded, "Stranded"), (Verdict::Apart, "Apart")]
-        {
+        for (verdict, title) in [
+            (Verdict::False, "False confirmations"),
+            (Verdict::Hurt, "Hurt"),
+            (Verdict::Stranded, "Stranded"),
+            (Verdict::Apart, "Apart"),
+        ] {
             self.list(&mut text, verdict, title);
         }
+        self.confirmations(&mut text);
         let fired = self.decisions - self.never_fired.len();
         let _ = writeln!(text, "\n{fired} of {} rows of the decision tables have fired", self.decisions);
         text
+    }
+
+    /// What the judge has found in all branches.
+    fn confirmations(&self, text: &mut String) {
+        let untrue = || self.results.iter().flat_map(|result| &result.untrue);
+        let judged: u64 = self.results.iter().map(|result| result.judged).sum();
+        let lies = untrue().filter(|one| one.is_false()).count();
+        let remedied = self.results.iter().filter(|one| one.remedied && one.verdict == Verdict::Done).count();
+        let _ = writeln!(
+            text,
+            "\n{judged} confirmations judged: {lies} false, {} not sensed; {remedied} failed jobs went on after the \
+             remedy",
+            untrue().count() - lies
+        );
+        let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
+        for one in untrue() {
+            if let TruthVerdict::NotSensed(why) = one.verdict {
+                *reasons.entry(format!("{} {}", one.level, why.text())).or_default() += 1;
+            }
+        }
+        for (reason, count) in reasons {
+            let _ = writeln!(text, "{count:>6}  not sensed: {reason}");
+        }
     }
 
     /// Number of branches of a verdict per reason, most frequent first.
@@ -207,7 +248,8 @@ impl<'a> CampaignReport<'a> {
                 let BranchResult { at, interruption, smallest, line, detail, .. } = branch;
                 let interruption = smallest.as_ref().unwrap_or(interruption);
                 let command = &self.command;
-                let _ = writeln!(text, "        {command} --at {at} --interrupt {interruption}  ({line})");
+                let whole = if branch.whole { " --judge job" } else { "" };
+                let _ = writeln!(text, "        {command} --at {at} --interrupt {interruption}{whole}  ({line})");
                 if !detail.ends_with(reason) {
                     let _ = writeln!(text, "            {detail}");
                 }

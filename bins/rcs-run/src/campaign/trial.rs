@@ -7,17 +7,20 @@ use interfaces::HwsCommand;
 use levels::ladder::{Ladder, ProcessId};
 use neighbours::workstation::player::{Workstation as _, pause};
 use rcs_core::{digest::Digest, name::Name16, tick::Tick};
+use runtime::truth::Confirmation;
 use serde::{Deserialize, Serialize};
 
 use super::{
     branch::{Branch, Facility, Fork},
+    disturbance::{Follow, What},
     harm::{HarmMonitor, World, is_commanded},
-    interruption::{Kind, Script},
+    interruption::Kind,
     invariants::Invariants,
     known::{End, Known},
     motion::Motion,
     operator::{Operator, Recovery, Then, Watching},
     parent::Parent,
+    script::Script,
     series::Series,
 };
 use crate::error::Error;
@@ -27,6 +30,8 @@ const MISSPELT: &str = "NOWHERRE";
 
 /// Ticks for which a branch continues after a commanded point has done damage: 2 s.
 const AFTERMATH: u64 = 50;
+/// Ticks for which a branch continues after a false confirmation, which the processes above pass on.
+const PASSED_ON: u64 = 12;
 
 /// When a branch is judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -63,6 +68,8 @@ pub enum Verdict {
     Apart,
     /// A commanded point has done damage, or a finished command has not had its effect.
     Hurt,
+    /// A command is reported as finished, and the cell is not as its goal has it.
+    False,
 }
 
 /// The result of a branch.
@@ -94,6 +101,18 @@ pub struct BranchResult {
     /// Ticks from the interruption to the last motion, if the branch is judged at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest_after: Option<u64>,
+    /// The confirmations that are not true.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub untrue: Vec<Confirmation>,
+    /// Number of confirmations that were judged.
+    #[serde(default)]
+    pub judged: u64,
+    /// True if a command failed, a person undid the disturbance, and the job continued.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub remedied: bool,
+    /// True if the branch was to run to the end of the job.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub whole: bool,
     /// Digest of its last state.
     pub state: String,
     /// Digest of all its ticks, if nothing has interrupted it: that of the ordinary run.
@@ -145,6 +164,12 @@ struct Trial<'f, 'p> {
     tears: bool,
     /// Motion since the last interruption, if the branch is judged at rest.
     motion: Option<Motion>,
+    /// The confirmations since the fork that are not true.
+    untrue: Vec<Confirmation>,
+    /// Number of confirmations that were judged before the fork.
+    judged_before: u64,
+    /// The remedy was followed, and the disturbance undone.
+    remedied: bool,
 }
 
 /// Interrupt a fork after its last tick, and judge the branch. If it comes to a known state it is not run to its end;
@@ -167,7 +192,7 @@ pub fn run(
     let operator = Operator::new(&facility.job.steps, line, began, branch.command(), procedure.tries)
         .with_recovery(procedure.recovery);
     let (monitor, invariants) = (HarmMonitor::from_now(&branch), Invariants::from_now(&branch));
-    let doing = present(&branch);
+    let (doing, judged_before) = (present(&branch), branch.judged());
     let trial = Trial {
         parent,
         branch,
@@ -187,6 +212,9 @@ pub fn run(
         mismatch: None,
         tears: false,
         motion: None,
+        untrue: Vec::new(),
+        judged_before,
+        remedied: false,
     };
     trial.play(doing, known, observer)
 }
@@ -227,15 +255,18 @@ impl Trial<'_, '_> {
             self.operator.is_waiting = !over;
             if over && !self.following && self.motion.is_none() {
                 self.following = true;
-                // PAUSE is the interruption, or the first action of an operator who has worked at box or panel.
-                self.operator.pause(self.branch.at());
+                self.follow(observer);
             }
             if self.following {
                 self.branch.tick(&mut self.operator);
             } else {
                 self.branch.tick(&mut Watching(&mut self.operator));
             }
-            let at_box = !over && matches!(self.kind(), Kind::Nudge | Kind::Away);
+            for confirmation in &self.branch.untrue {
+                observer.say(self.branch.at(), &confirmation.to_string());
+            }
+            self.untrue.extend(self.branch.untrue.iter().cloned());
+            let at_box = self.is_of_a_person(over);
             self.tears |= self.takes_from_vise();
             self.monitor.look(&self.branch, at_box || (self.tears && self.operator.has_replaced()));
             if let Some(broken) = self.invariants.broken(&self.branch, !over) {
@@ -244,6 +275,13 @@ impl Trial<'_, '_> {
             observer.tick(&self.branch);
             if let Some(motion) = &mut self.motion {
                 motion.look(&self.branch);
+            }
+            if let Some(remedy) = self.remedy(&script) {
+                observer.say(self.branch.at(), "a person undoes the disturbance");
+                script = remedy;
+                self.operator.retry();
+                self.following = false;
+                continue;
             }
             if let Some(verdict) = self.verdict(observer) {
                 let end = Arc::new(self.end()?);
@@ -270,12 +308,50 @@ impl Trial<'_, '_> {
         }
     }
 
+    /// The interruption is over: the operator continues.
+    fn follow(&mut self, observer: &mut impl Observer) {
+        let at = self.branch.at();
+        let then = self.kind().disturbance().filter(|_| !self.remedied).map(|disturbance| disturbance.then);
+        let before = self.operator.command_before().filter(|_| then == Some(Follow::Again));
+        if let Some(command) = before {
+            observer.say(at, &format!("the operator sends {command} again"));
+            return self.operator.interject(at, &command, Then::SameCommand);
+        }
+        if then == Some(Follow::Next) {
+            self.operator.give_up();
+        }
+        // PAUSE is the interruption, or the first action of an operator who has worked at box or panel.
+        self.operator.pause(at);
+    }
+
+    /// True if contacts of this tick count as those of a person: at the joystick box, or who has put parts where the
+    /// controller does not expect any.
+    fn is_of_a_person(&self, over: bool) -> bool {
+        match self.kind() {
+            Kind::Nudge | Kind::Away => !over,
+            Kind::Disturbed(disturbance) => !over || !matches!(disturbance.what, What::Jog(_)),
+            _ => false,
+        }
+    }
+
+    /// The remedy of a command that has failed because of a disturbance, once, in a branch that runs to the end of the
+    /// job.
+    fn remedy(&mut self, script: &Script) -> Option<Script> {
+        let what = &self.kind().disturbance()?.what;
+        if self.remedied || self.until != Until::Job || self.operator.stranded().is_none() {
+            return None;
+        }
+        let remedy = script.undone(what)?;
+        self.remedied = true;
+        Some(remedy)
+    }
+
     /// True if the branch depends on nothing but its state and the operator's, and may be in a known one. A branch that
     /// nothing interrupts shows that a fork goes on as the ordinary run does, and runs to its end.
     fn is_comparable(&self) -> bool {
         let was_interrupted = *self.kind() != Kind::None && self.next().is_none();
         let goes_on = self.following && self.motion.is_none();
-        let harmless = self.monitor.has_seen_nothing() && self.mismatch.is_none() && !self.tears;
+        let harmless = self.monitor.has_seen_nothing() && self.mismatch.is_none() && !self.tears && self.untrue.is_empty();
         Known::compares(self.branch.at()) && was_interrupted && goes_on && harmless && self.invariants.hold()
     }
 
@@ -382,6 +458,9 @@ impl Trial<'_, '_> {
                 reached |= ended.line >= self.goal && self.next().is_none();
             }
         }
+        if let Some(first) = self.untrue.iter().find(|confirmation| confirmation.is_false()) {
+            return (self.branch.at().0 >= first.tick + PASSED_ON).then_some(Verdict::False);
+        }
         let worst = self.monitor.worst().map(|harm| (harm.commanded, harm.tick));
         if self.mismatch.is_some() {
             return Some(Verdict::Hurt);
@@ -406,6 +485,10 @@ impl Trial<'_, '_> {
 
     /// Compare the world with that of the undisturbed run when a command finishes.
     fn compare(&mut self, line: usize, command: &str) {
+        // A person has made the world another one.
+        if self.kind().disturbance().is_some() {
+            return;
+        }
         let Some(world) = self.parent.world_after(line) else { return };
         // A contact without command can have moved a part, and an arm without pressure sinks.
         if self.monitor.worst().is_some() || !is_commanded(&self.branch) {
@@ -451,6 +534,10 @@ impl Trial<'_, '_> {
             ended: self.ended.into_iter().map(|(_, text)| text).collect(),
             until: end.until.0,
             rest_after: self.motion.as_ref().map(Motion::ticks),
+            untrue: self.untrue,
+            judged: self.branch.judged() - self.judged_before,
+            remedied: self.remedied,
+            whole: self.until == Until::Job,
             state: end.state.to_string(),
             digest,
         }
@@ -460,6 +547,14 @@ impl Trial<'_, '_> {
     fn why(&self, verdict: Verdict) -> (String, String) {
         match verdict {
             Verdict::Done => (String::new(), String::new()),
+            Verdict::False => {
+                let first = self.untrue.iter().find(|confirmation| confirmation.is_false());
+                first.map_or_else(Default::default, |first| {
+                    let verb = first.command.split_whitespace().next().unwrap_or_default();
+                    let cause = format!("{} {verb}: {}", first.level, general(&first.truth));
+                    (cause, format!("tick {}: {first}", first.tick))
+                })
+            }
             Verdict::Hurt | Verdict::Apart => {
                 if let Some(mismatch) = &self.mismatch {
                     return mismatch.clone();

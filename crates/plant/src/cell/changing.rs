@@ -9,7 +9,7 @@ use geometry::frame::Frame;
 use interfaces::device::{HolsterSensors, QuickChangeSensors, QuickChangeValves};
 use serde::{Deserialize, Serialize};
 
-use super::{Cell, CellEvent, handling::Hand};
+use super::{Cell, CellEvent, handling::Hand, truth::RingState};
 use crate::{
     convert::{on_the_side_of, to_frame, to_pose},
     description::{CellDescription, Mounted, QuickChange},
@@ -90,6 +90,15 @@ impl Changer {
     /// True if no change is in progress: the ring is at one of its ends, and it holds the gripper whose pins touch.
     pub(super) fn rests(&self) -> bool {
         (self.ring.locked() || self.ring.unlocked()) && self.mated() == self.carried()
+    }
+
+    /// The locking ring.
+    pub(super) fn ring_state(&self) -> RingState {
+        match (self.ring.locked(), self.ring.unlocked()) {
+            (true, _) => RingState::Locked,
+            (_, true) => RingState::Open,
+            _ => RingState::Between,
+        }
     }
 
     /// Place of a gripper; `None` for the pedestal's hand.

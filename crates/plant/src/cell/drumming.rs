@@ -75,6 +75,13 @@ impl Cell {
         }
     }
 
+    /// Take the drum's hold off its tool.
+    pub(super) fn free_drum(&mut self) {
+        if let Some(left) = self.drum.tool.take() {
+            self.lead_by_drum(&left, false);
+        }
+    }
+
     /// True if part `index` is fixed in the drum.
     pub(super) fn is_in_drum(&self, index: usize) -> bool {
         self.drum.tool.is_some_and(|pocketed| pocketed.part == index && pocketed.fast)

@@ -14,6 +14,7 @@ mod sagging;
 mod saving;
 mod sensing;
 mod stride;
+mod truth;
 mod workstation;
 
 use depc::{
@@ -33,6 +34,7 @@ use handling::Hand;
 pub use picture::{Link, part_link};
 pub use sagging::Droop;
 pub use saving::{RestoreError, SaveError};
+pub use truth::{Holders, RingState};
 pub use workstation::{Placement, WorkstationAction, WorkstationError};
 
 use crate::{

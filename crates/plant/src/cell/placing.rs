@@ -88,7 +88,7 @@ impl Cell {
     }
 
     pub(super) fn put(&mut self, kind: &PartType, frame: &Frame) -> Result<(), WorkstationError> {
-        if let Some(by) = self.in_the_way(kind, frame) {
+        if let Some(by) = self.in_the_way(kind, frame, None) {
             return Err(WorkstationError::Occupied { part: kind.name.clone(), by });
         }
         let part = Part::new(&mut self.world, self.next_part, kind, frame);
@@ -97,8 +97,8 @@ impl Cell {
         Ok(())
     }
 
-    /// A body that a part at `frame` would overlap.
-    fn in_the_way(&self, kind: &PartType, frame: &Frame) -> Option<String> {
+    /// A body that a part at `frame` would overlap; the part `but` does not count.
+    pub(super) fn in_the_way(&self, kind: &PartType, frame: &Frame, but: Option<u32>) -> Option<String> {
         let pose = to_pose(frame);
         let (shape, turn) = Solid::of(kind).shape();
         let pose = pose * turn;
@@ -111,7 +111,7 @@ impl Cell {
         let jaw = self.jaw_bodies();
         let furniture =
             self.obstacles.iter().chain(&jaw).find(|obstacle| overlaps(&obstacle.pose, &*obstacle.shape));
-        let parts = self.parts.iter().find(|part| {
+        let parts = self.parts.iter().filter(|part| Some(part.id) != but).find(|part| {
             let (shape, turn) = part.solid().shape();
             overlaps(&(part.pose(&self.world) * turn), &*shape)
         });

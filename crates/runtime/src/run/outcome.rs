@@ -104,6 +104,7 @@ impl Run {
                 .to_string(),
             parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),
             data_base: self.items(),
+            truth: (!self.robot.is_elsewhere()).then(|| self.truth.result().clone()),
             contacts: self.check.collisions().to_vec(),
             clearance: self.check.nearest().cloned(),
             events: std::mem::take(&mut self.events),

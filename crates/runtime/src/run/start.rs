@@ -23,9 +23,9 @@ use crate::{
     operator::{Inputs, Operator},
     own::OwnRobot,
     pace::Pace,
-    placement::PlacementCheck,
     result::Events,
     setup::Setup,
+    truth::{TruthCheck, placement::PlacementCheck},
     workstation::SimulatedWorkstation,
 };
 
@@ -133,6 +133,7 @@ impl Run {
             started: None,
             ending: None,
             placement: PlacementCheck::new(&description),
+            truth: TruthCheck::default(),
             warning: None,
             check: ContactCheck::new(description.contact),
             view: Box::default(),

@@ -5,7 +5,7 @@ use plant::CellEvent;
 use rcs_core::tick::Tick;
 
 use super::Run;
-use crate::{contacts::Commands, egm::EgmPort, event::Event};
+use crate::{contacts::Commands, egm::EgmPort, event::Event, truth::Scene};
 
 impl Run {
     /// Report an event outside the cell's ticks to the log and the observer.
@@ -82,6 +82,23 @@ impl Run {
         for event in &self.fresh {
             self.observer.event(tick, event);
             self.events.push(tick, event);
+        }
+    }
+
+    /// Judge the confirmations of a tick. The cell is only a model of a robot at a port, and is not judged there.
+    pub(super) fn judge(&mut self, tick: Tick, memory: &CommonMemory) {
+        if self.robot.is_elsewhere() {
+            return;
+        }
+        self.truth.note_delivered(tick, self.workstation.delivered());
+        let (data, cell) = (&self.generations.current().view(), &self.workstation.cell);
+        let scene = Scene { tick, hws: &self.external.hws, memory, data, cell };
+        for confirmation in self.truth.look(&scene) {
+            let event = Event::Untrue(confirmation);
+            self.observer.message(&format!("tick {tick}: {event}"));
+            self.observer.event(tick, &event);
+            self.events.push(tick, &event);
+            self.fresh.push(event);
         }
     }
 

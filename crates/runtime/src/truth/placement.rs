@@ -261,7 +261,7 @@ fn is_there(goal: &Goal, let_go: [f64; 3], tolerance: f64, cell: &CellDescriptio
 }
 
 /// True if the cell has a place for the part there.
-fn has_place(cell: &CellDescription, (location, sector): &Place, part: &str) -> bool {
+pub(super) fn has_place(cell: &CellDescription, (location, sector): &Place, part: &str) -> bool {
     let in_tray =
         |unit: &str, sectors: usize| unit == location && (1..=sectors).contains(&usize::from(*sector));
     let in_nest = |nest: &Nest| {

@@ -1,0 +1,281 @@
+//! The steps of an interruption, and who carries them out tick by tick: a person at the joystick box, at the panel or in
+//! the cell, or a fault.
+
+use std::sync::Arc;
+
+use depc::fault::{ALWAYS, FaultKind, Plan, Rule};
+use interfaces::device::{KNOB_FULL, joystick_frame};
+use levels::ladder::ProcessId;
+use plant::{
+    BoxAction, BoxButton, Key, WorkstationAction,
+    fault::{FaultPlan, When, text::FaultFile},
+    t3::Stage,
+};
+use rcs_core::tick::Tick;
+
+use super::{
+    branch::Branch,
+    disturbance::{self, Lead, Undo, What},
+    interruption::FAULT,
+};
+
+/// Height by which the robot is moved away, in.
+const RISE: f64 = 3.0;
+/// Distance that a robot continues when the button is released on the way back, in.
+const GOES_ON: f64 = 0.8;
+/// Longest time for which a button of the joystick box is held down, ticks.
+const LED: u64 = 100;
+/// Ticks for which a refused key of the panel is tried again.
+const PATIENCE: u64 = 2000;
+/// Ticks from CYCLE START to the DEPC function: the program makes two short motions.
+const REHEARSAL: u64 = 75;
+/// Least probability of a random fault, millionths per tick or byte, so that it occurs within [`FAULT`] ticks.
+const CHANCE: u32 = 50_000;
+
+/// An action on a control of the joystick box.
+pub const fn at_box(action: BoxAction) -> ScriptStep {
+    ScriptStep::Workstation(WorkstationAction::Joystick(action))
+}
+
+/// The actions at the box between the two throws of the frame switch.
+fn joystick(knob: u16, steps: impl IntoIterator<Item = ScriptStep>) -> Vec<ScriptStep> {
+    // A robot in motion ramps down first.
+    let mut all = vec![
+        at_box(BoxAction::Velocity(knob)),
+        at_box(BoxAction::Frame(joystick_frame::WORLD)),
+        ScriptStep::Wait(25),
+    ];
+    all.extend(steps);
+    all.extend([at_box(BoxAction::Frame(0)), at_box(BoxAction::Velocity(KNOB_FULL)), ScriptStep::Wait(5)]);
+    all
+}
+
+/// Deflect the stick along X for some ticks, and back.
+pub fn nudge() -> Vec<ScriptStep> {
+    const TICKS: u32 = 11;
+    let stick = |x: i16| {
+        [at_box(BoxAction::Stick { x, y: 0, ticks: TICKS }), ScriptStep::Wait(u64::from(TICKS) + 10)]
+    };
+    joystick(100, [1000, -1000].into_iter().flat_map(stick))
+}
+
+/// Stop the robot with the box, move it up, and move it back by eye to the height at which it stopped.
+pub fn away() -> Vec<ScriptStep> {
+    let stop = [at_box(BoxAction::Press(BoxButton::Up, 2)), ScriptStep::Wait(25)];
+    let lead = [ScriptStep::Rise, ScriptStep::Wait(15), ScriptStep::Sink, ScriptStep::Wait(15)];
+    joystick(500, stop.into_iter().chain(lead))
+}
+
+/// An action between two ticks.
+#[derive(Clone, Debug)]
+pub enum ScriptStep {
+    Workstation(WorkstationAction),
+    Wait(u64),
+    Restart(ProcessId),
+    Lose(ProcessId),
+    Cut,
+    Answer(FaultKind),
+    Faults(Arc<FaultFile>),
+    /// ENTER, if the robot controller shows a warning.
+    Enter,
+    /// The start-up at the panel, if the robot controller has lost its pressure.
+    StartUp,
+    /// A key of the panel, as soon as the controller accepts it.
+    Key(Key),
+    /// Button D of the joystick box, until the robot is [`RISE`] higher or stops rising.
+    Rise,
+    /// Button E, until the robot is almost back at the height at which it rose.
+    Sink,
+    /// Stick and buttons, until the robot is led over a way.
+    Lead(Lead),
+    /// A change of the parts in the cell.
+    Change(What),
+    /// The change undone.
+    Undo(Undo),
+}
+
+impl ScriptStep {
+    /// A key of the panel.
+    pub const fn key(key: Key) -> Self {
+        Self::Workstation(WorkstationAction::T3(key))
+    }
+}
+
+/// The start-up of IV.3.3 after an emergency stop.
+const START_UP: [Key; 6] =
+    [Key::FaultReset, Key::Hydraulics(true), Key::Manual(true), Key::Align(None), Key::Auto, Key::CycleStart];
+
+/// The steps of an interruption, tick by tick.
+pub struct Script {
+    steps: Vec<ScriptStep>,
+    at: usize,
+    until: Option<Tick>,
+    /// Height of the tool before it was moved away, in.
+    height: f64,
+    /// Present state of a [`ScriptStep::Lead`].
+    lead: Option<Lead>,
+    /// What undoes the changes of the cell.
+    undo: Vec<Undo>,
+}
+
+/// Lead the robot over a way, 0.01 in, world, and give it back.
+pub fn lead(way: [i32; 3]) -> Vec<ScriptStep> {
+    let lead = Lead::by(way);
+    joystick(lead.knob(), [ScriptStep::Lead(lead), ScriptStep::Wait(25)])
+}
+
+impl Script {
+    /// A script of these steps.
+    #[must_use]
+    pub const fn new(steps: Vec<ScriptStep>) -> Self {
+        Self { steps, at: 0, until: None, height: 0.0, lead: None, undo: Vec::new() }
+    }
+
+    /// The script that takes back what a person has done in this one: the remedy for a command that is refused because
+    /// of it. `None` if there is nothing to take back.
+    #[must_use]
+    pub fn undone(&self, what: &What) -> Option<Self> {
+        if let What::Jog(way) = what {
+            let lead = Lead::back(*way);
+            return Some(Self::new(joystick(lead.knob(), [ScriptStep::Lead(lead), ScriptStep::Wait(25)])));
+        }
+        let steps: Vec<_> = self.undo.iter().cloned().map(ScriptStep::Undo).collect();
+        (!steps.is_empty()).then(|| Self::new(steps))
+    }
+
+    /// True if no step is left.
+    #[must_use]
+    pub const fn is_over(&self) -> bool {
+        self.at >= self.steps.len()
+    }
+
+    /// Carry out the steps that come before the next tick. Returns the message of the cell if it refuses one.
+    pub fn step(&mut self, branch: &mut Branch<'_>) -> Option<String> {
+        let mut refused = None;
+        while let Some(step) = self.steps.get(self.at).cloned() {
+            match step {
+                ScriptStep::Wait(ticks) => {
+                    let now = branch.at();
+                    let until = *self.until.get_or_insert(Tick(now.0 + ticks));
+                    if now < until {
+                        return refused;
+                    }
+                    self.until = None;
+                }
+                ScriptStep::Key(key) => {
+                    let now = branch.at();
+                    let until = *self.until.get_or_insert(Tick(now.0 + PATIENCE));
+                    let busy = branch.workstation.cell.t3().busy();
+                    if now < until && (busy || branch.workstation.cell.press(key).is_err()) {
+                        return refused;
+                    }
+                    self.until = None;
+                }
+                ScriptStep::Rise | ScriptStep::Sink => {
+                    let (now, height) = (branch.at(), branch.workstation.cell.tool().position.z);
+                    if self.until.is_none() && matches!(step, ScriptStep::Rise) {
+                        self.height = height;
+                    }
+                    let until = *self.until.get_or_insert(Tick(now.0 + LED));
+                    let (button, there) = match step {
+                        ScriptStep::Rise => (BoxButton::Up, height >= self.height + RISE),
+                        _ => (BoxButton::Down, height <= self.height + GOES_ON),
+                    };
+                    if now < until && !there {
+                        let press = WorkstationAction::Joystick(BoxAction::Press(button, 1));
+                        return branch
+                            .workstation
+                            .cell
+                            .workstation(&press)
+                            .err()
+                            .map(|error| error.to_string());
+                    }
+                    self.until = None;
+                }
+                ScriptStep::Lead(begun) => {
+                    let lead = self.lead.get_or_insert(begun);
+                    if let Some(control) = lead.step(&branch.workstation.cell) {
+                        let action = WorkstationAction::Joystick(control);
+                        let result = branch.workstation.cell.workstation(&action);
+                        return result.err().map(|error| error.to_string());
+                    }
+                    self.lead = None;
+                }
+                ScriptStep::Change(what) => {
+                    match disturbance::change(&mut branch.workstation.cell, &what) {
+                        Ok((parts, undo)) => {
+                            branch.note_changed(parts);
+                            self.undo.extend(undo);
+                        }
+                        Err(why) => refused = Some(why),
+                    }
+                }
+                ScriptStep::Undo(undo) => match disturbance::undo(&mut branch.workstation.cell, &undo) {
+                    Ok(part) => branch.note_changed(vec![part]),
+                    Err(why) => refused = Some(why),
+                },
+                ScriptStep::Workstation(action) => {
+                    refused =
+                        branch.workstation.cell.workstation(&action).err().map(|error| error.to_string());
+                }
+                ScriptStep::Restart(process) => branch.restart(process),
+                ScriptStep::Lose(process) => branch.lose(process),
+                ScriptStep::Cut => branch.cut(),
+                ScriptStep::Answer(kind) => branch.spoil_answer(kind),
+                ScriptStep::Faults(file) => {
+                    let from = branch.at().0 + 1;
+                    let seed = branch.facility().seed;
+                    branch.workstation.cell.add_faults(&cell_faults(&file.cell, from), seed);
+                    if let Some(plan) = &file.line {
+                        branch.spoil_line(&line_faults(plan, from));
+                    }
+                }
+                ScriptStep::Enter => {
+                    // Only a warning accepts the key.
+                    let _ = branch.workstation.cell.press(Key::Enter);
+                }
+                ScriptStep::StartUp => self.start_up(branch),
+            }
+            self.at += 1;
+        }
+        refused
+    }
+
+    fn start_up(&mut self, branch: &Branch<'_>) {
+        if branch.workstation.cell.t3().stage() == Stage::Depc {
+            return;
+        }
+        for key in START_UP {
+            self.steps.extend([ScriptStep::Key(key), ScriptStep::Wait(1)]);
+        }
+        self.steps.push(ScriptStep::Wait(REHEARSAL));
+    }
+}
+
+/// The faults of the cell in a window, with random faults frequent enough to occur in it.
+fn cell_faults(plan: &FaultPlan, from: u64) -> FaultPlan {
+    let mut plan = plan.clone();
+    plan.faults.retain(|fault| !fault.what.is_delivery());
+    for fault in &mut plan.faults {
+        let rate = fault.when.rate.map(|rate| rate.max(f64::from(CHANCE) / f64::from(ALWAYS)));
+        fault.when = When { from, until: from + FAULT, rate, ..fault.when };
+    }
+    plan
+}
+
+/// The faults of the line in a window.
+fn line_faults(plan: &Plan, from: u64) -> Plan {
+    let mut windowed = Plan::new(plan.seed());
+    for rule in plan.rules() {
+        let single = rule.rate == 0 && rule.until == rule.from + 1;
+        let rule: Rule = match single {
+            true => rule.at(from),
+            false if rule.rate == 0 => rule.window(from, from + FAULT),
+            false => rule.window(from, from + FAULT).rate(rule.rate.max(CHANCE)),
+        };
+        // Rules that do not fit together in this window, only in their own ones, are left out.
+        let _ = windowed.add(rule);
+    }
+    windowed
+}
+

@@ -1,0 +1,174 @@
+//! Branches of a campaign of confirmations: a person disturbs the cell at a drawn tick, and the judge of
+//! [`runtime::truth`] watches what is reported as finished from then on.
+//!
+//! A draw depends on its seed, the job and the cell alone. Half of the branches lead the robot aside, by 0.05 to 6 in in
+//! any direction; the others move, exchange, add or take away a part. One in [`WHOLE`] runs to the end of the job: if a
+//! command is refused there, the person undoes the disturbance, and the job must finish.
+
+use std::collections::BTreeSet;
+
+use rand::{RngExt as _, SeedableRng as _, seq::IndexedRandom as _};
+use rand_chacha::ChaCha8Rng;
+use taskdata::load::job::{Step, Workstation};
+
+use super::{
+    branch::Facility,
+    disturbance::{Disturbance, Follow, What},
+    interruption::Kind,
+    parent::{Parent, Ticks},
+    pool::Plan,
+    series::Series,
+    trial::{Procedure, Until},
+};
+
+/// One branch in so many runs to the end of the job.
+pub const WHOLE: usize = 10;
+/// Least and greatest way by which the robot is led aside, in.
+const JOG: [f64; 2] = [0.05, 6.0];
+/// Least and greatest way by which a part is moved, in.
+const MOVED: [f64; 2] = [0.05, 4.0];
+/// Parts of the cell that may be chosen, from the first.
+const PARTS: usize = 4;
+/// Shares of the branches in which the command before follows, and of the others of one command in which the next one
+/// does, percent.
+const AGAIN: u32 = 33;
+const NEXT: u32 = 33;
+/// Share of the parts and places that are those of the job, percent.
+const OF_JOB: u32 = 75;
+
+/// Parts and places that a draw chooses from.
+struct Choice {
+    /// Kinds of parts of the job, and all of the cell.
+    kinds: [Vec<String>; 2],
+    /// Places of parts: kind, location, sector; those of the job, and all of the cell.
+    places: [Vec<(String, String, u16)>; 2],
+}
+
+impl Choice {
+    fn of(facility: &Facility) -> Self {
+        let cell = &facility.description;
+        let (mut names, mut locations) = (BTreeSet::new(), BTreeSet::new());
+        for line in &facility.job.steps {
+            let sector = |sector: Option<i32>| sector.and_then(|one| u16::try_from(one).ok()).unwrap_or(0);
+            match &line.step {
+                Step::Command(command) => {
+                    names.extend(command.object.map(|object| object.to_string()));
+                    for (name, number) in [
+                        (command.source, command.source_sector),
+                        (command.destination, command.destination_sector),
+                    ] {
+                        locations.extend(name.map(|name| (name.to_string(), sector(number))));
+                    }
+                }
+                Step::Workstation(Workstation::Tray { object, .. }) => {
+                    names.insert(object.to_string());
+                }
+                _ => {}
+            }
+        }
+        let all: Vec<String> = cell.part.iter().map(|kind| kind.name.clone()).collect();
+        let kinds = all.iter().filter(|name| names.contains(*name)).cloned().collect();
+        let place = |kind: &plant::description::PartType| {
+            let drum = kind.tool.then(|| (cell.drum.location.clone(), 0));
+            let lies = cell.places_of(kind).into_iter().map(|(location, sector, _)| (location, sector));
+            let name = kind.name.clone();
+            lies.chain(drum).map(|(at, sector)| (name.clone(), at, sector)).collect::<Vec<_>>()
+        };
+        let places: Vec<_> = cell.part.iter().flat_map(place).collect();
+        let of_job = |(kind, location, sector): &&(String, String, u16)| {
+            let there = locations.contains(&(location.clone(), *sector));
+            names.contains(kind) && (there || *location == cell.drum.location)
+        };
+        let near = places.iter().filter(of_job).cloned().collect();
+        Self { kinds: [kinds, all], places: [near, places] }
+    }
+}
+
+/// Draws disturbances.
+struct Draw {
+    random: ChaCha8Rng,
+    choice: Choice,
+}
+
+impl Draw {
+    fn percent(&mut self, share: u32) -> bool {
+        self.random.random_range(0..100_u32) < share
+    }
+
+    /// A length between two, each order of magnitude equally often.
+    fn length(&mut self, [least, greatest]: [f64; 2]) -> f64 {
+        let share = self.random.random_range(0.0..1.0);
+        least * (greatest / least).powf(share)
+    }
+
+    /// A vector of some length in any direction, 0.01 in.
+    fn vector(&mut self, length: f64) -> [i32; 3] {
+        loop {
+            let way: [f64; 3] = core::array::from_fn(|_| self.random.random_range(-1.0..1.0));
+            let norm = way.iter().map(|one| one * one).sum::<f64>().sqrt();
+            if (0.1..=1.0).contains(&norm) {
+                // Lengths of some inches fit.
+                return way.map(|one| (one / norm * length * 100.0).round() as i32);
+            }
+        }
+    }
+
+    fn one_of<T: Clone>(&mut self, [of_job, all]: &[Vec<T>; 2]) -> Option<T> {
+        let few = self.percent(OF_JOB) && !of_job.is_empty();
+        if few { of_job } else { all }.choose(&mut self.random).cloned()
+    }
+
+    fn what(&mut self) -> Option<What> {
+        let part = self.random.random_range(1..=PARTS);
+        Some(match self.random.random_range(0..8) {
+            0..4 => {
+                let length = self.length(JOG);
+                What::Jog(self.vector(length))
+            }
+            4 => What::Take(part),
+            5 => {
+                let length = self.length(MOVED);
+                let [x, y, _] = self.vector(length);
+                What::Move(part, [x, y])
+            }
+            6 => {
+                let kinds = self.choice.kinds.clone();
+                What::Swap(part, self.one_of(&kinds)?)
+            }
+            _ => {
+                let places = self.choice.places.clone();
+                let (kind, location, sector) = self.one_of(&places)?;
+                What::Add(kind, location, sector)
+            }
+        })
+    }
+}
+
+/// Draw the branches of a campaign of confirmations. Half of them begin in ticks in which something changes.
+#[must_use]
+pub fn plans(
+    facility: &Facility,
+    parent: &Parent,
+    procedure: Procedure,
+    branches: usize,
+    seed: u64,
+) -> Vec<Plan> {
+    let mut draw = Draw { random: ChaCha8Rng::seed_from_u64(seed), choice: Choice::of(facility) };
+    let changes = parent.forks(&Ticks::Changes);
+    let plan = |number: usize| {
+        let change = changes.choose(&mut draw.random).copied();
+        let any = draw.random.random_range(1..parent.ticks);
+        let at = change.filter(|_| draw.percent(50)).unwrap_or(any);
+        let whole = number % WHOLE == WHOLE - 1;
+        let what = draw.what()?;
+        let then = match (draw.percent(AGAIN), draw.percent(NEXT)) {
+            (true, _) => Follow::Again,
+            (false, true) if !whole => Follow::Next,
+            _ => Follow::Same,
+        };
+        let series = Series::from(Kind::Disturbed(Disturbance { what, then }));
+        let until = if whole { Until::Job } else { procedure.until };
+        Some(Plan { at, series, procedure: Procedure { until, ..procedure } })
+    };
+    (0..branches).filter_map(plan).collect()
+}

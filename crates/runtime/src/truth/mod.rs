@@ -1,0 +1,311 @@
+//! The judge of confirmations: whether a command that is reported as finished has its effect in the simulated cell.
+//!
+//! Task, Subtask, E-move and Prim report each command as finished. What must be true then follows from the command and
+//! the task data alone: its [`Claim`]s ([`task`], [`subtask`], [`emove`], [`prim`]). They are looked up when the
+//! command appears, and compared with the bodies of the cell in the tick in which the status becomes *finished*. No
+//! sensor, no status and no belief of the controller is asked.
+//!
+//! ```text
+//!   command of a level ──► its claims                          when its number appears
+//!   status becomes finished ──► claims ──compare──► the cell   true, false, or not sensed
+//! ```
+//!
+//! A claim that is untrue is *not sensed* only for the reasons of [`NotSensed`], a closed list. Everything else that is
+//! untrue is *false*, and the run has failed. An error is never false here: whether its remedy leads to a finished job
+//! is shown by playing on (`rcs-run campaign --truth`).
+
+mod claim;
+mod emove;
+mod history;
+pub mod placement;
+mod prim;
+mod subtask;
+mod task;
+#[cfg(test)]
+mod tests;
+pub mod tolerance;
+
+use std::fmt;
+
+use executive::failure::Failure;
+use interfaces::{
+    CommonMemory, HwsCommand, StatusReport, Unconfirmed, hws::HwsReport, prim::PrimReport,
+};
+use plant::Cell;
+use rcs_core::tick::Tick;
+use serde::{Deserialize, Serialize};
+use taskdata::files::TaskData;
+
+pub use self::claim::{Claim, Untruth};
+use self::history::History;
+
+/// A process whose confirmations are judged.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub enum Level {
+    /// Task (V.4).
+    Task,
+    /// Subtask (V.3).
+    Subtask,
+    /// E-move (V.2).
+    #[serde(rename = "E-move")]
+    Emove,
+    /// Prim (V.1).
+    Prim,
+}
+
+impl Level {
+    /// All levels, from the top.
+    pub const ALL: [Self; 4] = [Self::Task, Self::Subtask, Self::Emove, Self::Prim];
+}
+
+impl fmt::Display for Level {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Task => "Task",
+            Self::Subtask => "Subtask",
+            Self::Emove => "E-move",
+            Self::Prim => "Prim",
+        })
+    }
+}
+
+/// Why no sensor of the robot can contradict an untrue confirmation. The list is closed: a new entry needs a reason why
+/// the machine of the manual has no sensor for it.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NotSensed {
+    /// Another part is in the fingers, and it has the size of the commanded one between them; no picture is taken of it,
+    /// or it looks the same. The fingers measure one width, the camera recognises an outline.
+    EqualPart,
+    /// A person has moved, added or taken away the part after the goal's last look at it: the picture of a part that is
+    /// fetched, the opening of the fingers for one that is put down.
+    ChangedAfterLook,
+    /// A person has moved the part in a place without pictures: a nest, the vise, the drum. The fingers centre it
+    /// between them and measure its width; nothing measures where along the fingers it is.
+    NoPicture,
+    /// The status itself names this part of the goal as unconfirmed, because the machine has no sensor for it.
+    Unconfirmed,
+}
+
+impl NotSensed {
+    /// As a short text.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::EqualPart => "a part of equal size and picture",
+            Self::ChangedAfterLook => "changed after the last look",
+            Self::NoPicture => "moved where no picture is taken",
+            Self::Unconfirmed => "reported as unconfirmed",
+        }
+    }
+}
+
+/// The verdict on a confirmation.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// All claims are true.
+    True,
+    /// A claim is untrue, and no sensor could show it.
+    NotSensed(NotSensed),
+    /// A claim is untrue.
+    False,
+}
+
+/// A judged confirmation. The names of the fields are those of the JSON object.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Confirmation {
+    /// Tick in which the status became *finished*.
+    pub tick: u64,
+    /// The process that reported it.
+    pub level: Level,
+    /// The command.
+    pub command: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// What is true instead, as a sentence; empty if the confirmation is true.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub truth: String,
+}
+
+impl Confirmation {
+    /// True if the confirmation is false.
+    #[must_use]
+    pub const fn is_false(&self) -> bool {
+        matches!(self.verdict, Verdict::False)
+    }
+}
+
+impl fmt::Display for Confirmation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { level, command, verdict, truth, .. } = self;
+        match verdict {
+            Verdict::True => write!(f, "{level} reports {command} as finished, which is true"),
+            Verdict::False => write!(f, "{level} reports {command} as finished, but {truth}"),
+            Verdict::NotSensed(why) => {
+                write!(f, "{level} reports {command} as finished, but {truth} (not sensed: {})", why.text())
+            }
+        }
+    }
+}
+
+/// Inputs of the judge after a tick.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    /// The tick that has ended.
+    pub tick: Tick,
+    /// Task's command in this tick.
+    pub hws: &'a HwsCommand,
+    /// Common memory after the tick.
+    pub memory: &'a CommonMemory,
+    /// The task data of the tick.
+    pub data: &'a TaskData<'a>,
+    /// The cell after the tick.
+    pub cell: &'a Cell,
+}
+
+/// A command, and what must be true when it is finished.
+#[derive(Clone, Debug, Default)]
+struct Order {
+    number: u32,
+    text: String,
+    claims: Vec<Claim>,
+}
+
+/// The commands and the status of a level.
+#[derive(Clone, Debug, Default)]
+struct Watched {
+    /// The present command and the one before it: a status in the tick of a new command is that of the old one.
+    orders: [Order; 2],
+    /// Number of the command that is reported as finished, if one is.
+    finished: Option<u32>,
+}
+
+/// Counts of a judge. The names of the fields are those of the JSON object.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TruthResult {
+    /// Confirmations that were judged.
+    pub judged: u64,
+    /// Confirmations that are false.
+    #[serde(rename = "false")]
+    pub lies: Vec<Confirmation>,
+    /// Confirmations that are untrue and that no sensor could contradict.
+    pub not_sensed: Vec<Confirmation>,
+}
+
+/// Judges the confirmations of a run.
+#[derive(Clone, Debug, Default)]
+pub struct TruthCheck {
+    levels: [Watched; 4],
+    history: History,
+    result: TruthResult,
+}
+
+impl TruthCheck {
+    /// Note that a person has added, moved or taken away these parts before the next tick.
+    pub fn note_changed(&mut self, tick: Tick, parts: impl IntoIterator<Item = u32>) {
+        self.history.note_changed(tick, parts);
+    }
+
+    /// Note that the workstation has delivered these parts in this tick.
+    pub fn note_delivered(&mut self, tick: Tick, parts: impl IntoIterator<Item = u32>) {
+        self.history.note_delivered(tick, parts);
+    }
+
+    /// Judge a finished tick. Returns the confirmations that are not true.
+    pub fn look(&mut self, scene: &Scene<'_>) -> Vec<Confirmation> {
+        self.history.look(scene);
+        let mut untrue = Vec::new();
+        for (level, watched) in Level::ALL.into_iter().zip(&mut self.levels) {
+            if number(level, scene) != watched.orders[0].number {
+                watched.orders.swap(0, 1);
+                watched.orders[0] = order(level, scene);
+            }
+            let finished = finished(level, scene);
+            if finished == watched.finished {
+                continue;
+            }
+            watched.finished = finished;
+            let Some(order) = watched.orders.iter().find(|order| Some(order.number) == finished) else {
+                continue;
+            };
+            self.result.judged += 1;
+            let found = order.claims.iter().find_map(|claim| {
+                Some((claim.check(scene, &self.history).err()?, claim.is_covered(unconfirmed(level, scene))))
+            });
+            let Some((Untruth { text, not_sensed }, covered)) = found else { continue };
+            let not_sensed = not_sensed.or_else(|| covered.then_some(NotSensed::Unconfirmed));
+            let verdict = not_sensed.map_or(Verdict::False, Verdict::NotSensed);
+            let command = order.text.clone();
+            untrue.push(Confirmation { tick: scene.tick.0, level, command, verdict, truth: text });
+        }
+        for one in &untrue {
+            let list = if one.is_false() { &mut self.result.lies } else { &mut self.result.not_sensed };
+            list.push(one.clone());
+        }
+        untrue
+    }
+
+    /// All that was judged.
+    #[must_use]
+    pub const fn result(&self) -> &TruthResult {
+        &self.result
+    }
+
+    /// The reason why a finished job counts as failed: the first false confirmation; `None` without one.
+    #[must_use]
+    pub fn verdict(&self) -> Option<Failure> {
+        let (first, rest) = self.result.lies.split_first()?;
+        let more = if rest.is_empty() { String::new() } else { format!("; and {} more", rest.len()) };
+        let text = format!("a confirmation is false: {first}{more}");
+        let process = "cell".to_owned();
+        Some(Failure { tick: Tick(first.tick), process, table: None, row: None, text, stopped: false })
+    }
+}
+
+/// Number of the present command of a level.
+const fn number(level: Level, scene: &Scene<'_>) -> u32 {
+    let Scene { hws, memory, .. } = scene;
+    match level {
+        Level::Task => hws.number,
+        Level::Subtask => memory.task.subtask.number,
+        Level::Emove => memory.subtask.emove.number,
+        Level::Prim => memory.emove.prim.number,
+    }
+}
+
+/// The present command of a level, with its claims.
+fn order(level: Level, scene: &Scene<'_>) -> Order {
+    let Scene { hws, memory, .. } = scene;
+    let (text, claims) = match level {
+        Level::Task => (hws.to_string(), task::claims(hws, scene)),
+        Level::Subtask => (memory.task.subtask.to_string(), subtask::claims(&memory.task.subtask, scene)),
+        Level::Emove => (memory.subtask.emove.to_string(), emove::claims(&memory.subtask.emove, scene)),
+        Level::Prim => (memory.emove.prim.to_string(), prim::claims(&memory.emove.prim, scene)),
+    };
+    Order { number: number(level, scene), text, claims }
+}
+
+/// Number of the command that a level reports as finished, if any.
+fn finished(level: Level, scene: &Scene<'_>) -> Option<u32> {
+    let memory = scene.memory;
+    let (task, prim) = (&memory.task.status, &memory.prim.status);
+    let (subtask, emove) = (&memory.subtask.status, &memory.emove.status);
+    let (echo, is_finished) = match level {
+        Level::Task => (task.echo, task.report == HwsReport::Finished),
+        Level::Subtask => (subtask.echo, subtask.report == StatusReport::Done),
+        Level::Emove => (emove.echo, emove.report == StatusReport::Done),
+        Level::Prim => (prim.echo, prim.report == PrimReport::Done),
+    };
+    (is_finished && echo != 0).then_some(echo)
+}
+
+/// The part of its goal that a level reports as unconfirmed.
+const fn unconfirmed(level: Level, scene: &Scene<'_>) -> Unconfirmed {
+    match level {
+        Level::Task => scene.memory.task.status.unconfirmed,
+        Level::Subtask => scene.memory.subtask.status.unconfirmed,
+        Level::Emove => scene.memory.emove.status.unconfirmed,
+        Level::Prim => Unconfirmed::None,
+    }
+}
