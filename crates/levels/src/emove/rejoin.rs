@@ -63,7 +63,7 @@ pub struct Rejoin {
 
 impl Rejoin {
     /// Straight to a pose.
-    pub(super) fn to(pose: Pose, parameters: TrajParaId) -> Self {
+    pub(super) const fn to(pose: Pose, parameters: TrajParaId) -> Self {
         Self { track: 0, points: [None, Some(pose)], parameters }
     }
 

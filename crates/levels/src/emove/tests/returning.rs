@@ -120,7 +120,7 @@ fn a_release_beside_the_place_corrects_first() {
     let log = bench.log();
     let at = |word: &str| log.iter().position(|text| text.contains(word));
     assert_eq!(bench.motions(), ["GOTO-PT"]);
-    assert!(at("GOTO-PT") < at("OPEN-GRIP"), "{log:?}");
+    assert!(at("GOTO-PT") < at("OPEN-GRIP") && at("OPEN-GRIP").is_some(), "{log:?}");
     assert!(bench.off(&there) < 0.01);
     assert_eq!(bench.memory.emove.status.placed.unwrap_or_default().location.as_str(), "BENCH");
 }
