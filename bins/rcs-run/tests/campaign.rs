@@ -141,7 +141,11 @@ fn drawn_disturbances_repeat_and_each_branch_is_repeated_alone() {
     for branch in branches {
         let judged = branch["judged"].as_u64().expect("it is counted");
         assert!(judged > 0, "nothing is judged: {branch}");
-        assert_eq!(branch["verdict"] == "false", branch["untrue"].to_string().contains("\"false\""), "{branch}");
+        assert_eq!(
+            branch["verdict"] == "false",
+            branch["untrue"].to_string().contains("\"false\""),
+            "{branch}"
+        );
     }
     let first = &branches[0];
     let (at, kind) = (first["at"].to_string(), first["interruption"].as_str().expect("it has a name"));

@@ -44,7 +44,8 @@ pub enum Follow {
 
 impl Follow {
     /// All, with the ends of their names.
-    pub const ALL: [(Self, &'static str); 3] = [(Self::Same, ""), (Self::Next, ":next"), (Self::Again, ":again")];
+    pub const ALL: [(Self, &'static str); 3] =
+        [(Self::Same, ""), (Self::Next, ":next"), (Self::Again, ":again")];
 
     /// The end of its name.
     pub fn text(self) -> &'static str {
@@ -205,9 +206,8 @@ pub enum Undo {
 
 /// The free parts of the cell, in the order of their numbers.
 fn free(cell: &Cell) -> Vec<u32> {
-    let had = |id: u32| {
-        cell.holders(id).is_none_or(|holders| holders.robot || holders.pedestal || holders.vise)
-    };
+    let had =
+        |id: u32| cell.holders(id).is_none_or(|holders| holders.robot || holders.pedestal || holders.vise);
     cell.parts().into_iter().map(|part| part.id).filter(|id| !had(*id)).collect()
 }
 
@@ -294,7 +294,9 @@ mod tests {
 
     #[test]
     fn a_disturbance_is_read_back_from_its_name() {
-        for text in ["jog:30:0:-5", "take:1:next", "move:2:-40:7:again", "swap:1:SHAFT", "add:DRILL-2:TOOL-TRNS:0"] {
+        for text in
+            ["jog:30:0:-5", "take:1:next", "move:2:-40:7:again", "swap:1:SHAFT", "add:DRILL-2:TOOL-TRNS:0"]
+        {
             assert_eq!(Disturbance::named(text).map(|one| one.to_string()).as_deref(), Some(text));
         }
         for text in ["jog:1:2", "take:x", "hop:1", "swap:1", "jog"] {

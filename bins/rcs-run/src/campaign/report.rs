@@ -54,7 +54,9 @@ impl Row {
     /// Number of branches that are done, and the verdicts of the others.
     fn cell(&self) -> String {
         let mut text = format!("{}/{}", self.done, self.branches);
-        for (count, word) in [(self.stranded, "stranded"), (self.hurt, "hurt"), (self.lies, "false"), (self.apart, "apart")] {
+        for (count, word) in
+            [(self.stranded, "stranded"), (self.hurt, "hurt"), (self.lies, "false"), (self.apart, "apart")]
+        {
             if count > 0 {
                 let _ = write!(text, ", {count} {word}");
             }
@@ -249,7 +251,8 @@ impl<'a> CampaignReport<'a> {
                 let interruption = smallest.as_ref().unwrap_or(interruption);
                 let command = &self.command;
                 let whole = if branch.whole { " --judge job" } else { "" };
-                let _ = writeln!(text, "        {command} --at {at} --interrupt {interruption}{whole}  ({line})");
+                let _ =
+                    writeln!(text, "        {command} --at {at} --interrupt {interruption}{whole}  ({line})");
                 if !detail.ends_with(reason) {
                     let _ = writeln!(text, "            {detail}");
                 }

@@ -201,15 +201,13 @@ impl Script {
                     }
                     self.lead = None;
                 }
-                ScriptStep::Change(what) => {
-                    match disturbance::change(&mut branch.workstation.cell, &what) {
-                        Ok((parts, undo)) => {
-                            branch.note_changed(parts);
-                            self.undo.extend(undo);
-                        }
-                        Err(why) => refused = Some(why),
+                ScriptStep::Change(what) => match disturbance::change(&mut branch.workstation.cell, &what) {
+                    Ok((parts, undo)) => {
+                        branch.note_changed(parts);
+                        self.undo.extend(undo);
                     }
-                }
+                    Err(why) => refused = Some(why),
+                },
                 ScriptStep::Undo(undo) => match disturbance::undo(&mut branch.workstation.cell, &undo) {
                     Ok(part) => branch.note_changed(vec![part]),
                     Err(why) => refused = Some(why),
@@ -278,4 +276,3 @@ fn line_faults(plan: &Plan, from: u64) -> Plan {
     }
     windowed
 }
-

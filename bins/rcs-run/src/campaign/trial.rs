@@ -351,7 +351,10 @@ impl Trial<'_, '_> {
     fn is_comparable(&self) -> bool {
         let was_interrupted = *self.kind() != Kind::None && self.next().is_none();
         let goes_on = self.following && self.motion.is_none();
-        let harmless = self.monitor.has_seen_nothing() && self.mismatch.is_none() && !self.tears && self.untrue.is_empty();
+        let harmless = self.monitor.has_seen_nothing()
+            && self.mismatch.is_none()
+            && !self.tears
+            && self.untrue.is_empty();
         Known::compares(self.branch.at()) && was_interrupted && goes_on && harmless && self.invariants.hold()
     }
 

@@ -162,8 +162,9 @@ impl CellDescription {
             let found = sectors.filter_map(|sector| Some((tray.unit.clone(), sector, tray.sector(sector)?)));
             found.collect::<Vec<_>>()
         };
-        let raised =
-            |(unit, sector, frame): (_, _, Frame)| (unit, sector, Frame { position: frame.position + up, ..frame });
+        let raised = |(unit, sector, frame): (_, _, Frame)| {
+            (unit, sector, Frame { position: frame.position + up, ..frame })
+        };
         self.tray.iter().flat_map(sectors).map(raised).collect()
     }
 }

@@ -160,6 +160,7 @@ impl Claim {
             Unconfirmed::None => false,
             Unconfirmed::GraspForce => matches!(self, Self::Holds { .. }),
             Unconfirmed::ToolInDrum => matches!(self, Self::InDrum(_)),
+            Unconfirmed::Position => matches!(self, Self::At { .. } | Self::AtPart { .. } | Self::Near { .. }),
         }
     }
 
@@ -211,14 +212,18 @@ fn is_at(cell: &Cell, goals: &[Frame], name: &str, inches: f64, degrees: f64) ->
     let nearest = goals.iter().map(away).min_by(|a, b| share(a).total_cmp(&share(b)));
     let Some((far, turned)) = nearest else { return Ok(()) };
     expect(far <= inches && turned <= degrees, || {
-        format!("the robot is {far:.3} in and {turned:.2} degrees from {name}, {inches} in and {degrees} degrees allowed")
+        format!(
+            "the robot is {far:.3} in and {turned:.2} degrees from {name}, {inches} in and {degrees} degrees allowed"
+        )
     })
 }
 
 fn is_near(cell: &Cell, goal: &Frame, inches: f64) -> Result<(), Untruth> {
     let far = apart(&cell.t3().arm().tool().position, &goal.position);
     let most = inches + LAG_INCHES;
-    expect(far <= most, || format!("the robot is {far:.2} in from the point that it passes, {most:.2} in allowed"))
+    expect(far <= most, || {
+        format!("the robot is {far:.2} in from the point that it passes, {most:.2} in allowed")
+    })
 }
 
 fn is_open(cell: &Cell, inches: f64) -> Result<(), Untruth> {
@@ -273,10 +278,8 @@ fn at_part(
         }
     };
     let changed = history.is_any_changed_since_look(object);
-    checked.map_err(|untruth| Untruth {
-        not_sensed: changed.then_some(NotSensed::ChangedAfterLook),
-        ..untruth
-    })
+    checked
+        .map_err(|untruth| Untruth { not_sensed: changed.then_some(NotSensed::ChangedAfterLook), ..untruth })
 }
 
 fn is_located(scene: &Scene<'_>, history: &History, object: &Name16, near: &Frame) -> Result<(), Untruth> {
@@ -345,8 +348,8 @@ fn is_held(
         let text = format!("the robot holds {}, not {object}", kind.name);
         let asked = cell.description().part(object.as_str());
         let same_width = asked.is_some_and(|asked| same_width(asked, kind));
-        let same_picture = asked
-            .is_some_and(|asked| is_alike(asked, kind, cell.description().camera.shape_tolerance));
+        let same_picture =
+            asked.is_some_and(|asked| is_alike(asked, kind, cell.description().camera.shape_tolerance));
         let not_sensed = if same_width && (unseen || same_picture) {
             Some(NotSensed::EqualPart)
         } else if same_width && history.is_any_changed_since_look(object.as_str()) {
@@ -447,11 +450,8 @@ fn lies_at(
             && cell.description().part(object.as_str()).is_some_and(|asked| same_width(asked, kind))
     });
     let changed = released.is_some_and(|released| history.is_changed_since(released.id, released.tick));
-    let not_sensed = if changed {
-        Some(NotSensed::ChangedAfterLook)
-    } else {
-        other.then_some(NotSensed::EqualPart)
-    };
+    let not_sensed =
+        if changed { Some(NotSensed::ChangedAfterLook) } else { other.then_some(NotSensed::EqualPart) };
     Err(Untruth { text, not_sensed })
 }
 
@@ -482,9 +482,7 @@ fn from_drum(cell: &Cell, object: &Name16) -> Option<(u32, f64, f64)> {
         let entering = cell.at_drum(part.id)?;
         Some((part.id, entering.left, entering.aside))
     };
-    named(&parts, object.as_str())
-        .filter_map(of)
-        .min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+    named(&parts, object.as_str()).filter_map(of).min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
 }
 
 fn is_in_drum(cell: &Cell, history: &History, object: &Name16) -> Result<(), Untruth> {
@@ -492,7 +490,8 @@ fn is_in_drum(cell: &Cell, history: &History, object: &Name16) -> Result<(), Unt
     let (text, id) = match from_drum(cell, object) {
         Some((_, left, aside)) if left.abs() <= seated && aside <= seated => return Ok(()),
         Some((id, left, aside)) => {
-            let text = format!("{object} is {left:.2} in before and {aside:.2} in beside its place in the drum");
+            let text =
+                format!("{object} is {left:.2} in before and {aside:.2} in beside its place in the drum");
             (text, Some(id))
         }
         None => (format!("{object} is not in the drum"), history.released().map(|released| released.id)),

@@ -80,12 +80,9 @@ impl History {
 
     /// True if a person has changed any part, or one was delivered, since the camera has looked for an object of this name.
     pub fn is_any_changed_since_look(&self, object: &str) -> bool {
-        self.looked
-            .as_ref()
-            .filter(|(_, name)| name == object)
-            .is_some_and(|(tick, _)| {
-                self.changed.values().chain(self.delivered.values()).any(|changed| changed >= tick)
-            })
+        self.looked.as_ref().filter(|(_, name)| name == object).is_some_and(|(tick, _)| {
+            self.changed.values().chain(self.delivered.values()).any(|changed| changed >= tick)
+        })
     }
 }
 

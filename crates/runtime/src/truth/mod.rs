@@ -28,9 +28,7 @@ pub mod tolerance;
 use std::fmt;
 
 use executive::failure::Failure;
-use interfaces::{
-    CommonMemory, HwsCommand, StatusReport, Unconfirmed, hws::HwsReport, prim::PrimReport,
-};
+use interfaces::{CommonMemory, HwsCommand, StatusReport, Unconfirmed, hws::HwsReport, prim::PrimReport};
 use plant::Cell;
 use rcs_core::tick::Tick;
 use serde::{Deserialize, Serialize};

@@ -23,10 +23,7 @@ pub fn claims(command: &SubtaskCommand, scene: &Scene<'_>) -> Vec<Claim> {
         SubtaskVerb::GetObject => vec![held(source)],
         SubtaskVerb::PlaceObj => {
             let placed = object.zip(goal(destination));
-            vec![
-                Some(Claim::HoldsNothing),
-                placed.map(|(object, goal)| Claim::Placed { object, goal }),
-            ]
+            vec![Some(Claim::HoldsNothing), placed.map(|(object, goal)| Claim::Placed { object, goal })]
         }
         SubtaskVerb::GotoEndpt | SubtaskVerb::GotoDest => vec![at(base, command.location)],
         SubtaskVerb::MoveObjToDest => vec![held(destination), at(goal(destination), command.location)],

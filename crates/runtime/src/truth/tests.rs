@@ -73,8 +73,7 @@ impl Bench {
 
     fn check(&self, claim: &Claim) -> Result<(), Untruth> {
         let data = &self.store.view();
-        let scene =
-            Scene { tick: TICK, hws: &self.hws, memory: &self.memory, data, cell: &self.cell };
+        let scene = Scene { tick: TICK, hws: &self.hws, memory: &self.memory, data, cell: &self.cell };
         claim.check(&scene, &self.history)
     }
 
@@ -248,7 +247,11 @@ fn a_false_confirmation_fails_the_run_with_its_level_and_command() {
     assert!(command.starts_with("MOV-TO-LOC") && truth.contains("from SAFE"), "{command}: {truth}");
     let failure = check.verdict().expect("the run has failed");
     assert_eq!(failure.tick, Tick(2));
-    assert!(failure.text.starts_with("a confirmation is false: E-move reports MOV-TO-LOC"), "{}", failure.text);
+    assert!(
+        failure.text.starts_with("a confirmation is false: E-move reports MOV-TO-LOC"),
+        "{}",
+        failure.text
+    );
 }
 
 #[test]
