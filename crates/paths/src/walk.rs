@@ -12,7 +12,8 @@ use interfaces::{
 };
 use levels::{
     emove::{
-        route::{Goal, LegGoal, Planning, Route},
+        robot_place::place,
+        route::{Goal, LegGoal, Planning, Route, THERE_INCHES, THERE_RADIANS, near, same_location},
         tables::{Action, Request, accept::accept},
     },
     execution::Asked,
@@ -195,9 +196,21 @@ impl<'a> Walk<'a> {
     fn goal_and_route(&self, command: &EmoveCommand, at: &Location) -> Result<(Goal, Route), Planning> {
         let found = self.found.filter(|_| command.command == EmoveVerb::MovToObj);
         let goal = Goal::new(command, &found.unwrap_or(at.frame), &self.data)?;
-        let mut route = Route::plan(command, &goal, &self.place, &self.data)?;
+        let to = goal.place(command);
+        // The walked robot stands where it was sent.
+        let mut route = if self.is_at(&to) {
+            Route::here(&self.place, &to, goal.opening)
+        } else {
+            Route { opening: goal.opening, ..Route::between(&self.place, &to, &self.data)? }
+        };
         (route.departure, route.goal) = (DEPARTURE, GOAL);
         Ok((goal, route))
+    }
+
+    /// Does the robot stand at the pose of a goal, at the same location?
+    fn is_at(&self, to: &RobotPlace) -> bool {
+        let (Ok(here), Ok(there)) = (self.place.pose.to_frame(), to.pose.to_frame()) else { return false };
+        same_location(&place(&self.place), &place(to)) && near(&here, &there, THERE_INCHES, THERE_RADIANS)
     }
 
     /// Adds the legs of a route with their times, and the entries of the task data that it uses.
