@@ -110,6 +110,7 @@ pub(super) mod tests {
             destination_sector: Some(4),
             end_at: Some(name("SAFE")),
             end_at_sector: None,
+            ..HwsCommand::default()
         }
     }
 

@@ -206,7 +206,7 @@ mod tests {
         for &unconfirmed in Unconfirmed::ALL {
             let finished =
                 HwsStatus { report: HwsReport::Finished, reason: Reason::None, unconfirmed, ..failed() };
-            let bytes = encode(&finished, Detail::None, TaskState::Runs, 0, None);
+            let bytes = encode(&finished, Why::Reason(Detail::None), TaskState::Runs, 0);
             let status = decode(&bytes).unwrap();
             let text = match unconfirmed {
                 Unconfirmed::None => String::new(),

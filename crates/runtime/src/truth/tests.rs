@@ -34,10 +34,10 @@ struct Bench {
 impl Bench {
     fn new() -> Self {
         let data = Path::new(DATA);
-        let TaskFiles { store, job, job_path, .. } =
-            TaskFiles::load(data, Some("linkbar")).expect("the job is shipped");
+        let mut files = TaskFiles::load(data, Some("linkbar"), false).expect("the job is shipped");
         let CellFile { description, .. } =
-            CellFile::load(data, &store, &job, &job_path).expect("the cell is shipped");
+            CellFile::load(data, &mut files, false).expect("the cell is shipped");
+        let TaskFiles { store, .. } = files;
         let cell = Cell::new(&description, 1).expect("the cell is sound");
         Self {
             store,
