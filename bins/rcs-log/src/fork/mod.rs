@@ -9,12 +9,7 @@ mod datum;
 mod error;
 mod repetition;
 
-use std::{
-    fmt, fs,
-    path::PathBuf,
-    process::ExitCode,
-    time::Instant,
-};
+use std::{fmt, fs, path::PathBuf, process::ExitCode, time::Instant};
 
 use interfaces::ExternalInputs;
 use os_io::replace::{Format, check_output};

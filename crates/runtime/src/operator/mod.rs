@@ -10,6 +10,7 @@
 //! One operator commands at a time: the first that sends a request that moves something, until it sends `leave` or
 //! disconnects. Stops are accepted from every operator.
 
+mod by_hand;
 mod request;
 mod source;
 mod terminals;
@@ -178,6 +179,7 @@ impl Operator {
                 match request {
                     Ok(Request::Status) => return Ok(self.status(around)),
                     Ok(Request::Data) => return Ok(directory(around.data)),
+                    Ok(Request::Pedestal) => return Ok(by_hand::state(around.memory)),
                     _ => {}
                 }
                 request.and_then(|request| self.obey(who, request, around))
@@ -234,6 +236,7 @@ impl Operator {
         match request {
             Request::Status => Ok(self.status(around)),
             Request::Data => Ok(directory(around.data)),
+            Request::Pedestal => Ok(by_hand::state(around.memory)),
             Request::Stop => {
                 self.is_stopped = true;
                 Ok("the velocity knob is at 0; `go` turns it back".to_owned())
@@ -276,7 +279,9 @@ impl Operator {
             }
             Request::StandAlone { now } => around.neighbours.take_command(tick, around.memory, now),
             Request::Workstation => around.neighbours.give_command(tick, around.memory),
-            Request::Terminal(entry) => self.terminals.enter(entry, around.memory, &around.store.view()),
+            Request::Terminal(entry) => {
+                self.terminals.enter(entry, tick, around.memory, &around.store.view())
+            }
             Request::Cell(action, line) => around.workstation.begin_line(&action, &line).map(|()| done),
         }
     }

@@ -160,7 +160,9 @@ impl Claim {
             Unconfirmed::None => false,
             Unconfirmed::GraspForce => matches!(self, Self::Holds { .. }),
             Unconfirmed::ToolInDrum => matches!(self, Self::InDrum(_)),
-            Unconfirmed::Position => matches!(self, Self::At { .. } | Self::AtPart { .. } | Self::Near { .. }),
+            Unconfirmed::Position => {
+                matches!(self, Self::At { .. } | Self::AtPart { .. } | Self::Near { .. })
+            }
         }
     }
 
