@@ -2,7 +2,7 @@
 //!
 //! Raw words only: counts, bits and bytes. The process that owns the device scales them.
 
-use rcs_core::Plain;
+use rcs_core::{Plain, name::Name10};
 
 pub use super::vision::{Picture, VisionRequest, VisionResponse, VisionStatus};
 pub use depc::link::{LINK_BYTES, LinkBytes};
@@ -282,6 +282,9 @@ pub struct DeviceInputs {
     pub vision: VisionResponse,
     /// Active Pedestal.
     pub pedestal: PedestalSensors,
+    /// Location of the vise whose jaws have closed on a part, as the vise reports it (extension); none if it reports
+    /// nothing.
+    pub clamping: Option<Name10>,
 }
 
 /// Everything that the controller writes to its devices in a tick.

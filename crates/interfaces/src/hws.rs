@@ -8,6 +8,8 @@ use super::words::{location, name};
 use crate::{
     ChangingPose, Header, Reason, Unconfirmed,
     data_base::{Connection, DataBaseBeliefs, DataBaseCommand},
+    emove::Standing,
+    operator::Support,
     subtask::{SubtaskCommand, SubtaskVerb},
 };
 
@@ -94,6 +96,16 @@ pub struct Ledger {
     pub told: bool,
 }
 
+/// A person has confirmed that what the gripper holds will not fall when it opens. The statement counts as long as the
+/// robot stands where it stood then, and holds something. It is an output, so that a Task that is restarted knows it.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Confirmed {
+    /// What keeps the object from falling.
+    pub by: Support,
+    /// Where the robot stands.
+    pub at: Option<Standing>,
+}
+
 /// T-POSE-1 to T-POSE-3 (VII.1).
 pub const TASK_POSES: usize = 3;
 
@@ -114,6 +126,8 @@ pub struct TaskOutputs {
     pub beliefs: DataBaseBeliefs,
     /// The last command about an object or a tool that is not finished (extension).
     pub ledger: Option<Ledger>,
+    /// A person's statement about what the gripper holds, as long as it counts (extension).
+    pub confirmed: Option<Confirmed>,
     /// T-POSE-1 …: poses that the commands name.
     pub poses: [ChangingPose; TASK_POSES],
 }

@@ -219,28 +219,27 @@ pub enum Reason {
     GripperGone,
     /// Vision answers what its camera cannot have seen.
     VisionImplausible,
-    /// It is not known whether the gripper holds something: calibrate it, or open it by RELEASE.
+    /// It is not known whether the gripper holds something.
     HeldNotKnown,
-    /// The robot changes a gripper in a holster: send the command that does so again.
+    /// A gripper change was interrupted while the robot was in a holster.
     InHolster,
-    /// A gripper is mated and the locking ring is not locked: send the gripper change again.
+    /// A gripper is mated and the locking ring is not locked.
     RingNotLocked,
-    /// A holster is gone to only in order to change the gripper.
+    /// The robot moves to a holster only in order to change the gripper.
     HolsterOnly,
-    /// The robot was stopped where it can only go on: send the interrupted command again.
+    /// The robot was stopped on a path that it can only continue forward.
     ForwardOnly,
-    /// An order has changed nothing: see what hinders it, then send the command again.
+    /// An order was carried out and has changed nothing.
     NoEffect,
-    /// The gripper holds something unknown: take it out, or let it go with POSITION.
+    /// The gripper holds something unknown.
     UnknownHeld,
-    /// The part is in the pedestal's hand: send the command that regrips it again, or open the hand at the
-    /// pedestal.
+    /// The part is in the pedestal's hand.
     PartInPedestal,
-    /// What is in the pedestal's hand is not the object of the command: open the hand at the pedestal.
+    /// The part in the pedestal's hand is not known to be the object of the command.
     PedestalHoldsOther,
-    /// The source and destination grips are equal: nothing is to be regripped.
+    /// The source and destination grips are equal, so there is nothing to regrip.
     EqualGrips,
-    /// A tool is acquired from TOOL-SAFE: name that as the destination.
+    /// The destination of ACQUIRE-TOOL is not TOOL-SAFE.
     NotNearDrum,
     /// The pedestal's hand closed on nothing.
     HandMissed,
@@ -252,23 +251,21 @@ pub enum Reason {
     HandTimeout,
     /// The pedestal's hand cannot reach the commanded opening or force.
     HandUnattainable,
-    /// The sensors of the pedestal's hand do not tell whether it holds the object.
+    /// The sensors of the pedestal's hand do not show whether it holds the object.
     HandUncertain,
     /// The angle of the pedestal's rotary table is not known.
     TableAngleUnknown,
-    /// The robot is not where it was sent. Look where it is; PAUSE takes its position over.
+    /// The robot is not where it was sent.
     RobotElsewhere,
-    /// The robot is half way at the tool drum: send the tool command again.
+    /// The robot was stopped half-way into the tool drum or out of it.
     InDrum,
-    /// The id pins of the quick change name another gripper, or none, at a locked ring: see to their contact, or
-    /// put the gripper back on; send the command again.
+    /// The id pins of the quick change name another gripper, or none, at a locked ring.
     PinsFail,
-    /// All is done, and the robot has been sent away from where the command leaves it: send the next command.
+    /// The command is complete, and the robot has since left the place where the command ends.
     SentAway,
-    /// An object is held, and the robot is not where POSITION would let it go: bring it there with MOVE, or place it
-    /// with TRANSFER.
+    /// An object is held where nothing would support it.
     HeldElsewhere,
-    /// The fingers have not let go of an object whose release was begun: send the command that releases it again.
+    /// The release of an object was interrupted, and the fingers still hold it.
     ReleaseNotEnded,
     /// The object lies too near to the edge of its tray for the open fingers.
     AtTrayEdge,
@@ -284,6 +281,10 @@ pub enum Reason {
     ForceUncalibrated,
     /// The command does not pass the check against the task data.
     CheckFailed,
+    /// An object is brought to the pedestal only in order to regrip it.
+    PedestalOnly,
+    /// The vise is not known to clamp the object.
+    NotClamped,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

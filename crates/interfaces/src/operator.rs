@@ -9,10 +9,13 @@
 //! | `.R` on board 2 | `robot_init` changes: E-move gives Prim ROBOT-INIT (SPECNOTES.md, contradiction 13) |
 //! | DB-DONE in block 903 | `db_done` |
 //! | `<= VALUE` of a variable of a process that is not stepped | an entry of `writes`, for a tick |
+//!
+//! Two inputs have no word in the manual (SPECNOTES.md): `pedestal` is an order to the Active Pedestal, and `confirmed`
+//! is a person's statement that what the gripper holds will not fall. Both are present for a tick.
 
 use rcs_core::{Plain, name::Name16};
 
-use crate::{CommonMemory, ProcessId};
+use crate::{CommonMemory, ProcessId, pedestal::PedestalVerb};
 
 /// Numbers of the boards on which something runs (IV.2.2), in the order of their bits.
 pub const BOARDS: [u8; 5] = [0, 2, 4, 6, 8];
@@ -31,6 +34,34 @@ pub struct OperatorInputs {
     pub db_done: bool,
     /// Values that are written in this tick, in this order.
     pub writes: [Option<Write>; WRITES],
+    /// Order to the Active Pedestal, in the tick in which Subtask is to send it.
+    pub pedestal: Option<HandOrder>,
+    /// Statement about what the gripper holds, in the tick in which Task is to note it.
+    pub confirmed: Option<Support>,
+}
+
+/// An order of a person to the Active Pedestal, which Subtask sends if nothing speaks against it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct HandOrder {
+    /// The command.
+    pub command: PedestalVerb,
+    /// PRE-GRIP, GRIP: the object, whose PED-PARA record (VII.7.4) has opening, force and angle.
+    pub object: Option<Name16>,
+    /// FLIP: relative angle, 0.1 degree.
+    pub table_angle: i32,
+    /// RELEASE: the person holds the part by hand.
+    pub by_hand: bool,
+}
+
+/// What keeps the object from falling when the gripper opens, as a person has confirmed it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Support {
+    /// The vise at which the robot stands clamps it.
+    #[text = "clamped"]
+    Clamped,
+    /// The person holds it, or has taken it out.
+    #[text = "by hand"]
+    ByHand,
 }
 
 /// Most values that are written in a tick.

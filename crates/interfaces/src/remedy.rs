@@ -48,7 +48,8 @@ impl Reason {
             | Self::EqualGrips
             | Self::NotNearDrum
             | Self::HolsterOnly
-            | Self::RegripNeeded => "correct the command in the job",
+            | Self::RegripNeeded => "send the right command, then `job skip`; correct the job",
+            Self::PedestalOnly => "send REFIXTURE, which regrips the object on the pedestal, then `job skip`",
             Self::UnknownObject
             | Self::UnknownLocation
             | Self::SectorOutOfRange
@@ -66,29 +67,49 @@ impl Reason {
             | Self::PedestalCannot
             | Self::TableLimit
             | Self::CheckFailed
-            | Self::InterfaceRefused => "correct the command in the job, or the task data",
-            Self::NotPrepared => "send the commands that must precede it again, or correct the job",
-            Self::NeighbourLost | Self::InterfaceSilent => "restart the lost process",
+            | Self::InterfaceRefused => {
+                "correct the command in the job, or correct the task data and load them"
+            }
+            Self::NotPrepared => "send the commands that must precede it, or correct the job",
+            Self::NeighbourLost | Self::InterfaceSilent => "restart the program of the lost process",
             Self::JoystickOn => "switch the frame at the joystick box off",
             Self::OffPlace => {
                 "move the robot back to its place with the joystick box, or open the fingers there"
             }
-            Self::UnknownStart => "move the robot to one of the known places with the joystick box",
-            Self::RobotElsewhere => "check where the robot is; PAUSE takes its position over",
-            Self::OffPath => "check where the robot is and what holds it; PAUSE takes its position over",
+            Self::UnknownStart => {
+                "move the robot back to a known location with the joystick box, and switch the frame off"
+            }
+            Self::RobotElsewhere => "check where the robot is, then send PAUSE, which adopts its position",
+            Self::OffPath => {
+                "check where the robot is and what holds it, then send PAUSE, which adopts its position"
+            }
             Self::LinkOff => {
                 "press Hold again or cycle start at the robot controller's panel, if it shows HOLD; \
                  else start it up there"
             }
-            Self::AlreadyHolding | Self::HeldElsewhere => "send the command that places the held object",
-            Self::ObjectLost => "take the object away, and put it back to where the command takes it from",
-            Self::UnknownHeld => "take out what the gripper holds, or let it go with POSITION",
-            Self::HeldNotKnown => "take out what the gripper may hold, and send POSITION",
-            Self::GripperGone => "put the gripper into its holster, and the object back to its place",
+            Self::AlreadyHolding => "send the command that places the held object",
+            Self::HeldElsewhere => {
+                "place the object with TRANSFER, or hold it, send `confirm by hand`, and send POSITION again"
+            }
+            Self::NotClamped => {
+                "close the vise; if it reports nothing, look at it and send `confirm clamped`"
+            }
+            Self::ObjectLost => "take the object away, and put it back at the command's source location",
+            Self::UnknownHeld => {
+                "hold the object, send `confirm by hand`, then POSITION to the place where the robot stands; \
+                 put the object back at its place"
+            }
+            Self::HeldNotKnown => {
+                "hold what the gripper may hold, send `confirm by hand`, then POSITION to the place where the \
+                 robot stands"
+            }
+            Self::GripperGone => "put the gripper into its holster, and the object back at its place",
             Self::HolsterOccupied => "empty the holster",
             Self::HolsterEmpty => "put the gripper into its holster",
             Self::InHolster | Self::RingNotLocked => "send the command that changes the gripper again",
-            Self::InDrum => "send the interrupted tool command again",
+            Self::InDrum => {
+                "send the interrupted tool command again; RELEASE-TOOL moves an empty gripper out of the drum"
+            }
             Self::ReleaseNotEnded => "send the command that releases the object again",
             Self::AtTrayEdge => "put the object farther from the edge of its tray",
             Self::DrumOccupied => {
@@ -104,17 +125,21 @@ impl Reason {
             }
             Self::SentAway => "send the next command",
             Self::ForwardOnly => "send the interrupted command again",
-            Self::NotDetected | Self::Detected => {
-                "look at what the sensor meets on the way, and put it right"
-            }
+            Self::NotDetected | Self::Detected => "correct what the sensor meets, or the sensor itself",
             Self::PartInPedestal => {
-                "send the command that regrips the part again, or open the hand at the pedestal"
+                "send the command that regrips the part again; or hold the part and send \
+                 `pedestal release by hand`"
             }
             Self::PedestalHoldsOther | Self::HandUncertain => {
-                "check what is in the pedestal's hand, and open it at the pedestal"
+                "look at the part in the pedestal's hand: name it with `write subtask.regrip`, or hold it and \
+                 send `pedestal release by hand`"
             }
-            Self::HandLost => "take the object out of the pedestal, and put it back to its place",
-            Self::HandNotCalibrated | Self::TableAngleUnknown => "calibrate the Active Pedestal",
+            Self::HandLost => "take the object out of the pedestal, and put it back at its place",
+            Self::HandNotCalibrated => "check the sensors and the air of the pedestal's hand",
+            Self::TableAngleUnknown => {
+                "hold the part, send `pedestal release by hand`, and put the part back at its place; the next \
+                 PRE-GRIP calibrates the table"
+            }
         })
     }
 }

@@ -20,6 +20,8 @@ pub mod named {
     pub const TOOL_TRNS: &str = "TOOL-TRNS";
     /// The location near the tool drum from which tools are inserted (V.4.1 INSERT-TOOL).
     pub const TOOL_SAFE: &str = "TOOL-SAFE";
+    /// Owner of the fixtures in which a part stays by its weight (VII.5).
+    pub const NESTS: &str = "VFIXTURE";
     /// Owner of the locations that the data base keeps account of, the MBD: UNIT_1 and UNIT_2 (VII.5).
     pub const MBD: &str = "UNIT";
 }

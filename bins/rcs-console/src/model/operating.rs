@@ -217,7 +217,15 @@ impl Model {
                 operating.cursor = operating.cursor.saturating_sub(1);
                 return true;
             }
-            Key::Enter => panels::KEYS.get(operating.cursor).copied().unwrap_or_default().to_owned(),
+            Key::Enter => {
+                let chosen = panels::KEYS.get(operating.cursor).copied().unwrap_or_default();
+                if let Some(words) = chosen.strip_suffix(panels::TO_NAME) {
+                    operating.back = 0;
+                    self.prompt = Some(Prompt::Request(words.to_owned()));
+                    return true;
+                }
+                chosen.to_owned()
+            }
             _ => return false,
         };
         let moves = matches!(key, Key::Up | Key::Down | Key::Left | Key::Right | Key::PageUp | Key::PageDown);

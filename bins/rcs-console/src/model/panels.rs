@@ -1,9 +1,16 @@
-//! The panel screen: joystick box (III.3.3), robot controller (IV.3.3), emergency stops (III.6) and rotary table (IV.1
-//! step 3) in their present state, and the requests to a run.
+//! The panel screen: joystick box (III.3.3), robot controller (IV.3.3), emergency stops (III.6), rotary table (IV.1
+//! step 3) and Active Pedestal (VI.7) in their present state, and the requests to a run.
 
 use executive::memory::cell::TableView;
-use interfaces::device::{
-    DeviceInputs, JoystickBox, KNOB_FULL, PedestalSensors, TABLE_STEPS_PER_TENTH, joystick_frame, single_step,
+use geometry::units::inches;
+use interfaces::{
+    CommonMemory,
+    device::{
+        DeviceInputs, JoystickBox, KNOB_FULL, PedestalSensors, TABLE_STEPS_PER_TENTH, joystick_frame,
+        single_step,
+    },
+    grip::Felt,
+    pedestal::PedestalVerb,
 };
 
 use super::{
@@ -13,7 +20,7 @@ use super::{
 use crate::source::Cell;
 
 /// The requests of the key list, in order.
-pub const KEYS: [&str; 36] = [
+pub const KEYS: [&str; 45] = [
     "job go",
     "job wait",
     "job skip",
@@ -49,21 +56,39 @@ pub const KEYS: [&str; 36] = [
     "table step-",
     "table reset",
     "table mode prog",
+    "pedestal pause",
+    "pedestal pre-grip OBJECT",
+    "pedestal grip OBJECT",
+    "pedestal flip 180",
+    "pedestal flip -180",
+    "pedestal release",
+    "pedestal release by hand",
+    "confirm clamped",
+    "confirm by hand",
     "leave",
 ];
+/// Word of a key that the operator replaces by a name before it is sent.
+pub const TO_NAME: &str = "OBJECT";
 /// Number of keys shown around the cursor.
 const SHOWN: usize = 3;
 /// The emergency stops, in the order of the cell.
 const ESTOPS: [&str; 5] =
     ["control panel", "teach pendant", "terminals", "joystick box", "near the pedestal"];
 
-/// The sections: box, controller and keys, from top to bottom.
+/// The sections: box, controller, pedestal and keys, from top to bottom.
 #[must_use]
-pub fn sections(devices: &DeviceInputs, cell: &Cell, operating: Option<&Operating>) -> Vec<Section> {
+pub fn sections(
+    devices: &DeviceInputs,
+    memory: &CommonMemory,
+    cell: &Cell,
+    operating: Option<&Operating>,
+) -> Vec<Section> {
     let mut sections = vec![joystick_box(&devices.joystick, operating), controller(cell)];
+    let mut lines = vec![pedestal(memory)];
     if let Cell::Shown(view) = cell {
-        sections.push(rotary_table(&devices.pedestal, view.table));
+        lines.push(rotary_table(&devices.pedestal, view.table));
     }
+    sections.push(Section::new("active pedestal", lines));
     match operating {
         Some(operating) => sections.push(keys(operating)),
         None => sections.push(look_only()),
@@ -151,7 +176,7 @@ fn controller(cell: &Cell) -> Section {
 }
 
 /// The counter of the table, in degrees with two decimals (IV.1 step 3).
-fn rotary_table(sensors: &PedestalSensors, panel: TableView) -> Section {
+fn rotary_table(sensors: &PedestalSensors, panel: TableView) -> Text {
     let counter = f64::from(sensors.motor_counter) / f64::from(TABLE_STEPS_PER_TENTH * 10);
     let at = match (sensors.limit_plus, sensors.limit_minus) {
         (true, _) => "at its + limit",
@@ -166,8 +191,28 @@ fn rotary_table(sensors: &PedestalSensors, panel: TableView) -> Section {
         TableView { manual: true, .. } => format!("power on, mode {mode}: RUN, STEP and RESET count"),
         _ => format!("power on, mode {mode}: turn it off and on"),
     };
-    let line = Text::plain(format!(" counter {counter:>7.2}, {at}; {shown}"));
-    Section::new("rotary table controller", vec![line])
+    Text::plain(format!(" counter {counter:>7.2}, {at}; {shown}"))
+}
+
+/// Hand and table of the Active Pedestal, and its last command.
+fn pedestal(memory: &CommonMemory) -> Text {
+    let status = &memory.pedestal.status;
+    let part = memory.subtask.regrip.map_or_else(|| "a part".to_owned(), |regrip| regrip.object.to_string());
+    let holds = match status.felt {
+        Felt::Something if status.gripped => format!("holds {part}"),
+        Felt::NotKnown if status.gripped => format!("may hold {part}"),
+        Felt::Something | Felt::Nothing | Felt::NotKnown => "holds nothing".to_owned(),
+    };
+    let angle = status.table_position.map_or_else(
+        || "at no known angle".to_owned(),
+        |tenths| format!("at {:.1} deg", f64::from(tenths) / 10.0),
+    );
+    let opening = inches(status.grip_size);
+    let command = match memory.subtask.pedestal.command {
+        PedestalVerb::None => "no command",
+        verb => verb.text(),
+    };
+    Text::plain(format!(" hand {holds}, {opening:.2} in open; table {angle}; {command} {}", status.report))
 }
 
 fn keys(operating: &Operating) -> Section {

@@ -176,7 +176,7 @@ fn screen(
             Screen::Panels => {
                 let devices = DeviceInputs { joystick: model.joystick(), ..picture.external.devices };
                 let cell = source.cell(picture.tick.0);
-                let sections = panels::sections(&devices, &cell, model.operating.as_ref());
+                let sections = panels::sections(&devices, &picture.memory, &cell, model.operating.as_ref());
                 panes::column(&sections, model, look, width, room)
             }
         },

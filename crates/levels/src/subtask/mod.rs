@@ -15,6 +15,7 @@
 //!
 //! * [`state`]: the state of Subtask;
 //! * `pedestal_hand`: the part in the pedestal's hand;
+//! * [`manual`]: orders of a person to the pedestal;
 //! * [`aims`]: objects and locations of the commands to E-move;
 //! * [`preprocess`]: the state variables;
 //! * [`tables`]: the decision tables, one file per command;
@@ -22,6 +23,7 @@
 
 pub mod aims;
 pub mod goals;
+pub mod manual;
 mod pedestal_hand;
 pub mod postprocess;
 pub mod preprocess;
@@ -36,13 +38,18 @@ use interfaces::{
     process::{Inputs, Process},
     subtask::Regrip,
 };
-use rcs_core::table::{Table, Variables as _};
+use rcs_core::table::{Table, Variables as _, Verdict};
 use taskdata::files::TaskData;
 
 use self::{
     state::State,
-    tables::{Action, Seen, Step, number},
+    tables::{
+        Action, Seen, Step,
+        by_hand::{Manually, by_hand},
+        number,
+    },
 };
+
 /// The Subtask process.
 #[derive(Clone, Debug, Default)]
 pub struct Subtask {
@@ -57,7 +64,7 @@ impl<'d> Process<TaskData<'d>> for Subtask {
     type State = State;
     type Outputs = SubtaskOutputs;
     type Seen = Seen;
-    type Action = Action;
+    type Action = (Action, Option<Manually>);
 
     const NAME: &'static str = "Subtask";
     const TABLES: &'static [&'static Table] = tables::TABLES;
@@ -66,18 +73,25 @@ impl<'d> Process<TaskData<'d>> for Subtask {
         self.state.sense(inputs)
     }
 
-    fn decide(&mut self, seen: &Seen) -> Action {
+    fn decide(&mut self, seen: &Seen) -> (Action, Option<Manually>) {
         let State { execution, step, .. } = &mut self.state;
         let input = (seen.arrival, &seen.replaced, seen.situation.code());
         let goal = (number::CONFIRM, (tables::goal(seen.verb), seen.proof));
         let first = Step::first(seen.verb);
         let decided = execution.command(input, goal, first, step, |step| tables::decide(step, seen));
-        decided.unwrap_or(Action::Wait)
+        let manually = match by_hand((), &seen.manual) {
+            Verdict::Passed(()) => None,
+            Verdict::Decided(decision) => {
+                execution.rows.beside(&decision.of(number::BY_HAND));
+                Some(decision.action)
+            }
+        };
+        (decided.unwrap_or(Action::Wait), manually)
     }
 
     fn postprocess(
         &mut self,
-        action: Action,
+        (action, manually): (Action, Option<Manually>),
         seen: &Seen,
         inputs: &Inputs<'_, TaskData<'d>>,
         outputs: &mut SubtaskOutputs,
@@ -87,6 +101,9 @@ impl<'d> Process<TaskData<'d>> for Subtask {
             state.publish_poses(outputs);
         }
         state.act(action, seen, inputs, outputs);
+        if manually == Some(Manually::Send) {
+            state.command_manually(inputs, outputs);
+        }
         state.report(inputs, outputs);
     }
 

@@ -6,12 +6,13 @@ use interfaces::{
     pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
     pose_range,
     process::Inputs,
-    subtask::{SubtaskStatus, SubtaskVerb},
+    subtask::{Regrip, SubtaskStatus, SubtaskVerb},
 };
 use taskdata::files::TaskData;
 
 use super::{
     aims::Aim,
+    manual,
     pedestal_hand::{pedestal_hand, turned},
     preprocess::location_pose,
     state::State,
@@ -127,6 +128,22 @@ impl State {
             grasp_force,
             table_angle,
         };
+    }
+
+    /// Send the order of a person to the pedestal. It is no order of the current command, which goes on.
+    pub(super) fn command_manually(
+        &mut self,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut SubtaskOutputs,
+    ) {
+        let Some(order) = &inputs.external.operator.pedestal else { return };
+        let regrip = self.regrip.map(|regrip| regrip.object);
+        let command = manual::command(order, regrip.as_ref(), inputs.data);
+        if order.command == PedestalVerb::Grip {
+            self.regrip = order.object.map(|object| Regrip { object });
+        }
+        let number = self.pedestal.send(inputs.tick);
+        outputs.pedestal = PedestalCommand { cycle: inputs.tick, number, ..command };
     }
 
     /// Stop the pedestal if it was commanded to move; otherwise send nothing. True if Subtask has to wait for it.

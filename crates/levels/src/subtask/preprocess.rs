@@ -14,11 +14,12 @@ use taskdata::files::TaskData;
 use super::{
     aims::{Aim, Aims},
     goals::proof,
+    manual::{manual, robot_there},
     pedestal_hand::{hand, pedestal_hand, turn},
     state::State,
     tables::{
-        Drum, Exchange, GripHeld, Gripper, Hindrance, Named, Ordered, Orders, Pedestal, PedestalData,
-        Request, Robot, Seen, Situation, Vision, Where,
+        Drum, Exchange, GripHeld, Gripper, Hindrance, Leaving, Named, Ordered, Orders, Pedestal,
+        PedestalData, Request, Robot, Seen, Situation, Vision, Where, by_hand::RobotThere,
     },
 };
 use crate::{
@@ -50,7 +51,14 @@ impl State {
                 pedestal: pedestal_hand(&inputs.memory.pedestal.status),
                 verb: command.command,
                 gripper: situation.gripper,
+                robot: leaving(inputs),
             },
+            manual: manual(
+                &inputs.external.operator.pedestal.unwrap_or_default(),
+                inputs.tick,
+                inputs.memory,
+                inputs.data,
+            ),
             orders: Orders { ordered: self.ordered, emove, pedestal },
             proof: proof(command, &situation, &inputs.memory.emove.status, &inputs.memory.pedestal.status),
             situation,
@@ -245,6 +253,15 @@ fn robot(emove: &EmoveStatus, aims: &Aims) -> Robot {
         Robot::Safe
     } else {
         Robot::Away
+    }
+}
+
+/// May the robot leave while the pedestal holds a part?
+fn leaving(inputs: &Inputs<'_, TaskData<'_>>) -> Leaving {
+    let is_empty = inputs.memory.emove.status.held == Holding::Nothing;
+    match robot_there(inputs.memory, inputs.data) {
+        RobotThere::Clear if is_empty => Leaving::Empty,
+        RobotThere::Clear | RobotThere::Near | RobotThere::Grips => Leaving::Bound,
     }
 }
 

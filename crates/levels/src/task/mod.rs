@@ -29,6 +29,7 @@ pub mod plan;
 pub mod postprocess;
 pub mod preprocess;
 pub mod state;
+pub mod support;
 pub mod tables;
 #[cfg(test)]
 mod tests;
@@ -119,6 +120,7 @@ impl<'d> Process<TaskData<'d>> for Task {
         if state.execution.accepted(seen.asked) {
             state.begin(&seen.plan, inputs, outputs);
         }
+        outputs.confirmed = state.confirmed;
         state.take_over(takeover, inputs, outputs);
         state.act(action, seen, inputs, outputs);
         state.report(inputs, outputs);

@@ -2,7 +2,7 @@
 //! IV.1.
 
 use geometry::pose::Pose;
-use interfaces::{ChangingPose, HwsCommand, subtask::LocationKind};
+use interfaces::{ChangingPose, HwsCommand, emove::ObjectGrip, subtask::LocationKind};
 use rcs_core::{
     Plain,
     name::{Name10, Name16},
@@ -79,6 +79,15 @@ pub enum Near {
     /// It is not, or is not named.
     No,
     /// It is TOOL-SAFE.
+    Yes,
+}
+
+/// Is a location the Active Pedestal?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum AtPedestal {
+    /// It is not, or is not named.
+    No,
+    /// It is PEDESTAL.
     Yes,
 }
 
@@ -325,6 +334,19 @@ impl Plan {
         }
     }
 
+    /// The site to which POSITION goes: the source, or the destination if the source is null (SPECNOTES.md,
+    /// contradiction 24).
+    #[must_use]
+    pub const fn position_site(&self) -> &Site {
+        if self.source.location.is_some() { &self.source } else { &self.destination }
+    }
+
+    /// The object of POSITION, with its grip at the position.
+    #[must_use]
+    pub fn object_at_position(&self) -> Option<ObjectGrip> {
+        self.object.map(|object| ObjectGrip { object, grip: self.position_site().grip })
+    }
+
     /// The site with the grip of a tool command's tool: the source if the tool has its grip, else the
     /// destination.
     #[must_use]
@@ -352,6 +374,13 @@ impl Site {
     pub fn near_drum(&self) -> Near {
         let near = self.location.is_some_and(|location| location.name.as_str() == named::TOOL_SAFE);
         if near { Near::Yes } else { Near::No }
+    }
+
+    /// Is the location the Active Pedestal?
+    #[must_use]
+    pub fn at_pedestal(&self) -> AtPedestal {
+        let there = self.location.is_some_and(|location| location.name.as_str() == named::PEDESTAL);
+        if there { AtPedestal::Yes } else { AtPedestal::No }
     }
 
     /// Is the location named?

@@ -2,7 +2,7 @@
 
 use interfaces::{
     emove::{Holding, Offset, Standing},
-    hws::Checked,
+    hws::{Checked, Confirmed},
     process::Inputs,
     subtask::{SubtaskStatus, SubtaskVerb},
 };
@@ -14,6 +14,7 @@ use super::{
     ledger::{Part, Placed, is_from_elsewhere, is_taken, placed, resumed},
     plan::{Found, Plan, Resumed, Site, TOOL_GRIPPER, TaskVerb},
     state::State,
+    support::Support,
     tables::{
         Drum, Ends, Ordered, Orders, Request, Seen, Situation, Station, Takeover, Tool, Way,
         joystick::Control,
@@ -38,6 +39,7 @@ impl State {
         let asked = self.execution.asked(arrival);
         let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
         self.data_system.hold(below.held.object(), ledger);
+        self.note_support(inputs);
         let (plan, request) = if asked == Asked::Now {
             self.ordered = Ordered::Nothing;
             let found = Plan::look_up(command, inputs.data);
@@ -78,7 +80,17 @@ impl State {
         if !self.execution.receiver.started {
             self.last_pose = written.poses.iter().filter_map(|pose| pose.number).max().unwrap_or_default();
             self.data_system.adopt(written, inputs.tick);
+            self.confirmed = written.confirmed;
         }
+    }
+
+    /// Note what a person has confirmed, and drop it when the robot leaves its place or holds nothing.
+    fn note_support(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
+        let below = &inputs.memory.subtask.status;
+        let told = inputs.external.operator.confirmed.map(|by| Confirmed { by, at: below.at });
+        self.confirmed = told
+            .or(self.confirmed)
+            .filter(|confirmed| confirmed.at == below.at && below.held != Holding::Nothing);
     }
 
     /// A new command, with what it has to do with the commands before it.
@@ -139,6 +151,7 @@ impl State {
             station: station(below.at.map(|at| at.location)),
             drum: if below.drum { Drum::Inside } else { Drum::Outside },
             way: way(below.at, plan, inputs.data),
+            support: Support::sense(below, plan, self.confirmed.as_ref(), inputs.external, inputs.data),
             resumed: plan.resumed,
             placed: placed(plan, below, inputs.memory.task.ledger.as_ref()),
             part: if below.pedestal_part { Part::InPedestal } else { Part::Elsewhere },
@@ -165,6 +178,7 @@ fn request(found: &Found, checked: Checked) -> Request {
         near: plan.destination.near_drum(),
         way_out: found.way_out,
         checked,
+        pedestal_goal: plan.destination.at_pedestal(),
         control: Control::Automatic,
     }
 }
@@ -194,7 +208,7 @@ fn station(at: Option<Name10>) -> Station {
 /// The way from where the robot is to the position of a POSITION, as far as the names of the locations tell.
 fn way(at: Option<Standing>, plan: &Plan, data: &TaskData<'_>) -> Way {
     let Some(at) = at else { return Way::NoStart };
-    let Some(goal) = plan.source.location.or(plan.destination.location) else { return Way::Here };
+    let Some(goal) = plan.position_site().location else { return Way::Here };
     let from = place_of(goal.kind, at.record, at.array);
     let to = place_of(goal.kind, goal.record, goal.array);
     if same_location(&from, &to) {

@@ -1,5 +1,6 @@
 //! The state of Task.
 
+use interfaces::hws::Confirmed;
 use rcs_core::{Plain, handshake::Commander};
 
 use super::{
@@ -24,6 +25,8 @@ pub struct State {
     pub plan: Plan,
     /// Last record number given to a T-POSE.
     pub last_pose: u32,
+    /// What a person has confirmed about what the gripper holds.
+    pub confirmed: Option<Confirmed>,
     /// Commands to Subtask.
     pub subtask: Commander,
     /// Commands to the Data System.

@@ -5,6 +5,7 @@ use interfaces::device::{
     DeviceInputs, DeviceOutputs, ForceSensor, GripSensors, LinkBytes, Resolvers, VisionResponse,
 };
 use rapier3d_f64::prelude::*;
+use rcs_core::name::Name10;
 
 use super::{Cell, handling::Hand};
 use crate::{
@@ -107,6 +108,7 @@ impl Cell {
             joystick: self.joystick.read(),
             vision: if self.vision_elsewhere { VisionResponse::default() } else { self.analysis.answer() },
             pedestal: self.pedestal.sensors(&mut self.pedestal_noise),
+            clamping: self.vise.clamped.map(|_| Name10::clipped(self.vise.location())),
             ..DeviceInputs::default()
         };
         self.dead_times.hold_back(&mut inputs);

@@ -15,6 +15,7 @@
 //! and switches that hold stay. A request whose sender no longer waits is discarded unless it is a stop
 //! ([`Event::Late`]). Both rules are here, for all ways by which an operator can connect.
 
+mod by_hand;
 mod hold;
 mod obstacles;
 mod request;
@@ -273,6 +274,7 @@ impl Operator {
         match request {
             Request::Status => Ok(self.status(around)),
             Request::Data => Ok(directory(around.data)),
+            Request::Pedestal => Ok(by_hand::state(around.memory)),
             Request::Stop => {
                 self.is_stopped = true;
                 Ok("the velocity knob is at 0; `go` turns it back".to_owned())
@@ -318,7 +320,9 @@ impl Operator {
             }
             Request::StandAlone { now } => around.neighbours.take_command(tick, around.memory, now),
             Request::Workstation => around.neighbours.give_command(tick, around.memory),
-            Request::Terminal(entry) => self.terminals.enter(entry, around.memory, &around.store.view()),
+            Request::Terminal(entry) => {
+                self.terminals.enter(entry, tick, around.memory, &around.store.view())
+            }
             Request::Cell(action, line) => {
                 around.workstation.begin_line(&action, &line)?;
                 self.turns_table |=

@@ -17,6 +17,8 @@ pub enum Request {
     Status,
     /// Ask for the directory of the task data; changes nothing.
     Data,
+    /// Ask for the state of the Active Pedestal; changes nothing.
+    Pedestal,
     /// Set the velocity knob to zero.
     Stop,
     /// Set the velocity knob back.
@@ -53,16 +55,19 @@ pub enum Request {
 }
 
 /// Requests that change nothing and are not logged.
-pub const QUESTIONS: [&str; 2] = [STATUS, DATA];
+pub const QUESTIONS: [&str; 3] = [STATUS, DATA, PEDESTAL];
 /// Request for the status.
 const STATUS: &str = "status";
 /// Request for the directory of the task data.
 const DATA: &str = "data";
+/// Request for the state of the Active Pedestal.
+const PEDESTAL: &str = "pedestal";
 
 /// The requests that are not lines of a job.
 const WORDS: &[(&str, Request)] = &[
     (STATUS, Request::Status),
     (DATA, Request::Data),
+    (PEDESTAL, Request::Pedestal),
     ("stop", Request::Stop),
     ("go", Request::Go),
     ("leave", Request::Leave),
@@ -117,6 +122,7 @@ impl Request {
         match self {
             Self::Status
             | Self::Data
+            | Self::Pedestal
             | Self::Stop
             | Self::Leave
             | Self::Note

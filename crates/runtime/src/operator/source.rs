@@ -23,6 +23,9 @@ pub enum Inputs {
     Sessions(Listener),
     /// A log, read tick by tick, with the texts that were loaded during the run.
     Recorded(VecDeque<OperatorLine>, Texts),
+    /// The program that runs the tick ([`Run::ask`](crate::Run::ask)): requests for the next tick, and the verdict on
+    /// the last one.
+    Program(VecDeque<(String, Event)>, Option<Result<String, String>>),
 }
 
 /// Blocks and jobs that were loaded during a run, from its log.
@@ -46,6 +49,8 @@ pub enum Input {
     Given(Given),
     /// From a log.
     Recorded(OperatorLine, Event),
+    /// From the program that runs the tick.
+    Program(String, Event),
 }
 
 impl Input {
@@ -54,6 +59,7 @@ impl Input {
         match self {
             Self::Given(given) => given.source.as_str(),
             Self::Recorded(line, _) => &line.source,
+            Self::Program(source, _) => source,
         }
     }
 
@@ -61,14 +67,14 @@ impl Input {
     pub const fn event(&self) -> &Event {
         match self {
             Self::Given(given) => &given.event,
-            Self::Recorded(_, event) => event,
+            Self::Recorded(_, event) | Self::Program(_, event) => event,
         }
     }
 
     /// The reason of a refusal in the log; `None` for an input of a session, and for an accepted one.
     pub fn refusal(&self) -> Option<&str> {
         match self {
-            Self::Given(_) => None,
+            Self::Given(_) | Self::Program(..) => None,
             Self::Recorded(line, _) => line.refused.as_deref(),
         }
     }
@@ -99,6 +105,7 @@ impl Input {
                 given.answer(verdict.as_ref().map(ok).map_err(Clone::clone));
                 None
             }
+            Self::Program(..) => None,
             Self::Recorded(line, _) => {
                 let (was, is) = (line.refused.as_deref(), verdict.as_ref().err().map(String::as_str));
                 (was != is).then(|| {
@@ -154,7 +161,7 @@ impl Inputs {
     pub fn socket(&self) -> Option<&Path> {
         match self {
             Self::Sessions(listener) => Some(listener.path()),
-            Self::None | Self::Recorded(..) => None,
+            Self::None | Self::Recorded(..) | Self::Program(..) => None,
         }
     }
 
@@ -163,7 +170,7 @@ impl Inputs {
     pub fn entrance(&self) -> Option<Entrance> {
         match self {
             Self::Sessions(listener) => Some(listener.entrance()),
-            Self::None | Self::Recorded(..) => None,
+            Self::None | Self::Recorded(..) | Self::Program(..) => None,
         }
     }
 
@@ -189,6 +196,28 @@ impl Inputs {
         Some(found.map(|(_, source)| source.clone()))
     }
 
+    /// Queue a request of the program that runs the tick. False if the inputs have another source.
+    pub fn ask(&mut self, source: &str, event: Event) -> bool {
+        if matches!(self, Self::None) {
+            *self = Self::Program(VecDeque::new(), None);
+        }
+        let Self::Program(requests, _) = self else { return false };
+        requests.push_back((source.to_owned(), event));
+        true
+    }
+
+    /// Keep the verdict on a request of the program that runs the tick.
+    pub fn keep(&mut self, verdict: &Result<String, String>) {
+        if let Self::Program(_, last) = self {
+            *last = Some(verdict.clone());
+        }
+    }
+
+    /// The verdict on the last request of the program that runs the tick.
+    pub const fn take_verdict(&mut self) -> Option<Result<String, String>> {
+        if let Self::Program(_, last) = self { last.take() } else { None }
+    }
+
     /// The next input that `tick` must see.
     pub fn next(&mut self, tick: Tick) -> Option<Input> {
         match self {
@@ -198,6 +227,9 @@ impl Inputs {
                 let line = lines.pop_front_if(|line| line.tick <= tick)?;
                 let event = Event::from(line.line.as_str());
                 Some(Input::Recorded(line, event))
+            }
+            Self::Program(requests, _) => {
+                requests.pop_front().map(|(source, event)| Input::Program(source, event))
             }
         }
     }

@@ -6,12 +6,13 @@ use std::{collections::VecDeque, mem};
 use interfaces::{
     CommonMemory, OperatorInputs, ProcessId,
     emove::EmoveVerb,
-    operator::{BOARDS, WRITES, Write, board_bit, process_bit},
+    operator::{BOARDS, HandOrder, Support, WRITES, Write, board_bit, process_bit},
+    pedestal::PedestalVerb,
 };
-use rcs_core::handshake::successor;
+use rcs_core::{handshake::successor, tick::Tick};
 use taskdata::files::TaskData;
 
-use super::written;
+use super::{by_hand, written};
 
 /// Largest number of passes of a process in one request.
 pub const PASSES: u8 = 100;
@@ -31,6 +32,10 @@ pub enum Entry {
     DbDone(bool),
     /// `<= VALUE` for a variable.
     Write(Write),
+    /// An order to the Active Pedestal.
+    Pedestal(HandOrder),
+    /// What keeps the object from falling when the gripper opens.
+    Confirm(Support),
 }
 
 /// Name of a process in requests.
@@ -61,13 +66,19 @@ impl Entry {
             ["db-done", "off"] => Ok(Self::DbDone(false)),
             ["db-done", ..] => Err(format!("db-done on or off was expected; found {}", words.join(" "))),
             ["write", ref rest @ ..] => written::read(rest).map(Self::Write),
+            ["pedestal", ref rest @ ..] => by_hand::order(rest).map(Self::Pedestal),
+            ["confirm", ref rest @ ..] => by_hand::confirmation(rest).map(Self::Confirm),
             _ => return None,
         })
     }
 
-    /// True if it can only bring the robot to rest.
+    /// True if it can only bring the robot or the pedestal to rest.
     pub const fn is_stop(self) -> bool {
-        matches!(self, Self::Stop(2))
+        match self {
+            Self::Stop(board) => board == 2,
+            Self::Pedestal(order) => matches!(order.command, PedestalVerb::Pause),
+            _ => false,
+        }
     }
 }
 
@@ -92,6 +103,10 @@ pub struct Terminals {
     passes: VecDeque<u16>,
     /// Values to write in the next tick.
     writes: [Option<Write>; WRITES],
+    /// Order to the pedestal in the next tick.
+    order: Option<HandOrder>,
+    /// Statement about what the gripper holds in the next tick.
+    confirmed: Option<Support>,
 }
 
 impl Terminals {
@@ -105,6 +120,8 @@ impl Terminals {
     pub fn end_tick(&mut self) {
         self.shown.executed = self.passes.pop_front().unwrap_or_default();
         self.shown.writes = mem::take(&mut self.writes);
+        self.shown.pedestal = self.order.take();
+        self.shown.confirmed = self.confirmed.take();
     }
 
     /// Drop the passes that are still to come. Returns true if there were any.
@@ -114,13 +131,15 @@ impl Terminals {
         had_some
     }
 
-    /// Carry out an entry. `memory` is common memory after the last tick, `data` are the task data of the next one.
+    /// Carry out an entry. `memory` is common memory after the last tick, which has the number `tick`; `data` are the task
+    /// data of the next one.
     ///
     /// # Errors
     /// The reason of the refusal.
     pub fn enter(
         &mut self,
         entry: Entry,
+        tick: Tick,
         memory: &CommonMemory,
         data: &TaskData<'_>,
     ) -> Result<String, String> {
@@ -142,6 +161,19 @@ impl Terminals {
             Entry::RobotInit => self.initialize(memory),
             Entry::DbDone(on) => self.db_done(on, memory),
             Entry::Write(write) => self.write(write, memory, data),
+            Entry::Pedestal(order) => {
+                let answer = by_hand::check_order(&order, tick.next(), memory, data)?;
+                if self.order.is_some() {
+                    return Err("an order is sent in the next tick already: ask again".to_owned());
+                }
+                self.order = Some(order);
+                Ok(answer)
+            }
+            Entry::Confirm(by) => {
+                let answer = by_hand::check_confirmation(by, memory, data)?;
+                self.confirmed = Some(by);
+                Ok(answer)
+            }
         }
     }
 
@@ -253,20 +285,24 @@ mod tests {
     fn a_pass_is_of_one_tick_and_of_a_board_that_is_stopped() {
         let (mut terminals, memory) = (Terminals::default(), CommonMemory::default());
         let prim = Entry::Execute(ProcessId::Prim, 2);
-        assert!(terminals.enter(prim, &memory, &TaskData::default()).unwrap_err().contains("Prim runs"));
-        terminals.enter(Entry::Stop(2), &memory, &TaskData::default()).unwrap();
-        terminals.enter(prim, &memory, &TaskData::default()).unwrap();
+        assert!(
+            terminals.enter(prim, Tick(1), &memory, &TaskData::default()).unwrap_err().contains("Prim runs")
+        );
+        terminals.enter(Entry::Stop(2), Tick(1), &memory, &TaskData::default()).unwrap();
+        terminals.enter(prim, Tick(1), &memory, &TaskData::default()).unwrap();
         let executed = [1, 2, 3].map(|_| {
             terminals.end_tick();
             terminals.inputs().executes(ProcessId::Prim)
         });
         assert_eq!(executed, [true, true, false]);
         assert!(
-            terminals.enter(Entry::Execute(ProcessId::Emove, PASSES), &memory, &TaskData::default()).is_ok()
+            terminals
+                .enter(Entry::Execute(ProcessId::Emove, PASSES), Tick(1), &memory, &TaskData::default())
+                .is_ok()
         );
         assert!(
             terminals
-                .enter(prim, &memory, &TaskData::default())
+                .enter(prim, Tick(1), &memory, &TaskData::default())
                 .unwrap_err()
                 .contains("100 passes are waiting")
         );
@@ -275,7 +311,7 @@ mod tests {
     #[test]
     fn a_board_goes_when_there_is_the_pulse() {
         let (mut terminals, memory) = (Terminals::default(), CommonMemory::default());
-        let mut enter = |entry| terminals.enter(entry, &memory, &TaskData::default());
+        let mut enter = |entry| terminals.enter(entry, Tick(1), &memory, &TaskData::default());
         assert_eq!(enter(Entry::Go(6)).unwrap(), "board 6 runs", "it did before");
         enter(Entry::Stop(6)).unwrap();
         enter(Entry::Stop(0)).unwrap();
@@ -286,16 +322,16 @@ mod tests {
     #[test]
     fn the_link_is_initialized_while_e_move_pauses() {
         let (mut terminals, mut memory) = (Terminals::default(), CommonMemory::default());
-        terminals.enter(Entry::RobotInit, &memory, &TaskData::default()).unwrap();
+        terminals.enter(Entry::RobotInit, Tick(1), &memory, &TaskData::default()).unwrap();
         assert_eq!(terminals.inputs().robot_init, 1);
-        terminals.enter(Entry::Stop(2), &memory, &TaskData::default()).unwrap();
-        terminals.enter(Entry::RobotInit, &memory, &TaskData::default()).unwrap();
+        terminals.enter(Entry::Stop(2), Tick(1), &memory, &TaskData::default()).unwrap();
+        terminals.enter(Entry::RobotInit, Tick(1), &memory, &TaskData::default()).unwrap();
         terminals.end_tick();
         assert!(terminals.inputs().executes(ProcessId::Emove) && terminals.inputs().robot_init == 2);
         memory.subtask.emove.command = EmoveVerb::MovToLoc;
         assert!(
             terminals
-                .enter(Entry::RobotInit, &memory, &TaskData::default())
+                .enter(Entry::RobotInit, Tick(1), &memory, &TaskData::default())
                 .unwrap_err()
                 .contains("PAUSE first")
         );
@@ -315,7 +351,7 @@ mod tests {
         let located = Located { object: Name16::clipped("LINKBAR1"), ..Located::default() };
         memory.emove.beliefs.located = Some(located);
         let mut enter = |line: &str, memory: &CommonMemory| {
-            terminals.enter(entry(line).unwrap(), memory, &TaskData::default())
+            terminals.enter(entry(line).unwrap(), Tick(1), memory, &TaskData::default())
         };
         let located = "write emove.beliefs.located NONE";
         assert_eq!(enter(located, &memory).unwrap(), "emove.beliefs.located was LINKBAR1, is NONE");
@@ -337,7 +373,7 @@ mod tests {
     fn db_done_changes_while_task_stands() {
         let mut terminals = Terminals::default();
         let mut enter = |line: &str, memory: &CommonMemory| {
-            terminals.enter(entry(line).unwrap(), memory, &TaskData::default())?;
+            terminals.enter(entry(line).unwrap(), Tick(1), memory, &TaskData::default())?;
             Ok::<_, String>(terminals.inputs().db_done)
         };
         assert!(enter("db-done on", &standing(&[])).unwrap_err().contains("Task runs: `board 6 stop`"));
@@ -351,7 +387,7 @@ mod tests {
         let (store, _) = Store::load(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))).unwrap();
         let mut memory = standing(&[ProcessId::Emove, ProcessId::Subtask]);
         let ask = |line: &str, memory: &CommonMemory| {
-            Terminals::default().enter(entry(line).unwrap(), memory, &store.view())
+            Terminals::default().enter(entry(line).unwrap(), Tick(1), memory, &store.view())
         };
         let held = "write emove.beliefs.held LINKBAR1_BH 2";
         assert!(ask(held, &memory).unwrap_err().contains("the gripper holds nothing"));

@@ -2,6 +2,7 @@
 
 use std::path::{Component, Path};
 
+use ::operator::Event;
 use os_io::files;
 use rcs_core::tick::Tick;
 use record::OperatorLine;
@@ -20,6 +21,22 @@ use crate::{
 };
 
 impl Run {
+    /// Carry out an event of an operator in this program, for a run to which nobody else connects: in the fast clock, or
+    /// without operators. Runs the tick after which it is carried out; the tick after that is the first to see it. A
+    /// session begins with [`Event::Connected`].
+    ///
+    /// # Errors
+    /// The reason of the refusal, or that the run has ended or takes its operators from elsewhere.
+    pub fn ask(&mut self, who: &str, event: Event) -> Result<String, String> {
+        if !self.asked.ask(who, event) {
+            return Err("the operators of this run are elsewhere".to_owned());
+        }
+        self.step();
+        self.asked
+            .take_verdict()
+            .unwrap_or_else(|| Err("the run has ended, or a block is being checked".to_owned()))
+    }
+
     /// Carry out the requests since the last tick. The next tick is the first to see them.
     pub(super) fn operate(&mut self, tick: Tick) {
         let first = tick.next();
@@ -98,6 +115,7 @@ impl Run {
     /// Answer an input and log it.
     fn settle(&mut self, first: Tick, input: Input, verdict: Result<String, String>) {
         self.operator.count(&input, &verdict);
+        self.asked.keep(&verdict);
         let line = input.line(first, &verdict);
         if let Some(difference) = input.answer(first, &verdict) {
             self.observer.message(&format!("tick {first}: {difference}"));

@@ -67,9 +67,12 @@ fn runtime_jobs(directory: &Path) -> Vec<String> {
 }
 
 /// The words that can follow the first words of a line. `*` in an entry matches any word.
-static FOLLOWING: [(&[&str], &[&str]); 28] = [
+static FOLLOWING: [(&[&str], &[&str]); 31] = [
     (&["job"], &["wait", "go", "skip"]),
     (&["db-done"], ON_OFF),
+    (&["pedestal"], &["pre-grip", "grip", "flip", "release", "pause"]),
+    (&["pedestal", "release"], &["by"]),
+    (&["confirm"], &["clamped", "by"]),
     (&["board"], &["0", "2", "4", "6", "8"]),
     (&["board", "*"], &["stop", "go"]),
     (
@@ -126,8 +129,9 @@ const LEVELS: &[&str] = &["TASK", "SUBTASK", "EMOVE", "PRIM"];
 const ESTOPS: &[&str] = &["control-panel", "teach-pendant", "terminals", "joystick-box", "pedestal"];
 const ON_OFF: &[&str] = &["on", "off"];
 /// Requests in today's words.
-const REQUESTS: [&str; 24] = [
+const REQUESTS: [&str; 26] = [
     "board",
+    "confirm",
     "db-done",
     "drum",
     "estop",
@@ -141,6 +145,7 @@ const REQUESTS: [&str; 24] = [
     "machine",
     "note",
     "panel",
+    "pedestal",
     "release",
     "robot-init",
     "run",

@@ -4,15 +4,16 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// HINDRANCE: while the part is in the pedestal's hand, alone or together with the robot, only what
-    /// finishes or undoes the regrip is done: a robot that leaves with it would tear it out, and the object
-    /// is nowhere else.
+    /// finishes or undoes the regrip is done: a robot that leaves with it would tear it out. A robot that holds
+    /// nothing and is clear of the pedestal may leave.
     pub HINDRANCE: fn hindrance(super::Hindrance) -> super::Action or () {
         1: asked: Before                                                    => consult;
         2: pedestal: Free                                                   => consult;
         3: verb: None | Pause | FixGrip | Release                           => consult;
         4: verb: GetEndeff, gripper: Right                                  => consult;
-        5: verb: GetEndeff | GetObject | PlaceObj | MoveObjToDest           => Fail(PartInPedestal);
-        6: verb: GotoEndpt | GotoDest | Position                            => Fail(PartInPedestal);
-        7: verb: InsertTool | ReleaseTool | AcquireTool | RemoveTool        => Fail(PartInPedestal);
+        5: verb: GotoEndpt | GotoDest | Position, robot: Empty              => consult;
+        6: verb: GetEndeff | GetObject | PlaceObj | MoveObjToDest           => Fail(PartInPedestal);
+        7: verb: GotoEndpt | GotoDest | Position                            => Fail(PartInPedestal);
+        8: verb: InsertTool | ReleaseTool | AcquireTool | RemoveTool        => Fail(PartInPedestal);
     }
 }

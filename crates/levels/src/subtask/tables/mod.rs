@@ -3,6 +3,7 @@
 
 pub mod accept;
 pub mod acquire_tool;
+pub mod by_hand;
 pub mod fix_grip;
 pub mod get_endeff;
 pub mod get_object;
@@ -27,10 +28,10 @@ use rcs_core::{
 };
 
 pub use self::variables::{
-    Drum, Exchange, Flip, GripHeld, Gripper, Hand, Holster, Named, Ordered, Part, Pedestal, PedestalData,
-    PedestalHand, Robot, Turn, Vision, Where,
+    Drum, Exchange, Flip, GripHeld, Gripper, Hand, Holster, Leaving, Named, Ordered, Part, Pedestal,
+    PedestalData, PedestalHand, Robot, Turn, Vision, Where,
 };
-use self::{accept::accept, hindrance::hindrance, ordered::ordered};
+use self::{accept::accept, by_hand::Manual, hindrance::hindrance, ordered::ordered};
 use super::goals;
 use crate::{
     confirm::{CONFIRM, Proof},
@@ -66,6 +67,8 @@ pub struct Hindrance {
     pub verb: SubtaskVerb,
     /// End effector state.
     pub gripper: Gripper,
+    /// The robot, as the pedestal sees it.
+    pub robot: Leaving,
 }
 
 /// How the last order of the command stands, for [`ordered::ORDERED`].
@@ -127,6 +130,8 @@ pub struct Seen {
     pub request: Request,
     /// What hinders it.
     pub hindrance: Hindrance,
+    /// The order of a person to the pedestal.
+    pub manual: Manual,
     /// How the last order of the command stands.
     pub orders: Orders,
     /// The goal of the command, compared with the statuses from below.
@@ -226,7 +231,8 @@ impl Commander for Action {
 commands! {
     /// Consult the table of a command.
     pub fn of_command(SubtaskVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, hindrance::HINDRANCE, ordered::ORDERED, CONFIRM;
+        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, hindrance::HINDRANCE, ordered::ORDERED, CONFIRM,
+                by_hand::BY_HAND;
         None | Pause: goals::REST               => s_pause::s_pause;
         GetEndeff: goals::ATTACHED              => get_endeff::get_endeff;
         GetObject: goals::HELD                  => get_object::get_object;

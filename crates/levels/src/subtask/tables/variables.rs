@@ -151,6 +151,15 @@ pub enum Robot {
     Away,
 }
 
+/// May the robot leave while the pedestal holds a part?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Leaving {
+    /// It holds something, or is not clear of the pedestal.
+    Bound,
+    /// It holds nothing and is clear.
+    Empty,
+}
+
 /// How far the table turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Flip {

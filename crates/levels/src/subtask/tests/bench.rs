@@ -3,7 +3,8 @@
 
 use geometry::pose::Pose;
 use interfaces::{
-    CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, StatusReport,
+    CommonMemory, EmoveOutputs, ExternalInputs, Header, OperatorInputs, PedestalOutputs, Reason,
+    StatusReport,
     emove::{EmoveCommand, EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Standing},
     grip::Felt,
     pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
@@ -250,6 +251,8 @@ pub struct Bench<'d> {
     pub tick: Tick,
     /// Task writes no buffers.
     pub task_is_lost: bool,
+    /// What a person asks for.
+    pub operator: OperatorInputs,
     /// Tables and rows that fired.
     pub rows: Coverage,
 }
@@ -271,6 +274,7 @@ impl<'d> Bench<'d> {
             pedestal: PedestalDouble { part: 255, ..PedestalDouble::default() },
             tick: Tick::BEFORE_START,
             task_is_lost: false,
+            operator: OperatorInputs::default(),
             rows: Coverage::default(),
         };
         bench.emove.outputs.status.end_effector_id = Some(1);
@@ -319,7 +323,7 @@ impl<'d> Bench<'d> {
     pub fn step(&mut self) -> SubtaskStatus {
         self.tick = self.tick.next();
         let mut outputs = self.memory.subtask;
-        let external = ExternalInputs::default();
+        let external = ExternalInputs { operator: self.operator, ..ExternalInputs::default() };
         let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &external, data: &self.data };
         self.process.step(&inputs, &mut outputs);
         self.rows.note(&outputs.header);

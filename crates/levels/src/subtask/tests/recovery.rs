@@ -1,10 +1,12 @@
 //! Subtask after an interruption: what was under way is stopped, and the same command goes on
 //! (docs/design/recovery.md).
 
+use geometry::pose::Pose;
 use interfaces::{
-    Reason, StatusReport,
+    ChangingPose, Reason, StatusReport,
     emove::{EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Standing},
     grip::Felt,
+    operator::HandOrder,
     pedestal::{PedestalReport, PedestalVerb},
     subtask::{Regrip, SubtaskVerb},
 };
@@ -185,9 +187,6 @@ fn while_the_part_is_in_the_pedestal_nothing_else_is_done() {
         SubtaskVerb::GetObject,
         SubtaskVerb::PlaceObj,
         SubtaskVerb::MoveObjToDest,
-        SubtaskVerb::GotoEndpt,
-        SubtaskVerb::GotoDest,
-        SubtaskVerb::Position,
         SubtaskVerb::InsertTool,
         SubtaskVerb::ReleaseTool,
         SubtaskVerb::AcquireTool,
@@ -196,6 +195,7 @@ fn while_the_part_is_in_the_pedestal_nothing_else_is_done() {
         assert_eq!(bench.run(verb, "PART", (1, 1), "SAFE"), error(Reason::PartInPedestal), "{verb}");
         assert!(bench.sent().is_empty());
     }
+    leaves_only_empty_and_clear(&mut bench);
     let other = bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "");
     assert_eq!(other, error(Reason::PartInPedestal));
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "PART", (1, 1), ""), DONE);
@@ -601,8 +601,162 @@ fn pauses(rows: &mut Coverage) {
     bench.finish();
     play(&mut bench);
     let mut bench = moving(PedestalVerb::Flip, None);
-    assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE"), error(Reason::PartInPedestal));
+    assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE"), DONE);
     play(&mut bench);
+}
+
+/// The pedestal alone has the part, and the robot waits at PED-SAFE: it may leave. It may not while it is at the
+/// pedestal, or holds something, or is at no place with its tool near PEDESTAL.
+fn leaves_only_empty_and_clear(bench: &mut Bench<'_>) {
+    let safe = bench.emove.outputs.status.at;
+    for verb in [SubtaskVerb::GotoEndpt, SubtaskVerb::GotoDest, SubtaskVerb::Position] {
+        let refused = |bench: &mut Bench<'_>, why: &str| {
+            bench.step();
+            assert_eq!(bench.run(verb, "", (0, 0), "SAFE"), error(Reason::PartInPedestal), "{verb}: {why}");
+            assert!(bench.sent().is_empty());
+        };
+        let pedestal = bench.data.locpt_named(&Name10::clipped("PEDESTAL")).unwrap();
+        bench.memory.prim.status.sensor_pose = None;
+        bench.emove.outputs.status.at = safe.map(|at| Standing { record: Some(pedestal.number()), ..at });
+        refused(bench, "at the pedestal");
+        bench.emove.outputs.status.at = None;
+        refused(bench, "at no place, and it is not known where");
+        tool_above_pedestal(bench, 3.0);
+        refused(bench, "at no place, 3 in from PEDESTAL");
+        bench.emove.outputs.status.at = safe;
+        bench.emove.outputs.status.held = Holding::NotKnown;
+        refused(bench, "it may hold something");
+        bench.emove.outputs.status.held = Holding::Nothing;
+        bench.emove.outputs.status.at = None;
+        tool_above_pedestal(bench, 6.0);
+        bench.step();
+        assert_eq!(bench.run(verb, "", (0, 0), "SAFE"), DONE, "{verb}");
+        bench.emove.outputs.status.at = safe;
+        bench.step();
+    }
+}
+
+/// The resolvers show the tool so far above PEDESTAL, in.
+fn tool_above_pedestal(bench: &mut Bench<'_>, inches: f64) {
+    let id = bench.data.locpt_named(&Name10::clipped("PEDESTAL")).unwrap();
+    let mut frame = bench.data.locpt(id).unwrap().frame;
+    frame.position.z += inches;
+    let record = ChangingPose { number: Some(0x8300_0001), pose: Pose::from_frame(&frame) };
+    bench.memory.prim.poses[0] = record;
+    bench.memory.prim.status.sensor_pose = record.number;
+}
+
+/// What the pedestal gets of the order of a person: words, in the ticks after it.
+fn order(bench: &mut Bench<'_>, order: HandOrder) -> Vec<&'static str> {
+    bench.pedestal.received.clear();
+    bench.operator.pedestal = Some(order);
+    bench.step();
+    bench.operator.pedestal = None;
+    (0..8).for_each(|_| {
+        bench.step();
+    });
+    bench.sent_to_pedestal()
+}
+
+const fn by_hand(command: PedestalVerb) -> HandOrder {
+    HandOrder { command, object: None, table_angle: 0, by_hand: false }
+}
+
+fn of_part(command: PedestalVerb) -> HandOrder {
+    HandOrder { object: Some(Name16::clipped("PART")), ..by_hand(command) }
+}
+
+/// A bench whose robot holds nothing at a place and whose Subtask has nothing to do.
+fn resting(at: &str) -> Bench<'static> {
+    let mut bench = Bench::default();
+    assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), at), DONE);
+    bench
+}
+
+#[test]
+fn a_person_takes_a_part_with_the_pedestal_turns_and_releases_it() {
+    manual_regrip(&mut Coverage::default());
+}
+
+fn manual_regrip(rows: &mut Coverage) {
+    let mut bench = resting("PED-SAFE");
+    assert_eq!(order(&mut bench, of_part(PedestalVerb::PreGrip)), ["PRE-GRIP"]);
+    assert_eq!(order(&mut bench, of_part(PedestalVerb::Grip)), ["GRIP"]);
+    let regrip = |bench: &Bench<'_>| bench.memory.subtask.regrip.map(|regrip| regrip.object.to_string());
+    assert_eq!(regrip(&bench).as_deref(), Some("PART"));
+    let flip = HandOrder { table_angle: 900, ..by_hand(PedestalVerb::Flip) };
+    assert_eq!(order(&mut bench, flip), ["FLIP"]);
+    assert_eq!(bench.pedestal.outputs.status.table_position, Some(-1235));
+    assert!(order(&mut bench, of_part(PedestalVerb::PreGrip)).is_empty(), "it would drop the part");
+    assert!(order(&mut bench, by_hand(PedestalVerb::Release)).is_empty(), "the part would fall");
+    let held = HandOrder { by_hand: true, ..by_hand(PedestalVerb::Release) };
+    assert_eq!(order(&mut bench, held), ["RELEASE"]);
+    assert_eq!(bench.pedestal.received[0].grasp_size, 450);
+    assert_eq!(regrip(&bench), None, "the sensors of the hand feel nothing");
+    assert_eq!(order(&mut bench, by_hand(PedestalVerb::Release)), ["RELEASE"], "it holds nothing");
+    assert_eq!(order(&mut bench, by_hand(PedestalVerb::Pause)), ["PAUSE"]);
+    bench.pedestal.part = 0;
+    order(&mut bench, of_part(PedestalVerb::Grip));
+    assert_eq!(regrip(&bench), None, "the hand has closed on nothing");
+    rows.append(&mut bench.rows);
+}
+
+#[test]
+fn orders_of_a_person_are_refused_while_subtask_or_robot_are_at_the_pedestal() {
+    refused_orders(&mut Coverage::default());
+}
+
+fn refused_orders(rows: &mut Coverage) {
+    for ticks in [1, 10, 30] {
+        let mut bench = Bench::grasped("PART", 1);
+        bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+        (0..ticks).for_each(|_| {
+            bench.step();
+        });
+        bench.operator.pedestal = Some(by_hand(PedestalVerb::Release));
+        let before = bench.memory.subtask.pedestal.number;
+        bench.step();
+        let sent = bench.memory.subtask.pedestal;
+        assert!(sent.number == before || sent.command != PedestalVerb::Release, "tick {ticks}");
+        bench.operator.pedestal = None;
+        assert_eq!(bench.finish(), DONE, "tick {ticks}");
+        rows.append(&mut bench.rows);
+    }
+    let mut bench = resting("PEDESTAL");
+    let flip = HandOrder { table_angle: 900, ..by_hand(PedestalVerb::Flip) };
+    assert!(order(&mut bench, flip).is_empty(), "the robot is at the pedestal");
+    assert!(order(&mut bench, of_part(PedestalVerb::PreGrip)).is_empty());
+    let unknown = HandOrder { object: Some(Name16::clipped("BAR")), ..by_hand(PedestalVerb::Grip) };
+    assert!(order(&mut bench, unknown).is_empty(), "no PED-PARA record");
+    assert!(order(&mut bench, by_hand(PedestalVerb::Grip)).is_empty(), "no object");
+    bench.pedestal.mishap = Some((PedestalVerb::Grip, Mishap::Hang));
+    assert_eq!(order(&mut bench, of_part(PedestalVerb::Grip)), ["GRIP"]);
+    assert!(order(&mut bench, of_part(PedestalVerb::Grip)).is_empty(), "the hand moves");
+    assert_eq!(order(&mut bench, by_hand(PedestalVerb::Pause)), ["PAUSE"]);
+    bench.pedestal.mishap = Some((PedestalVerb::Pause, Mishap::Silence));
+    order(&mut bench, by_hand(PedestalVerb::Pause));
+    let sent = bench.memory.subtask.pedestal.number;
+    order(&mut bench, by_hand(PedestalVerb::Pause));
+    assert_eq!(bench.memory.subtask.pedestal.number, sent, "the pedestal does not answer");
+    rows.append(&mut bench.rows);
+}
+
+/// Robot and pedestal both hold the part: then the hand may open without a person.
+#[test]
+fn a_person_opens_the_hand_on_a_part_that_the_robot_grips() {
+    manual_release(&mut Coverage::default());
+}
+
+fn manual_release(rows: &mut Coverage) {
+    let mut bench = Bench::grasped("PART", 1);
+    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+    while bench.memory.subtask.emove.command != EmoveVerb::Release {
+        bench.step();
+    }
+    assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
+    assert!(bench.emove.outputs.status.held.is_held() && bench.memory.subtask.status.pedestal_part);
+    assert_eq!(order(&mut bench, by_hand(PedestalVerb::Release)), ["RELEASE"]);
+    rows.append(&mut bench.rows);
 }
 
 #[test]
@@ -621,6 +775,9 @@ pub(super) fn all_rows(rows: &mut Coverage) {
     }
     tools(rows);
     pauses(rows);
+    manual_regrip(rows);
+    refused_orders(rows);
+    manual_release(rows);
     rows.append(&mut without_task_after(10).rows);
     let mut bench = Bench::grasped("PART", 1);
     bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE");
@@ -639,5 +796,6 @@ pub(super) fn all_rows(rows: &mut Coverage) {
         rows.append(&mut bench.rows);
     }
     bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "");
+    leaves_only_empty_and_clear(&mut bench);
     rows.append(&mut bench.rows);
 }

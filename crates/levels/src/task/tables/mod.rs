@@ -30,7 +30,11 @@ use self::{accept::accept, joystick::Control, ordered::ordered};
 use super::{
     goals,
     ledger::{Part, Placed},
-    plan::{Grip, Gripper, Grips, Handling, Named, Near, PedestalData, Plan, Resumed, TaskVerb, ToolData},
+    plan::{
+        AtPedestal, Grip, Gripper, Grips, Handling, Named, Near, PedestalData, Plan, Resumed, TaskVerb,
+        ToolData,
+    },
+    support::Support,
 };
 use crate::{
     confirm::{CONFIRM, Proof},
@@ -99,6 +103,8 @@ pub struct Request {
     pub way_out: WayOut,
     /// Verdict of the check against the task data.
     pub checked: Checked,
+    /// Is the destination the Active Pedestal?
+    pub pedestal_goal: AtPedestal,
     /// What has the robot.
     pub control: Control,
 }
@@ -141,6 +147,8 @@ pub struct Situation {
     pub drum: Drum,
     /// The way to the position.
     pub way: Way,
+    /// What keeps the object from falling when the gripper opens.
+    pub support: Support,
     /// Was the command sent before and not finished?
     pub resumed: Resumed,
     /// Has it placed its object already?

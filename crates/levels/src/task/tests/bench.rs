@@ -130,9 +130,8 @@ impl SubtaskDouble {
                 });
                 self.stand_at(command, Some(command.destination_grip));
             }
-            SubtaskVerb::GotoDest | SubtaskVerb::GotoEndpt | SubtaskVerb::MoveObjToDest => {
-                self.stand_at(command, None);
-            }
+            SubtaskVerb::GotoDest | SubtaskVerb::GotoEndpt => self.stand_at(command, None),
+            SubtaskVerb::MoveObjToDest => self.stand_at(command, Some(command.destination_grip)),
             SubtaskVerb::Position => self.stand_at(command, Some(command.source_grip)),
             SubtaskVerb::FixGrip => {
                 status.pedestal_part = false;
@@ -251,7 +250,8 @@ impl Default for Bench<'static> {
 }
 
 impl<'d> Bench<'d> {
-    /// A bench with the parts gripper attached, after two ticks in which nothing was commanded.
+    /// A bench with the parts gripper attached and a vise that reports a clamped part, after two ticks in which
+    /// nothing was commanded.
     pub fn with(data: TaskData<'d>) -> Self {
         let mut bench = Self {
             process: Task::default(),
@@ -264,6 +264,7 @@ impl<'d> Bench<'d> {
             rows: Coverage::default(),
         };
         bench.subtask.outputs.status.end_effector_id = Some(1);
+        bench.external.devices.clamping = Some(Name10::clipped("PFIXTURE"));
         bench.step();
         bench.step();
         bench
@@ -366,6 +367,7 @@ impl<'d> Bench<'d> {
         self.subtask.stand(at);
         if let Some(at) = &mut self.subtask.outputs.status.at {
             at.record = self.data.locpt_named(&at.location).map(|id| id.number());
+            at.grip = (!object.is_empty()).then_some(1);
         }
         self.step();
     }

@@ -39,6 +39,7 @@ const LINES: &[(&str, u8, &str, &str)] = &[
     ("MOVE -- 0 -- 0 0 SAFE 0 -- 0", 1, "", ""),
     ("POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0", 1, "BAR", "PFIXTURE"),
     ("POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0", 1, "BAR", "HOME"),
+    ("POSITION PART 0 -- 0 +1 PFIXTURE 0 -- 0", 1, "PART", "PFIXTURE"),
     ("POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0", 1, "BAR", "UNIT_1"),
     ("POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0", 1, "BAR", ""),
     ("POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0", 1, "", ""),

@@ -209,6 +209,7 @@ const REFUSED: &[(&str, Reason)] = &[
     ("TRANSFER -- 0 UNIT_1 0 0 SAFE 0 -- 0", Reason::NoObjectNamed),
     ("TRANSFER PART +1 PFIXTURE 0 +7 UNIT_1 2 SAFE 0", Reason::UnknownGrip),
     ("TRANSFER BAR +1 PFIXTURE 0 +2 UNIT_1 2 SAFE 0", Reason::NoPedestalData),
+    ("TRANSFER PART +1 PFIXTURE 0 +1 PEDESTAL 0 SAFE 0", Reason::PedestalOnly),
     ("POSITION -- 0 -- 0 0 -- 0 -- 0", Reason::NoDestination),
     ("POSITION PART 0 -- 0 +7 SAFE 0 -- 0", Reason::UnknownGrip),
     ("POSITION PART +7 PFIXTURE 0 +1 SAFE 0 -- 0", Reason::UnknownGrip),

@@ -3,11 +3,12 @@
 use interfaces::{
     Reason, StatusReport,
     data_base::{Connection, DataBaseVerb},
-    emove::Holding,
+    emove::{Holding, ObjectGrip},
     hws::HwsReport,
+    operator::Support,
     subtask::SubtaskVerb,
 };
-use rcs_core::name::Name16;
+use rcs_core::name::{Name10, Name16};
 
 use super::{
     ACQUIRE, INSERT, RELEASE, REMOVE,
@@ -331,30 +332,103 @@ fn nothing_is_let_go_before_it_is_known_that_the_robot_can_leave() {
     }
 }
 
+/// A bench whose robot has brought PART to a place, with what the gripper is known to hold.
+fn brought(held: Holding, at: &str) -> Bench<'static> {
+    let mut bench = Bench::default();
+    bench.set(1, "PART", at);
+    bench.subtask.outputs.status.held = held;
+    bench.external.devices.clamping = None;
+    bench.step();
+    bench
+}
+
+/// PART in the grip in which it was brought.
+fn part() -> Holding {
+    Holding::Object(ObjectGrip { object: Name16::new("PART").unwrap(), grip: 1 })
+}
+
+const STAY_AT_FIXTURE: &str = "POSITION -- 0 -- 0 0 PFIXTURE 0 -- 0";
+const STAY_AT_HOME: &str = "POSITION -- 0 -- 0 0 HOME 0 -- 0";
+
 #[test]
-fn what_is_unknown_is_let_go_by_position_alone() {
-    for holding in [Holding::Something, Holding::NotKnown] {
-        let mut bench = Bench::default();
-        bench.set(1, "", "PFIXTURE");
-        bench.subtask.outputs.status.held = holding;
-        bench.step();
-        assert_eq!(bench.run(SEAT), FINISHED);
+fn position_releases_at_a_vise_only_what_is_clamped_or_confirmed() {
+    for held in [part(), Holding::Something, Holding::NotKnown] {
+        // Hold-and-seat: the command names an object at the fixture (VIII.2).
+        assert_eq!(brought(held, "PFIXTURE").run(SEAT), FINISHED, "{held:?}");
+    }
+    assert_eq!(brought(part(), "PFIXTURE").run(STAY_AT_FIXTURE), error(Reason::NotClamped));
+    for clamping in ["HOME", "PFIXTURE"] {
+        let mut bench = brought(part(), "PFIXTURE");
+        bench.external.devices.clamping = Some(Name10::clipped(clamping));
+        let expected = if clamping == "PFIXTURE" { FINISHED } else { error(Reason::NotClamped) };
+        assert_eq!(bench.run(STAY_AT_FIXTURE), expected, "{clamping}");
+    }
+    for by in [Support::Clamped, Support::ByHand] {
+        let mut bench = confirmed(brought(part(), "PFIXTURE"), by);
+        assert_eq!(bench.run(STAY_AT_FIXTURE), FINISHED, "{by}");
         assert_eq!(bench.sent(), ["RELEASE", ">POSITION"]);
     }
 }
 
 #[test]
-fn an_object_is_let_go_only_where_position_goes() {
-    for at in ["PFIXTURE", "UNIT_1"] {
-        let mut bench = Bench::default();
-        bench.set(1, "PART", at);
-        let (end, sent): (_, &[_]) = match at {
-            "PFIXTURE" => (FINISHED, &["RELEASE", ">POSITION"]),
-            _ => (error(Reason::HeldElsewhere), &[]),
-        };
-        assert_eq!(bench.run(SEAT), end, "{at}");
-        assert_eq!(bench.sent(), sent, "{at}");
+fn position_releases_nothing_in_mid_air_unless_a_person_holds_it() {
+    let cases = [
+        (part(), Reason::HeldElsewhere),
+        (Holding::Something, Reason::UnknownHeld),
+        (Holding::NotKnown, Reason::HeldNotKnown),
+    ];
+    for (held, reason) in cases {
+        for by in [None, Some(Support::Clamped)] {
+            let bench = brought(held, "HOME");
+            let mut bench = if let Some(by) = by { confirmed(bench, by) } else { bench };
+            assert_eq!(bench.run(STAY_AT_HOME), error(reason), "{by:?}");
+            assert!(bench.sent().is_empty());
+        }
+        let mut bench = confirmed(brought(held, "HOME"), Support::ByHand);
+        assert_eq!(bench.run(STAY_AT_HOME), FINISHED, "{held:?}");
     }
+    // At the pedestal its own hand decides, and grip data at `$$$` say nothing of a fixture.
+    for at in ["PEDESTAL", "SAFE"] {
+        let mut bench = brought(part(), at);
+        let stay = format!("POSITION -- 0 -- 0 0 {at} 0 -- 0");
+        assert_eq!(bench.run(&stay), error(Reason::HeldElsewhere), "{at}");
+    }
+}
+
+#[test]
+fn position_releases_in_a_nest() {
+    let mut bench = Bench::default();
+    bench.set(2, "CYLINDER", "V-VFIXTURE");
+    assert_eq!(bench.run("POSITION -- 0 -- 0 0 V-VFIXTURE 0 -- 0"), FINISHED);
+    bench.set(1, "PART", "V-VFIXTURE");
+    assert_eq!(bench.run("POSITION -- 0 -- 0 0 V-VFIXTURE 0 -- 0"), error(Reason::HeldElsewhere));
+}
+
+/// A person confirms what supports the object.
+fn confirmed(mut bench: Bench<'static>, by: Support) -> Bench<'static> {
+    bench.external.operator.confirmed = Some(by);
+    bench.step();
+    bench.external.operator.confirmed = None;
+    bench.step();
+    bench
+}
+
+#[test]
+fn a_confirmation_ends_when_the_robot_leaves_or_holds_nothing() {
+    let counts = |bench: &Bench<'_>| bench.memory.task.confirmed.is_some();
+    let mut bench = confirmed(brought(part(), "HOME"), Support::ByHand);
+    assert!(counts(&bench));
+    bench.process = Task::default();
+    bench.step();
+    assert!(counts(&bench), "a restarted Task knows it");
+    bench.subtask.outputs.status.at = None;
+    bench.wait(2);
+    assert!(!counts(&bench));
+    let mut bench = confirmed(brought(part(), "HOME"), Support::ByHand);
+    bench.subtask.outputs.status.held = Holding::Nothing;
+    bench.wait(2);
+    assert!(!counts(&bench));
+    assert!(!counts(&confirmed(brought(Holding::Nothing, "HOME"), Support::ByHand)));
 }
 
 /// What the updates say that the Data System has taken: item and position.
@@ -533,6 +607,16 @@ pub(super) fn all_rows(rows: &mut Coverage) {
             bench.run(line);
             play(&mut bench);
         }
+    }
+    for (held, at, line) in [
+        (part(), "PFIXTURE", SEAT),
+        (part(), "PFIXTURE", STAY_AT_FIXTURE),
+        (Holding::Something, "HOME", STAY_AT_HOME),
+        (Holding::NotKnown, "HOME", STAY_AT_HOME),
+    ] {
+        let mut bench = brought(held, at);
+        bench.run(line);
+        play(&mut bench);
     }
     let mut bench = moving_bench();
     bench.command(TRANSFER_AND_STAY);

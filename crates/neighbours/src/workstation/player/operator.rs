@@ -48,7 +48,10 @@ impl fmt::Display for WaitReason {
         match self {
             Self::Commanded => f.write_str("an operator commands: the job waits for `job go`"),
             Self::Asked => f.write_str("the job waits for `job go`, as requested"),
-            Self::Failed(failure) => write!(f, "{failure}: the job waits for `job go`"),
+            Self::Failed(failure) => {
+                write!(f, "{failure}: the job waits for `job go`")?;
+                failure.remedy().map_or(Ok(()), |remedy| write!(f, "; to do: {remedy}"))
+            }
         }
     }
 }

@@ -1,0 +1,140 @@
+//! Orders of a person to the Active Pedestal (docs/design/recovery.md "Part in the pedestal"): the state variables of BY-HAND. They
+//! depend on common memory and task data alone, so that the program that takes the order decides as Subtask does in the
+//! next tick.
+
+use interfaces::{
+    CommonMemory, StatusReport,
+    emove::{EmoveStatus, Holding},
+    operator::HandOrder,
+    pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
+    subtask::SubtaskVerb,
+};
+use rcs_core::{
+    name::{Name10, Name16},
+    table::Verdict,
+    tick::Tick,
+};
+use taskdata::files::{PedPara, TaskData};
+
+use super::{
+    pedestal_hand::pedestal_hand,
+    tables::{
+        Pedestal, PedestalData,
+        by_hand::{HeldByHand, Manual, Manually, Refused, Regripping, RobotThere, by_hand},
+    },
+};
+use crate::{emove::robot_place::present_frame, places::named};
+
+/// Distance of the tool from PEDESTAL at which fingers that hold nothing are clear of the part, in (ASSUMED: longer than
+/// fingers and part together reach into each other).
+const CLEAR_INCHES: f64 = 4.0;
+/// Opening of RELEASE for an object that is not known: that of the widest one in the task data, or this, 0.01 in.
+const WIDE: i32 = 450;
+
+/// The state variables of BY-HAND for an order. `tick` is the tick in which it is sent, `memory` common memory before.
+#[must_use]
+pub fn manual(order: &HandOrder, tick: Tick, memory: &CommonMemory, data: &TaskData<'_>) -> Manual {
+    let (below, above) = (&memory.pedestal, &memory.task.subtask);
+    let status = &memory.subtask.status;
+    let is_new = above.number != status.echo;
+    let executes = status.report == StatusReport::Executing;
+    Manual {
+        order: order.command,
+        regripping: if is_new || (executes && above.command == SubtaskVerb::FixGrip) {
+            Regripping::Yes
+        } else {
+            Regripping::No
+        },
+        pedestal: if below.header.stamp != tick.previous() {
+            Pedestal::Silent
+        } else if below.status.report == PedestalReport::Executing
+            || below.status.echo != memory.subtask.pedestal.number
+        {
+            Pedestal::Moving
+        } else {
+            Pedestal::Done
+        },
+        data: match para(order.object.as_ref(), data) {
+            Some(_) => PedestalData::Found,
+            None => PedestalData::Missing,
+        },
+        part: pedestal_hand(&below.status),
+        robot: robot_there(memory, data),
+        by_hand: if order.by_hand { HeldByHand::Yes } else { HeldByHand::No },
+    }
+}
+
+/// Decide on an order as Subtask does in `tick`.
+///
+/// # Errors
+/// The reason why it is not sent.
+pub fn judge(
+    order: &HandOrder,
+    tick: Tick,
+    memory: &CommonMemory,
+    data: &TaskData<'_>,
+) -> Result<(), Refused> {
+    match by_hand((), &manual(order, tick, memory, data)) {
+        Verdict::Decided(decision) => match decision.action {
+            Manually::Send => Ok(()),
+            Manually::Refuse(why) => Err(why),
+        },
+        Verdict::Passed(()) => Ok(()),
+    }
+}
+
+/// The command for an order, without cycle and number. `regrip` is the object in the hand, if it is known.
+pub(super) fn command(order: &HandOrder, regrip: Option<&Name16>, data: &TaskData<'_>) -> PedestalCommand {
+    let known = para(order.object.as_ref().or(regrip), data).copied();
+    let widest = data.ped_paras.iter().map(|para| para.release_size).max();
+    let para = known.unwrap_or_default();
+    let (grasp_size, grasp_force, table_angle) = match order.command {
+        PedestalVerb::PreGrip => (para.appr, 0, para.table_pos),
+        PedestalVerb::Grip => (para.grasp_size, para.force, 0),
+        PedestalVerb::Release => (known.map(|para| para.release_size).or(widest).unwrap_or(WIDE), 0, 0),
+        PedestalVerb::Flip => (0, 0, order.table_angle),
+        PedestalVerb::None | PedestalVerb::Pause => (0, 0, 0),
+    };
+    PedestalCommand {
+        command: order.command,
+        grasp_size,
+        grasp_force,
+        table_angle,
+        ..PedestalCommand::default()
+    }
+}
+
+/// How the pedestal takes an object.
+fn para<'d>(object: Option<&Name16>, data: &TaskData<'d>) -> Option<&'d PedPara> {
+    object.and_then(|object| data.ped_para(object)).map(|(_, para)| para)
+}
+
+/// Is the robot at the pedestal, and with the part?
+pub(super) fn robot_there(memory: &CommonMemory, data: &TaskData<'_>) -> RobotThere {
+    let emove = &memory.emove.status;
+    if is_clear(emove, memory, data) {
+        return RobotThere::Clear;
+    }
+    let regrip = memory.subtask.regrip.map(|regrip| regrip.object);
+    let at_object = emove.at.is_some_and(|at| at.location.as_str() == named::PEDESTAL && at.grip.is_some());
+    match emove.held {
+        Holding::Object(held) if at_object && regrip.is_none_or(|part| part == held.object) => {
+            RobotThere::Grips
+        }
+        Holding::Object(_) | Holding::Nothing | Holding::Something | Holding::NotKnown => RobotThere::Near,
+    }
+}
+
+/// A robot at another place is clear. At no place it is clear if it does not move and its tool is far enough from
+/// PEDESTAL.
+fn is_clear(emove: &EmoveStatus, memory: &CommonMemory, data: &TaskData<'_>) -> bool {
+    let pedestal = data.locpt_named(&Name10::clipped(named::PEDESTAL));
+    match emove.at {
+        Some(at) => at.record != pedestal.map(|id| id.number()),
+        None if emove.report == StatusReport::Executing => false,
+        None => pedestal
+            .and_then(|id| data.locpt(id))
+            .zip(present_frame(memory))
+            .is_some_and(|(point, present)| point.frame.distance(&present).inches > CLEAR_INCHES),
+    }
+}

@@ -1,0 +1,104 @@
+//! Orders of a person to the Active Pedestal.
+
+use interfaces::pedestal::PedestalVerb;
+use rcs_core::{Actions, Plain, Variables, decision_table};
+
+use super::{Pedestal, PedestalData, PedestalHand};
+
+/// Is Subtask using the pedestal?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Regripping {
+    /// It is not.
+    No,
+    /// A FIX-GRIP is executing, or a command has arrived that may be one.
+    Yes,
+}
+
+/// The robot at the pedestal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum RobotThere {
+    /// It is clear of the pedestal.
+    Clear,
+    /// It is at the pedestal, or not known to be clear, and does not hold the part.
+    Near,
+    /// It is at the pedestal and holds the part.
+    Grips,
+}
+
+/// Does a person hold the part?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum HeldByHand {
+    /// Nobody has said so.
+    No,
+    /// The person has said so.
+    Yes,
+}
+
+/// An order of a person, for [`BY_HAND`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Manual {
+    /// The command.
+    pub order: PedestalVerb,
+    /// Is Subtask using the pedestal?
+    pub regripping: Regripping,
+    /// What the pedestal makes of the last command.
+    pub pedestal: Pedestal,
+    /// The PED-PARA record of the object that the order names.
+    pub data: PedestalData,
+    /// The part in the pedestal's hand.
+    pub part: PedestalHand,
+    /// The robot at the pedestal.
+    pub robot: RobotThere,
+    /// Does the person hold the part?
+    pub by_hand: HeldByHand,
+}
+
+/// Why an order is not sent to the pedestal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(doc)]
+pub enum Refused {
+    /// Subtask regrips an object with the pedestal; PAUSE stops it.
+    Regripping,
+    /// The pedestal executes a command; `pedestal pause` stops the table.
+    Moving,
+    /// The pedestal does not answer.
+    Silent,
+    /// The task data do not say how the pedestal takes the object (PED-PARA, VII.7.4).
+    NoData,
+    /// The hand may hold a part, which PRE-GRIP would drop; RELEASE comes first.
+    HoldsPart,
+    /// The robot does not hold the part, which would fall; hold it and send `pedestal release by hand`.
+    WouldFall,
+    /// The robot is not clear of the pedestal; move it away first.
+    RobotNear,
+}
+
+/// What becomes of an order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+pub enum Manually {
+    /// It is sent to the pedestal.
+    Send,
+    /// It is refused.
+    Refuse(Refused),
+}
+
+decision_table! {
+    /// BY-HAND: a person commands the Active Pedestal (an extension: IV.5 gives terminal 4 no such word). The
+    /// order is sent only while Subtask does not use the pedestal. The hand opens on a part only if the robot
+    /// or the person holds it, and the table turns only if the robot is clear.
+    pub BY_HAND: fn by_hand(Manual) -> Manually or () {
+        1:  order: None                                             => consult;
+        2:  regripping: Yes                                         => Refuse(Regripping);
+        3:  pedestal: Silent                                        => Refuse(Silent);
+        4:  order: Pause                                            => Send;
+        5:  pedestal: Moving                                        => Refuse(Moving);
+        6:  order: PreGrip | Grip, data: Missing                    => Refuse(NoData);
+        7:  order: PreGrip, part: HoldsPart | Unsure                => Refuse(HoldsPart);
+        8:  order: PreGrip | Flip, robot: Near | Grips              => Refuse(RobotNear);
+        9:  order: PreGrip | Grip | Flip                            => Send;
+        10: order: Release, part: Free                              => Send;
+        11: order: Release, robot: Grips                            => Send;
+        12: order: Release, by_hand: Yes                            => Send;
+        13: order: Release                                          => Refuse(WouldFall);
+    }
+}

@@ -1,0 +1,93 @@
+//! What keeps an object from falling when POSITION opens the gripper (V.4.1 POSITION): where the robot stands, the task
+//! data, the report of the vise, and what a person has confirmed (docs/design/recovery.md "Unknown").
+
+use interfaces::{
+    ExternalInputs,
+    emove::{Holding, ObjectGrip, Standing},
+    hws::Confirmed,
+    operator,
+    subtask::{LocationKind, SubtaskStatus},
+};
+use rcs_core::{Plain, name::Name10};
+use taskdata::files::{LocptId, Reference, TaskData};
+
+use super::plan::Plan;
+use crate::places::{named, place_of};
+
+/// What keeps an object from falling when the gripper opens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Support {
+    /// Nothing that is known.
+    None,
+    /// The sector of a tray or the nest at which the robot stands with the object.
+    Place,
+    /// A fixture with jaws at which the robot stands with the object. The jaws are not known to clamp it.
+    Jaws,
+    /// The jaws of such a fixture clamp it, or a person holds it.
+    Secured,
+}
+
+impl Support {
+    /// The support of what the gripper holds, for the command of a plan.
+    #[must_use]
+    pub fn sense(
+        below: &SubtaskStatus,
+        plan: &Plan,
+        confirmed: Option<&Confirmed>,
+        external: &ExternalInputs,
+        data: &TaskData<'_>,
+    ) -> Self {
+        let by = confirmed.map(|confirmed| confirmed.by);
+        if by == Some(operator::Support::ByHand) {
+            return Self::Secured;
+        }
+        let support = Self::of_place(below, plan.object_at_position(), data);
+        let clamping = external.devices.clamping;
+        let reported = clamping.is_some() && clamping == below.at.map(|at| at.location);
+        match (support, by) {
+            (Self::Jaws, Some(operator::Support::Clamped)) => Self::Secured,
+            (Self::Jaws, _) if reported => Self::Secured,
+            (support, _) => support,
+        }
+    }
+
+    /// The support that the place itself gives, whatever its jaws do. The object that a command names is
+    /// considered if the gripper holds something unknown.
+    #[must_use]
+    pub fn of_place(below: &SubtaskStatus, named: Option<ObjectGrip>, data: &TaskData<'_>) -> Self {
+        // Only a robot that stands at an object, or has brought one, has a grip.
+        let Some((at, grip)) = below.at.and_then(|at| Some((at, at.grip?))) else { return Self::None };
+        let object = match below.held {
+            Holding::Object(held) if held.grip != grip => return Self::None,
+            Holding::Object(held) => Some(held),
+            Holding::Nothing | Holding::Something | Holding::NotKnown => named,
+        };
+        if [named::PEDESTAL, named::TOOL_TRNS].contains(&at.location.as_str()) {
+            return Self::None;
+        }
+        let is_unknown = below.held.object().is_none();
+        let is_fixture = object.is_some_and(|object| has_place(&object, &at, data));
+        match (at.array, is_nest(&at, data), is_fixture) {
+            (Some(_), _, _) | (None, true, true) => Self::Place,
+            (None, true, false) if is_unknown => Self::Place,
+            (None, false, true) => Self::Jaws,
+            (None, true | false, false) => Self::None,
+        }
+    }
+}
+
+/// An object has grip data of its own at the location point of a place: those for `$$$` say nothing of a fixture.
+fn has_place(object: &ObjectGrip, at: &Standing, data: &TaskData<'_>) -> bool {
+    let [here, anywhere] = [at.record, None].map(|record| {
+        let place = place_of(LocationKind::Point, record, None);
+        data.grip_loc(&object.object, object.grip, &place)
+    });
+    here.is_some() && here != anywhere
+}
+
+/// The place is one of the fixtures in which a part stays by its weight (VII.5: owner VFIXTURE).
+fn is_nest(at: &Standing, data: &TaskData<'_>) -> bool {
+    let owner = data.owner_named(&Name10::clipped(named::NESTS));
+    let point = Reference::location_point(LocptId::from_option(at.record));
+    owner.is_some_and(|owner| data.is_member(owner, point))
+}
