@@ -284,14 +284,14 @@ fn emove_and_prim_change_tools() {
 
 #[test]
 fn emove_and_prim_change_tools_with_an_interruption() {
-    let (unusual, any) = if is_full() { (1, 63) } else { (0, 32) };
+    let (unusual, any) = if is_full() { (1, 63) } else { (0, 39) };
     guards("E-move and Prim, tools, an interruption", 6, (unusual, 1, 0), any);
 }
 
 #[test]
 fn emove_and_prim_change_tools_with_a_fault() {
     let commands = if is_full() { 6 } else { 4 };
-    guards("E-move and Prim, tools, a fault", commands, (0, 0, 1), 34);
+    guards("E-move and Prim, tools, a fault", commands, (0, 0, 1), 41);
 }
 
 const CHANGING_GRIPPERS: &[prim::Line] =

@@ -109,7 +109,8 @@ impl Pair {
         place("TOOL-SAFE").frame.distance(&self.stands()).inches <= ASIDE
     }
 
-    /// INSERT-TOOL takes the bias of the force sensor at TOOL-SAFE only, and nears the drum only with that bias.
+    /// INSERT-TOOL takes the bias of the force sensor at TOOL-SAFE only, and nears the drum only with that bias. If the
+    /// sensor has been without power since, Prim moves nothing.
     fn judge_calibration(&self, before: &Self) -> Result<(), Wrong> {
         let order = &self.emove_out.prim;
         let is_new = order.number != before.emove_out.prim.number;
@@ -120,8 +121,8 @@ impl Pair {
         let near = Relative::InsNear.record(&self.command, &data()).map(|near| near.sensor);
         match order.command {
             PrimVerb::CalSensor if !safe => Err("INSERT-TOOL calibrates where it may touch something"),
-            PrimVerb::GoWhile if order.sensor == near && before.biased_at_safe != Some(true) => {
-                Err("INSERT-TOOL nears the drum without a bias that was taken at TOOL-SAFE")
+            PrimVerb::GoWhile if order.sensor == near && before.biased_at_safe == Some(false) => {
+                Err("INSERT-TOOL nears the drum with a bias that was taken at the drum")
             }
             _ => Ok(()),
         }
