@@ -211,9 +211,17 @@ impl fmt::Display for Answer {
         };
         // A refusal can quote received text, and a report can have several lines.
         let text = text.replace(|c: char| c.is_control(), " ");
-        write!(f, "{} @{} {word} {}", self.number, self.time.0, text.trim_end())
+        let line = format!("{} @{} {word} {}", self.number, self.time.0, text.trim_end());
+        if line.len() <= LINE {
+            return f.write_str(&line);
+        }
+        let end = (0..=LINE - CUT.len()).rev().find(|at| line.is_char_boundary(*at)).unwrap_or_default();
+        write!(f, "{}{CUT}", line.get(..end).unwrap_or_default())
     }
 }
+
+/// End of an answer that was too long for a line; the log has all of it.
+const CUT: &str = "...";
 
 /// Violations of the protocol.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -381,6 +389,20 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    #[test]
+    fn answer_longer_than_a_line_is_cut() {
+        for text in ["x".repeat(500), "é".repeat(200)] {
+            let line = Answer { number: 7, verdict: Err(text) }.to_string();
+            assert!(
+                (LINE - 3..=LINE).contains(&line.len()) && line.ends_with("..."),
+                "{}: {line}",
+                line.len()
+            );
+        }
+        let whole = Answer { number: 7, verdict: Err("x".repeat(LINE - 10)) }.to_string();
+        assert_eq!((whole.len(), whole.ends_with('x')), (LINE, true));
+    }
 
     #[test]
     fn a_session_line_by_line() {

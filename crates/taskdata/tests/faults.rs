@@ -62,4 +62,5 @@ fn blocks_are_loaded_beside_known_errors_and_can_correct_them() {
     assert_eq!(pose(800, "TRY").map(|(store, _)| faults(&store)).ok(), Some(1), "nothing new is wrong");
     assert_eq!(pose(800, "UNIT-V1").map(|(store, _)| faults(&store)).ok(), Some(0), "it is corrected");
     assert!(pose(-200, "TRY").is_err(), "another pose is wrong");
+    assert!(pose(-200, "UNIT-V1").is_err(), "it is as wrong as before");
 }

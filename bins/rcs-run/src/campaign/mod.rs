@@ -43,6 +43,7 @@ use std::{fs, io, process::ExitCode};
 use os_io::{console, replace::replace_text};
 use runtime::{
     StartError,
+    judge::check_job,
     setup::{CellFile, TaskFiles},
 };
 
@@ -196,6 +197,7 @@ fn facility(arguments: &CampaignArguments, job: &str) -> Result<Facility, Error>
     let mut files = TaskFiles::load(data, Some(job), false)?;
     let CellFile { description, .. } = CellFile::load(data, &mut files, false)?;
     let TaskFiles { store, job, .. } = files;
+    check_job(&job, &store, None)?;
     Ok(Facility { store, job, description, seed: arguments.seed })
 }
 

@@ -109,7 +109,6 @@ pub(super) mod tests {
             destination: Some(name("UNIT_1")),
             destination_sector: Some(4),
             end_at: Some(name("SAFE")),
-            end_at_sector: None,
             ..HwsCommand::default()
         }
     }

@@ -107,8 +107,14 @@ impl Store {
             Ok(loaded) => return Ok(loaded),
             Err(failed) => failed,
         };
+        let first = u32::try_from(self.sources.len()).unwrap_or(u32::MAX);
+        let is_new = |error: &Diagnostic| error.at().is_none_or(|at| at.source >= first);
         let is_known = |fault: &Fault| self.faults.iter().any(|known| known.is_same(fault));
-        if part.store.faults.iter().all(is_known) { Ok((part.store, *report)) } else { Err(report) }
+        if !report.errors().any(is_new) && part.store.faults.iter().all(is_known) {
+            Ok((part.store, *report))
+        } else {
+            Err(report)
+        }
     }
 
     /// The next generation; `problems` has the errors of files that could not be read.

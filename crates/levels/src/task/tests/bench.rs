@@ -304,6 +304,7 @@ impl<'d> Bench<'d> {
             destination_sector: sector(7),
             end_at: name(8),
             end_at_sector: sector(9),
+            ..HwsCommand::default()
         };
     }
 

@@ -1,6 +1,11 @@
 //! Every row of every table of Task fires.
 
-use interfaces::{Reason, data_base::DataBaseVerb, subtask::SubtaskVerb};
+use interfaces::{
+    Reason,
+    data_base::DataBaseVerb,
+    hws::{Checked, HwsReport},
+    subtask::SubtaskVerb,
+};
 use rcs_core::{handshake::Lower, table::Verdict};
 
 use super::{
@@ -187,6 +192,11 @@ fn every_row_of_every_table_fires() {
         bench.run(line);
         rows.append(&mut bench.rows);
     }
+    let mut bench = Bench::default();
+    bench.command(TO_TRAY);
+    bench.external.hws.checked = Checked::Fails;
+    assert_eq!(bench.finish(), (HwsReport::Error, Reason::CheckFailed));
+    rows.append(&mut bench.rows);
     let store = without(&["-o-loc- PART"]);
     let mut bench = Bench::with(store.view());
     bench.run("MOVE PART +1 UNIT_1 1 +1 SAFE 0 -- 0");

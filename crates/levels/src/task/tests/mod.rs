@@ -6,7 +6,11 @@ mod coverage;
 mod data_system;
 mod recovery;
 
-use interfaces::{Reason, hws::HwsReport, subtask::SubtaskVerb};
+use interfaces::{
+    Reason,
+    hws::{Checked, HwsReport},
+    subtask::SubtaskVerb,
+};
 use rcs_core::name::Name16;
 
 use self::bench::{Bench, FINISHED, Mishap};
@@ -342,6 +346,19 @@ fn a_command_that_comes_when_the_operator_takes_the_robot_is_not_executed() {
         let status = bench.step();
         assert_eq!((status.report, status.reason), error(reason), "{line}");
     }
+}
+
+#[test]
+fn command_that_fails_its_check_is_refused_and_the_next_one_is_executed() {
+    let mut bench = Bench::default();
+    bench.command("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0");
+    bench.external.hws.checked = Checked::Fails;
+    assert_eq!(bench.finish(), error(Reason::CheckFailed));
+    assert!(bench.sent().is_empty(), "nothing moves");
+    assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+    bench.command("PAUSE -- 0 -- 0 0 -- 0 -- 0");
+    bench.external.hws.checked = Checked::Fails;
+    assert_eq!(bench.finish(), FINISHED, "PAUSE is always accepted");
 }
 
 #[test]
