@@ -393,14 +393,14 @@ mod tests {
     #[test]
     fn answer_longer_than_a_line_is_cut() {
         for text in ["x".repeat(500), "é".repeat(200)] {
-            let line = Answer { number: 7, verdict: Err(text) }.to_string();
+            let line = Answer { number: 7, time: RunTime(0), verdict: Err(text) }.to_string();
             assert!(
                 (LINE - 3..=LINE).contains(&line.len()) && line.ends_with("..."),
                 "{}: {line}",
                 line.len()
             );
         }
-        let whole = Answer { number: 7, verdict: Err("x".repeat(LINE - 10)) }.to_string();
+        let whole = Answer { number: 7, time: RunTime(0), verdict: Err("x".repeat(LINE - 13)) }.to_string();
         assert_eq!((whole.len(), whole.ends_with('x')), (LINE, true));
     }
 

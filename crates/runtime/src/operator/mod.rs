@@ -438,7 +438,7 @@ mod tests {
         }
         let (memory, data) = (CommonMemory::default(), TaskData::default());
         for entry in [Entry::Stop(2), Entry::Execute(ProcessId::Prim, 100)] {
-            operator.terminals.enter(entry, &memory, &data).unwrap();
+            operator.terminals.enter(entry, Tick(0), &memory, &data).unwrap();
         }
         operator.end_tick(false);
         operator
