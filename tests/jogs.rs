@@ -113,7 +113,7 @@ fn a_part_that_was_moved_off_its_sector_is_let_go_in_it() {
     for moves in [&["frame WORLD", "up 12"][..], &["frame WORLD", "up 80"]] {
         let text = format!(
             "** tray UNIT_1 4 LINKBAR1_BH\n\
-             == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 UNIT_1 1 0 -- 0\n{}\
+             == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 UNIT_1 1 -- 0\n{}\
              == TRANSFER LINKBAR1_BH +2 UNIT_1 4 +2 UNIT_1 1 HOME 0\n",
             jog(moves)
         );
@@ -130,7 +130,8 @@ fn a_part_in_the_vise_is_let_go_only_where_it_was_brought() {
     let begin = "** tray UNIT_1 4 LINKBAR1_BH\n** vise partial PFIXTURE\n\
                  == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n** vise close PFIXTURE\n";
     let away = jog(&["frame WORLD", "stick 0 100 40"]);
-    let back = jog(&["frame WORLD", "stick 0 -100 40"]);
+    // The box has taken the robot over in the first five ticks of the way there.
+    let back = jog(&["frame WORLD", "stick 0 -100 35"]);
     let position = "== POSITION H-LINKBAR1_BH +1 PFIXTURE 0 +0 -- 0 -- 0\n";
     let again = position.replace('\n', " expect error\n");
     let outcome = job("vise", &format!("{begin}{away}{again}{back}{position}"));
@@ -139,4 +140,21 @@ fn a_part_in_the_vise_is_let_go_only_where_it_was_brought() {
     let said = &outcome.last_words;
     assert_eq!(outcome.status, Some(1), "{said}");
     assert!(said.contains(Reason::OffPlace.text()) && said.contains("PFIXTURE is 0."), "{said}");
+}
+
+#[test]
+fn a_jog_in_a_holster_leaves_only_the_gripper_change() {
+    // The change of the gripper begins in the 700th tick or so.
+    let text = format!(
+        "** tray UNIT_2 7 SHAFT_BH 0 0 0\n\
+         ** after 700 joystick velocity 500\n\
+         ** after 700 joystick frame WORLD\n\
+         ** after 710 joystick stick 100 0 20\n\
+         ** after 760 joystick frame OFF\n\
+         == TRANSFER SHAFT_BH +1 UNIT_2 7 +1 V-VFIXTURE 0 HOME 0 expect error\n\
+         ** wait 100\n{TO_HOME}"
+    );
+    let outcome = job("holster", &text);
+    assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);
+    assert!(outcome.last_words.contains(Reason::InHolster.text()), "{}", outcome.last_words);
 }
