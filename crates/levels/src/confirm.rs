@@ -352,7 +352,7 @@ mod tests {
         let readings =
             ["ring", "stop", "size", "opening", "grasp", "readings", "place", "line", "gripper", "motion"];
         for (name, least) in
-            [("Quick Change", 3), ("V-Grip", 4), ("Grip", 3), ("Rotary Table", 1), ("T3 Interface", 3)]
+            [("Quick Change", 2), ("V-Grip", 4), ("Grip", 3), ("Rotary Table", 1), ("T3 Interface", 3)]
         {
             let process = Ladder::processes().iter().find(|process| process.name == name).unwrap();
             let mut rows = 0;
