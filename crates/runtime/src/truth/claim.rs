@@ -24,6 +24,7 @@ pub struct Untruth {
 }
 
 impl Untruth {
+    /// An untruth that a sensor could have shown.
     pub const fn is_false(text: String) -> Self {
         Self { text, not_sensed: None }
     }
@@ -158,7 +159,9 @@ impl Claim {
             Unconfirmed::None => false,
             Unconfirmed::GraspForce => matches!(self, Self::Holds { .. }),
             Unconfirmed::ToolInDrum => matches!(self, Self::InDrum(_)),
-            Unconfirmed::Position => matches!(self, Self::At { .. } | Self::AtPart { .. } | Self::Near { .. }),
+            Unconfirmed::Position => {
+                matches!(self, Self::At { .. } | Self::AtPart { .. } | Self::Near { .. })
+            }
         }
     }
 

@@ -31,6 +31,8 @@ pub struct History {
     /// The part that the robot held after the last tick, with tool frame and part frame.
     held: Option<(u32, Frame, Frame)>,
     pub(super) released: Option<Released>,
+    /// Tick in which the robot has taken the part that it holds.
+    taken: Tick,
     /// Tick in which the camera has looked last, and the part's name.
     pub(super) looked: Option<(Tick, String)>,
 }
