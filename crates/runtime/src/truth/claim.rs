@@ -1,22 +1,18 @@
 //! The statements about the cell of which the goals of commands are made, and their check.
 
-use geometry::frame::{Frame, Vector, rotation_by};
+use geometry::frame::Frame;
 use interfaces::{Unconfirmed, pose_range};
-use plant::{Cell, PartState, RingState, description::PartType, t3::Stage};
 use rcs_core::name::Name16;
 use taskdata::files::{MovtabId, Place, PoseId, TaskData};
 
 use super::{
     NotSensed, Scene,
-    history::{History, apart},
-    tolerance::{
-        GRIP_INCHES, LAG_INCHES, OPENING_INCHES, SEEN_DEGREES, SEEN_INCHES, THERE_DEGREES, THERE_INCHES,
-        TOUCH_INCHES, WIDTH_INCHES,
-    },
+    history::History,
+    parts::{holds_nothing, is_held, is_held_alone, is_in_drum, is_out_of_drum, is_placed, lies_at},
+    robot::{is_at, is_linked, is_near, is_open, stops, touches, wears, wears_none},
+    seen::{at_part, is_located},
+    tolerance::{THERE_DEGREES, THERE_INCHES},
 };
-
-/// A part belongs to a sector if it is no farther than this from its centre, in: half the distance of two sectors.
-const SECTOR_INCHES: f64 = 5.25;
 
 /// A claim that is untrue.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +24,8 @@ pub struct Untruth {
 }
 
 impl Untruth {
-    const fn is_false(text: String) -> Self {
+    /// An untruth that a sensor could have shown.
+    pub const fn is_false(text: String) -> Self {
         Self { text, not_sensed: None }
     }
 }
@@ -105,6 +102,8 @@ pub enum Claim {
     OutOfDrum(Name16),
     /// The robot or what it holds touches something.
     Touches,
+    /// The commanded point of the robot stands, and the arm is behind it by the lag of its servos at most.
+    RobotStops,
     /// The robot is at rest, or has no pressure.
     RobotStill,
     /// The fingers of the robot are at rest.
@@ -188,6 +187,7 @@ impl Claim {
             Self::InDrum(object) => is_in_drum(cell, history, object),
             Self::OutOfDrum(object) => is_out_of_drum(cell, object),
             Self::Touches => touches(cell),
+            Self::RobotStops => stops(cell),
             Self::RobotStill => {
                 let moves = cell.t3().arm().has_pressure() && !cell.t3().at_rest();
                 expect(!moves, || "the robot still moves".to_owned())
@@ -200,323 +200,8 @@ impl Claim {
 }
 
 /// `Ok` if a condition holds.
-fn expect(condition: bool, text: impl FnOnce() -> String) -> Result<(), Untruth> {
+pub fn expect(condition: bool, text: impl FnOnce() -> String) -> Result<(), Untruth> {
     if condition { Ok(()) } else { Err(Untruth::is_false(text())) }
-}
-
-fn is_at(cell: &Cell, goals: &[Frame], name: &str, inches: f64, degrees: f64) -> Result<(), Untruth> {
-    let tool = cell.t3().arm().tool();
-    let away = |goal: &Frame| {
-        let distance = tool.distance(goal);
-        (distance.inches, distance.radians.to_degrees())
-    };
-    let share = |(far, turned): &(f64, f64)| (far / inches).max(turned / degrees);
-    let nearest = goals.iter().map(away).min_by(|a, b| share(a).total_cmp(&share(b)));
-    let Some((far, turned)) = nearest else { return Ok(()) };
-    expect(far <= inches && turned <= degrees, || {
-        format!(
-            "the robot is {far:.3} in and {turned:.2} degrees from {name}, {inches} in and {degrees} degrees allowed"
-        )
-    })
-}
-
-fn is_near(cell: &Cell, goal: &Frame, inches: f64) -> Result<(), Untruth> {
-    let far = apart(&cell.t3().arm().tool().position, &goal.position);
-    let most = inches + LAG_INCHES;
-    expect(far <= most, || {
-        format!("the robot is {far:.2} in from the point that it passes, {most:.2} in allowed")
-    })
-}
-
-fn is_open(cell: &Cell, inches: f64) -> Result<(), Untruth> {
-    let (opening, _) = cell.fingers();
-    expect(cell.gripper().is_none() || opening >= inches - OPENING_INCHES, || {
-        format!("the fingers are {opening:.2} in open, {inches:.2} in expected")
-    })
-}
-
-/// All free parts of a name.
-fn named<'p>(parts: &'p [PartState], object: &'p str) -> impl Iterator<Item = &'p PartState> {
-    parts.iter().filter(move |part| part.name == object)
-}
-
-/// The part of a name that is nearest to a point, within half a sector.
-fn nearest(cell: &Cell, object: &str, near: &Vector) -> Option<PartState> {
-    let beside = |part: &PartState| {
-        let [x, y, _] = part.position;
-        (x - near.x).hypot(y - near.y)
-    };
-    let parts = cell.parts().into_iter().filter(|part| part.name == object && !part.held);
-    let nearest = parts.min_by(|a, b| beside(a).total_cmp(&beside(b)))?;
-    (beside(&nearest) <= SECTOR_INCHES).then_some(nearest)
-}
-
-/// The frames that the camera may find for a part that lies in a tray: the part may be turned by half a turn.
-fn seen(cell: &Cell, part: &PartState) -> Vec<Frame> {
-    let (Some(frame), Some(kind)) = (cell.part_frame(part.id), cell.part_kind(part.id)) else {
-        return Vec::new();
-    };
-    let down = Vector::new(0.0, 0.0, -kind.size[0] / 2.0);
-    let lying = Frame { position: frame.position + down, ..frame };
-    let half_turn = rotation_by(&Vector::new(core::f64::consts::PI, 0.0, 0.0));
-    vec![lying, lying.turned(&half_turn)]
-}
-
-fn at_part(
-    scene: &Scene<'_>,
-    history: &History,
-    object: &str,
-    near: &Frame,
-    Movement(movetable): Movement,
-) -> Result<(), Untruth> {
-    let missing = || format!("no {object} lies there");
-    let found = nearest(scene.cell, object, &near.position);
-    let checked = match &found {
-        None => Err(Untruth::is_false(missing())),
-        Some(part) => {
-            let goals: Vec<_> =
-                seen(scene.cell, part).iter().map(|base| scene.data.moved(base, movetable)).collect();
-            is_at(scene.cell, &goals, object, SEEN_INCHES, SEEN_DEGREES)
-        }
-    };
-    let changed = history.is_any_changed_since_look(object);
-    checked
-        .map_err(|untruth| Untruth { not_sensed: changed.then_some(NotSensed::ChangedAfterLook), ..untruth })
-}
-
-fn is_located(scene: &Scene<'_>, history: &History, object: &Name16, near: &Frame) -> Result<(), Untruth> {
-    let reported = scene.memory.emove.beliefs.located.and_then(|located| located.pose.to_frame().ok());
-    let Some(reported) = reported else {
-        return Err(Untruth::is_false(format!("E-move reports no place of {object}")));
-    };
-    let Some(part) = nearest(scene.cell, object.as_str(), &near.position) else {
-        let looks_like = looks_like(scene, object, &reported);
-        let text = match &looks_like {
-            Some(other) => format!("{other} lies there, no {object}"),
-            None => format!("no {object} lies there"),
-        };
-        let equal = looks_like.is_some().then_some(NotSensed::EqualPart);
-        let changed = history.is_any_changed_since_look(object.as_str());
-        let not_sensed = equal.or_else(|| changed.then_some(NotSensed::ChangedAfterLook));
-        return Err(Untruth { text, not_sensed });
-    };
-    let far = seen(scene.cell, &part)
-        .iter()
-        .map(|frame| frame.distance(&reported))
-        .map(|distance| (distance.inches, distance.radians.to_degrees()))
-        .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let best = seen(scene.cell, &part).iter().any(|frame| {
-        let distance = frame.distance(&reported);
-        distance.inches <= SEEN_INCHES && distance.radians.to_degrees() <= SEEN_DEGREES
-    });
-    expect(best, || {
-        let (inches, degrees) = far.unwrap_or_default();
-        format!("{object} is {inches:.3} in and {degrees:.2} degrees from where E-move reports it")
-    })
-}
-
-/// A part at a place that looks like another one to the camera: the same outline within its tolerance.
-fn looks_like(scene: &Scene<'_>, object: &Name16, at: &Frame) -> Option<String> {
-    let description = scene.cell.description();
-    let asked = description.part(object.as_str())?;
-    let tolerance = description.camera.shape_tolerance;
-    let parts = scene.cell.parts();
-    let other = parts.iter().filter(|part| !part.held).find(|part| {
-        let [x, y, _] = part.position;
-        (x - at.position.x).hypot(y - at.position.y) <= SEEN_INCHES
-    })?;
-    let kind = scene.cell.part_kind(other.id)?;
-    is_alike(asked, kind, tolerance).then(|| other.name.clone())
-}
-
-/// True if two kinds have the same outline within a tolerance, in.
-fn is_alike(one: &PartType, other: &PartType, tolerance: f64) -> bool {
-    one.shape == other.shape && one.size.iter().zip(other.size).all(|(a, b)| (a - b).abs() <= tolerance)
-}
-
-fn is_held(
-    scene: &Scene<'_>,
-    history: &History,
-    object: &Name16,
-    place: &[Frame],
-    unseen: bool,
-) -> Result<(), Untruth> {
-    let cell = scene.cell;
-    let Some(id) = cell.held() else {
-        return Err(Untruth::is_false(format!("the robot does not hold {object}: it holds nothing")));
-    };
-    let (Some(kind), Some(frame)) = (cell.part_kind(id), cell.part_frame(id)) else { return Ok(()) };
-    if kind.name != object.as_str() {
-        let text = format!("the robot holds {}, not {object}", kind.name);
-        let asked = cell.description().part(object.as_str());
-        let same_width = asked.is_some_and(|asked| same_width(asked, kind));
-        let same_picture =
-            asked.is_some_and(|asked| is_alike(asked, kind, cell.description().camera.shape_tolerance));
-        let not_sensed = if same_width && (unseen || same_picture) {
-            Some(NotSensed::EqualPart)
-        } else if same_width && history.is_any_changed_since_look(object.as_str()) {
-            Some(NotSensed::ChangedAfterLook)
-        } else {
-            None
-        };
-        return Err(Untruth { text, not_sensed });
-    }
-    let Some(meant) = place.first() else { return Ok(()) };
-    let is = cell.t3().arm().tool().inverse().compose(&frame).position;
-    // Across the fingers (tool Y) they centre the part. Along the axis of a long part its grips differ by the grip.
-    let off = (is.x - meant.position.x).hypot(is.z - meant.position.z);
-    if off <= GRIP_INCHES {
-        return Ok(());
-    }
-    let text = format!("{object} is {off:.2} in from its place in the fingers, {GRIP_INCHES} in allowed");
-    let not_sensed = if unseen && history.is_changed(id) {
-        Some(NotSensed::NoPicture)
-    } else if history.is_any_changed_since_look(object.as_str()) {
-        Some(NotSensed::ChangedAfterLook)
-    } else {
-        None
-    };
-    Err(Untruth { text, not_sensed })
-}
-
-/// True if the fingers cannot tell two kinds by their width: some width of one is one of the other.
-fn same_width(one: &PartType, other: &PartType) -> bool {
-    one.size.iter().any(|a| other.size.iter().any(|b| (a - b).abs() <= WIDTH_INCHES))
-}
-
-fn is_held_alone(cell: &Cell) -> Result<(), Untruth> {
-    let both = cell.held().and_then(|id| cell.holders(id)).is_some_and(|holders| holders.pedestal);
-    expect(!both, || "the pedestal still holds the part, too".to_owned())
-}
-
-fn holds_nothing(cell: &Cell) -> Result<(), Untruth> {
-    let held = cell.held().and_then(|id| cell.part_kind(id));
-    expect(held.is_none(), || {
-        format!("the robot still holds {}", held.map_or("something", |kind| kind.name.as_str()))
-    })
-}
-
-fn is_placed(cell: &Cell, history: &History, object: &Name16, goal: &Frame) -> Result<(), Untruth> {
-    // Without a release since the start of the judge the location of the part decides, in Task's claim.
-    let Some(released) = history.released() else { return Ok(()) };
-    let parts = cell.parts();
-    let changed = history.is_changed_since(released.id, released.tick);
-    let not_sensed = changed.then_some(NotSensed::ChangedAfterLook);
-    let Some(part) = parts.iter().find(|part| part.id == released.id) else {
-        return Err(Untruth { text: format!("{object} is not in the cell"), not_sensed });
-    };
-    if part.name != object.as_str() {
-        // Whether the robot held the right part is a claim of the grasp.
-        return Ok(());
-    }
-    let tolerance = cell.description().placing_tolerance;
-    let off = apart(&released.tool.position, &goal.position);
-    if off > tolerance {
-        let text = format!("{object} was released {off:.2} in from its goal, {tolerance} in allowed");
-        return Err(Untruth::is_false(text));
-    }
-    let moved = apart(&Vector::from(part.position), &released.part.position);
-    if moved > tolerance {
-        let text = format!(
-            "{object} is {moved:.2} in from where the fingers have released it, {tolerance} in allowed"
-        );
-        return Err(Untruth { text, not_sensed });
-    }
-    Ok(())
-}
-
-fn lies_at(
-    cell: &Cell,
-    history: &History,
-    object: &Name16,
-    (location, sector): &(String, u16),
-) -> Result<(), Untruth> {
-    let parts = cell.parts();
-    let there = |part: &&PartState| !part.held && part.location == *location && part.sector == *sector;
-    if named(&parts, object.as_str()).any(|part| there(&part)) {
-        return Ok(());
-    }
-    let place = if *sector == 0 { location.clone() } else { format!("{location} {sector}") };
-    let where_it_is = |part: &PartState| match part.sector {
-        0 => part.location.clone(),
-        sector => format!("{} {sector}", part.location),
-    };
-    let found: Vec<String> = named(&parts, object.as_str()).map(where_it_is).collect();
-    let text = match &found[..] {
-        [] => format!("no {object} is at {place}, nor anywhere else"),
-        found => format!("no {object} is at {place}, but at {}", found.join(" and ")),
-    };
-    let released = history.released();
-    let other = released.and_then(|released| cell.part_kind(released.id)).is_some_and(|kind| {
-        kind.name != object.as_str()
-            && cell.description().part(object.as_str()).is_some_and(|asked| same_width(asked, kind))
-    });
-    let changed = released.is_some_and(|released| history.is_changed_since(released.id, released.tick));
-    let not_sensed =
-        if changed { Some(NotSensed::ChangedAfterLook) } else { other.then_some(NotSensed::EqualPart) };
-    Err(Untruth { text, not_sensed })
-}
-
-fn wears(cell: &Cell, id: u8) -> Result<(), Untruth> {
-    match (cell.gripper(), cell.ring()) {
-        (Some(on), RingState::Locked) if on == id => Ok(()),
-        (Some(on), RingState::Locked) => {
-            Err(Untruth::is_false(format!("gripper {on} is on the robot, not {id}")))
-        }
-        (Some(on), _) => Err(Untruth::is_false(format!("gripper {on} hangs on a ring that is not locked"))),
-        (None, _) => Err(Untruth::is_false("no gripper is on the robot".to_owned())),
-    }
-}
-
-fn wears_none(cell: &Cell, id: Option<u8>) -> Result<(), Untruth> {
-    if let Some(on) = cell.gripper() {
-        return Err(Untruth::is_false(format!("gripper {on} is still on the robot")));
-    }
-    expect(cell.ring() == RingState::Open, || "the ring of the quick change is not open".to_owned())?;
-    let Some(id) = id else { return Ok(()) };
-    expect(cell.is_holstered(id), || format!("gripper {id} is not in the seat of its holster"))
-}
-
-/// Distance of a part of a name from its place in the drum, in: along the axis and beside it; the nearest one.
-fn from_drum(cell: &Cell, object: &Name16) -> Option<(u32, f64, f64)> {
-    let parts = cell.parts();
-    let of = |part: &PartState| {
-        let entering = cell.at_drum(part.id)?;
-        Some((part.id, entering.left, entering.aside))
-    };
-    named(&parts, object.as_str()).filter_map(of).min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
-}
-
-fn is_in_drum(cell: &Cell, history: &History, object: &Name16) -> Result<(), Untruth> {
-    let seated = cell.description().drum.seated;
-    let (text, id) = match from_drum(cell, object) {
-        Some((_, left, aside)) if left.abs() <= seated && aside <= seated => return Ok(()),
-        Some((id, left, aside)) => {
-            let text =
-                format!("{object} is {left:.2} in before and {aside:.2} in beside its place in the drum");
-            (text, Some(id))
-        }
-        None => (format!("{object} is not in the drum"), history.released().map(|released| released.id)),
-    };
-    let since = history.released().map(|released| released.tick);
-    let changed = id.zip(since).is_some_and(|(id, since)| history.is_changed_since(id, since));
-    Err(Untruth { text, not_sensed: changed.then_some(NotSensed::ChangedAfterLook) })
-}
-
-fn is_out_of_drum(cell: &Cell, object: &Name16) -> Result<(), Untruth> {
-    let length = cell.description().drum.detent_length;
-    let inside = from_drum(cell, object).filter(|(_, left, _)| *left <= length);
-    expect(inside.is_none(), || format!("{object} is still in the drum"))
-}
-
-fn touches(cell: &Cell) -> Result<(), Untruth> {
-    let touching = cell.contacts().iter().any(|contact| contact.depth > -TOUCH_INCHES);
-    expect(touching, || "neither the robot nor what it holds touches anything".to_owned())
-}
-
-fn is_linked(cell: &Cell) -> Result<(), Untruth> {
-    let stage = cell.t3().stage();
-    expect(stage == Stage::Depc, || format!("the robot controller does not execute DEPC: {}", stage.text()))
 }
 
 /// The frame of a location for an object and grip: where the tool is with the object there.

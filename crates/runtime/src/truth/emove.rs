@@ -27,7 +27,7 @@ pub fn claims(command: &EmoveCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let found = match command.command {
         // WITHDRAW is sent by nobody (V.2.1 "not currently used").
         EmoveVerb::None | EmoveVerb::Withdraw => vec![],
-        EmoveVerb::Pause => vec![Some(Claim::RobotStill), Some(Claim::FingersStill)],
+        EmoveVerb::Pause => vec![Some(Claim::RobotStops), Some(Claim::FingersStill)],
         EmoveVerb::MovToLoc => vec![at(base, command.location)],
         EmoveVerb::MovToObj if view.is_some_and(|view| view.enabled) => {
             let movetable = object.and_then(|object| data.grip_movetable(&object, command.grip, &place));

@@ -31,6 +31,8 @@ pub struct History {
     /// The part that the robot held after the last tick, with tool frame and part frame.
     held: Option<(u32, Frame, Frame)>,
     pub(super) released: Option<Released>,
+    /// Tick in which the robot has taken the part that it holds.
+    taken: Tick,
     /// Tick in which the camera has looked last, and the part's name.
     pub(super) looked: Option<(Tick, String)>,
 }
@@ -51,6 +53,9 @@ impl History {
             && held != Some(id)
         {
             self.released = Some(Released { id, tick: scene.tick, tool, part });
+        }
+        if held != self.held.map(|(id, ..)| id) {
+            self.taken = scene.tick;
         }
         let frame = |id: u32| Some((id, cell.t3().arm().tool(), cell.part_frame(id)?));
         self.held = held.and_then(frame);
@@ -76,6 +81,11 @@ impl History {
     pub fn is_changed(&self, id: u32) -> bool {
         let released = self.released.as_ref().filter(|released| released.id == id);
         self.is_changed_since(id, released.map_or(Tick(0), |released| released.tick))
+    }
+
+    /// True if a person has changed any part since the robot has taken the one that it holds.
+    pub fn is_any_changed_since_grasp(&self) -> bool {
+        self.changed.values().any(|changed| *changed >= self.taken)
     }
 
     /// True if a person has changed any part, or one was delivered, since the camera has looked for an object of this name.

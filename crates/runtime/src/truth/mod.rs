@@ -17,8 +17,11 @@
 mod claim;
 mod emove;
 mod history;
+mod parts;
 pub mod placement;
 mod prim;
+mod robot;
+mod seen;
 mod subtask;
 mod task;
 #[cfg(test)]

@@ -18,7 +18,7 @@ pub fn claims(command: &PrimCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let claim = match command.command {
         // A sensor may be calibrated in contact, and nothing moves: no claim about the cell.
         PrimVerb::None | PrimVerb::CalSensor => None,
-        PrimVerb::Pause => Some(Claim::RobotStill),
+        PrimVerb::Pause => Some(Claim::RobotStops),
         PrimVerb::RobotInit => Some(Claim::Linked),
         PrimVerb::GotoPt | PrimVerb::DeltaMove | PrimVerb::GoWhile => at(goal(), "its goal"),
         PrimVerb::GoThru => {

@@ -16,6 +16,9 @@ pub const GRIP_INCHES: f64 = 0.25;
 pub const OPENING_INCHES: f64 = 0.05;
 /// Greatest distance of two bodies that touch, in: sink of contacts and deflection of the fingers' springs.
 pub const TOUCH_INCHES: f64 = 0.03;
+/// The robot may be this far behind a commanded point that stands, in: the lag of the servos in the last ticks of a ramp
+/// of 10 in/s², 80 ms and three ticks at 0.8 in/s.
+pub const STOP_INCHES: f64 = 0.20;
 /// Parts whose widths differ by less than this have the same width for the fingers, in.
 pub const WIDTH_INCHES: f64 = 0.10;
 /// The way that the robot's servos are behind its commanded point at the greatest speed of the link, in: 14 in/s for

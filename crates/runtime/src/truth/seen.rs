@@ -1,0 +1,114 @@
+//! Checks of claims about parts that the camera looks for.
+
+use geometry::frame::{Frame, Vector, rotation_by};
+use plant::{Cell, PartState};
+use rcs_core::name::Name16;
+
+use super::{
+    NotSensed, Scene,
+    claim::{Movement, Untruth, expect},
+    history::History,
+    parts::is_alike,
+    robot::is_at,
+    tolerance::{SEEN_DEGREES, SEEN_INCHES},
+};
+
+/// A part belongs to a sector if it is no farther than this from its centre, in: half the distance of two sectors.
+const SECTOR_INCHES: f64 = 5.25;
+
+/// The part of a name that is nearest to a point, within half a sector.
+pub fn nearest(cell: &Cell, object: &str, near: &Vector) -> Option<PartState> {
+    let beside = |part: &PartState| {
+        let [x, y, _] = part.position;
+        (x - near.x).hypot(y - near.y)
+    };
+    let parts = cell.parts().into_iter().filter(|part| part.name == object && !part.held);
+    let nearest = parts.min_by(|a, b| beside(a).total_cmp(&beside(b)))?;
+    (beside(&nearest) <= SECTOR_INCHES).then_some(nearest)
+}
+
+/// The frames that the camera may find for a part that lies in a tray: the part may be turned by half a turn.
+pub fn seen(cell: &Cell, part: &PartState) -> Vec<Frame> {
+    let (Some(frame), Some(kind)) = (cell.part_frame(part.id), cell.part_kind(part.id)) else {
+        return Vec::new();
+    };
+    let down = Vector::new(0.0, 0.0, -kind.size[0] / 2.0);
+    let lying = Frame { position: frame.position + down, ..frame };
+    let half_turn = rotation_by(&Vector::new(core::f64::consts::PI, 0.0, 0.0));
+    vec![lying, lying.turned(&half_turn)]
+}
+
+pub fn at_part(
+    scene: &Scene<'_>,
+    history: &History,
+    object: &str,
+    near: &Frame,
+    Movement(movetable): Movement,
+) -> Result<(), Untruth> {
+    let changed = history.is_any_changed_since_look(object).then_some(NotSensed::ChangedAfterLook);
+    let found = nearest(scene.cell, object, &near.position);
+    let checked = match &found {
+        None => {
+            let other = looks_like(scene, object, near, SECTOR_INCHES);
+            let text = format!("{} lies there, no {object}", other.as_deref().unwrap_or("nothing"));
+            let not_sensed = other.map(|_| NotSensed::EqualPart);
+            return Err(Untruth { text, not_sensed: not_sensed.or(changed) });
+        }
+        Some(part) => {
+            let goals: Vec<_> =
+                seen(scene.cell, part).iter().map(|base| scene.data.moved(base, movetable)).collect();
+            is_at(scene.cell, &goals, object, SEEN_INCHES, SEEN_DEGREES)
+        }
+    };
+    checked.map_err(|untruth| Untruth { not_sensed: changed, ..untruth })
+}
+
+pub fn is_located(
+    scene: &Scene<'_>,
+    history: &History,
+    object: &Name16,
+    near: &Frame,
+) -> Result<(), Untruth> {
+    let reported = scene.memory.emove.beliefs.located.and_then(|located| located.pose.to_frame().ok());
+    let Some(reported) = reported else {
+        return Err(Untruth::is_false(format!("E-move reports no place of {object}")));
+    };
+    let Some(part) = nearest(scene.cell, object.as_str(), &near.position) else {
+        let looks_like = looks_like(scene, object.as_str(), &reported, SEEN_INCHES);
+        let text = match &looks_like {
+            Some(other) => format!("{other} lies there, no {object}"),
+            None => format!("no {object} lies there"),
+        };
+        let equal = looks_like.is_some().then_some(NotSensed::EqualPart);
+        let changed = history.is_any_changed_since_look(object.as_str());
+        let not_sensed = equal.or_else(|| changed.then_some(NotSensed::ChangedAfterLook));
+        return Err(Untruth { text, not_sensed });
+    };
+    let far = seen(scene.cell, &part)
+        .iter()
+        .map(|frame| frame.distance(&reported))
+        .map(|distance| (distance.inches, distance.radians.to_degrees()))
+        .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let best = seen(scene.cell, &part).iter().any(|frame| {
+        let distance = frame.distance(&reported);
+        distance.inches <= SEEN_INCHES && distance.radians.to_degrees() <= SEEN_DEGREES
+    });
+    expect(best, || {
+        let (inches, degrees) = far.unwrap_or_default();
+        format!("{object} is {inches:.3} in and {degrees:.2} degrees from where E-move reports it")
+    })
+}
+
+/// A part at a place, within some inches, that looks like another one to the camera: the same outline within its tolerance.
+pub fn looks_like(scene: &Scene<'_>, object: &str, at: &Frame, within: f64) -> Option<String> {
+    let description = scene.cell.description();
+    let asked = description.part(object)?;
+    let tolerance = description.camera.shape_tolerance;
+    let parts = scene.cell.parts();
+    let other = parts.iter().filter(|part| !part.held).find(|part| {
+        let [x, y, _] = part.position;
+        (x - at.position.x).hypot(y - at.position.y) <= within
+    })?;
+    let kind = scene.cell.part_kind(other.id)?;
+    is_alike(asked, kind, tolerance).then(|| other.name.clone())
+}
