@@ -16,6 +16,7 @@ mod live;
 mod neighbours;
 mod operator;
 mod readme;
+mod remedies;
 mod replays;
 mod seeds;
 mod survival;
