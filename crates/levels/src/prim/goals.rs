@@ -19,9 +19,9 @@ const LAG_S: f64 = 0.2;
 
 /// PAUSE.
 pub static REST: Goal = Goal {
-    holds: "nothing is commanded to move, or the link is down",
-    sensors: &[Sensor::Command],
-    tolerance: "",
+    holds: "the robot has come to rest, or the link is down",
+    sensors: &[Sensor::Resolvers],
+    tolerance: "no motion above 0.02 in, 0.1 degree per tick for 3 ticks",
     age: 0,
     unconfirmed: &[],
 };

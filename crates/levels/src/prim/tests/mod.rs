@@ -587,6 +587,28 @@ fn a_point_is_sent_every_tick() {
 }
 
 #[test]
+fn pause_is_done_when_the_resolvers_show_that_the_robot_rests() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 2);
+    rig.steps(20);
+    rig.command(PrimVerb::Pause, 0);
+    rig.step();
+    for _ in 0..20 {
+        // The arm still settles: it is in another place in each tick.
+        rig.t3i.off = if rig.t3i.off == 0 { 3 } else { 0 };
+        rig.step();
+        assert_eq!(rig.report(), PrimReport::Executing);
+    }
+    rig.t3i.off = 0;
+    rig.steps(5);
+    assert_eq!(rig.report(), PrimReport::Done);
+    // A vise that closes on the part shifts the hand of a robot that pauses.
+    rig.t3i.off = 6;
+    rig.steps(2);
+    assert_eq!(rig.report(), PrimReport::Done);
+}
+
+#[test]
 fn a_robot_that_swings_through_the_goal_is_not_at_rest() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 2);

@@ -197,6 +197,14 @@ fn pauses(fired: &mut Fired) {
         rig.steps(3);
         rig.external.devices.joystick.resume = true;
     });
+    // The robot never rests.
+    fired.run(Rig::initialized(), |rig| {
+        rig.command(PrimVerb::Pause, 0);
+        for tick in 0..100 {
+            rig.t3i.off = if tick % 3 == 0 { 3 } else { 0 };
+            rig.step();
+        }
+    });
     // The operator takes a robot that flies on.
     fired.run(Rig::initialized(), |rig| {
         rig.run(PrimVerb::GoThru, 1);
