@@ -104,8 +104,6 @@ pub enum Claim {
     Touches,
     /// The commanded point of the robot stands, and the arm is behind it by the lag of its servos at most.
     RobotStops,
-    /// The robot is at rest, or has no pressure.
-    RobotStill,
     /// The fingers of the robot are at rest.
     FingersStill,
     /// Hand and table of the pedestal are at rest.
@@ -188,10 +186,6 @@ impl Claim {
             Self::OutOfDrum(object) => is_out_of_drum(cell, object),
             Self::Touches => touches(cell),
             Self::RobotStops => stops(cell),
-            Self::RobotStill => {
-                let moves = cell.t3().arm().has_pressure() && !cell.t3().at_rest();
-                expect(!moves, || "the robot still moves".to_owned())
-            }
             Self::FingersStill => expect(!cell.fingers_move(), || "the fingers still move".to_owned()),
             Self::PedestalStill => expect(!cell.pedestal_moves(), || "the pedestal still moves".to_owned()),
             Self::Linked => is_linked(cell),

@@ -35,6 +35,8 @@ pub struct History {
     taken: Tick,
     /// Tick in which the camera has looked last, and the part's name.
     pub(super) looked: Option<(Tick, String)>,
+    /// Number of the LOCATE-OBJ of that look.
+    look: u32,
 }
 
 impl History {
@@ -62,7 +64,8 @@ impl History {
         let (command, status) = (&scene.memory.subtask.emove, &scene.memory.emove.status);
         let located = command.command == EmoveVerb::LocateObj
             && (status.echo, status.report) == (command.number, StatusReport::Done);
-        if let (true, Some(object)) = (located, command.object) {
+        if let (true, Some(object)) = (located && command.number != self.look, command.object) {
+            self.look = command.number;
             self.looked = Some((scene.tick, object.to_string()));
         }
     }

@@ -16,9 +16,10 @@ pub fn named<'p>(parts: &'p [PartState], object: &'p str) -> impl Iterator<Item 
     parts.iter().filter(move |part| part.name == object)
 }
 
-/// True if two kinds have the same outline within a tolerance, in.
+/// True if two kinds have the same outline from above within a tolerance, in: the camera does not measure heights.
 pub fn is_alike(one: &PartType, other: &PartType, tolerance: f64) -> bool {
-    one.shape == other.shape && one.size.iter().zip(other.size).all(|(a, b)| (a - b).abs() <= tolerance)
+    let outlines = one.size.iter().zip(other.size).skip(1);
+    one.shape == other.shape && outlines.into_iter().all(|(a, b)| (a - b).abs() <= tolerance)
 }
 
 pub fn is_held(

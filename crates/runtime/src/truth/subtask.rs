@@ -44,5 +44,5 @@ pub fn claims(command: &SubtaskCommand, scene: &Scene<'_>) -> Vec<Claim> {
 /// whatever is commanded (VI.5).
 pub fn pause(scene: &Scene<'_>) -> Vec<Option<Claim>> {
     let pedestal = (scene.memory.subtask.pedestal.number != 0).then_some(Claim::PedestalStill);
-    vec![Some(Claim::RobotStill), Some(Claim::FingersStill), pedestal]
+    vec![Some(Claim::RobotStops), Some(Claim::FingersStill), pedestal]
 }

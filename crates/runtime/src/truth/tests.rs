@@ -124,7 +124,7 @@ fn an_empty_robot_holds_nothing_and_releases_nothing() {
     assert_eq!(bench.check(&Claim::HoldsNothing), Ok(()));
     let held = Claim::Holds { object: name("LINKBAR1"), place: Vec::new(), unseen: false };
     assert_eq!(bench.not_sensed(&held), None);
-    for still in [Claim::RobotStill, Claim::FingersStill, Claim::PedestalStill] {
+    for still in [Claim::RobotStops, Claim::FingersStill, Claim::PedestalStill] {
         assert_eq!(bench.check(&still), Ok(()), "{still:?}");
     }
     assert!(bench.check(&Claim::Touches).is_err());
