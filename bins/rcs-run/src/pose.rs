@@ -127,13 +127,13 @@ pub fn standing([x, y, z]: [f64; 3], azimuth: f64, tilt: f64, roll: f64) -> Resu
 /// Write the form into the file, and print the changed lines.
 fn write(
     arguments: &PoseArguments,
-    file: &PathBuf,
+    file: &Path,
     name: Name10,
     pose: &Pose,
     store: &Store,
 ) -> Result<(), Error> {
     let text =
-        os_io::files::read_text(file).map_err(|source| StartError::Read { path: file.clone(), source })?;
+        os_io::files::read_text(file).map_err(|source| StartError::Read { path: file.to_owned(), source })?;
     let name = name.to_string();
     let (kind, form) = match &arguments.relative {
         None => (Kind::Pose, stand::pose_form(&name, &arguments.movetable, pose)),
@@ -146,7 +146,7 @@ fn write(
     let changed = form::put(&text, arguments.block, kind, &name, form)
         .map_err(|why| Error::Pose(format!("{}: {why}", file.display())))?;
     os_io::replace::replace_text(file, &changed.text)
-        .map_err(|source| Error::Write { path: file.clone(), source })?;
+        .map_err(|source| Error::Write { path: file.to_owned(), source })?;
     let lines = changed.removed.iter().map(|line| format!("-{line}\n"));
     let lines = lines.chain(changed.added.iter().map(|line| format!("+{line}\n"))).collect::<String>();
     console::answer(&format!("{} line {}\n{lines}", file.display(), changed.line))?;
