@@ -133,17 +133,20 @@ class WorkstationTest(unittest.TestCase):
 
 class OperatorTest(unittest.TestCase):
     def test_answers_and_refusals(self):
-        lines = b"rcs-operator 1 linkbar-1\n1 ok tick 7: done\n2 refused no\n"
+        lines = b"rcs-operator 2 linkbar-1 anna-2 @5000\n1 @5040 ok tick 7: done\n2 @5080 refused no\n"
         with Controller(HELLO + frame(2) + lines) as controller:
             with Operator(controller.address, "anna") as operator:
-                self.assertEqual(operator.run, "linkbar-1")
+                self.assertEqual((operator.run, operator.name), ("linkbar-1", "anna-2"))
                 self.assertEqual(operator.request("stop"), "tick 7: done")
                 with self.assertRaises(Refused):
                     operator.request("go")
-        self.assertTrue(controller.received.endswith(b"hello anna\n1 stop\n2 go\n"), controller.received)
+        hello, stop, go = controller.received.decode().splitlines()[-3:]
+        self.assertTrue(hello.endswith("hello anna"), hello)
+        self.assertRegex(stop, r"^1 @60\d\d stop$", "a second after the time of the run")
+        self.assertRegex(go, r"^2 @60\d\d go$")
 
     def test_a_refused_session_raises(self):
-        with Controller(HELLO + frame(2) + b"0 refused busy\n") as controller:
+        with Controller(HELLO + frame(2) + b"0 @5000 refused busy\n") as controller:
             with self.assertRaises(Refused) as caught:
                 Operator(controller.address, "anna")
         self.assertEqual(caught.exception.reason, "busy")

@@ -3,7 +3,7 @@
 mod form;
 
 use std::{
-    path::{Path, PathBuf},
+    path::Path,
     process::ExitCode,
 };
 
