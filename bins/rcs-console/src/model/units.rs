@@ -20,6 +20,8 @@ const UNITS: [(&str, &str); 42] = [
     ("force.z", "counts"),
     ("force.moment", "counts"),
     ("resolvers.counts", "counts"),
+    ("deviation", "0.01 in"),
+    ("robot_lag", "ms"),
     ("motor_counter", "0.01 deg"),
     ("motor.steps", "0.01 deg"),
     ("left_force", "lb"),

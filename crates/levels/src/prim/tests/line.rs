@@ -326,7 +326,8 @@ fn a_robot_that_lags_too_far_is_stopped_and_pause_takes_its_position_over() {
     };
     is_off_path(&bench);
     let stood = bench.robot.at;
-    assert!((0.5..1.5).contains(&bench.off(&home())), "{}", bench.off(&home()));
+    // The limit, and the way in the expected lag and in the ticks between Prim and the line.
+    assert!((0.5..2.0).contains(&bench.off(&home())), "{}", bench.off(&home()));
     // The resolvers tell the truth again: only ROBOT-INIT, which PAUSE sends, lets the robot move.
     assert_eq!(bench.run(PrimVerb::GotoPt, 1), PrimReport::Error);
     is_off_path(&bench);

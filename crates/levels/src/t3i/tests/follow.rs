@@ -111,16 +111,16 @@ fn a_robot_that_stops_or_jumps_is_off_its_path_and_one_that_rests_for_long_is_no
     robot.frozen = true;
     assert!(!robot.goes(20, 0.3), "frozen feedback");
     assert!(robot.apart() < 0.5 + 7.0 * 0.3);
-    let mut robot = Lagging::by(2);
-    robot.rest(500);
-    robot.bench.robot.joints[0] += 0.02;
-    robot.bench.external.devices.resolvers.counts = counts(&robot.bench.robot.joints);
-    robot.bench.tick();
-    assert_eq!(robot.following(), Following::OffPath, "a jump of 1.4 in at rest");
-    let mut robot = Lagging::by(2);
-    robot.bench.robot.joints[5] += 0.04;
-    robot.rest(5);
-    assert_eq!(robot.following(), Following::OffPath, "a rotation of 2.3 degrees");
+    for (joint, by, what) in [(0, 0.02, "1.4 in"), (5, 0.04, "2.3 degrees")] {
+        let mut robot = Lagging::by(2);
+        robot.rest(500);
+        assert_eq!(robot.following(), Following::OnPath);
+        let mut joints = robot.bench.robot.joints;
+        joints[joint] += by;
+        robot.bench.external.devices.resolvers.counts = counts(&joints);
+        robot.bench.tick();
+        assert_eq!(robot.following(), Following::OffPath, "a jump of {what} at rest");
+    }
 }
 
 #[test]
