@@ -95,7 +95,10 @@ fn a_robot_that_falls_behind_is_stopped_while_the_distance_is_small() {
         let robot = format!("egm:sim,deviation={deviation}");
         let (status, result) = run(&[job, "--robot", &robot, "--log", "none"]);
         let text = result["failure"]["text"].as_str().expect("a reason");
-        assert!(status == 1 && text.contains("the robot is off its commanded path"), "{job}: {status}, {text}");
+        assert!(
+            status == 1 && text.contains("the robot is off its commanded path"),
+            "{job}: {status}, {text}"
+        );
         assert!(text.contains("from the commanded pose (") && text.contains("in), fed back ("), "{text}");
         assert!(!text.contains("ran into"), "{text}");
         let (_, most) = error_mm(&result);
@@ -125,10 +128,16 @@ fn after_a_robot_fell_behind_pause_takes_its_position_over() {
 fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
     for (option, datagram, counter, reason) in [
         ("", &b"no message of EGM"[..], "refused", "from 127.0.0.1:"),
-        (",from=192.0.2.1", &b"\x0a\x04\x08\x01\x10\x01"[..], "elsewhere", "not the address that from= names"),
+        (
+            ",from=192.0.2.1",
+            &b"\x0a\x04\x08\x01\x10\x01"[..],
+            "elsewhere",
+            "not the address that from= names",
+        ),
     ] {
         let socket = UdpSocket::bind("127.0.0.1:0").expect("a socket");
-        let port = UdpSocket::bind("127.0.0.1:0").and_then(|socket| socket.local_addr()).expect("a port").port();
+        let port =
+            UdpSocket::bind("127.0.0.1:0").and_then(|socket| socket.local_addr()).expect("a port").port();
         let robot = format!("egm:127.0.0.1:{port}{option}");
         let run = Command::new(rcs_run())
             .current_dir(root())
@@ -149,7 +158,9 @@ fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
         assert_eq!(output.status.code(), Some(3), "{terminal}");
         assert!(result["egm"][counter].as_u64() > Some(100), "{}", result["egm"]);
         assert_eq!(result["egm"]["received"], 0);
-        for text in [result["egm"]["last_refused"].as_str(), result["failure"]["text"].as_str(), Some(&*terminal)] {
+        for text in
+            [result["egm"]["last_refused"].as_str(), result["failure"]["text"].as_str(), Some(&*terminal)]
+        {
             assert!(text.is_some_and(|text| text.contains(reason)), "{text:?}");
         }
         assert!(terminal.contains("datagrams refused, the last from 127.0.0.1:"), "{terminal}");

@@ -4,7 +4,9 @@ use core::fmt;
 
 use rcs_core::name::{Name10, Name16};
 
-use crate::{CommonMemory, Fault, HwsCommand, ProcessId, Reason, StatusReport, emove::NearPlace, t3i::PathLeft};
+use crate::{
+    CommonMemory, Fault, HwsCommand, ProcessId, Reason, StatusReport, emove::NearPlace, t3i::PathLeft,
+};
 
 /// Distance along an axis that is shown, inches: as exactly as a pose is written (VII.1).
 const LEAST_SHOWN: f64 = 0.005;

@@ -264,8 +264,7 @@ impl FromStr for RobotConfig {
             Some(("serial", port)) => RobotKind::Serial(port.parse()?),
             Some(("egm", robot)) => RobotKind::Egm(Box::new(robot.parse()?)),
             _ => {
-                let expected =
-                    "sim[,silence=SECONDS][,lag=MS], serial:PATH[,OPTION...] or egm:[ADDRESS:]PORT[,OPTION...]";
+                let expected = "sim[,silence=SECONDS][,lag=MS], serial:PATH[,OPTION...] or egm:[ADDRESS:]PORT[,OPTION...]";
                 return Err(format!("{expected} was expected"));
             }
         };

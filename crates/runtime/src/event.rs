@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use depc::warning::Warning;
 use executive::{
     boards::Board,
     overrun::{Overrun, PUNCTUAL},
@@ -16,7 +17,6 @@ use neighbours::{
         player::{JobFailure, Retry, WaitReason},
     },
 };
-use depc::warning::Warning;
 use plant::{CellEvent, t3::explained};
 use record::Level;
 

@@ -18,8 +18,8 @@ use super::{
     postprocess::resolver_frame,
     state::{GRACE_TICKS, State},
     tables::{
-        Above, Answer, Dtr, Feedback, Followed, Grace, Line, Link, Point, Queue, Reported, Request, Restarting,
-        Seen, Situation, Start, Trouble, Way, Words, receive::ReceiveStep,
+        Above, Answer, Dtr, Feedback, Followed, Grace, Line, Link, Point, Queue, Reported, Request,
+        Restarting, Seen, Situation, Start, Trouble, Way, Words, receive::ReceiveStep,
     },
 };
 

@@ -97,7 +97,9 @@ fn a_robot_beyond_the_expected_lag_is_stopped_within_half_an_inch_of_the_path() 
 
 #[test]
 fn the_robot_states_its_lag() {
-    for (lag, ticks, follows) in [(Some(400), 10, true), (Some(400), 13, false), (Some(0), 3, false), (None, 5, true)] {
+    for (lag, ticks, follows) in
+        [(Some(400), 10, true), (Some(400), 13, false), (Some(0), 3, false), (None, 5, true)]
+    {
         let mut robot = Lagging::by(ticks);
         robot.bench.external.devices.robot_lag = lag;
         assert_eq!(robot.goes(50, 0.4), follows, "{lag:?}, {ticks} ticks");
@@ -162,7 +164,10 @@ fn a_robot_off_its_path_gets_nothing_until_a_restart() {
         bench.tick();
     }
     let status = bench.memory.t3i.status;
-    assert_eq!((bench.report(), status.following, status.left), (T3iReport::Finished, Following::OnPath, None));
+    assert_eq!(
+        (bench.report(), status.following, status.left),
+        (T3iReport::Finished, Following::OnPath, None)
+    );
     assert!(!bench.memory.device_outputs().robot_stop);
     let x = bench.robot_tool().position.x;
     bench.point(&beside(x + 0.1));
