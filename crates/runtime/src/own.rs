@@ -28,8 +28,8 @@ pub trait OwnRobot: Robot {
     /// follows it.
     fn position(&self) -> Option<Plate>;
 
-    /// Time by which the robot is expected to lag behind its points, at most 1 s. A robot that lags more at a speed
-    /// that matters (0.5 in and what it moves in this time) is stopped.
+    /// Time by which the robot is expected to lag behind its points, at most 1 s, with the 80 ms of the simulated arm,
+    /// which follows it and has the resolvers. A robot that is more than 0.5 in off the path of this time is stopped.
     fn lag(&self) -> Duration {
         Duration::from_millis(LAG_MS.into())
     }
