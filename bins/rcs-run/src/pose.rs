@@ -2,10 +2,7 @@
 
 mod form;
 
-use std::{
-    path::Path,
-    process::ExitCode,
-};
+use std::{path::Path, process::ExitCode};
 
 use executive::memory::{Attached, OnStuck, SET_UP_LIMIT, within_limit};
 use geometry::{

@@ -135,7 +135,7 @@ fn names_in_the_list_of_contacts_and_in_nests_must_be_known() {
     assert_eq!(underlined, "\"strike_plats\"");
     assert_eq!(
         message,
-        "contact[6].obstacle[0]: expected a name or a group of what can be an obstacle, found strike_plats"
+        "contact[7].obstacle[0]: expected a name or a group of what can be an obstacle, found strike_plats"
     );
     assert!(nearest.is_some_and(|name| name.starts_with("strike_plate")));
     let (underlined, _, nearest) = only("\"RELEASE-TOOL\", ", "\"RELEASE-TOLL\", ");

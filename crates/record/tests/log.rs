@@ -249,15 +249,78 @@ fn a_log_that_another_program_has_written_again_is_read_whole() {
         new().emit_summary_records(false),
         new().calculate_data_section_crc(false),
         new().calculate_summary_section_crc(false),
+        new().calculate_chunk_crcs(false),
+        new().use_chunks(false),
+        new().chunk_size(Some(30_000_000)),
     ]
     .into_iter()
     .enumerate()
     {
         assert_eq!(read(options), (300, 0, false), "options {number}");
     }
-    // Chunks without a checksum are not read, whatever the end says.
-    fs::write(&path, written_again(&recorded, new().calculate_chunk_crcs(false))).unwrap();
-    assert!(matches!(replay(&path), Err(ReplayError::Empty)));
+}
+
+/// The log with each chunk compressed by LZ4, as other programs write it.
+fn with_lz4(bytes: &[u8]) -> Vec<u8> {
+    use std::io::Write as _;
+    let (mut out, mut at) = (bytes[..8].to_vec(), 8);
+    while at + 9 <= bytes.len() && bytes[at..] != *mcap::MAGIC {
+        let length = usize::try_from(u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap())).unwrap();
+        let (opcode, body) = (bytes[at], &bytes[at + 9..at + 9 + length]);
+        at += 9 + length;
+        // Only chunks, and what does not depend on their size: neither indexes nor summary.
+        let body = match opcode {
+            mcap::records::op::CHUNK => {
+                let name = usize::try_from(u32::from_le_bytes(body[28..32].try_into().unwrap())).unwrap();
+                assert_eq!(&body[32..32 + name], b"", "the records are not compressed");
+                let mut packed = lz4_flex::frame::FrameEncoder::new(Vec::new());
+                packed.write_all(&body[40 + name..]).unwrap();
+                let packed = packed.finish().unwrap();
+                let length = u64::try_from(packed.len()).unwrap().to_le_bytes();
+                [&body[..28], &3_u32.to_le_bytes(), b"lz4", &length, &packed].concat()
+            }
+            mcap::records::op::HEADER | mcap::records::op::METADATA | mcap::records::op::ATTACHMENT => {
+                body.to_vec()
+            }
+            _ => continue,
+        };
+        out.push(opcode);
+        out.extend(u64::try_from(body.len()).unwrap().to_le_bytes());
+        out.extend(body);
+    }
+    out
+}
+
+#[test]
+fn chunks_in_lz4_are_read_and_other_compressions_are_named() {
+    let (_scratch, path) = recorded(300);
+    let recorded = fs::read(&path).unwrap();
+    let plain = written_again(&recorded, mcap::WriteOptions::new().compression(None));
+    let packed = with_lz4(&plain);
+    fs::write(&path, &packed).unwrap();
+    let report = replay(&path).unwrap();
+    assert!(report.is_same() && report.damage.is_none(), "{:?}", report.damage);
+    assert_eq!((report.ticks, report.skipped), (300, 0));
+    // The same length as a name that no program knows.
+    let place = packed.windows(3).position(|window| window == b"lz4").unwrap();
+    let mut other = packed;
+    other[place..place + 3].copy_from_slice(b"xyz");
+    fs::write(&path, &other).unwrap();
+    let damage = Log::open(&path).unwrap().damage().unwrap();
+    assert!(damage.contains("compressed with \"xyz\", and only zstd, lz4 or no compression"), "{damage}");
+}
+
+#[test]
+fn a_file_with_several_runs_is_refused() {
+    let (_scratch, path) = recorded(10);
+    let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).unwrap();
+    for job in ["linkbar", "clevis"] {
+        let metadata = [("job".to_owned(), job.to_owned())].into();
+        writer.write_metadata(&mcap::records::Metadata { name: "rcs-run".into(), metadata }).unwrap();
+    }
+    writer.finish().unwrap();
+    fs::write(&path, writer.into_inner().into_inner()).unwrap();
+    assert!(matches!(Log::open(&path), Err(ReadError::Merged { .. })));
 }
 
 #[test]

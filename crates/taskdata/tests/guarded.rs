@@ -180,8 +180,8 @@ fn relative_moves_are_those_that_commands_look_for() {
         ["INS-FAR is no guarded move: nothing watches INS-FX", "leave the sensor out"]
     );
     assert_eq!(
-        said("  -rel- INS-NAER lpt TOOL-TRNS 4 1 8 0 IN"),
-        ["no command looks for a relative move INS-NAER", "help: the nearest known name is INS-FAR"]
+        said("  -rel- INS-NEER lpt TOOL-TRNS 4 1 8 0 IN"),
+        ["no command looks for a relative move INS-NEER", "help: the nearest known name is INS-NEAR"]
     );
 }
 

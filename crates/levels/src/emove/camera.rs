@@ -13,11 +13,15 @@ use taskdata::files::{MovtabId, TaskData, TrajParaId};
 use super::{
     locate::{centred, looked_at, part_frame, request, stays_in_array, view_of},
     postprocess::Slot,
-    robot_place::{gone_to, place_named, present_frame, robot_at},
+    robot_place::{gone_to, is_led, place_named, present_frame, robot_at},
     route::Goal,
     state::State,
     tables::{Action, Reach},
 };
+
+/// A robot that a person moves within this distance of a located object may push it, in: the fingers and the part that
+/// they hold reach so far (ASSUMED).
+const PUSHED_INCHES: f64 = 6.0;
 
 /// From where the camera is moved next, and how.
 pub(super) struct Aim {
@@ -30,10 +34,16 @@ pub(super) struct Aim {
 }
 
 impl State {
-    /// A robot controller that was switched off has let the arm sink, perhaps onto what the camera has seen: the
-    /// pictures no longer count.
+    /// The pictures no longer count after a robot controller was switched off, because the arm has sunk, perhaps onto
+    /// the located object; nor after a person has moved the robot near the object, because the fingers may have pushed
+    /// it.
     pub(super) fn sense_pictures(&mut self, memory: &CommonMemory) {
-        if memory.prim.status.report == PrimReport::T3LinkOff {
+        let may_touch = |located: &Located| match (present_frame(memory), located.pose.to_frame()) {
+            (Some(present), Ok(object)) => present.distance(&object).inches <= PUSHED_INCHES,
+            _ => true,
+        };
+        let is_pushed = is_led(memory) && self.beliefs.located.as_ref().is_some_and(may_touch);
+        if is_pushed || memory.prim.status.report == PrimReport::T3LinkOff {
             self.beliefs.located = None;
         }
     }

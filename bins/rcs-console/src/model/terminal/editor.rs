@@ -496,7 +496,7 @@ mod tests {
         last.lines[1] = "d".into();
         assert!(last.text().ends_with("OFFSET 21000\nc\nd"), "{}", last.text());
         fs::write(directory.path().join("x.blk"), "other").unwrap();
-        assert!(last.write().unwrap_err().contains("has changed since"));
+        assert!(last.write().unwrap_err().contains("was changed by another program"));
         let missing = Editor::begin(BlockNumber { offset: 1, number: 1 }, directory.path(), &[]);
         assert!(missing.unwrap_err().contains("there is no block 1"));
     }

@@ -181,6 +181,21 @@ fn a_grasp_and_a_picture_beside_the_place_correct_first() {
 }
 
 #[test]
+fn a_jog_near_a_located_object_discards_its_picture() {
+    let mut bench = Bench::ready("HOME", 1);
+    assert_eq!(send(&mut bench, (MovToVu, "BLOCK", 1, "BENCH", 1)), DONE);
+    assert_eq!(send(&mut bench, (LocateObj, "BLOCK", 1, "BENCH", 1)), DONE);
+    let is_located = |bench: &Bench| bench.memory.emove.status.located.is_some();
+    let mut far = bench.clone();
+    jog(&mut far, [0.3, 0.0, 0.0]);
+    assert!(is_located(&far), "the camera is {:.1} in from the object", far.off(&frame_of("BENCH")));
+    assert_eq!(send(&mut bench, TO_BLOCK), DONE);
+    assert!(is_located(&bench));
+    jog(&mut bench, [0.3, 0.0, 0.0]);
+    assert!(!is_located(&bench));
+}
+
+#[test]
 fn a_held_object_is_gone_to_only_where_it_is() {
     let mut bench = brought(BLOCK_TO_BENCH);
     assert_eq!(send(&mut bench, TO_BLOCK), DONE);
