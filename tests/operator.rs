@@ -2,7 +2,11 @@
 //! the job go on. The same inputs from the log give the same bits.
 
 use std::{
-    path::PathBuf,
+    ffi::OsStr,
+    io::{BufRead as _, BufReader, Write as _},
+    os::unix::net::UnixStream,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
     sync::atomic::{AtomicU64, Ordering},
     thread::{self, JoinHandle},
     time::{Duration, Instant},
@@ -13,6 +17,7 @@ use interfaces::ExternalInputs;
 use operator::{Client, ClientError};
 use record::{Log, OperatorLine};
 use runtime::{Boards, ClockKind, LogTarget, OperatorAccess, Run, RunConfig, RunOutcome};
+use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
 use whole_system_tests::{copy, rcs_run, root};
 
@@ -484,6 +489,241 @@ fn the_rotary_table_is_started_up_at_its_panel() {
     let (outcome, log, directory) = cell.end();
     assert!(outcome.is_finished(), "{:?}", outcome.result.failure);
     assert_repeats_with(stand_by, &outcome, &log, &directory);
+}
+
+/// The joystick box as the controller reads it: frame, stick, knob.
+fn joystick(run: &Attached) -> (u8, (i16, i16), u16) {
+    let shown = run.external().unwrap().devices.joystick;
+    (shown.frame, (shown.x, shown.y), shown.velocity)
+}
+
+/// Wait until the box shows this; what it shows.
+fn wait_for_box(run: &Attached, wanted: impl Fn((u8, (i16, i16), u16)) -> bool) {
+    let begun = Instant::now();
+    while !wanted(joystick(run)) {
+        assert!(begun.elapsed() < PATIENCE, "{:?}", joystick(run));
+        thread::sleep(Duration::from_millis(4));
+    }
+}
+
+const HELD: [&str; 3] = ["joystick velocity 0", "joystick frame WORLD", "joystick stick 0 300 36000"];
+
+/// However a session ends, the motion that it commands by hand ends with it; the log gives the same run.
+#[test]
+fn motion_by_hand_ends_with_its_session() {
+    let stand_by = |config| RunConfig { stand_by: true, ..config };
+    let cell = Cell::start(TO_SAFE_AND_HOME, stand_by);
+    let mut watcher = cell.client("watcher");
+    wait_for(&mut watcher, "the job waits");
+    let run = Attached::open(&cell.name).unwrap();
+    let is_free = |shown| shown == (0, (0, 0), 0);
+    // `leave`, while the session stays. On a machine that is busy the session may be silent for too long before.
+    let mut anna = cell.client("anna");
+    let begun = Instant::now();
+    loop {
+        ask(&mut anna, &HELD);
+        let answer = anna.ask("leave").unwrap().unwrap();
+        if answer.contains("stick and buttons are released, and the frame is off") {
+            break;
+        }
+        assert!(begun.elapsed() < PATIENCE, "{answer}");
+    }
+    wait_for_box(&run, is_free);
+    // Silence: the session stays, and so does its command.
+    ask(&mut anna, &HELD);
+    wait_for_box(&run, is_free);
+    let status = wait_for(&mut watcher, "anna commands");
+    assert!(status.contains("connected 2: watcher, anna"), "{status}");
+    // The end of the connection.
+    ask(&mut anna, &HELD);
+    drop(anna);
+    wait_for(&mut watcher, "nobody commands");
+    wait_for_box(&run, is_free);
+    ask(&mut watcher, &["joystick velocity 1000"]);
+    // Until all processes have seen that the box is off.
+    wait_ticks(&mut watcher, 50);
+    go_on(&mut watcher);
+    drop(watcher);
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}", outcome.result.failure);
+    assert_repeats_with(stand_by, &outcome, &log, &directory);
+}
+
+#[test]
+fn a_stick_that_is_centred_or_whose_frame_is_off_moves_nothing_later() {
+    let stand_by = |config| RunConfig { stand_by: true, ..config };
+    let cell = Cell::start(TO_SAFE_AND_HOME, stand_by);
+    let mut client = cell.client("anna");
+    wait_for(&mut client, "the job waits");
+    let run = Attached::open(&cell.name).unwrap();
+    ask(&mut client, &["joystick frame WORLD", "joystick stick 0 300 36000", "joystick stick 0 0 1"]);
+    wait_ticks(&mut client, 4);
+    assert_eq!(joystick(&run).1, (0, 0), "0 0 stops");
+    ask(&mut client, &["joystick stick 0 300 36000", "joystick stick 0 -300 3"]);
+    wait_ticks(&mut client, 8);
+    assert_eq!(joystick(&run).1, (0, 0), "the first deflection does not come back");
+    ask(&mut client, &["joystick stick 0 300 36000", "joystick frame OFF", "joystick frame WORLD"]);
+    wait_ticks(&mut client, 4);
+    assert_eq!(joystick(&run).1, (0, 0), "frame OFF has released it");
+    ask(&mut client, &["leave"]);
+    wait_ticks(&mut client, 50);
+    go_on(&mut client);
+    drop(client);
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}", outcome.result.failure);
+    assert_repeats_with(stand_by, &outcome, &log, &directory);
+}
+
+#[test]
+fn sessions_of_one_name_do_not_command_at_the_same_time() {
+    let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
+    let [mut first, mut second] = [(); 2].map(|()| cell.client("send"));
+    assert_eq!([first.name(), second.name()], ["send", "send-2"]);
+    ask(&mut first, &["joystick velocity 900"]);
+    let refused = second.ask("joystick velocity 800").unwrap().unwrap_err();
+    assert!(refused.starts_with("send commands this run"), "{refused}");
+    drop(first);
+    wait_for(&mut second, "nobody commands");
+    ask(&mut second, &["joystick velocity 1000"]);
+    wait_for(&mut second, "send-2 commands");
+    drop(second);
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}", outcome.result.failure);
+    assert_repeats(&outcome, &log, &directory);
+}
+
+/// A request without a limit, or after it, is carried out only if it can do nothing but stop.
+#[test]
+fn only_a_stop_is_carried_out_when_nobody_waits_for_it() {
+    let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
+    let mut client = cell.client("anna");
+    let mut script = UnixStream::connect(operator_socket(&cell.name)).unwrap();
+    let lines =
+        "hello script\n1 @0 PAUSE\n2 PAUSE\n3 @99999999 PAUSE\n4 @0 go\n5 joystick hold PRIM\n6 @0 stop\n";
+    script.write_all(lines.as_bytes()).unwrap();
+    let mut answers = BufReader::new(script.try_clone().unwrap()).lines().map(Result::unwrap);
+    assert!(answers.next().unwrap().starts_with("rcs-operator 2 "));
+    let late = "refused it arrived after its sender had stopped waiting";
+    let unlimited = "refused a time limit was expected";
+    for (number, expected) in
+        [(1, late), (2, unlimited), (3, unlimited), (4, late), (5, "ok tick"), (6, "ok tick")]
+    {
+        let answer = answers.next().unwrap();
+        assert!(answer.starts_with(&format!("{number} @")) && answer.contains(expected), "{answer}");
+    }
+    drop((answers, script));
+    let status = client.ask("status").unwrap().unwrap();
+    assert!(status.contains("knob 0"), "{status}");
+    ask(&mut client, &["joystick free PRIM", "go"]);
+    drop(client);
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}", outcome.result.failure);
+    assert!(outcomes(&outcome).iter().all(|(_, outcome)| *outcome == "finished"), "no PAUSE was carried out");
+    assert_repeats(&outcome, &log, &directory);
+}
+
+/// `rcs-run send` gives up while the run is stopped by a signal; the run goes on and does not carry out its command.
+#[test]
+fn a_command_to_a_stopped_run_is_discarded_when_the_run_goes_on() {
+    let directory = tempfile::tempdir().unwrap();
+    let (job, log) = (directory.path().join("safe.job"), directory.path().join("log.mcap"));
+    std::fs::write(&job, "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n").unwrap();
+    let name = unused_name();
+    let mut child = Command::new(rcs_run())
+        .args([&job, Path::new("--log"), &log].map(AsRef::<OsStr>::as_ref))
+        .args(["--clock", "real", "--stand-by", "--run", name.as_str(), "--json"])
+        .current_dir(root())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    let mut client = loop {
+        match Client::connect(&operator_socket(&name), &"anna".parse().unwrap()) {
+            Ok(client) => break client,
+            Err(error) => assert!(begun.elapsed() < PATIENCE, "{error}"),
+        }
+        thread::sleep(Duration::from_millis(20));
+    };
+    wait_for(&mut client, "the job waits");
+    let process = Pid::from_child(&child);
+    kill_process(process, Signal::STOP).unwrap();
+    let sent = Command::new(rcs_run())
+        .args(["send", "--run", name.as_str(), "MOVE -- 0 -- 0 0 HOME 0 -- 0"])
+        .output()
+        .unwrap();
+    let given_up = client.ask("MOVE -- 0 -- 0 0 HOME 0 -- 0");
+    thread::sleep(Duration::from_millis(500));
+    kill_process(process, Signal::CONT).unwrap();
+    assert!(!sent.status.success() && String::from_utf8_lossy(&sent.stderr).contains("has not answered"));
+    assert!(matches!(given_up, Err(ClientError::Silent)), "{given_up:?}");
+    go_on(&mut client);
+    drop(client);
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    let lines: Vec<OperatorLine> = Log::open(&log).unwrap().operator_lines().collect();
+    let moves: Vec<_> = lines.iter().filter(|line| line.line.contains("MOVE")).collect();
+    assert!(moves.iter().all(|line| line.refused.is_some()), "{moves:?}");
+    assert!(
+        moves.iter().any(|line| line.source == "anna" && line.line.starts_with("(given up) ")),
+        "{moves:?}"
+    );
+}
+
+#[test]
+fn an_emergency_stop_is_in_the_status_and_keeps_the_job_from_going_on() {
+    let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
+    let mut client = cell.client("anna");
+    wait_ticks(&mut client, 150);
+    ask(&mut client, &["job wait", "PAUSE", "estop terminals"]);
+    let status = wait_for(&mut client, "the job waits");
+    let emergency = "the E-stop near the terminals is pressed: `release terminals`, `panel fault-reset`";
+    assert!(status.contains(emergency), "{status}");
+    let refused = client.ask("job go").unwrap().unwrap_err();
+    assert!(refused.contains(&format!("nothing moves: EMERGENCY: {emergency}")), "{refused}");
+    // The job waits on when nobody is connected, and the next session is told the same.
+    drop(client);
+    let mut client = cell.client("bert");
+    wait_for(&mut client, emergency);
+    let refused = client.ask("job skip").unwrap().unwrap_err();
+    assert!(refused.contains(emergency), "{refused}");
+    wait_ticks(&mut client, 100);
+    ask(&mut client, &["release terminals"]);
+    for key in ["fault-reset", "hydraulics enable", "manual on", "align", "auto", "cycle-start"] {
+        ask_until(&mut client, &format!("panel {key}"), "");
+        wait_ticks(&mut client, 10);
+    }
+    let status = client.ask("status").unwrap().unwrap();
+    assert!(!status.contains("EMERGENCY"), "{status}");
+    wait_ticks(&mut client, 600);
+    go_on(&mut client);
+    drop(client);
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
+    assert_repeats(&outcome, &log, &directory);
+}
+
+#[test]
+fn stand_by_without_a_possible_operator_is_refused() {
+    let config = |change: fn(RunConfig) -> RunConfig| {
+        let real = RunConfig {
+            clock: ClockKind::Real,
+            stand_by: true,
+            log: LogTarget::None,
+            ..RunConfig::default()
+        };
+        change(RunConfig { data: root().join("data"), name: Some(unused_name()), ..real })
+    };
+    for change in [
+        (|config| RunConfig { clock: ClockKind::Fast, ..config }) as fn(RunConfig) -> RunConfig,
+        |config| RunConfig { operator: OperatorAccess::None, ..config },
+        |config| RunConfig { shared_memory: false, ..config },
+    ] {
+        let error = Run::new(config(change), Box::new(())).err().expect("it would wait forever");
+        assert!(
+            error.to_string().contains("--stand-by waits for an operator, and none can connect"),
+            "{error}"
+        );
+    }
+    assert!(Run::new(config(|config| config), Box::new(())).is_ok());
 }
 
 #[test]

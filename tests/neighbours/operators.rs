@@ -3,16 +3,21 @@
 use std::{
     fs,
     io::{Read as _, Write as _},
-    net::TcpStream,
+    net::{Shutdown, TcpStream},
+    os::unix::net::{UnixListener, UnixStream},
     path::{Path, PathBuf},
     process::Command,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
     thread,
     time::{Duration, Instant},
 };
 
 use executive::memory::{RunName, operator_socket};
 use neighbours::network::{Address, NeighbourKeys, Peer, PeerError, Role};
-use operator::Client;
+use operator::{Client, ClientError};
 use record::Log;
 use whole_system_tests::{Scratch, rcs_run, root};
 
@@ -126,6 +131,84 @@ fn an_operator_with_its_certificate_works_on_a_run_and_one_without_does_not() {
     assert_eq!(said("net1.anna", "job go"), Some(false));
     assert_eq!(said("anna", "joystick velocity 800"), Some(true));
     assert_eq!(said("net2.anna", "joystick velocity 700"), Some(true));
+}
+
+/// A connection to a run that can stall: bytes to the run then wait, as on a network whose packets are lost.
+struct Line {
+    address: Address,
+    stalls: Arc<AtomicBool>,
+}
+
+impl Line {
+    fn to(controller: &Controller) -> Self {
+        let Address::Unix(run) = controller.address.clone() else { panic!("a socket was asked for") };
+        let path = controller.file("line.sock");
+        let listener = UnixListener::bind(&path).expect("a socket");
+        let stalls = Arc::new(AtomicBool::new(false));
+        let stalling = Arc::clone(&stalls);
+        thread::spawn(move || {
+            for near in listener.incoming() {
+                let near = near.expect("one connects");
+                let far = UnixStream::connect(&run).expect("the run listens");
+                let [near_again, far_again] = [&near, &far].map(|end| end.try_clone().expect("a stream"));
+                let stalling = Arc::clone(&stalling);
+                thread::spawn(move || carry(far_again, near_again, &AtomicBool::new(false)));
+                thread::spawn(move || carry(near, far, &stalling));
+            }
+        });
+        Self { address: format!("unix:{}", path.display()).parse().expect("an address"), stalls }
+    }
+}
+
+fn carry(mut from: UnixStream, mut to: UnixStream, stalls: &AtomicBool) {
+    let mut bytes = [0; 4096];
+    while let Ok(count @ 1..) = from.read(&mut bytes) {
+        while stalls.load(Ordering::Relaxed) {
+            thread::sleep(Duration::from_millis(5));
+        }
+        if to.write_all(&bytes[..count]).is_err() {
+            break;
+        }
+    }
+    // The other end may have closed already.
+    let _ = to.shutdown(Shutdown::Both);
+}
+
+/// The run cannot know from its own clock how long a request was on its way; its limit tells it.
+#[test]
+fn a_command_that_a_stalled_line_delays_is_discarded() {
+    let scratch = Scratch::new("stalled");
+    let (log, job) = (scratch.file("log.mcap"), scratch.file("safe.job"));
+    fs::write(&job, JOB).expect("a job can be written");
+    let [log_text, job_text] = [&log, &job].map(|path| path.display().to_string());
+    let more = ["--clock", "5x", "--stand-by", "--operator", "network", "--run", "stalled-line"];
+    let controller =
+        Controller::start_at(scratch, None, "", &[&more[..], &["--log", &log_text, &job_text]].concat());
+    let line = Line::to(&controller);
+    let begun = Instant::now();
+    let peer = loop {
+        match Peer::connect_within(PATIENCE, &line.address, Role::Operator, None) {
+            Ok(peer) => break peer,
+            Err(why) => assert!(begun.elapsed() < PATIENCE, "{why}"),
+        }
+        thread::sleep(Duration::from_millis(50));
+    };
+    let (stream, carrier) = peer.into_stream().expect("a pair");
+    let mut anna = Client::over(stream, carrier, &"anna".parse().expect("a name")).expect("a session");
+    assert!(anna.ask("joystick velocity 900").expect("an answer").is_ok());
+    line.stalls.store(true, Ordering::Relaxed);
+    let given_up = anna.ask("MOVE -- 0 -- 0 0 HOME 0 -- 0");
+    assert!(matches!(given_up, Err(ClientError::Silent)), "{given_up:?}");
+    thread::sleep(Duration::from_millis(1500));
+    line.stalls.store(false, Ordering::Relaxed);
+    for request in ["joystick velocity 1000", "job go"] {
+        assert!(anna.ask(request).expect("an answer").is_ok(), "{request}");
+    }
+    let mut lines = Vec::new();
+    let ended = controller.end_with(|| lines.extend(Log::open(&log).expect("a log").operator_lines()));
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    let found = lines.iter().find(|line| line.line.contains("MOVE")).expect("it arrived");
+    assert!(found.line.starts_with("(given up) ") && found.refused.is_some(), "{found:?}");
 }
 
 #[test]

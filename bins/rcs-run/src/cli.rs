@@ -188,7 +188,7 @@ pub struct RunArguments {
     /// When you quit the console, the robot ramps to rest and the run ends.
     #[arg(long, conflicts_with_all = ["json", "inputs"])]
     pub console: bool,
-    /// Wait for an operator before the first line of the job
+    /// Wait for an operator before the first line of the job; needs --clock real, and an --operator who can connect
     #[arg(long)]
     pub stand_by: bool,
     /// Execute commands also if `rcs-run check` finds errors in the data that they use
@@ -369,11 +369,11 @@ pub struct SendArguments {
     /// File with Zenoh's own configuration (JSON5): TLS, access control, routers
     #[arg(long, value_name = "FILE", requires = "connect")]
     pub zenoh_config: Option<PathBuf>,
-    /// Seconds to stay connected after the last line; at the end, switches that are held at the joystick box are
-    /// released
+    /// Seconds to stay connected after the last line; at the end, motion by hand ends: stick, buttons and frame of the
+    /// joystick box are released
     #[arg(long, value_name = "SECONDS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=86_400))]
     pub stay: u32,
-    /// Name of the operator in the log
+    /// Name of the operator in status and log; a number follows it if another session has it
     #[arg(long, value_name = "NAME", default_value = "send")]
     pub name: operator::Name,
 }

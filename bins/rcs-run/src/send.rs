@@ -1,10 +1,6 @@
 //! `rcs-run send`: sends requests to a run in progress, as an operator.
 
-use std::{
-    process::ExitCode,
-    thread,
-    time::{Duration, Instant},
-};
+use std::{process::ExitCode, time::Duration};
 
 use executive::memory::operator_socket;
 use neighbours::network::{NeighbourKeys, Peer, Role};
@@ -16,9 +12,6 @@ use crate::{
     error::{Error, FAILED},
     status::only_run,
 };
-
-/// Time between two keep-alive messages, short enough for a deflected stick.
-const ALIVE: Duration = Duration::from_millis(100);
 
 /// Open a session with a run of this user, or with a remote run.
 fn connect(arguments: &SendArguments) -> Result<Client, Error> {
@@ -48,10 +41,6 @@ pub fn send(arguments: &SendArguments) -> Result<ExitCode, Error> {
             }
         }
     }
-    let end = Instant::now() + Duration::from_secs(arguments.stay.into());
-    while Instant::now() < end {
-        client.keep_alive()?;
-        thread::sleep(ALIVE.min(end.saturating_duration_since(Instant::now())));
-    }
+    client.stay(Duration::from_secs(arguments.stay.into()))?;
     Ok(ExitCode::SUCCESS)
 }

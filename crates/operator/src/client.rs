@@ -5,13 +5,20 @@ use std::{
     io::{self, Read as _, Write as _},
     os::unix::net::UnixStream,
     path::Path,
+    thread,
     time::{Duration, Instant},
 };
 
-use crate::protocol::{self, Answer, GREETING, LINE, Lines, Name, ProtocolError};
+use crate::{
+    clock::{Estimate, RunTime},
+    protocol::{self, Answer, Lines, Name, PATIENCE, ProtocolError, TEXT},
+};
 
-/// Time limit for an answer: the run answers between two ticks, and a second has 25.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// Time between two signs of life, well below the time after which a run ends motion by hand.
+pub const ALIVE: Duration = Duration::from_millis(100);
+
+/// Time limit for the answer to a load, which the run gives when all boards have checked the block.
+const LOAD_PATIENCE: Duration = Duration::from_secs(15);
 
 /// Errors of a session with a run.
 #[derive(Debug, thiserror::Error)]
@@ -34,10 +41,15 @@ pub enum ClientError {
     #[error(transparent)]
     Protocol(#[from] ProtocolError),
     /// The run has not answered in time.
-    #[error("the run has not answered within {} s", PATIENCE.as_secs())]
+    #[error(
+        "the run has not answered within {} s (a load: {} s); it discards a request that it has not carried out by \
+         then, unless it is a stop",
+        PATIENCE.as_secs(),
+        LOAD_PATIENCE.as_secs()
+    )]
     Silent,
     /// The line is empty, too long, or has characters that are not printable.
-    #[error("a line of 1 to {} printable bytes was expected, found {found}", LINE - 11)]
+    #[error("a line of 1 to {TEXT} printable bytes was expected, found {found}")]
     Line {
         /// Length found, bytes.
         found: usize,
@@ -51,6 +63,9 @@ pub struct Client {
     lines: Lines,
     number: u32,
     run: String,
+    /// Name of the session; empty before the greeting.
+    name: String,
+    clock: Estimate,
     /// Keeps the transport of the stream to another machine open; dropped after the stream.
     _carrier: Option<Box<dyn Any + Send>>,
 }
@@ -78,19 +93,25 @@ impl Client {
         name: &Name,
     ) -> Result<Self, ClientError> {
         stream.set_write_timeout(Some(PATIENCE))?;
-        let mut client =
-            Self { stream, lines: Lines::default(), number: 0, run: String::new(), _carrier: carrier };
+        let mut client = Self {
+            stream,
+            lines: Lines::default(),
+            number: 0,
+            run: String::new(),
+            name: String::new(),
+            clock: Estimate::new(RunTime::default(), Instant::now()),
+            _carrier: carrier,
+        };
         // A run that refuses at once can already have closed the connection; its reason can still be read.
         let sent = client.write(&format!("hello {name}\n"));
         let said = client.wait_for_line(Instant::now() + PATIENCE);
-        let greeting = said.map_err(|error| sent.err().unwrap_or(error))?;
-        match greeting.strip_prefix(GREETING) {
-            Some(run) => client.run = run.trim().to_owned(),
-            None => {
-                let Answer { verdict, .. } = protocol::answer(&greeting)?;
-                return Err(ClientError::Refused(verdict.err().unwrap_or(greeting)));
-            }
-        }
+        let line = said.map_err(|error| sent.err().unwrap_or(error))?;
+        let Some(greeting) = protocol::greeting(&line) else {
+            let Answer { verdict, .. } = protocol::answer(&line)?;
+            return Err(ClientError::Refused(verdict.err().unwrap_or(line)));
+        };
+        client.clock = Estimate::new(greeting.time, Instant::now());
+        (client.run, client.name) = (greeting.run, greeting.name.to_string());
         Ok(client)
     }
 
@@ -100,27 +121,56 @@ impl Client {
         &self.run
     }
 
-    /// Sends a request; returns its number, which the answer repeats.
+    /// Name of the session, which no other session of the run has: the requested name, with a number if it was taken.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Sends a request; returns its number, which the answer repeats. The run carries it out within [`PATIENCE`] or
+    /// discards it.
     ///
     /// # Errors
     /// [`ClientError`] if the line is invalid or the connection is lost.
     pub fn send(&mut self, line: &str) -> Result<u32, ClientError> {
+        self.send_within(PATIENCE, line)
+    }
+
+    /// Like [`Client::send`], for a request that is discarded unless the run carries it out within the time `left`.
+    ///
+    /// # Errors
+    /// As [`Client::send`].
+    pub fn send_within(&mut self, left: Duration, line: &str) -> Result<u32, ClientError> {
         let line = line.trim();
-        // A number of up to ten digits and a blank precede the line.
-        if line.is_empty() || line.len() > LINE - 11 || line.chars().any(char::is_control) {
+        if line.is_empty() || line.len() > TEXT || line.chars().any(char::is_control) {
             return Err(ClientError::Line { found: line.len() });
         }
         self.number = self.number.wrapping_add(1);
-        self.write(&format!("{} {line}\n", self.number))?;
+        let RunTime(limit) = self.clock.at(Instant::now()).after(left);
+        self.write(&format!("{} @{limit} {line}\n", self.number))?;
         Ok(self.number)
     }
 
-    /// Sends an empty line, which shows that the operator is still present.
+    /// Sends an empty line, which shows that the operator is still present. A session that commands motion by hand must
+    /// send something every [`SILENCE`](protocol::SILENCE), or the run ends the motion.
     ///
     /// # Errors
     /// [`ClientError`] if the connection is lost.
     pub fn keep_alive(&mut self) -> Result<(), ClientError> {
         self.write("\n")
+    }
+
+    /// Stays connected for a time, and shows meanwhile that the operator is still present.
+    ///
+    /// # Errors
+    /// [`ClientError`] if the connection is lost.
+    pub fn stay(&mut self, time: Duration) -> Result<(), ClientError> {
+        let end = Instant::now() + time;
+        while Instant::now() < end {
+            self.keep_alive()?;
+            thread::sleep(ALIVE.min(end.saturating_duration_since(Instant::now())));
+        }
+        Ok(())
     }
 
     /// Returns an answer if one has arrived. Does not wait.
@@ -145,8 +195,17 @@ impl Client {
     /// # Errors
     /// [`ClientError`] if there is no answer. A refusal by the run is not an error; it is the inner result.
     pub fn ask(&mut self, line: &str) -> Result<Result<String, String>, ClientError> {
-        let number = self.send(line)?;
-        let deadline = Instant::now() + PATIENCE;
+        self.ask_within(PATIENCE, line)
+    }
+
+    /// Like [`Client::ask`], for a request that is discarded unless the run carries it out within the time `left`.
+    ///
+    /// # Errors
+    /// As [`Client::ask`].
+    pub fn ask_within(&mut self, left: Duration, line: &str) -> Result<Result<String, String>, ClientError> {
+        let number = self.send_within(left, line)?;
+        let patience = if line.trim_start().starts_with("load ") { LOAD_PATIENCE } else { PATIENCE };
+        let deadline = Instant::now() + patience;
         loop {
             let line = self.wait_for_line(deadline)?;
             let answer = self.answer(&line)?;
@@ -156,11 +215,14 @@ impl Client {
         }
     }
 
-    fn answer(&self, line: &str) -> Result<Answer, ClientError> {
+    fn answer(&mut self, line: &str) -> Result<Answer, ClientError> {
         match protocol::answer(line)? {
             // Requests are numbered from 1.
-            Answer { number: 0, verdict: Err(why) } => Err(ClientError::Refused(why)),
-            answer => Ok(answer),
+            Answer { number: 0, verdict: Err(why), .. } => Err(ClientError::Refused(why)),
+            answer => {
+                self.clock.hear(answer.time, Instant::now());
+                Ok(answer)
+            }
         }
     }
 
@@ -185,11 +247,16 @@ impl Client {
             if left.is_zero() {
                 return Err(ClientError::Silent);
             }
-            self.stream.set_read_timeout(Some(left))?;
+            self.stream.set_read_timeout(Some(left.min(ALIVE)))?;
             match self.read() {
                 Ok(true) => {}
                 Ok(false) => return Err(ClientError::Ended),
                 Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
+                    // Not before the greeting, since the first line is the name.
+                    if !self.name.is_empty() {
+                        // The next read reports the end of the session, with its reason.
+                        let _ = self.keep_alive();
+                    }
                 }
                 Err(error) => return Err(error.into()),
             }

@@ -6,6 +6,7 @@
 //! ```
 //!
 //! * [`protocol`]: the lines of a session, without I/O;
+//! * [`clock`]: the time limit of a request, by the clock of the run;
 //! * [`Listener`]: the run's side, with one thread per session; its [`Entrance`] admits operators from a network;
 //! * [`Client`]: the side of a console or a script.
 //!
@@ -15,9 +16,10 @@
 #![warn(missing_docs)]
 
 mod client;
+pub mod clock;
 mod listener;
 pub mod protocol;
 
-pub use client::{Client, ClientError};
+pub use client::{ALIVE, Client, ClientError};
 pub use listener::{Entrance, Given, Listener};
-pub use protocol::{Answer, Event, Name};
+pub use protocol::{Answer, Event, Late, Name};

@@ -18,11 +18,15 @@ use std::{
 };
 
 use rustix::{
+    event::{PollFd, PollFlags, Timespec, poll},
     net::{SendFlags, send, sockopt},
     process::geteuid,
 };
 
-use crate::protocol::{self, Answer, Event, GREETING, Lines, Name, ProtocolError, SILENCE};
+use crate::{
+    clock::{RunClock, RunTime},
+    protocol::{self, Answer, Event, Greeting, Lines, Name, ProtocolError, Request, SILENCE},
+};
 
 /// Greatest number of open sessions.
 const SESSIONS: usize = 8;
@@ -38,19 +42,51 @@ pub struct Given {
     pub source: Name,
     /// The event.
     pub event: Event,
-    /// Number of the request and stream for its answer; `None` if the event is not a request.
-    reply: Option<(u32, Arc<UnixStream>)>,
+    /// The request, if the event is one.
+    request: Option<Received>,
+}
+
+/// A request as a session has received it.
+#[derive(Debug)]
+struct Received {
+    number: u32,
+    limit: Option<RunTime>,
+    /// Stream of its session, for the answer.
+    stream: Arc<UnixStream>,
+    clock: RunClock,
 }
 
 impl Given {
     /// Answers the request, if the event is one. Does not wait: a session that does not read its answers is ended.
     pub fn answer(self, verdict: Result<String, String>) {
-        let Some((number, stream)) = self.reply else { return };
-        let line = format!("{}\n", Answer { number, verdict });
+        let Some(Received { number, stream, clock, .. }) = self.request else { return };
+        let line = format!("{}\n", Answer { number, time: clock.now(), verdict });
         if say(&stream, &line).is_err() {
             end(&stream);
         }
     }
+
+    /// Marks a request as late if nobody waits for it at this moment.
+    fn judged(mut self) -> Self {
+        if let (Event::Line(text), Some(received)) = (&self.event, &self.request) {
+            let Received { number, limit, stream, clock } = received;
+            let request = Request { number: *number, limit: *limit, text };
+            if let Some(late) = request.late(clock.now(), is_open(stream)) {
+                self.event = Event::Late(late, text.clone());
+            }
+        }
+        self
+    }
+}
+
+/// False if the other end of a stream is closed, also while lines of it have not been read yet.
+fn is_open(stream: &UnixStream) -> bool {
+    let mut ends = [PollFd::new(stream, PollFlags::RDHUP)];
+    let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
+    // An interrupted call says nothing: the session reports its end itself.
+    let polled = poll(&mut ends, Some(&at_once));
+    let [end] = ends;
+    polled.is_err() || !end.revents().intersects(PollFlags::RDHUP | PollFlags::HUP | PollFlags::ERR)
 }
 
 /// Accepts operators of a run until it is dropped.
@@ -74,6 +110,8 @@ impl Listener {
         let (sender, events) = sync_channel(QUEUE);
         let sessions = Arc::new(Sessions {
             run: run.to_owned(),
+            clock: RunClock::start(),
+            names: Mutex::default(),
             sender,
             stop: AtomicBool::new(false),
             streams: Streams::default(),
@@ -91,10 +129,11 @@ impl Listener {
         Entrance { sessions: Arc::clone(&self.sessions) }
     }
 
-    /// Returns the next event if there is one. Does not wait.
+    /// Returns the next event if there is one. A request that comes too late for its sender is marked as such. Does not
+    /// wait.
     #[must_use]
     pub fn try_next(&self) -> Option<Given> {
-        self.events.try_recv().ok()
+        self.events.try_recv().ok().map(Given::judged)
     }
 
     /// Path of the socket.
@@ -137,7 +176,7 @@ pub struct Entrance {
 
 impl Entrance {
     /// Begins a session and returns the other end of its stream. The run sees its name with the prefix `netN.`, N
-    /// counted from 1, so that no two sessions have the same name.
+    /// counted from 1, so that it is known as a session from the network.
     ///
     /// # Errors
     /// The error of the operating system, or an error if the run is over.
@@ -155,6 +194,9 @@ impl Entrance {
 /// The sessions of a run.
 struct Sessions {
     run: String,
+    clock: RunClock,
+    /// Names of the sessions that have begun, until the run has been told of their end.
+    names: Mutex<Vec<Name>>,
     sender: SyncSender<Given>,
     stop: AtomicBool,
     streams: Streams,
@@ -190,13 +232,8 @@ impl Sessions {
             let why = format!("{SESSIONS} operators are connected: end another session first");
             return say(&stream, &refusal(&why));
         }
-        let session = Session {
-            stream: stream.clone(),
-            lines: Lines::default(),
-            sender: self.sender.clone(),
-            greeting: format!("{GREETING} {}\n", self.run),
-            origin,
-        };
+        let session =
+            Session { stream: stream.clone(), lines: Lines::default(), sessions: Arc::clone(self), origin };
         self.open.fetch_add(1, Ordering::Relaxed);
         lock(&self.streams).push(stream.clone());
         let sessions = Arc::clone(self);
@@ -211,9 +248,23 @@ impl Sessions {
     }
 }
 
+impl Sessions {
+    /// Gives a session the name that it asks for, with a number if another session has it.
+    fn take_name(&self, asked: Name) -> Name {
+        let mut names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
+        let name = asked.unlike(|name| names.contains(name));
+        names.push(name.clone());
+        name
+    }
+
+    fn free_name(&self, name: &Name) {
+        self.names.lock().unwrap_or_else(PoisonError::into_inner).retain(|taken| taken != name);
+    }
+}
+
 /// An answer with number 0, which belongs to no request.
 fn refusal(why: &str) -> String {
-    format!("{}\n", Answer { number: 0, verdict: Err(why.to_owned()) })
+    format!("{}\n", Answer { number: 0, time: RunTime::default(), verdict: Err(why.to_owned()) })
 }
 
 /// Refuses sessions of other users.
@@ -230,8 +281,7 @@ fn check_user(stream: &UnixStream) -> io::Result<()> {
 struct Session {
     stream: Arc<UnixStream>,
     lines: Lines,
-    sender: SyncSender<Given>,
-    greeting: String,
+    sessions: Arc<Sessions>,
     /// Prefix of the session's name.
     origin: String,
 }
@@ -253,9 +303,13 @@ impl From<ProtocolError> for End {
 impl Session {
     fn run(mut self) {
         let Err(end_of_session) = self.greet().and_then(|name| {
-            self.give(&name, Event::Connected, None)?;
-            let ended = self.listen(&name);
-            let _ = self.give(&name, Event::Disconnected, None);
+            let ended = self.give(&name, Event::Connected, None).and_then(|()| {
+                let ended = self.welcome(&name).and_then(|()| self.listen(&name));
+                let _ = self.give(&name, Event::Disconnected, None);
+                ended
+            });
+            // The run learns of the end before another session can have the name.
+            self.sessions.free_name(&name);
             ended
         });
         if let End::Wrong(why) = end_of_session {
@@ -270,26 +324,33 @@ impl Session {
         limit.map_err(|_| End::Closed)?;
         let line = self.line(|| Err(End::Wrong(ProtocolError::NoHello(String::new()))))?;
         let name = protocol::hello(&line)?.from(&self.origin);
-        say(&self.stream, &self.greeting).map_err(|_| End::Closed)?;
-        Ok(name)
+        Ok(self.sessions.take_name(name))
+    }
+
+    fn welcome(&self, name: &Name) -> Result<(), End> {
+        let Sessions { run, clock, .. } = &*self.sessions;
+        let greeting = Greeting { run: run.clone(), name: name.clone(), time: clock.now() };
+        say(&self.stream, &format!("{greeting}\n")).map_err(|_| End::Closed)
     }
 
     fn listen(&mut self, name: &Name) -> Result<std::convert::Infallible, End> {
         self.stream.set_read_timeout(Some(SILENCE)).map_err(|_| End::Closed)?;
         let mut is_silent = false;
         loop {
-            let (sender, name_again) = (self.sender.clone(), name.clone());
+            let (sender, name_again) = (self.sessions.sender.clone(), name.clone());
             let line = self.line(|| {
                 if is_silent {
                     return Ok(());
                 }
                 is_silent = true;
-                let given = Given { source: name_again.clone(), event: Event::Silent, reply: None };
+                let given = Given { source: name_again.clone(), event: Event::Silent, request: None };
                 sender.send(given).map_err(|_| End::Closed)
             })?;
             is_silent = false;
-            if let Some((number, text)) = protocol::request(&line)? {
-                self.give(name, Event::Line(text.to_owned()), Some(number))?;
+            if let Some(Request { number, limit, text }) = protocol::request(&line)? {
+                let (stream, clock) = (self.stream.clone(), self.sessions.clock);
+                let received = Received { number, limit, stream, clock };
+                self.give(name, Event::Line(text.to_owned()), Some(received))?;
             }
         }
     }
@@ -313,9 +374,8 @@ impl Session {
         }
     }
 
-    fn give(&self, name: &Name, event: Event, number: Option<u32>) -> Result<(), End> {
-        let reply = number.map(|number| (number, self.stream.clone()));
-        let given = Given { source: name.clone(), event, reply };
-        self.sender.send(given).map_err(|_| End::Closed)
+    fn give(&self, name: &Name, event: Event, request: Option<Received>) -> Result<(), End> {
+        let given = Given { source: name.clone(), event, request };
+        self.sessions.sender.send(given).map_err(|_| End::Closed)
     }
 }

@@ -7,7 +7,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use operator::{Client, ClientError, Event, Given, Listener, Name};
+use operator::{Client, ClientError, Event, Given, Late, Listener, Name};
 use tempfile::TempDir;
 
 struct Bench {
@@ -101,7 +101,7 @@ fn what_breaks_the_protocol_ends_its_session_and_no_other() {
         (b"\xff\xfe\n", "printable UTF-8 was expected"),
         (b"hello x\nstop\n", "a number and a line were expected"),
         (b"hello x\n1 (silent)\n", "a number and a line were expected"),
-        (&long, "a line of at most 240 bytes"),
+        (&long, "a line of at most 260 bytes"),
     ] {
         let said = bench.said_to(bytes);
         assert!(said.contains(why), "{said}");
@@ -115,6 +115,90 @@ fn what_breaks_the_protocol_ends_its_session_and_no_other() {
             break;
         }
     }
+}
+
+#[test]
+fn sessions_with_one_name_get_different_ones() {
+    let bench = Bench::new();
+    let clients = ["send", "send", "send-2", "send"].map(|name| bench.client(name));
+    let names = ["send", "send-2", "send-2-2", "send-3"];
+    assert_eq!(clients.each_ref().map(Client::name), names);
+    for name in names {
+        bench.expect(name, Event::Connected);
+    }
+    let [first, ..] = clients;
+    drop(first);
+    // The name is free when the run has been told of the end.
+    loop {
+        let given = bench.next();
+        if given.event == Event::Disconnected {
+            assert_eq!(given.source.as_str(), "send");
+            break;
+        }
+    }
+    let started = Instant::now();
+    while bench.client("send").name() != "send" {
+        assert!(started.elapsed() < Duration::from_secs(2), "the name is free");
+    }
+}
+
+/// Takes events until the first that is a line.
+fn next_line(bench: &Bench) -> Event {
+    loop {
+        let event = bench.next().event;
+        if event.line().is_some() {
+            return event;
+        }
+    }
+}
+
+#[test]
+fn a_request_is_late_when_its_sender_has_given_up() {
+    let bench = Bench::new();
+    let mut client = bench.client("console");
+    client.send("PAUSE").unwrap();
+    // The run stands still for longer than the client waits.
+    std::thread::sleep(Duration::from_millis(1300));
+    assert_eq!(next_line(&bench), Event::Late(Late::GivenUp, "PAUSE".into()));
+    client.send_within(Duration::from_secs(9), "PAUSE").unwrap();
+    std::thread::sleep(Duration::from_millis(1300));
+    assert_eq!(next_line(&bench), Event::Line("PAUSE".into()), "this one waits longer");
+    client.send_within(Duration::from_secs(3600), "PAUSE").unwrap();
+    assert_eq!(next_line(&bench), Event::Late(Late::Unlimited, "PAUSE".into()));
+}
+
+#[test]
+fn requests_of_a_session_that_has_ended_are_late() {
+    let bench = Bench::new();
+    let mut stream = UnixStream::connect(&bench.path).unwrap();
+    // More lines than the queue to the run holds, so that the session itself has not read them all.
+    let lines: String = (1..=100).map(|number| format!("{number} @5000 PAUSE\n")).collect();
+    stream.write_all(format!("hello killed\n{lines}").as_bytes()).unwrap();
+    bench.expect("killed", Event::Connected);
+    drop(stream);
+    for _ in 1..=100 {
+        assert_eq!(next_line(&bench), Event::Late(Late::Ended, "PAUSE".into()));
+    }
+    bench.expect("killed", Event::Disconnected);
+}
+
+#[test]
+fn a_client_that_waits_shows_that_it_is_there() {
+    let bench = Bench::new();
+    let mut client = bench.client("console");
+    bench.expect("console", Event::Connected);
+    std::thread::scope(|scope| {
+        scope.spawn(|| client.ask("stop"));
+        let asked = bench.expect("console", Event::Line("stop".into()));
+        std::thread::sleep(Duration::from_millis(600));
+        asked.answer(Ok(String::new()));
+    });
+    std::thread::scope(|scope| {
+        scope.spawn(|| client.stay(Duration::from_millis(600)));
+    });
+    let rest: Vec<Event> =
+        std::iter::from_fn(|| bench.listener.try_next()).map(|given| given.event).collect();
+    assert_eq!(rest, [], "it was never silent");
 }
 
 #[test]
@@ -132,6 +216,7 @@ fn a_client_that_takes_no_answers_does_not_hold_the_run_up() {
             break;
         }
         let before = Instant::now();
+        assert!(matches!(given.event, Event::Late(Late::Unlimited, _)), "{given:?}");
         given.answer(Err("x".repeat(2000)));
         assert!(before.elapsed() < Duration::from_millis(500));
         assert!(started.elapsed() < Duration::from_secs(60), "its session ends");

@@ -1,7 +1,7 @@
 //! The joystick box (III.3.3) and the actions of its operator.
 //!
-//! Switches and knob keep their setting; stick and buttons return when their time is over. An action that begins while
-//! another control is held is executed in parallel.
+//! Switches and knob keep their setting; stick and buttons return when their time is over. Each control has one
+//! position: an action replaces what the same control did before, and leaves the other controls as they are.
 
 use interfaces::device::{JoystickBox, KNOB_FULL};
 use serde::{Deserialize, Serialize};
@@ -31,9 +31,9 @@ pub enum BoxButton {
 /// An action at the joystick box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoxAction {
-    /// Set the coordinate switches: bits of [`interfaces::device::joystick_frame`].
+    /// Set the coordinate switches: bits of [`interfaces::device::joystick_frame`]. 0 also releases stick and buttons.
     Frame(u8),
-    /// Deflect the stick for a number of ticks: -1000 to 1000.
+    /// Deflect the stick for a number of ticks: -1000 to 1000. This replaces its deflection; 0 0 releases it.
     Stick {
         /// Along X, or pitch.
         x: i16,
@@ -42,7 +42,7 @@ pub enum BoxAction {
         /// Duration, ticks.
         ticks: u32,
     },
-    /// Hold a button down for a number of ticks.
+    /// Hold a button down for a number of ticks, counted from now.
     Press(BoxButton, u32),
     /// Turn the velocity knob: 0 to 1000.
     Velocity(u16),
@@ -89,10 +89,16 @@ impl Joystick {
     /// Begin an action.
     pub fn act(&mut self, action: BoxAction) {
         match action {
-            BoxAction::Frame(frame) => self.frame = frame,
+            BoxAction::Frame(frame) => {
+                self.frame = frame;
+                if frame == 0 {
+                    self.held.retain(|(held, _)| !held.moves());
+                }
+            }
             BoxAction::Velocity(velocity) => self.velocity = velocity.min(KNOB_FULL),
             BoxAction::Hold(processes) => self.hold |= processes,
             BoxAction::Free(processes) => self.hold &= !processes,
+            BoxAction::Stick { x: 0, y: 0, .. } => self.hold_down(Held::Stick([0, 0]), 0),
             BoxAction::Stick { x, y, ticks } => self.hold_down(Held::Stick([x, y]), ticks),
             BoxAction::Press(button, ticks) => self.hold_down(Held::Button(button), ticks),
             BoxAction::Record => self.hold_down(Held::Record, PRESS),
@@ -102,6 +108,7 @@ impl Joystick {
     }
 
     fn hold_down(&mut self, what: Held, ticks: u32) {
+        self.held.retain(|(held, _)| !held.is_same_control(what));
         if ticks > 0 {
             self.held.push((what, ticks));
         }
@@ -113,8 +120,16 @@ impl Joystick {
         !self.held.is_empty() || !self.steps.is_empty()
     }
 
-    /// Release stick and buttons; switches and knob keep their setting.
-    pub fn let_go(&mut self) {
+    /// True while a control is held down, presses remain, or a frame is on: the box can move the robot.
+    #[must_use]
+    pub fn is_held(&self) -> bool {
+        self.frame != 0 || self.busy()
+    }
+
+    /// Release stick and buttons, and switch the frame off. The knob and the switches that suspend processes keep their
+    /// setting, so that nothing moves faster than before.
+    pub fn release(&mut self) {
+        self.frame = 0;
         self.held.clear();
         self.steps.clear();
     }
@@ -146,6 +161,16 @@ impl Joystick {
 }
 
 impl Held {
+    /// True for stick and buttons, false for keys that move nothing by themselves.
+    const fn moves(self) -> bool {
+        matches!(self, Self::Stick(_) | Self::Button(_))
+    }
+
+    /// True if both are positions of one control.
+    fn is_same_control(self, other: Self) -> bool {
+        self == other || matches!((self, other), (Self::Stick(_), Self::Stick(_)))
+    }
+
     fn show(self, shown: &mut JoystickBox) {
         match self {
             Self::Stick([x, y]) => (shown.x, shown.y) = (x, y),
@@ -188,6 +213,72 @@ mod tests {
         assert_eq!(shown.iter().map(|s| s.up).collect::<Vec<_>>(), [true, false, false, false, false]);
         assert!(shown.iter().all(|s| s.frame == joystick_frame::WORLD && s.velocity == KNOB_FULL));
         assert!(!joystick.busy());
+    }
+
+    /// Deflections of the stick in the next `N` ticks.
+    fn deflections<const N: usize>(joystick: &mut Joystick) -> [(i16, i16); N] {
+        std::array::from_fn(|_| {
+            let shown = joystick.read();
+            (shown.x, shown.y)
+        })
+    }
+
+    #[test]
+    fn a_new_deflection_replaces_the_old_one_and_its_time() {
+        let mut joystick = Joystick::default();
+        joystick.act(BoxAction::Stick { x: 0, y: 300, ticks: 250 });
+        assert_eq!(deflections(&mut joystick), [(0, 300)]);
+        joystick.act(BoxAction::Stick { x: 0, y: -300, ticks: 2 });
+        assert_eq!(deflections(&mut joystick), [(0, -300), (0, -300), (0, 0), (0, 0)]);
+        joystick.act(BoxAction::Press(BoxButton::Up, 9));
+        joystick.act(BoxAction::Press(BoxButton::Up, 1));
+        assert_eq!([joystick.read().up, joystick.read().up], [true, false]);
+    }
+
+    #[test]
+    fn a_stick_at_the_centre_stops_whatever_its_time() {
+        for ticks in [0, 1, 500] {
+            let mut joystick = Joystick::default();
+            joystick.act(BoxAction::Stick { x: 0, y: 300, ticks: 250 });
+            joystick.act(BoxAction::Stick { x: 0, y: 0, ticks });
+            assert!(!joystick.busy(), "{ticks}");
+            assert_eq!(deflections(&mut joystick), [(0, 0), (0, 0)], "{ticks}");
+        }
+    }
+
+    #[test]
+    fn a_frame_that_is_switched_off_releases_stick_and_buttons() {
+        let mut joystick = Joystick::default();
+        joystick.act(BoxAction::Frame(joystick_frame::WORLD));
+        joystick.act(BoxAction::Stick { x: 0, y: 300, ticks: 250 });
+        joystick.act(BoxAction::Press(BoxButton::Down, 250));
+        joystick.act(BoxAction::Record);
+        joystick.act(BoxAction::Frame(joystick_frame::TOOL));
+        assert_eq!(deflections(&mut joystick), [(0, 300)], "another frame changes the direction only");
+        joystick.act(BoxAction::Frame(0));
+        joystick.act(BoxAction::Frame(joystick_frame::WORLD));
+        let shown = joystick.read();
+        assert_eq!((shown.x, shown.y, shown.down), (0, 0, false));
+        assert!(shown.record, "the record key moves nothing");
+    }
+
+    #[test]
+    fn release_keeps_knob_and_hold_switches() {
+        let mut joystick = Joystick::default();
+        for action in [
+            BoxAction::Frame(joystick_frame::WORLD),
+            BoxAction::Velocity(300),
+            BoxAction::Hold(single_step::PRIM),
+            BoxAction::Step(single_step::PRIM, 5),
+            BoxAction::Stick { x: 10, y: 0, ticks: 9 },
+        ] {
+            joystick.act(action);
+        }
+        assert!(joystick.is_held());
+        joystick.release();
+        assert!(!joystick.is_held());
+        let kept = JoystickBox { velocity: 300, hold: single_step::PRIM, ..JoystickBox::default() };
+        assert_eq!(joystick.read(), kept);
     }
 
     #[test]

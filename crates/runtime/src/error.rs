@@ -102,6 +102,20 @@ pub enum StartError {
         "--operator network needs --clock real or a speed such as 5x, --shared-memory on, and --network or --live"
     )]
     OperatorNetwork,
+    /// A job on stand-by would wait forever.
+    #[error(
+        "--stand-by waits for an operator, and none can connect: --clock real or a speed such as 5x, \
+         --operator owner or network, and --shared-memory on let one"
+    )]
+    StandBy,
+    /// The socket for operators cannot be opened, and the job would wait for one forever.
+    #[error("--stand-by waits for an operator, and none can connect: {}: {source}", path.display())]
+    NoOperator {
+        /// Path of the socket.
+        path: PathBuf,
+        /// Error of the system.
+        source: io::Error,
+    },
     /// Neighbours cannot connect.
     #[error("neighbours cannot connect: {0}")]
     Network(#[from] ListenError),

@@ -41,6 +41,8 @@ pub enum LoadError {
     Busy,
     /// Another block is being loaded.
     Loading,
+    /// The operator has left or disconnected before the boards had checked the block.
+    Withdrawn,
     /// The data directory has no such block.
     NoBlock(BlockNumber),
     /// A symbolic link leads from this file out of the data directory.
@@ -70,6 +72,9 @@ impl fmt::Display for LoadError {
                 f.write_str("a command is executed, and keeps its records: PAUSE, or wait for its end")
             }
             Self::Loading => f.write_str("another block is being checked: ask again when that is answered"),
+            Self::Withdrawn => f.write_str(
+                "the operator who asked for it has left before it was checked; nothing has changed",
+            ),
             Self::NoBlock(block) => write!(f, "the run's data directory has no {block}"),
             Self::Outside(file) => write!(
                 f,
@@ -152,6 +157,13 @@ impl Loads {
     pub const fn is_loading(&self) -> bool {
         self.loading.is_some()
     }
+
+    /// Withdraw the load that an operator has requested: when it is checked, nothing changes.
+    pub fn withdraw(&mut self, who: &str) {
+        if let Some(Loading { asker: Asker::Operator(input), is_withdrawn, .. }) = &mut self.loading {
+            *is_withdrawn |= input.source() == who;
+        }
+    }
 }
 
 /// A load without an answer yet.
@@ -159,6 +171,7 @@ struct Loading {
     asker: Asker,
     number: BlockNumber,
     stage: Stage,
+    is_withdrawn: bool,
 }
 
 enum Stage {
@@ -190,17 +203,18 @@ impl Run {
         if let Some(loader) = &self.loads.loader {
             loader.begin(order);
         }
-        self.loads.loading = Some(Loading { asker, number, stage: Stage::Checking });
+        self.loads.loading = Some(Loading { asker, number, stage: Stage::Checking, is_withdrawn: false });
         None
     }
 
     /// Called once between two ticks: the result of the load in progress, with its source.
     pub(crate) fn follow_load(&mut self, tick: Tick) -> Option<Answer> {
-        let Loading { asker, number, stage } = self.loads.loading.take()?;
+        let Loading { asker, number, stage, is_withdrawn } = self.loads.loading.take()?;
         let stage = match stage {
             Stage::Checking => match self.loads.loader.as_ref()?.look() {
                 None => Stage::Checking,
                 Some(Err(why)) => return Some((asker, Err(why))),
+                Some(Ok(_)) if is_withdrawn => return Some((asker, Err(LoadError::Withdrawn))),
                 Some(Ok(loaded)) => {
                     let Some(load) = self.announce() else {
                         return Some((asker, self.take_up(number, loaded)));
@@ -210,13 +224,16 @@ impl Run {
                 }
             },
             Stage::Announced { loaded, since } => match self.boards_have_checked(&loaded) {
+                Ok(_) if is_withdrawn => {
+                    return Some((asker, Err(self.take_back(LoadError::Withdrawn))));
+                }
                 Ok(true) => return Some((asker, self.take_up(number, loaded))),
                 Ok(false) if tick.since(since) < BOARDS_LIMIT => Stage::Announced { loaded, since },
                 Ok(false) => return Some((asker, Err(self.take_back(LoadError::Late)))),
                 Err(board) => return Some((asker, Err(self.take_back(LoadError::Differs(board))))),
             },
         };
-        self.loads.loading = Some(Loading { asker, number, stage });
+        self.loads.loading = Some(Loading { asker, number, stage, is_withdrawn });
         None
     }
 

@@ -154,6 +154,12 @@ impl Neighbours {
         self.is_ending = true;
     }
 
+    /// True if the run is about to end, so that no more commands are accepted.
+    #[must_use]
+    pub const fn is_ending(&self) -> bool {
+        self.is_ending
+    }
+
     /// True if another process commands.
     #[must_use]
     pub fn are_commanding(&self) -> bool {

@@ -78,6 +78,10 @@ fn check(config: &RunConfig) -> Result<(), StartError> {
     }
     let is_reached = config.network.is_some() || config.live.is_some();
     let can_be_operated = config.clock == ClockKind::Real && config.shared_memory;
+    let has_operator = can_be_operated && config.operator != OperatorAccess::None;
+    if config.stand_by && config.inputs.is_none() && !has_operator {
+        return Err(StartError::StandBy);
+    }
     if for_operators && !(is_reached && can_be_operated) {
         return Err(StartError::OperatorNetwork);
     }

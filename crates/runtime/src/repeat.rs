@@ -100,7 +100,9 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
     write(&data, CELL, cell)?;
     let job = log.attachment(Attachment::JOB).ok_or(RepeatError::Missing("job"))?;
     let job = write(&jobs, &format!("{name}.{EXTENSION}"), job)?;
-    let operated = log.operator_lines().next().is_some();
+    // A run on stand-by waits for the inputs of its log, also if there are none.
+    let stand_by = said(STAND_BY).is_some();
+    let operated = stand_by || log.operator_lines().next().is_some();
     let faults = log.attachment(FAULTS).map(|faults| write(directory, FAULTS, faults)).transpose()?;
     Ok(RunConfig {
         robot,
@@ -109,7 +111,7 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
         ticks: number(TICKS),
         retry: number(RETRY).and_then(|retry| u32::try_from(retry).ok()).unwrap_or(0),
         inputs: operated.then(|| log.path().to_owned()),
-        stand_by: said(STAND_BY).is_some(),
+        stand_by,
         unchecked: said(UNCHECKED).is_some(),
         log: LogTarget::None,
         shared_memory: false,

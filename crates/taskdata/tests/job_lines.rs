@@ -112,6 +112,8 @@ fn the_joystick_box() {
     ];
     let mut expected: Vec<(String, Joystick)> = vec![
         ("stick 1000 -500 25".into(), Joystick::Stick { x: 1000, y: -500, ticks: 25 }),
+        ("stick 0 0 0".into(), Joystick::Stick { x: 0, y: 0, ticks: 0 }),
+        ("stick 0 0 25".into(), Joystick::Stick { x: 0, y: 0, ticks: 25 }),
         ("velocity 500".into(), Joystick::Velocity(500)),
         ("record".into(), Joystick::Record),
         ("resume".into(), Joystick::Resume),
@@ -258,6 +260,11 @@ fn every_mistake_has_its_message() {
             "** joystick stick 0 -1001 5",
             "column 21: y of the stick is -1000 to 1000, -1001 found",
             "** joystick stick X Y TICKS",
+        ),
+        (
+            "** joystick stick 1 0 0",
+            "column 23: a number of ticks is 1 to 36000, 0 found",
+            "stick 0 0 releases it",
         ),
         ("** joystick stick 0 0", "column 21: a number of ticks was expected, the line ends", ""),
         (

@@ -233,7 +233,7 @@ impl Hwsc {
             return &self.progress;
         }
         let emergency = workstation.emergency();
-        if let Some(emergency) = emergency.clone().filter(|_| !self.resets()) {
+        if let Some(emergency) = emergency.clone().filter(|_| !self.resets_emergency()) {
             self.fail(JobFailure::Emergency(emergency));
             return &self.progress;
         }
@@ -280,7 +280,8 @@ impl Hwsc {
     }
 
     /// True if the current step or a later one resets a fault of the robot controller.
-    fn resets(&self) -> bool {
+    #[must_use]
+    pub fn resets_emergency(&self) -> bool {
         let reset = Step::Workstation(Action::Panel(Panel::FaultReset));
         self.steps.iter().skip(self.current.saturating_sub(1)).any(|line| line.step == reset)
     }

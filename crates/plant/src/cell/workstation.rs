@@ -302,6 +302,22 @@ impl Cell {
         }
     }
 
+    /// Release stick, buttons and frame of the joystick box; the knob keeps its setting.
+    pub fn release_joystick(&mut self) {
+        self.joystick.release();
+    }
+
+    /// Release the keys of the rotary table's panel: a motion by hand ramps down.
+    pub fn release_table_keys(&mut self) {
+        self.pedestal.table.release_keys();
+    }
+
+    /// True while a key of the rotary table's panel moves it.
+    #[must_use]
+    pub fn is_table_led_by_hand(&self) -> bool {
+        self.pedestal.table.is_led_by_hand()
+    }
+
     /// True while the vise moves, a control of the joystick box is held down, or the T3 controller or that of the
     /// rotary table carries out the action of a key.
     #[must_use]

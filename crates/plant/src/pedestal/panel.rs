@@ -119,6 +119,14 @@ impl Table {
         Ok(())
     }
 
+    /// Release the keys of the panel: a motion by hand ramps down.
+    pub fn release_keys(&mut self) {
+        if self.is_led_by_hand() {
+            self.panel.run = 0;
+            self.ramp_down();
+        }
+    }
+
     fn stands_at_manual(&self) -> Result<(), TableRefusal> {
         match self.panel {
             TablePanel { power: false, .. } => Err(TableRefusal::NoPower),
@@ -178,6 +186,13 @@ mod tests {
         panic!("the table does not stop: {table:?}");
     }
 
+    fn wait_ticks(table: &mut Table, ticks: u32) {
+        for _ in 0..ticks {
+            table.order(&NONE);
+            (0..16).for_each(|_| table.advance(0.0025));
+        }
+    }
+
     const NONE: MotorCommand = MotorCommand { number: 0, order: MotorOrder::None, steps: 0 };
 
     #[test]
@@ -200,6 +215,22 @@ mod tests {
         table.press(TableKey::Step { plus: rest < 0, count: rest.unsigned_abs() }).unwrap();
         wait(&mut table, &NONE);
         assert_eq!(table.counter(), -2000, "the display reads -20.00");
+    }
+
+    #[test]
+    fn released_keys_end_a_motion_by_hand_and_no_other() {
+        let mut table = table();
+        let far = MotorCommand { number: 1, order: MotorOrder::Turn, steps: 2000 };
+        table.order(&far);
+        table.release_keys();
+        assert!(wait(&mut table, &far) > 25, "an order of the line continues");
+        table.press(TableKey::Manual(true)).unwrap();
+        for key in [TableKey::Run { plus: true, ticks: 1000 }, TableKey::Step { plus: false, count: 2000 }] {
+            table.press(key).unwrap();
+            wait_ticks(&mut table, 5);
+            table.release_keys();
+            assert!(wait(&mut table, &far) < 25, "{key:?}");
+        }
     }
 
     #[test]

@@ -9,7 +9,14 @@
 //!
 //! One operator commands at a time: the first that sends a request that moves something, until it sends `leave` or
 //! disconnects. Stops are accepted from every operator.
+//!
+//! What an operator commands by hand (stick, buttons, frame, single steps, passes of a stopped process, keys of the
+//! rotary table's panel) ends with `leave`, with the session, and with its silence ([`Operator::end_hold`]); knob, stops
+//! and switches that hold stay. A request whose sender no longer waits is discarded unless it is a stop
+//! ([`Event::Late`]). Both rules are here, for all ways by which an operator can connect.
 
+mod hold;
+mod obstacles;
 mod request;
 mod source;
 mod terminals;
@@ -22,14 +29,20 @@ use interfaces::{
     CommonMemory, OperatorInputs,
     device::{JoystickBox, KNOB_FULL},
 };
-use neighbours::workstation::{Judge as _, player::Hwsc};
-use plant::{BoxAction, Joystick};
+use neighbours::workstation::{
+    Judge as _,
+    player::{Hwsc, Progress},
+};
+use plant::Joystick;
 use rcs_core::tick::Tick;
 use serde::Serialize;
-use taskdata::load::{BlockNumber, Store};
+use taskdata::load::{
+    BlockNumber, Store,
+    job::{TablePanel, Workstation},
+};
 
 pub use self::source::{Input, Inputs, WORKSTATION};
-use self::{request::Request, terminals::Terminals};
+use self::{hold::Ended, request::Request, terminals::Terminals};
 use crate::{judge::CommandJudge, neighbours::Neighbours, workstation::SimulatedWorkstation};
 
 /// Largest number of requests carried out in a tick; others wait for the next one.
@@ -51,7 +64,9 @@ pub struct Operator {
     sessions: Vec<String>,
     /// Name of the operator in command.
     commander: Option<String>,
-    /// True for a robot at a port: motion must stop when the operator is silent.
+    /// True while the rotary table moves by a key that the commander has pressed.
+    turns_table: bool,
+    /// True for a robot at a port: its knob goes to 0 when motion by hand ends with its session.
     robot_elsewhere: bool,
     counts: Requests,
 }
@@ -72,6 +87,8 @@ pub enum Later {
     Load(BlockNumber),
     /// Play a job instead of the rest of the present one.
     Play(String),
+    /// Withdraw a load that the session has requested and that has not been carried out.
+    Withdraw,
 }
 
 /// The parts of a run that a request reads and changes.
@@ -106,6 +123,7 @@ impl Operator {
             is_stopped: false,
             sessions: Vec::new(),
             commander: None,
+            turns_table: false,
             robot_elsewhere,
             counts: Requests::default(),
         }
@@ -141,10 +159,12 @@ impl Operator {
         self.terminals.inputs()
     }
 
-    /// Called once per tick, after all requests: sets the box and the terminals for the next tick.
-    pub fn end_tick(&mut self) {
+    /// Called once per tick, after all requests: sets the box and the terminals for the next tick. `is_table_led` is
+    /// true while a key of its panel moves the rotary table.
+    pub fn end_tick(&mut self, is_table_led: bool) {
         self.shown = self.hand.read();
         self.terminals.end_tick();
+        self.turns_table &= is_table_led;
     }
 
     /// The part of the last request that the run must carry out.
@@ -154,7 +174,7 @@ impl Operator {
 
     /// Count an answered request.
     pub fn count(&mut self, input: &Input, verdict: &Result<String, String>) {
-        if matches!(input.event(), Event::Line(_)) && !input.is_question() {
+        if input.event().line().is_some() && !input.is_question() {
             self.counts.requests += 1;
             self.counts.refused += u64::from(verdict.is_err());
         }
@@ -171,17 +191,14 @@ impl Operator {
         let who = input.source();
         match input.event() {
             Event::Connected => self.connected(who, around),
-            Event::Silent => self.is_silent(who),
+            Event::Silent => Ok(self.end_hold(who, around)),
             Event::Disconnected => self.disconnected(who, around),
             Event::Line(line) => {
-                let request = Request::read(line, around.store);
-                match request {
-                    Ok(Request::Status) => return Ok(self.status(around)),
-                    Ok(Request::Data) => return Ok(directory(around.data)),
-                    _ => {}
-                }
-                request.and_then(|request| self.obey(who, request, around))
+                Request::read(line, around.store).and_then(|request| self.obey(who, request, around))
             }
+            Event::Late(late, line) => Request::read(line, around.store).and_then(|request| {
+                if request.is_stop() { self.obey(who, request, around) } else { Err(late.to_string()) }
+            }),
         }
     }
 
@@ -191,26 +208,48 @@ impl Operator {
         Ok(String::new())
     }
 
-    /// Release stick and buttons because the operator is silent. A robot at a port comes to rest.
-    fn is_silent(&mut self, who: &str) -> Result<String, String> {
-        if self.commander.as_deref() == Some(who) && self.hand.busy() {
-            self.hand.let_go();
-            self.is_stopped |= self.robot_elsewhere;
+    /// End what an operator commands by hand, because it leaves, is silent, or has disconnected. Nothing moves faster by
+    /// it; the knob of a robot at a port goes to 0. Returns what has ended, as text.
+    fn end_hold(&mut self, who: &str, around: &mut Around<'_>) -> String {
+        let ended = self.release(who);
+        if ended.turns_table {
+            around.workstation.cell.release_table_keys();
         }
-        Ok(String::new())
+        ended.to_string()
+    }
+
+    /// The part of [`Operator::end_hold`] that does not need the cell.
+    fn release(&mut self, who: &str) -> Ended {
+        if self.commander.as_deref() != Some(who) {
+            return Ended::default();
+        }
+        let ended = Ended {
+            joystick: self.hand.is_held(),
+            passes: self.terminals.drop_passes(),
+            turns_table: std::mem::take(&mut self.turns_table),
+            knob: false,
+        };
+        self.hand.release();
+        let knob = self.robot_elsewhere && (ended.joystick || ended.passes);
+        self.is_stopped |= knob;
+        Ended { knob, ..ended }
     }
 
     fn disconnected(&mut self, who: &str, around: &mut Around<'_>) -> Result<String, String> {
-        if let Some(at) = self.sessions.iter().position(|session| session == who) {
-            self.sessions.remove(at);
-        }
-        if self.commander.as_deref() == Some(who) && !self.sessions.iter().any(|session| session == who) {
-            self.is_silent(who)?;
-            self.commander = None;
-            self.hand.act(BoxAction::Frame(0));
-        }
+        self.sessions.retain(|session| session != who);
+        let ended = self.leave(who, around);
         self.attend(around);
-        Ok(String::new())
+        Ok(ended)
+    }
+
+    /// End what an operator holds, withdraw its load, and take the command from it.
+    fn leave(&mut self, who: &str, around: &mut Around<'_>) -> String {
+        let ended = self.end_hold(who, around);
+        if self.commander.as_deref() == Some(who) {
+            self.commander = None;
+        }
+        self.later = Some(Later::Withdraw);
+        ended
     }
 
     /// Tell the job whether an operator is connected: only then it waits for one.
@@ -242,18 +281,21 @@ impl Operator {
                 self.is_stopped = false;
                 Ok(format!("the velocity knob is at {} of {KNOB_FULL}", self.shown.velocity))
             }
-            Request::Leave => {
-                if self.commander.as_deref() == Some(who) {
-                    self.commander = None;
-                }
-                Ok(done)
-            }
+            Request::Leave => Ok(self.leave(who, around)),
             Request::Note => Ok(done),
             Request::Wait => {
                 job(around)?.wait_for_operator().map(|()| done).map_err(|error| error.to_string())
             }
-            Request::GoOn => job(around)?.go_on(tick).map(|()| done).map_err(|error| error.to_string()),
-            Request::Skip => job(around)?.skip(tick).map(|()| done).map_err(|error| error.to_string()),
+            Request::GoOn => {
+                obstacles::check_job(around)?;
+                job(around)?.go_on(tick).map_err(|error| error.to_string())?;
+                Ok(self.what_holds_the_robot(around))
+            }
+            Request::Skip => {
+                obstacles::check_job(around)?;
+                job(around)?.skip(tick).map_err(|error| error.to_string())?;
+                Ok(self.what_holds_the_robot(around))
+            }
             Request::Command(text, command) => {
                 let (store, memory, unchecked) = (around.store, around.memory, around.unchecked);
                 if let Some(wrong) = (CommandJudge { store, memory, unchecked }).verdict(&command) {
@@ -277,7 +319,12 @@ impl Operator {
             Request::StandAlone { now } => around.neighbours.take_command(tick, around.memory, now),
             Request::Workstation => around.neighbours.give_command(tick, around.memory),
             Request::Terminal(entry) => self.terminals.enter(entry, around.memory, &around.store.view()),
-            Request::Cell(action, line) => around.workstation.begin_line(&action, &line).map(|()| done),
+            Request::Cell(action, line) => {
+                around.workstation.begin_line(&action, &line)?;
+                self.turns_table |=
+                    matches!(action, Workstation::Table(TablePanel::Run { .. } | TablePanel::Step { .. }));
+                Ok(done)
+            }
         }
     }
 
@@ -296,16 +343,32 @@ impl Operator {
 
     /// The status of the run in one line.
     fn status(&self, around: &mut Around<'_>) -> String {
-        let stand_alone = around.neighbours.is_stand_alone();
+        let (stand_alone, is_ending) = (around.neighbours.is_stand_alone(), around.neighbours.is_ending());
         let job = match around.neighbours.job_under_way() {
-            Ok(job) if job.is_waiting() && stand_alone => "stand-alone, no job plays",
-            Ok(job) if job.is_waiting() => "the job waits",
-            Ok(_) => "the job plays",
-            Err(_) => "the workstation controller commands",
+            Ok(job) => match job.progress() {
+                Progress::Over => "the job is over".to_owned(),
+                Progress::Failed(why) => format!("the job has ended, the run ends at rest: {why}"),
+                Progress::Running if job.is_waiting() && stand_alone => {
+                    "stand-alone, no job plays".to_owned()
+                }
+                Progress::Running if job.is_waiting() => "the job waits".to_owned(),
+                Progress::Running => "the job plays".to_owned(),
+            },
+            Err(_) if is_ending => "the run is about to end".to_owned(),
+            Err(_) => "the workstation controller commands".to_owned(),
         };
         let commander = self.commander.as_deref().unwrap_or("nobody");
         let knob = if self.is_stopped { 0 } else { self.shown.velocity };
-        format!("{job}; {commander} commands; knob {knob}; connected {}", self.sessions.len())
+        let (number, names) = (self.sessions.len(), self.sessions.join(", "));
+        let held =
+            obstacles::emergency(around.workstation).map_or_else(String::new, |why| format!("; {why}"));
+        format!("{job}; {commander} commands; knob {knob}; connected {number}: {names}{held}")
+    }
+
+    /// What keeps the robot from moving although the job plays, as text; empty if nothing does.
+    fn what_holds_the_robot(&self, around: &Around<'_>) -> String {
+        let knob = if self.is_stopped { 0 } else { self.shown.velocity };
+        obstacles::of_the_robot(around.memory, knob, &self.shown, self.terminals.inputs())
     }
 }
 
@@ -323,7 +386,11 @@ fn job<'a>(around: &'a mut Around<'_>) -> Result<&'a mut Hwsc, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::device::joystick_frame;
+    use interfaces::{ProcessId, device::joystick_frame};
+    use plant::BoxAction;
+    use taskdata::files::TaskData;
+
+    use super::terminals::Entry;
 
     #[test]
     fn the_lower_knob_holds_and_switches_add_up() {
@@ -334,11 +401,11 @@ mod tests {
         operator.hand.act(BoxAction::Velocity(800));
         operator.hand.act(BoxAction::Hold(2));
         operator.hand.act(BoxAction::Stick { x: 0, y: -30, ticks: 1 });
-        operator.end_tick();
+        operator.end_tick(false);
         let both = operator.at_the_box(job);
         assert_eq!((both.velocity, both.hold, both.x, both.y), (700, 3, 0, -30));
         operator.hand.act(BoxAction::Velocity(100));
-        operator.end_tick();
+        operator.end_tick(false);
         assert_eq!((operator.at_the_box(job).velocity, operator.at_the_box(job).x), (100, 5));
         operator.is_stopped = true;
         assert_eq!(operator.at_the_box(job).velocity, 0);
@@ -353,16 +420,58 @@ mod tests {
         assert!(refused.starts_with("a commands this run"), "{refused}");
     }
 
-    #[test]
-    fn who_is_silent_lets_go_and_a_robot_at_a_port_stops() {
-        for elsewhere in [false, true] {
-            let mut operator = Operator::new(elsewhere);
-            operator.take_command("a").unwrap();
-            operator.hand.act(BoxAction::Stick { x: 900, y: 0, ticks: 1000 });
-            operator.is_silent("b").unwrap();
-            assert!(operator.hand.busy(), "another one is silent");
-            operator.is_silent("a").unwrap();
-            assert_eq!((operator.hand.busy(), operator.is_stopped), (false, elsewhere));
+    /// An operator who commands, with the knob at 400 and everything held that a session can hold.
+    fn holding(robot_elsewhere: bool) -> Operator {
+        let mut operator = Operator::new(robot_elsewhere);
+        operator.take_command("a").unwrap();
+        for action in [
+            BoxAction::Velocity(400),
+            BoxAction::Frame(joystick_frame::WORLD),
+            BoxAction::Stick { x: 900, y: 0, ticks: 36_000 },
+            BoxAction::Hold(1),
+        ] {
+            operator.hand.act(action);
         }
+        let (memory, data) = (CommonMemory::default(), TaskData::default());
+        for entry in [Entry::Stop(2), Entry::Execute(ProcessId::Prim, 100)] {
+            operator.terminals.enter(entry, &memory, &data).unwrap();
+        }
+        operator.end_tick(false);
+        operator
+    }
+
+    #[test]
+    fn motion_by_hand_ends_with_its_session_and_speed_never_rises() {
+        for elsewhere in [false, true] {
+            let mut operator = holding(elsewhere);
+            assert_eq!(operator.release("b"), Ended::default(), "another session ends");
+            assert!(operator.hand.is_held());
+            let ended = operator.release("a");
+            assert_eq!(ended, Ended { joystick: true, passes: true, turns_table: false, knob: elsewhere });
+            operator.end_tick(false);
+            let shown = operator.at_the_box(JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() });
+            let velocity = if elsewhere { 0 } else { 400 };
+            assert_eq!(shown, JoystickBox { velocity, hold: 1, ..JoystickBox::default() });
+            let inputs = operator.at_the_terminals();
+            assert!(!inputs.executes(ProcessId::Prim) && inputs.is_stopped(2), "the board stays stopped");
+            assert_eq!(operator.release("a"), Ended::default(), "nothing is left");
+        }
+    }
+
+    #[test]
+    fn a_session_without_motion_by_hand_leaves_the_knob_of_a_robot_at_a_port() {
+        let mut operator = Operator::new(true);
+        operator.take_command("a").unwrap();
+        operator.hand.act(BoxAction::Velocity(400));
+        assert_eq!(operator.release("a"), Ended::default());
+        assert!(!operator.is_stopped);
+    }
+
+    #[test]
+    fn a_stop_outlasts_the_end_of_a_session() {
+        let mut operator = holding(false);
+        operator.is_stopped = true;
+        operator.release("a");
+        assert!(operator.is_stopped);
     }
 }

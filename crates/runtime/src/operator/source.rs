@@ -75,7 +75,7 @@ impl Input {
 
     /// True if it changes nothing.
     pub fn is_question(&self) -> bool {
-        QUESTIONS.contains(&self.event().to_string().as_str())
+        self.event().line().is_some_and(|line| QUESTIONS.contains(&line))
     }
 
     /// Its line in the log, with the first tick that sees it; `None` if it changes nothing.
@@ -130,6 +130,7 @@ impl Inputs {
         let _ = fs::remove_file(&path);
         match Listener::start(&path, name.as_str()) {
             Ok(listener) => Ok(Self::Sessions(listener)),
+            Err(source) if config.stand_by => Err(StartError::NoOperator { path, source }),
             Err(error) => {
                 observer.message(&format!("no operator can connect: {}: {error}", path.display()));
                 Ok(Self::None)

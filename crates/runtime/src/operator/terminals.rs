@@ -107,6 +107,13 @@ impl Terminals {
         self.shown.writes = mem::take(&mut self.writes);
     }
 
+    /// Drop the passes that are still to come. Returns true if there were any.
+    pub fn drop_passes(&mut self) -> bool {
+        let had_some = !self.passes.is_empty();
+        self.passes.clear();
+        had_some
+    }
+
     /// Carry out an entry. `memory` is common memory after the last tick, `data` are the task data of the next one.
     ///
     /// # Errors

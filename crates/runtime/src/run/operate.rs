@@ -41,6 +41,10 @@ impl Run {
             let verdict = self.operator.carry_out(&input, &mut around);
             let verdict = match (self.operator.take_later(), input.refusal()) {
                 (None, _) => verdict,
+                (Some(Later::Withdraw), _) => {
+                    self.loads.withdraw(input.source());
+                    verdict
+                }
                 // A log does not contain the text of an unreadable request.
                 (Some(_), Some(why)) => Err(why.to_owned()),
                 (Some(Later::Play(job)), None) => self.play(tick, &job),
@@ -53,7 +57,7 @@ impl Run {
             };
             self.settle(first, input, verdict);
         }
-        self.operator.end_tick();
+        self.operator.end_tick(self.workstation.cell.is_table_led_by_hand());
     }
 
     /// Carry out the load that the workstation controller has requested. The next tick is the first to see it.

@@ -107,6 +107,8 @@ impl Hwsc {
             && let Some(failure) = failure.take()
         {
             self.progress = Progress::Failed(failure);
+            // A job that has ended waits for nobody.
+            self.intervention.state = State::Plays;
         }
     }
 

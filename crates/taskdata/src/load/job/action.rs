@@ -87,7 +87,7 @@ pub enum Stepped {
 pub enum Joystick {
     /// Set the coordinate switches.
     Frame(JoystickFrame),
-    /// Deflect the stick, then release it.
+    /// Deflect the stick, then release it; 0 0 releases it at once.
     Stick {
         /// Deflection in X, -1000 to 1000.
         x: i16,

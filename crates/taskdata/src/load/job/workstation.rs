@@ -138,7 +138,7 @@ const PROCESSES: &[(&str, Stepped)] = &[
 ];
 
 const TRAY_FORM: &str = "** tray UNIT SECTOR OBJECT, or with X Y ANGLE behind it: 0.01 in and 0.01 degree from the centre of the sector";
-const STICK_FORM: &str = "** joystick stick X Y TICKS, X and Y from -1000 to 1000";
+const STICK_FORM: &str = "** joystick stick X Y TICKS, X and Y from -1000 to 1000; stick 0 0 releases it";
 const PRESS_FORM: &str = "** joystick up|down|roll+|roll-|open|close TICKS";
 const VELOCITY_FORM: &str = "** joystick velocity N, from 0 to 1000";
 const STEP_FORM: &str = "** joystick step PROCESS, or with a COUNT behind it";
@@ -266,7 +266,12 @@ impl Reader<'_, '_> {
             BoxVerb::Stick => {
                 let x = self.within(fields, "x of the stick", -FULL, STICK_FORM)?;
                 let y = self.within(fields, "y of the stick", -FULL, STICK_FORM)?;
-                Joystick::Stick { x, y, ticks: self.ticks(fields, STICK_FORM)? }
+                let ticks = match (x, y) {
+                    // A stick that is released needs no time.
+                    (0, 0) => self.number_from(fields, 0, "a number of ticks", STICK_FORM)?,
+                    _ => self.ticks(fields, STICK_FORM)?,
+                };
+                Joystick::Stick { x, y, ticks }
             }
             BoxVerb::Press(button) => Joystick::Press { button, ticks: self.ticks(fields, PRESS_FORM)? },
             BoxVerb::Velocity => {
@@ -342,9 +347,14 @@ impl Reader<'_, '_> {
     }
 
     pub(super) fn count(&mut self, fields: &mut Fields<'_, '_>, what: &str, form: &str) -> Option<u32> {
+        self.number_from(fields, 1, what, form)
+    }
+
+    /// Read a number of at least `low`.
+    fn number_from(&mut self, fields: &mut Fields<'_, '_>, low: i32, what: &str, form: &str) -> Option<u32> {
         let number = self.number(fields, what, form)?;
-        if number.value < 1 {
-            let message = format!("{what} is 1 to {MOST}, {} found", number.value);
+        if number.value < low {
+            let message = format!("{what} is {low} to {MOST}, {} found", number.value);
             self.problems.error_help("job.range", number.at, message, form);
             return None;
         }

@@ -136,6 +136,10 @@ fn a_failure_ends_the_job_only_if_no_operator_is_there() {
     stage.until(|stage| stage.hwsc.is_waiting());
     stage.hwsc.attend(false);
     assert_eq!(*stage.hwsc.progress(), Progress::Failed(JobFailure::Command(Reason::GraspMissed)));
+    // Another operator who connects is told the same by every answer.
+    stage.hwsc.attend(true);
+    assert!(!stage.hwsc.is_waiting());
+    assert_eq!(stage.hwsc.go_on(Tick(stage.tick)), Err(OperatorError::Ended));
 }
 
 #[test]

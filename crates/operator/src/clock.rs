@@ -1,0 +1,113 @@
+//! The clock of a run, by which it judges the time limits of requests.
+//!
+//! Clocks of different machines cannot be compared. So each line of the run carries the time of its own clock, and a
+//! client names the limit of a request in the same clock: the time of the last line, plus the time since it has read
+//! that line, plus the time for which it waits. A delay of that line makes the limit earlier than meant, never later. A
+//! request that is delayed on its way, or in a run that stands still, is past its limit when it arrives.
+
+use std::time::{Duration, Instant};
+
+use rustix::time::{ClockId, clock_gettime};
+
+/// A time of the run's clock: milliseconds since the run began to listen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct RunTime(pub u64);
+
+impl RunTime {
+    /// The time after a duration.
+    #[must_use]
+    pub fn after(self, duration: Duration) -> Self {
+        Self(self.0.saturating_add(millis(duration)))
+    }
+}
+
+fn millis(duration: Duration) -> u64 {
+    u64::try_from(duration.as_millis()).unwrap_or(u64::MAX)
+}
+
+/// The run's side of its clock. It continues while the process is stopped, and while the machine sleeps.
+#[derive(Clone, Copy, Debug)]
+pub struct RunClock {
+    start: Duration,
+}
+
+impl RunClock {
+    /// Starts the clock at 0.
+    #[must_use]
+    pub fn start() -> Self {
+        Self { start: since_boot() }
+    }
+
+    /// The present time.
+    #[must_use]
+    pub fn now(&self) -> RunTime {
+        RunTime::default().after(since_boot().saturating_sub(self.start))
+    }
+}
+
+fn since_boot() -> Duration {
+    let time = clock_gettime(ClockId::Boottime);
+    Duration::new(time.tv_sec.unsigned_abs(), u32::try_from(time.tv_nsec).unwrap_or_default())
+}
+
+/// Age after which a client takes a new estimate in any case, since the two clocks drift.
+const DRIFT: Duration = Duration::from_secs(60);
+
+/// A client's estimate of the run's clock: a time that it has read, and when. It is never ahead of the run's clock but
+/// for the drift between two estimates.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimate {
+    time: RunTime,
+    read: Instant,
+}
+
+impl Estimate {
+    /// The run's clock showed `time` at `read`, or earlier.
+    #[must_use]
+    pub const fn new(time: RunTime, read: Instant) -> Self {
+        Self { time, read }
+    }
+
+    /// The run's time at `now`.
+    #[must_use]
+    pub fn at(&self, now: Instant) -> RunTime {
+        self.time.after(now.saturating_duration_since(self.read))
+    }
+
+    /// Takes another line into account: the estimate with the smaller delay is the later one.
+    pub fn hear(&mut self, time: RunTime, read: Instant) {
+        if time >= self.at(read) || read.saturating_duration_since(self.read) > DRIFT {
+            *self = Self { time, read };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_estimate_is_never_later_than_the_clock_of_the_run() {
+        let start = Instant::now();
+        let at = |millis: u64| start + Duration::from_millis(millis);
+        // The run said 100 when its clock showed 100; the line took 30 ms, so that the client reads it at 130.
+        let mut estimate = Estimate::new(RunTime(100), at(130));
+        assert_eq!(estimate.at(at(200)), RunTime(170));
+        // A line that was delayed by 5 s does not make it worse, one that was quicker makes it better.
+        estimate.hear(RunTime(300), at(5300));
+        assert_eq!(estimate.at(at(5300)), RunTime(5270));
+        estimate.hear(RunTime(5310), at(5320));
+        assert_eq!(estimate.at(at(5400)), RunTime(5390));
+        // After a minute the last line counts.
+        estimate.hear(RunTime(80_000), at(80_050));
+        assert_eq!(estimate.at(at(80_060)), RunTime(80_010));
+    }
+
+    #[test]
+    fn the_clock_of_a_run_goes_forward() {
+        let clock = RunClock::start();
+        let first = clock.now();
+        std::thread::sleep(Duration::from_millis(5));
+        assert!(clock.now() > first && first < RunTime(1000));
+    }
+}

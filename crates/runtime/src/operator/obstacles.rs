@@ -1,0 +1,114 @@
+//! What keeps the robot from moving, as text for the status and for the answers to `job go` and `job skip`.
+
+use interfaces::{CommonMemory, OperatorInputs, device::JoystickBox, operator::BOARDS};
+use neighbours::workstation::player::Workstation as _;
+use plant::EStop;
+
+use super::Around;
+use crate::workstation::SimulatedWorkstation;
+
+/// Start-up of the robot after an emergency, in requests.
+const START_UP: &str = "`panel fault-reset`, then start the robot up at its panel (IV.3.3)";
+
+/// The emergency that keeps the robot without pressure, and what to do; `None` without an emergency.
+pub fn emergency(workstation: &SimulatedWorkstation) -> Option<String> {
+    let pressed: Vec<EStop> =
+        EStop::ALL.into_iter().filter(|site| workstation.cell.t3().is_pressed(*site)).collect();
+    if pressed.is_empty() {
+        return workstation.emergency().map(|why| format!("EMERGENCY: {why}: {START_UP}"));
+    }
+    let sites: Vec<String> = pressed.iter().map(ToString::to_string).collect();
+    let releases: Vec<String> = pressed.iter().map(|site| format!("`release {}`", site.word())).collect();
+    let is_are = if pressed.len() == 1 { "is" } else { "are" };
+    Some(format!("EMERGENCY: {} {is_are} pressed: {}, {START_UP}", sites.join(" and "), releases.join(", ")))
+}
+
+/// Refuse to continue a job under an emergency, unless a line of the job itself resets it.
+///
+/// # Errors
+/// The emergency, and what to do.
+pub fn check_job(around: &mut Around<'_>) -> Result<(), String> {
+    match emergency(around.workstation) {
+        Some(why) if !around.neighbours.job_under_way()?.resets_emergency() => {
+            Err(format!("nothing moves: {why}; then `job go`"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What keeps the robot from moving although the job plays; empty if nothing does. `knob` is the operators' knob,
+/// `shown` their joystick box, `terminals` their entries.
+pub fn of_the_robot(
+    memory: &CommonMemory,
+    knob: u16,
+    shown: &JoystickBox,
+    terminals: &OperatorInputs,
+) -> String {
+    let mut found = Vec::new();
+    if knob == 0 {
+        found.push("the velocity knob is at 0 (`go`, or `joystick velocity 1000`)".to_owned());
+    }
+    if shown.frame != 0 {
+        found.push("a frame is on at the joystick box (`joystick frame OFF`)".to_owned());
+    }
+    if shown.hold != 0 {
+        found.push("switches of the joystick box hold processes (`joystick free PROCESS`)".to_owned());
+    }
+    let stopped = BOARDS.iter().filter(|board| terminals.is_stopped(**board));
+    found.extend(stopped.map(|board| format!("board {board} is stopped (`board {board} go`)")));
+    if !memory.t3i.status.link_running {
+        let trouble = memory.t3i.status.trouble();
+        found.push(trouble.unwrap_or("the link to the robot controller does not run").to_owned());
+    }
+    if found.is_empty() { String::new() } else { format!("but nothing moves: {}", found.join("; ")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use plant::{Cell, CellDescription, Key, WorkstationAction};
+
+    use super::*;
+
+    #[test]
+    fn an_emergency_names_its_buttons_and_the_way_out() {
+        let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"));
+        let description = CellDescription::load(&data.join("cell.toml")).unwrap();
+        let mut workstation = SimulatedWorkstation::new(Cell::new(&description, 1).unwrap());
+        assert_eq!(emergency(&workstation), None);
+        for site in [EStop::Terminals, EStop::Pedestal] {
+            workstation.cell.workstation(&WorkstationAction::T3(Key::Press(site))).unwrap();
+        }
+        let why = emergency(&workstation).unwrap();
+        assert!(
+            why.starts_with(
+                "EMERGENCY: the E-stop near the terminals and the E-stop near the pedestal are pressed: \
+                 `release terminals`, `release pedestal`, `panel fault-reset`"
+            ),
+            "{why}"
+        );
+        for site in [EStop::Terminals, EStop::Pedestal] {
+            workstation.cell.workstation(&WorkstationAction::T3(Key::Release(site))).unwrap();
+        }
+        workstation.cell.step(&interfaces::DeviceOutputs::default());
+        workstation.cell.workstation(&WorkstationAction::T3(Key::FaultReset)).unwrap();
+        assert_eq!(emergency(&workstation), None, "the start-up is left");
+    }
+
+    #[test]
+    fn every_obstacle_of_a_playing_job_is_named() {
+        let mut memory = CommonMemory::default();
+        memory.t3i.status.link_running = true;
+        let free = (JoystickBox::default(), OperatorInputs::default());
+        assert_eq!(of_the_robot(&memory, 1000, &free.0, &free.1), "");
+        memory.t3i.status.link_running = false;
+        let shown = JoystickBox { frame: 1, hold: 8, ..JoystickBox::default() };
+        let terminals = OperatorInputs { stopped: 0xFF, ..OperatorInputs::default() };
+        let said = of_the_robot(&memory, 0, &shown, &terminals);
+        for part in ["the velocity knob is at 0", "a frame is on", "hold processes", "board 2 go", "the link"]
+        {
+            assert!(said.contains(part), "{part}: {said}");
+        }
+    }
+}
