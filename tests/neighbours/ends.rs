@@ -1,7 +1,11 @@
 //! How a run ends that is commanded from another process, and what its exit status says of it.
 
-use std::thread;
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
 
+use executive::memory::Attached;
 use interfaces::HwsCommand;
 use neighbours::{
     mailbox::{HWSC_STATUS, Mailbox},
@@ -11,7 +15,7 @@ use neighbours::{
 use rcs_core::name::Name16;
 use rustix::process::{Pid, Signal, kill_process};
 
-use super::bench::{Controller, Ended, Workstation, attend, bare};
+use super::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
 
 /// A run that goes on without its workstation controller ends here, and not where it should.
 const TOO_LONG: [&str; 3] = ["--json", "--ticks", "20000"];
@@ -185,4 +189,32 @@ fn a_robot_that_was_stopped_on_its_way_goes_on_or_is_brought_back_by_hand() {
     drop(workstation);
     let ended = controller.end();
     assert_eq!(ended.status, Some(0), "{}", ended.said);
+}
+
+/// A workstation controller works the joystick box by lines for the cell.
+#[test]
+fn motion_by_hand_ends_with_the_workstation_controller_that_commands_it() {
+    let name = format!("by-hand-{}", std::process::id());
+    let controller = Controller::start("by-hand", "workstation", &["--clock", "20x", "--run", &name]);
+    let mut workstation = Workstation::connect(&controller);
+    assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
+    let run = Attached::open(&name.parse().expect("a name")).expect("it runs");
+    let shown = || {
+        let joystick = run.external().expect("buffers").devices.joystick;
+        (joystick.frame != 0, joystick.x, joystick.y)
+    };
+    workstation.in_cell("joystick velocity 100");
+    workstation.in_cell("joystick frame WORLD");
+    workstation.begin_in_cell("joystick stick 0 300 36000");
+    let begun = Instant::now();
+    while shown() != (true, 0, 300) {
+        assert!(begun.elapsed() < PATIENCE, "{:?}", shown());
+        workstation.tick();
+    }
+    drop(workstation);
+    while shown() != (false, 0, 0) {
+        assert!(begun.elapsed() < PATIENCE, "{:?}", shown());
+        thread::sleep(Duration::from_millis(10));
+    }
+    controller.kill();
 }

@@ -85,7 +85,7 @@ impl Commanded {
         let Some(emulator) = &mut self.alone else {
             return self.outside.step(tick, gate, workstation, judge, events);
         };
-        self.outside.attend(tick, events);
+        self.outside.attend(tick, workstation, events);
         match emulator.step(tick, gate, workstation, judge, events) {
             Progress::Running => {}
             Progress::Over => emulator.hwsc.wait_without_job(),

@@ -15,7 +15,10 @@ use neighbours::{
     },
 };
 use rcs_core::{name::Name16, tick::Tick};
-use taskdata::load::{BlockNumber, Store, job};
+use taskdata::load::{
+    BlockNumber, Store,
+    job::{self, Workstation as Action},
+};
 
 use crate::{
     event::Event,
@@ -46,6 +49,8 @@ pub struct OutsideWorkstation {
     came: bool,
     /// True while it is connected.
     here: bool,
+    /// True if it has worked the joystick box or the rotary table's panel since it connected.
+    by_hand: bool,
     /// The reason why the last connection ended.
     disconnect: Option<Disconnect>,
 }
@@ -65,6 +70,7 @@ impl OutsideWorkstation {
             began: Tick::BEFORE_START,
             came: false,
             here: false,
+            by_hand: false,
             disconnect: None,
         }
     }
@@ -121,15 +127,20 @@ impl OutsideWorkstation {
 
     /// Called once per tick while an operator or the job commands: it may connect and disconnect, but reads no status,
     /// and its commands are not read.
-    pub fn attend(&mut self, tick: Tick, events: &mut Vec<Event>) {
+    pub fn attend(&mut self, tick: Tick, workstation: &mut SimulatedWorkstation, events: &mut Vec<Event>) {
         for place in [HWSC_STATUS, CELL_STATUS] {
             self.endpoint.outgoing(place).initialize();
         }
-        self.exchange(tick, events);
+        self.exchange(tick, workstation, events);
     }
 
-    /// Send and receive the mailboxes of a tick.
-    fn exchange(&mut self, tick: Tick, events: &mut Vec<Event>) -> Presence {
+    /// Send and receive the mailboxes of a tick. Motion by hand ends with the connection that commands it.
+    fn exchange(
+        &mut self,
+        tick: Tick,
+        workstation: &mut SimulatedWorkstation,
+        events: &mut Vec<Event>,
+    ) -> Presence {
         let presence = self.endpoint.exchange(tick.0);
         while let Some(event) = self.endpoint.event() {
             if let NetEvent::Disconnected(_, reason) = &event {
@@ -141,6 +152,10 @@ impl OutsideWorkstation {
             (self.line_read, self.line, self.refused, self.loading) = (0, 0, None, None);
         }
         self.here = presence.connected;
+        if (!presence.connected || presence.new) && std::mem::take(&mut self.by_hand) {
+            workstation.cell.release_joystick();
+            workstation.cell.release_table_keys();
+        }
         presence
     }
 
@@ -157,7 +172,7 @@ impl OutsideWorkstation {
         self.follow(tick, gate.command(), task);
         self.endpoint.outgoing(HWSC_STATUS).clone_from(gate.status_box());
         self.write_cell(workstation, events);
-        let presence = self.exchange(tick, events);
+        let presence = self.exchange(tick, workstation, events);
         let gone = self.has_gone(presence);
         if presence.new {
             gate.initialize();
@@ -286,7 +301,9 @@ impl OutsideWorkstation {
             return Ok(());
         }
         let action = job::own_line(line, store).map_err(|error| error.to_string())?;
-        workstation.begin(&action, line)
+        workstation.begin(&action, line)?;
+        self.by_hand |= matches!(action, Action::Joystick(_) | Action::Table(_));
+        Ok(())
     }
 }
 

@@ -115,7 +115,7 @@ impl Switched {
         if self.is_handed_over() {
             return self.follow(around, gate, workstation, events);
         }
-        self.outside.attend(around.tick, events);
+        self.outside.attend(around.tick, workstation, events);
         let progress = self.job.step(around.tick, gate, workstation, &around.judge, events);
         if self.is_handed_over() { self.hand_over(around, gate, events) } else { progress }
     }
