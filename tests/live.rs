@@ -6,9 +6,10 @@ use std::{
     path::Path,
     sync::{Arc, Mutex},
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
+use executive::memory::{Attached, RunName};
 use record::Log;
 use runtime::{ClockKind, LogTarget, Observer, OperatorAccess, Run, RunConfig, RunOutcome, StartError};
 use serde_json::{Value, json};
@@ -19,6 +20,8 @@ use tungstenite::{
     http::{HeaderValue, header},
 };
 
+/// Longest time for anything to happen.
+const PATIENCE: Duration = Duration::from_secs(60);
 /// Topics that are sent once, at the start.
 const ONCE: [&str; 4] = ["/robot_description", "/tf_static", "/meshes", "/names"];
 
@@ -339,6 +342,93 @@ fn a_viewer_with_the_token_operates_the_run() {
     let lines: Vec<_> = lines.iter().map(|(line, refused)| (line.as_str(), *refused)).collect();
     let said: Vec<_> = lines.into_iter().filter(|(line, _)| *line != "(silent)").collect();
     assert_eq!(said, expected);
+}
+
+/// A run that a viewer operates, with the run's name and the token.
+struct Operated {
+    viewer: Viewer,
+    token: String,
+    request: u32,
+}
+
+impl Operated {
+    fn ask(&mut self, line: &str) -> Result<Value, String> {
+        call(&mut self.viewer, self.request, &json!({ "token": self.token, "line": line }))
+    }
+
+    /// Reads what comes, and so answers pings, for a time.
+    fn read_for(&mut self, time: Duration) {
+        let end = Instant::now() + time;
+        while Instant::now() < end {
+            // At least the pings come all along.
+            self.viewer.socket.read().unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_viewer_holds_a_stick_while_it_answers_and_a_delayed_request_is_refused() {
+    let directory = tempdir().unwrap();
+    let said = Said::default();
+    let name: RunName = format!("viewed-{}", std::process::id()).parse().unwrap();
+    let config = RunConfig {
+        operator: OperatorAccess::Network,
+        shared_memory: true,
+        stand_by: true,
+        name: Some(name.clone()),
+        ..config(&directory, 1_000_000)
+    };
+    let stop = config.stop.clone();
+    let run = Run::new(config, Box::new(said.clone())).unwrap();
+    let token = said.token().expect("the run prints a token");
+    let mut viewer = Viewer::connect(&said.address(), "foxglove.sdk.v1");
+    let operating = thread::spawn(move || {
+        let services = viewer.answer();
+        let all = services["services"].as_array().unwrap();
+        let found = all.iter().find(|service| service["name"] == "/operator/request").unwrap();
+        let request = u32::try_from(found["id"].as_u64().unwrap()).unwrap();
+        let mut operated = Operated { viewer, token, request };
+        let run = Attached::open(&name).unwrap();
+        let stick = || {
+            let shown = run.external().unwrap().devices.joystick;
+            (shown.x, shown.y)
+        };
+        let begun = Instant::now();
+        // On a machine that is busy the viewer may answer too late.
+        loop {
+            for line in ["joystick frame WORLD", "joystick velocity 10", "joystick stick 0 300 36000"] {
+                operated.ask(line).unwrap();
+            }
+            operated.read_for(Duration::from_millis(700));
+            if stick() == (0, 300) {
+                break;
+            }
+            assert!(begun.elapsed() < PATIENCE, "a viewer that answers keeps the stick");
+        }
+        // A viewer that hangs.
+        let hangs = Instant::now();
+        while stick() != (0, 0) {
+            assert!(begun.elapsed() < PATIENCE, "a viewer that does not answer releases the stick");
+            thread::sleep(Duration::from_millis(10));
+        }
+        // What it has sent late is not carried out.
+        thread::sleep(Duration::from_secs(3).saturating_sub(hangs.elapsed()));
+        let refused = operated.ask("joystick velocity 1000").unwrap_err();
+        assert!(refused.contains("its sender had stopped waiting"), "{refused}");
+        operated.read_for(Duration::from_millis(300));
+        while operated.ask("joystick velocity 500").is_err() {
+            assert!(begun.elapsed() < PATIENCE);
+            operated.read_for(Duration::from_millis(300));
+        }
+        stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    });
+    let _ = run.complete();
+    operating.join().unwrap();
+    let log = Log::open(&directory.path().join("log.mcap")).unwrap();
+    let lines: Vec<_> = log.operator_lines().collect();
+    let released = |line: &&record::OperatorLine| line.answer.contains("stick and buttons are released");
+    assert!(lines.iter().filter(released).any(|line| line.line == "(silent)"), "{lines:?}");
+    assert!(lines.iter().any(|line| line.line == "(given up) joystick velocity 1000"), "{lines:?}");
 }
 
 #[test]

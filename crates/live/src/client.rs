@@ -8,7 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use operator::{Client as Operator, ClientError, Name};
+use operator::{ALIVE, Client as Operator, ClientError, Name};
 use tungstenite::{
     Error, Message, WebSocket,
     error::CapacityError,
@@ -25,8 +25,12 @@ use crate::{
 
 /// Sleep of a thread with nothing to do: a quarter of a tick.
 const IDLE: Duration = Duration::from_millis(10);
-/// Interval between pings.
-const PING: Duration = Duration::from_secs(1);
+/// Interval between pings. The answer shows how old the next messages of the client can be.
+const PING: Duration = Duration::from_millis(500);
+/// Interval between pings of a client that operates the run: its answers are the operator's signs of life.
+const PING_OPERATOR: Duration = ALIVE;
+/// Greatest age of a request: its sender then no longer waits, or its way is stalled.
+const REQUEST_AGE: Duration = Duration::from_secs(2);
 /// Time limit for closing a connection.
 const CLOSING_LIMIT: Duration = Duration::from_millis(500);
 /// Interval between reports of the number of dropped messages.
@@ -120,7 +124,9 @@ pub struct Client {
     name: Name,
     /// Time after which a client that reads nothing is disconnected.
     patience: Duration,
-    /// Number and time of the last ping.
+    /// Time at which the session began.
+    began: Instant,
+    /// Number and time of the last ping. The number is the time of the ping, ms since the session began.
     ping: (u64, Instant),
     /// Number of the last answered ping, and the time of its answer.
     pong: (u64, Instant),
@@ -148,6 +154,7 @@ impl Client {
             operator: None,
             name,
             patience: *patience,
+            began: now,
             ping: (0, now),
             pong: (0, now),
             dropped: (0, now),
@@ -224,14 +231,17 @@ impl Client {
         Ok(())
     }
 
-    /// Sends a request to the run as an operator, and waits for the answer, which the run gives between two ticks.
+    /// Sends a request to the run as an operator, and waits for the answer, which the run gives between two ticks. The
+    /// client has sent the request after the last ping that it has answered: so old can it be.
     fn ask(&mut self, line: &str) -> Result<String, String> {
         let access = self.access.as_ref().ok_or("this run accepts no requests")?;
         let mut operator = match self.operator.take() {
             Some(operator) => operator,
             None => Operator::connect(&access.socket, &self.name).map_err(|error| error.to_string())?,
         };
-        let answer = operator.ask(line);
+        let answered = Duration::from_millis(self.pong.0);
+        let age = self.began.elapsed().saturating_sub(answered);
+        let answer = operator.ask_within(REQUEST_AGE.saturating_sub(age), line);
         // After any other error the session has ended: the next request begins a new one.
         if matches!(answer, Ok(_) | Err(ClientError::Line { .. } | ClientError::Silent)) {
             self.operator = Some(operator);
@@ -265,8 +275,10 @@ impl Client {
         if self.pong.1.elapsed() > self.patience {
             return Err(End::Gone);
         }
-        if self.ping.1.elapsed() > PING.min(self.patience / 4) && self.flush()? {
-            self.ping = (self.ping.0.wrapping_add(1), Instant::now());
+        let interval = if self.operator.is_some() { PING_OPERATOR } else { PING.min(self.patience / 4) };
+        if self.ping.1.elapsed() > interval && self.flush()? {
+            let number = u64::try_from(self.began.elapsed().as_millis()).unwrap_or(u64::MAX);
+            self.ping = (number, Instant::now());
             self.write(Message::Ping(self.ping.0.to_le_bytes().to_vec().into()))?;
         }
         if let Some(text) = self.session.knob() {
@@ -286,6 +298,10 @@ impl Client {
         let number = number.try_into().map_or(0, u64::from_le_bytes);
         if (self.pong.0..=self.ping.0).contains(&number) && number != self.pong.0 {
             self.pong = (number, Instant::now());
+            if let Some(operator) = &mut self.operator {
+                // The next request finds out if the session has ended.
+                let _ = operator.keep_alive();
+            }
         }
     }
 
