@@ -506,7 +506,7 @@ fn wait_for_box(run: &Attached, wanted: impl Fn((u8, (i16, i16), u16)) -> bool) 
     }
 }
 
-const HELD: [&str; 3] = ["joystick velocity 300", "joystick frame WORLD", "joystick stick 0 300 36000"];
+const HELD: [&str; 3] = ["joystick velocity 0", "joystick frame WORLD", "joystick stick 0 300 36000"];
 
 /// However a session ends, the motion that it commands by hand ends with it; the log gives the same run.
 #[test]
@@ -516,7 +516,7 @@ fn motion_by_hand_ends_with_its_session() {
     let mut watcher = cell.client("watcher");
     wait_for(&mut watcher, "the job waits");
     let run = Attached::open(&cell.name).unwrap();
-    let is_free = |shown| shown == (0, (0, 0), 300);
+    let is_free = |shown| shown == (0, (0, 0), 0);
     // `leave`, while the session stays. On a machine that is busy the session may be silent for too long before.
     let mut anna = cell.client("anna");
     let begun = Instant::now();
