@@ -21,8 +21,8 @@ def frame(address, data=b"", mailgram=0):
 def status(word, number, mailgram, verdict=0, code=0, reason=""):
     texts = [text.ljust(size) for text, size in ((b"", 4), (b"", 16), (b"", 12), (b"PAUSE", 16), (word, 16))]
     blank, echo, stamp, command, word = texts
-    values = number, mailgram, verdict, code, 0, reason.encode().ljust(160)
-    return frame(0xF6200, _STATUS.pack(blank, echo, 236, stamp, command, word, *values))
+    values = number, mailgram, verdict, code, 0, 0, reason.encode().ljust(160)
+    return frame(0xF6200, _STATUS.pack(blank, echo, 238, stamp, command, word, *values))
 
 
 def pulse(tick):

@@ -14,7 +14,7 @@ _HWSC_COMMAND, _HWSC_STATUS = 0xF6000, 0xF6200  # Table IX.1
 _CELL_COMMAND, _CELL_STATUS = 0xF6400, 0xF6600  # of the simulated cell
 _ROLE = 1
 _COMMAND = struct.Struct("<4sHH12s16s16s16sh16shh16sh16sh")
-_STATUS = struct.Struct("<4s16sH12s16s16sHHHHH160s")
+_STATUS = struct.Struct("<4s16sH12s16s16sHHHHHH160s")
 _CELL = struct.Struct("<HHH240s")
 _NAME, _LINE = 16, 240
 _FINISHED, _EXECUTING = "finished", "executing"
@@ -55,7 +55,10 @@ class Command:
 
 @dataclass(frozen=True)
 class Status:
-    """The status of Task (V.4.2). `number` is that of the command which `status` belongs to."""
+    """The status of Task (V.4.2). `number` is that of the command which `status` belongs to.
+
+    `unconfirmed` is not 0 if no sensor confirms a part of a finished command: `reason` says which.
+    """
 
     command: str
     status: str
@@ -64,6 +67,7 @@ class Status:
     verdict: int
     code: int
     task_state: int
+    unconfirmed: int
     reason: str
 
     @property
@@ -160,8 +164,10 @@ class Workstation(Neighbour):
         """Read the status of Task, or that of the cell."""
         try:
             if address == _HWSC_STATUS:
-                _, _, _, _, echo, status, number, mailgram, verdict, code, task, reason = _STATUS.unpack(data)
-                self._status = Status(plain(echo), plain(status), number, mailgram, verdict, code, task, plain(reason))
+                fields = _STATUS.unpack(data)
+                echo, status, reason = (plain(fields[at]) for at in (4, 5, 12))
+                number, mailgram, verdict, code, task, unconfirmed = fields[6:12]
+                self._status = Status(echo, status, number, mailgram, verdict, code, task, unconfirmed, reason)
             elif address == _CELL_STATUS:
                 echo, is_busy, has_failed, text = _CELL.unpack(data)
                 self._cell = echo, is_busy, has_failed, plain(text)

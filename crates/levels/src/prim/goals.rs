@@ -13,10 +13,6 @@ use crate::{
     goal::{AT_POINT, Goal, Sensor},
 };
 
-/// Seconds by which a robot that moves follows its commanded point: two ticks of the line and the settling of the
-/// servos (ASSUMED: five ticks).
-const LAG_S: f64 = 0.2;
-
 /// PAUSE.
 pub static REST: Goal = Goal {
     holds: "the robot has come to rest, or the link is down",
@@ -37,7 +33,7 @@ pub static POSITIONED: Goal = Goal {
 pub static PASSING: Goal = Goal {
     holds: "the robot is within the break distance of the point, and so near as it follows its command",
     sensors: &[Sensor::Resolvers],
-    tolerance: "break distance, and 0.2 s at the velocity of the motion",
+    tolerance: "break distance, and the expected lag at the velocity of the motion",
     age: 1,
     unconfirmed: &[Unconfirmed::Position],
 };
@@ -68,7 +64,14 @@ pub static CALIBRATED: Goal = Goal {
 
 impl State {
     /// The goal of a command, compared with the sensors.
-    pub(super) fn proof(&self, verb: PrimVerb, situation: &Situation, resolvers: Option<&Frame>) -> Proof {
+    /// `lag_ms` is the expected lag of the robot, ms.
+    pub(super) fn proof(
+        &self,
+        verb: PrimVerb,
+        situation: &Situation,
+        resolvers: Option<&Frame>,
+        lag_ms: u16,
+    ) -> Proof {
         let rests = |rest: Rest| Proof::when(rest == Rest::Arrived, Evidence::Moving);
         match verb {
             PrimVerb::None | PrimVerb::Pause => {
@@ -81,7 +84,7 @@ impl State {
                 Some(_) => Proof::when(situation.goal == Rest::Arrived, Evidence::Elsewhere),
             },
             PrimVerb::GoThru => {
-                self.target.goal.as_ref().map_or(Proof::HOLDS, |goal| passes(goal, resolvers))
+                self.target.goal.as_ref().map_or(Proof::HOLDS, |goal| passes(goal, resolvers, lag_ms))
             }
             PrimVerb::GoUntil => rests(situation.rest),
             PrimVerb::CalSensor => rests(situation.rest)
@@ -91,10 +94,10 @@ impl State {
 }
 
 /// The robot passes a through point, as far behind its command as it follows.
-fn passes(goal: &Target, resolvers: Option<&Frame>) -> Proof {
+fn passes(goal: &Target, resolvers: Option<&Frame>, lag_ms: u16) -> Proof {
     let Some(present) = resolvers else { return Proof::unsensed(Unconfirmed::Position) };
     let Target { frame, limits, through } = goal;
-    let within = through.unwrap_or_default() + limits.velocity * LAG_S;
+    let within = through.unwrap_or_default() + limits.velocity * (f64::from(lag_ms) / 1000.0);
     let distance = FrameData::frame(frame).distance(present).path();
     Proof::when(distance <= within, Evidence::Elsewhere)
 }

@@ -3,6 +3,7 @@
 
 use core::mem;
 
+use depc::track;
 use geometry::{
     frame::Frame,
     units::{inches, rounded},
@@ -80,7 +81,8 @@ impl State {
             samples: self.samples(inputs, rest),
         };
         let button = self.button(&devices.joystick);
-        let proof = self.proof(verb, &situation, resolvers.as_ref());
+        let lag_ms = devices.robot_lag.unwrap_or(track::LAG_MS);
+        let proof = self.proof(verb, &situation, resolvers.as_ref(), lag_ms);
         Seen { arrival, verb, request, proof, situation, button, feedback, resolvers }
     }
 
