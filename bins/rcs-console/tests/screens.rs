@@ -340,7 +340,8 @@ fn the_keys_of_an_operator_ask_the_run() {
     assert!(model.prompt.is_none());
 }
 
-/// The pictures of the documentation are those of this run, with one process under the cursor.
+/// The pictures of the documentation are those of this run, with one process under the cursor. `RCS_PAGES=write` writes
+/// them.
 #[test]
 fn the_page_shows_these_screens() {
     let log = log();
@@ -358,6 +359,14 @@ fn the_page_shows_these_screens() {
     let operating =
         [Screen::Terminal, Screen::Panels].map(|kind| once::screen_text(&operating(kind, &run), &run, PLAIN));
     let drawn: Vec<String> = looking.chain(operating).collect();
+    if std::env::var_os("RCS_PAGES").is_some_and(|value| value == "write") {
+        let written = shown
+            .iter()
+            .zip(&drawn)
+            .fold(page.clone(), |page, (shown, drawn)| page.replacen(shown, drawn, 1));
+        std::fs::write(&path, written).expect("the page can be written");
+        return;
+    }
     for (shown, drawn) in shown.iter().zip(&drawn) {
         assert_eq!(shown, drawn);
     }

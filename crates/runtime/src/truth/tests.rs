@@ -186,9 +186,16 @@ fn a_part_that_moves_before_its_picture_is_false_and_after_it_not_sensed() {
     assert_eq!(bench.check(&claim), Ok(()));
     bench.history.looked = Some((TICK, "LINKBAR1_BH".into()));
     bench.history.note_changed(TICK, [9]);
-    let gone = Claim::Located { object: name("LINKBAR1_BH"), near: Frame::identity() };
-    assert_eq!(bench.not_sensed(&gone), Some(NotSensed::ChangedAfterLook));
     assert!(bench.check(&away).is_err());
+    // Nothing lies where it was seen.
+    let nowhere = Frame::identity();
+    bench.memory.emove.beliefs.located = Some(interfaces::emove::Located {
+        object: name("LINKBAR1"),
+        pose: geometry::pose::Pose::from_frame(&nowhere),
+        ..interfaces::emove::Located::default()
+    });
+    let gone = Claim::Located { object: name("LINKBAR1_BH"), near: nowhere };
+    assert_eq!(bench.not_sensed(&gone), Some(NotSensed::ChangedAfterLook));
 }
 
 #[test]
