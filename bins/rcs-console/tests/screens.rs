@@ -346,7 +346,7 @@ fn the_keys_of_an_operator_ask_the_run() {
 fn the_page_shows_these_screens() {
     let log = log();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/console.md");
-    let page = std::fs::read_to_string(path).expect("the page is there");
+    let page = std::fs::read_to_string(&path).expect("the page is there");
     let shown: Vec<&str> = page
         .split("```text\n")
         .skip(1)
