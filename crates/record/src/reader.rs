@@ -168,8 +168,7 @@ impl Log {
             }
         }
         // An incomplete record at the end, as a killed program leaves it, is not damage.
-        let half =
-            |segment: &mut Segment| matches!(segment, Segment::Damaged(range, _) if range.end == bytes.len());
+        let half = |segment: &mut Segment| matches!(segment, Segment::Damaged(range, Damage::Bytes) if range.end == bytes.len());
         if !log.complete {
             log.segments.pop_if(half);
         }

@@ -295,7 +295,8 @@ fn with_lz4(bytes: &[u8]) -> Vec<u8> {
 fn chunks_in_lz4_are_read_and_other_compressions_are_named() {
     let (_scratch, path) = recorded(300);
     let recorded = fs::read(&path).unwrap();
-    let plain = written_again(&recorded, mcap::WriteOptions::new().compression(None));
+    let plain =
+        written_again(&recorded, mcap::WriteOptions::new().compression(None).chunk_size(Some(50_000)));
     let packed = with_lz4(&plain);
     fs::write(&path, &packed).unwrap();
     let report = replay(&path).unwrap();

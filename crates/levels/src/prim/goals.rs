@@ -2,6 +2,7 @@
 
 use geometry::frame::Frame;
 use interfaces::{Unconfirmed, prim::PrimVerb};
+use rcs_core::tick::TICK_S;
 
 use super::{
     motion::segment::FrameData,
@@ -33,7 +34,7 @@ pub static POSITIONED: Goal = Goal {
 pub static PASSING: Goal = Goal {
     holds: "the robot is within the break distance of the point, and so near as it follows its command",
     sensors: &[Sensor::Resolvers],
-    tolerance: "break distance, and the expected lag at the velocity of the motion",
+    tolerance: "break distance, and the expected lag and 3 ticks at the velocity of the motion",
     age: 1,
     unconfirmed: &[Unconfirmed::Position],
 };
@@ -61,6 +62,10 @@ pub static CALIBRATED: Goal = Goal {
     age: 1,
     unconfirmed: &[],
 };
+
+/// Seconds from a point that Prim commands to the resolvers that it reads, without the lag of the robot: T3 Interface,
+/// the line, and the reading.
+const HOPS_S: f64 = 3.0 * TICK_S;
 
 impl State {
     /// The goal of a command, compared with the sensors.
@@ -97,7 +102,7 @@ impl State {
 fn passes(goal: &Target, resolvers: Option<&Frame>, lag_ms: u16) -> Proof {
     let Some(present) = resolvers else { return Proof::unsensed(Unconfirmed::Position) };
     let Target { frame, limits, through } = goal;
-    let within = through.unwrap_or_default() + limits.velocity * (f64::from(lag_ms) / 1000.0);
+    let within = through.unwrap_or_default() + limits.velocity * (f64::from(lag_ms) / 1000.0 + HOPS_S);
     let distance = FrameData::frame(frame).distance(present).path();
     Proof::when(distance <= within, Evidence::Elsewhere)
 }
