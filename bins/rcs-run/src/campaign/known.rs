@@ -5,6 +5,12 @@
 //! nothing behind, such as the fault of a sensor that is not read, or leave the same behind as at another tick, such as
 //! a process that has restarted.
 //!
+//! The judge of confirmations is no part of the state. Whether a confirmation is true depends on the command, the cell,
+//! and where the robot has released a part; a part that lies in the same place was released there, as branches in which
+//! one has slid are not compared. What else the judge remembers, such as the parts that a person has changed, only tells
+//! why no sensor could show an untrue confirmation. So the states of a branch are known only if all its confirmations
+//! were true. How many are judged from a state to the end is known with it.
+//!
 //! ```text
 //!   branch 1  --x----------+-----------+-----------+------- done     x  interrupted
 //!   branch 2  -------x-----+-----------* done                        +  the state is compared
@@ -35,9 +41,29 @@ pub struct End {
     pub ended: Vec<(Tick, String)>,
 }
 
+/// A state in which a branch was compared with others.
+#[derive(Clone, Copy, Debug)]
+pub struct Passed {
+    /// Its tick.
+    pub tick: Tick,
+    /// Its digest.
+    pub state: Digest,
+    /// Number of confirmations that were judged up to it, from the fork of the branch on.
+    pub judged: u64,
+}
+
+/// How a branch ends that is in a known state.
+#[derive(Clone, Debug)]
+pub struct Rest {
+    /// The end.
+    pub end: Arc<End>,
+    /// Number of confirmations that are judged from the state to the end.
+    pub judged: u64,
+}
+
 /// The known states.
 #[derive(Debug, Default)]
-pub struct Known(Mutex<HashMap<State, Arc<End>>>);
+pub struct Known(Mutex<HashMap<State, Rest>>);
 
 impl Known {
     /// True if the states of branches are compared after this tick.
@@ -48,13 +74,16 @@ impl Known {
 
     /// How a branch ends that is in this state.
     #[must_use]
-    pub fn end(&self, tick: Tick, state: Digest) -> Option<Arc<End>> {
+    pub fn rest(&self, tick: Tick, state: Digest) -> Option<Rest> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&(tick, state.value())).cloned()
     }
 
-    /// Note the states of a branch, with their ticks, and its end.
-    pub fn add(&self, path: &[(Tick, Digest)], end: &Arc<End>) {
+    /// Note the states of a branch, its end, and the number of confirmations that were judged up to it, from the fork on.
+    pub fn add(&self, path: &[Passed], end: &Arc<End>, judged: u64) {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        known.extend(path.iter().map(|(tick, state)| ((*tick, state.value()), Arc::clone(end))));
+        known.extend(path.iter().map(|passed| {
+            let rest = Rest { end: Arc::clone(end), judged: judged - passed.judged };
+            ((passed.tick, passed.state.value()), rest)
+        }));
     }
 }

@@ -8,9 +8,9 @@
 //!                   interruption ──► PAUSE, the same command, up to three tries ──► next command ──► verdict
 //! ```
 //!
-//! With `--truth`, the interruptions are drawn disturbances of robot and parts ([`truth`]). With `--random`, ticks and series of interruptions are drawn. A tick of a branch does what a tick of a run does
-//! ([`branch`]); the campaign knows the control processes only by their interfaces. docs/campaign.md describes the
-//! verdicts.
+//! With `--truth`, the interruptions are drawn disturbances of robot and parts ([`truth`]). With `--random`, ticks and
+//! series of interruptions are drawn. A tick of a branch does what a tick of a run does ([`branch`]); the campaign knows
+//! the control processes only by their interfaces. docs/campaign.md describes the verdicts.
 
 mod arguments;
 mod branch;

@@ -1,22 +1,25 @@
-//! One branch: interrupts it, lets an operator follow the recovery procedure, and judges the result.
+//! One branch: interrupts it, and lets an operator follow the recovery procedure, until it can be judged.
+//!
+//! [`judgement`] says when that is, and what the verdict is.
+
+mod judgement;
 
 use std::sync::Arc;
 
 use executive::failure;
 use interfaces::HwsCommand;
 use levels::ladder::{Ladder, ProcessId};
-use neighbours::workstation::player::{Workstation as _, pause};
+use neighbours::workstation::player::pause;
 use rcs_core::{digest::Digest, name::Name16, tick::Tick};
 use runtime::truth::Confirmation;
-use serde::{Deserialize, Serialize};
 
 use super::{
     branch::{Branch, Facility, Fork},
     disturbance::{Follow, What},
-    harm::{HarmMonitor, World, is_commanded},
+    harm::HarmMonitor,
     interruption::Kind,
     invariants::Invariants,
-    known::{End, Known},
+    known::{End, Known, Passed, Rest},
     motion::Motion,
     operator::{Operator, Recovery, Then, Watching},
     parent::Parent,
@@ -25,13 +28,10 @@ use super::{
 };
 use crate::error::Error;
 
+pub use self::judgement::{BranchResult, Verdict};
+
 /// A location that is not in the task data.
 const MISSPELT: &str = "NOWHERRE";
-
-/// Ticks for which a branch continues after a commanded point has done damage: 2 s.
-const AFTERMATH: u64 = 50;
-/// Ticks for which a branch continues after a false confirmation, which the processes above pass on.
-const PASSED_ON: u64 = 12;
 
 /// When a branch is judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -53,71 +53,6 @@ pub struct Procedure {
     pub tries: u32,
     /// When a branch is judged.
     pub until: Until,
-}
-
-/// The verdict on a branch.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// The job continued.
-    Done,
-    /// The job did not continue, for the given reason.
-    Stranded,
-    /// An arm without pressure, its alignment, its own travel to HOME or a person has touched something, or let a part
-    /// slide in the fingers.
-    Apart,
-    /// A commanded point has done damage, or a finished command has not had its effect.
-    Hurt,
-    /// A command is reported as finished, and the cell is not as its goal has it.
-    False,
-}
-
-/// The result of a branch.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct BranchResult {
-    /// Tick after which the branch was interrupted.
-    pub at: u64,
-    /// The interruptions, as on the command line.
-    pub interruption: String,
-    /// The smallest series of interruptions with the same verdict and reason, if there were several.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub smallest: Option<String>,
-    /// What became of it.
-    pub verdict: Verdict,
-    /// Reason of a verdict other than done, without numbers, by which branches are counted.
-    pub reason: String,
-    /// The reason with numbers, the tick in which it began, and the process that reported it.
-    pub detail: String,
-    /// The line of the job that was interrupted.
-    pub line: String,
-    /// True if that line was a command.
-    pub met_command: bool,
-    /// The command of each process at the interruption.
-    pub doing: Vec<String>,
-    /// The commands that have ended since: tick, command and result.
-    pub ended: Vec<String>,
-    /// Last tick of the branch.
-    pub until: u64,
-    /// Ticks from the interruption to the last motion, if the branch is judged at rest.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rest_after: Option<u64>,
-    /// The confirmations that are not true.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub untrue: Vec<Confirmation>,
-    /// Number of confirmations that were judged.
-    #[serde(default)]
-    pub judged: u64,
-    /// True if a command failed, a person undid the disturbance, and the job continued.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub remedied: bool,
-    /// True if the branch was to run to the end of the job.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub whole: bool,
-    /// Digest of its last state.
-    pub state: String,
-    /// Digest of all its ticks, if nothing has interrupted it: that of the ordinary run.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub digest: Option<String>,
 }
 
 /// Observes a branch.
@@ -158,7 +93,7 @@ struct Trial<'f, 'p> {
     /// The commands that have ended, with their ticks.
     ended: Vec<(Tick, String)>,
     /// The states in which it was compared with others.
-    path: Vec<(Tick, Digest)>,
+    path: Vec<Passed>,
     mismatch: Option<(String, String)>,
     /// True if the operator has moved the robot away with a part that the vise holds, too.
     tears: bool,
@@ -168,6 +103,8 @@ struct Trial<'f, 'p> {
     untrue: Vec<Confirmation>,
     /// Number of confirmations that were judged before the fork.
     judged_before: u64,
+    /// Number of confirmations that are judged behind the known state in which the branch has ended.
+    judged_behind: u64,
     /// The remedy was followed, and the disturbance undone.
     remedied: bool,
 }
@@ -214,6 +151,7 @@ pub fn run(
         motion: None,
         untrue: Vec::new(),
         judged_before,
+        judged_behind: 0,
         remedied: false,
     };
     trial.play(doing, known, observer)
@@ -285,8 +223,8 @@ impl Trial<'_, '_> {
             }
             if let Some(verdict) = self.verdict(observer) {
                 let end = Arc::new(self.end()?);
-                if let (Verdict::Done, Some(known)) = (verdict, known) {
-                    known.add(&self.path, &end);
+                if let (Verdict::Done, true, Some(known)) = (verdict, self.untrue.is_empty(), known) {
+                    known.add(&self.path, &end, self.judged());
                 }
                 return Ok(self.result(verdict, &end, doing));
             }
@@ -294,7 +232,7 @@ impl Trial<'_, '_> {
                 && let Some(known) = known.filter(|_| self.is_comparable())
                 && let Some(end) = self.known_end(known)?
             {
-                known.add(&self.path, &end);
+                known.add(&self.path, &end, self.judged());
                 return Ok(self.result(Verdict::Done, &end, doing));
             }
             if over && self.motion.is_none() {
@@ -367,21 +305,26 @@ impl Trial<'_, '_> {
 
     /// The end of a branch that was in the same state.
     fn known_end(&mut self, known: &Known) -> Result<Option<Arc<End>>, Error> {
-        let (now, state) = (self.branch.at(), self.state()?);
-        let end = known.end(now, state).filter(|end| {
-            let next = end.ended.iter().find(|(tick, _)| *tick > now);
-            next.is_none_or(|(tick, _)| self.operator.waits_until(*tick))
+        let (tick, state) = (self.branch.at(), self.state()?);
+        self.path.push(Passed { tick, state, judged: self.judged() });
+        let rest = known.rest(tick, state).filter(|rest| {
+            let next = rest.end.ended.iter().find(|(ended, _)| *ended > tick);
+            next.is_none_or(|(ended, _)| self.operator.waits_until(*ended))
         });
-        if let Some(end) = &end {
-            self.ended.extend(end.ended.iter().filter(|(tick, _)| *tick > now).cloned());
-        }
-        self.path.push((now, state));
-        Ok(end)
+        let Some(Rest { end, judged }) = rest else { return Ok(None) };
+        self.ended.extend(end.ended.iter().filter(|(ended, _)| *ended > tick).cloned());
+        self.judged_behind = judged;
+        Ok(Some(end))
     }
 
     /// The end of the branch, which is now.
     fn end(&mut self) -> Result<End, Error> {
         Ok(End { until: self.branch.at(), state: self.state()?, ended: self.ended.clone() })
+    }
+
+    /// Number of confirmations that were judged since the fork, and are behind a known state.
+    const fn judged(&self) -> u64 {
+        self.branch.judged() - self.judged_before + self.judged_behind
     }
 
     /// The present or last interruption.
@@ -447,150 +390,6 @@ impl Trial<'_, '_> {
         self.operator.interject(at, &command, then);
         self.following = true;
     }
-
-    /// The verdict, as soon as the branch can be judged.
-    fn verdict(&mut self, observer: &mut impl Observer) -> Option<Verdict> {
-        let mut reached = false;
-        for ended in self.operator.ended() {
-            let how = if ended.failure.is_empty() { "finished" } else { ended.failure.as_str() };
-            let text = format!("tick {}: {}: {how}", ended.tick.0, ended.command);
-            observer.say(ended.tick, &text);
-            self.ended.push((ended.tick, text));
-            if ended.of_job && ended.failure.is_empty() {
-                self.compare(ended.line, &ended.command);
-                reached |= ended.line >= self.goal && self.next().is_none();
-            }
-        }
-        if let Some(first) = self.untrue.iter().find(|confirmation| confirmation.is_false()) {
-            return (self.branch.at().0 >= first.tick + PASSED_ON).then_some(Verdict::False);
-        }
-        let worst = self.monitor.worst().map(|harm| (harm.commanded, harm.tick));
-        if self.mismatch.is_some() {
-            return Some(Verdict::Hurt);
-        }
-        if let Some(motion) = &self.motion {
-            return motion.verdict(worst.map(|(commanded, _)| commanded));
-        }
-        if let Some((true, tick)) = worst {
-            // Continue for a while, to learn the full extent of the damage.
-            return (self.branch.at().since(tick) >= AFTERMATH).then_some(Verdict::Hurt);
-        }
-        let stranded = self.operator.stranded().is_some() || self.branch.check().is_stuck();
-        let apart = worst.is_some() || (stranded && self.monitor.attribute_to_slide(""));
-        match (stranded, apart) {
-            (true, false) => Some(Verdict::Stranded),
-            (true, true) => Some(Verdict::Apart),
-            (false, _) if !reached && !self.operator.is_over() => None,
-            (false, false) => Some(Verdict::Done),
-            (false, true) => Some(Verdict::Apart),
-        }
-    }
-
-    /// Compare the world with that of the undisturbed run when a command finishes.
-    fn compare(&mut self, line: usize, command: &str) {
-        // A person has made the world another one.
-        if self.kind().disturbance().is_some() {
-            return;
-        }
-        let Some(world) = self.parent.world_after(line) else { return };
-        // A contact without command can have moved a part, and an arm without pressure sinks.
-        if self.monitor.worst().is_some() || !is_commanded(&self.branch) {
-            return;
-        }
-        let verb = command.split_whitespace().next().unwrap_or_default();
-        let moves = !matches!(verb, "STARTUP" | "SHUTDOWN");
-        if let Some(unlike) = World::of(&mut self.branch).unlike(world, moves) {
-            if self.monitor.attribute_to_slide(&unlike) {
-                return;
-            }
-            self.mismatch = Some((
-                format!("{verb} is finished, but {}", general(&unlike)),
-                format!("tick {}: {command} is finished, but {unlike}", self.branch.at().0),
-            ));
-        }
-    }
-
-    fn result(self, verdict: Verdict, end: &End, doing: Vec<String>) -> BranchResult {
-        let (reason, detail) = self.why(verdict);
-        let digest = (*self.kind() == Kind::None).then(|| self.branch.digest().to_string());
-        let line = match self.line.checked_sub(1) {
-            None => "PAUSE".to_owned(),
-            Some(at) => self
-                .branch
-                .facility()
-                .job
-                .steps
-                .get(at)
-                .map_or("the end", |line| line.text.as_str())
-                .to_owned(),
-        };
-        BranchResult {
-            at: self.begun_at.0,
-            interruption: self.series.to_string(),
-            smallest: None,
-            verdict,
-            reason,
-            detail,
-            line,
-            met_command: self.operator.command_at(self.line).is_some(),
-            doing,
-            ended: self.ended.into_iter().map(|(_, text)| text).collect(),
-            until: end.until.0,
-            rest_after: self.motion.as_ref().map(Motion::ticks),
-            untrue: self.untrue,
-            judged: self.branch.judged() - self.judged_before,
-            remedied: self.remedied,
-            whole: self.until == Until::Job,
-            state: end.state.to_string(),
-            digest,
-        }
-    }
-
-    /// The reason and the detail of a verdict.
-    fn why(&self, verdict: Verdict) -> (String, String) {
-        match verdict {
-            Verdict::Done => (String::new(), String::new()),
-            Verdict::False => {
-                let first = self.untrue.iter().find(|confirmation| confirmation.is_false());
-                first.map_or_else(Default::default, |first| {
-                    let verb = first.command.split_whitespace().next().unwrap_or_default();
-                    let cause = format!("{} {verb}: {}", first.level, general(&first.truth));
-                    (cause, format!("tick {}: {first}", first.tick))
-                })
-            }
-            Verdict::Hurt | Verdict::Apart => {
-                if let Some(mismatch) = &self.mismatch {
-                    return mismatch.clone();
-                }
-                let stranded =
-                    self.operator.stranded().map_or_else(String::new, |why| format!("; stranded: {why}"));
-                self.monitor.worst().map_or_else(Default::default, |harm| {
-                    (harm.kind.clone(), format!("tick {}: {}{stranded}", harm.tick.0, harm.what))
-                })
-            }
-            Verdict::Stranded if self.motion.is_some() => {
-                let reason = "something still moves after 300 s".to_owned();
-                (reason.clone(), reason)
-            }
-            Verdict::Stranded => {
-                let reason = match self.operator.stranded() {
-                    Some(reason) => reason.to_owned(),
-                    None => "the robot stands in something".to_owned(),
-                };
-                let known = self.branch.watch().failure(Ladder::processes());
-                let emergency = self.branch.workstation.emergency();
-                let detail = known.map(|known| format!("tick {}: {}", known.tick.0, known.text));
-                let detail = detail.or(emergency).unwrap_or_else(|| reason.clone());
-                (reason, detail)
-            }
-        }
-    }
-}
-
-/// A sentence without its numbers, by which it can be counted.
-fn general(text: &str) -> String {
-    let number = |word: &str| word.parse::<f64>().is_ok() && word.contains('.');
-    text.split(' ').map(|word| if number(word) { "some" } else { word }).collect::<Vec<_>>().join(" ")
 }
 
 /// The command MOVE to a location with an empty hand.

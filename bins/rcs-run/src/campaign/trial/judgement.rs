@@ -1,0 +1,242 @@
+//! The verdict on a branch, as soon as it can be judged, and the report of it.
+//!
+//! ```text
+//!   a command has ended ──► the world as in the undisturbed run?     no: hurt, or apart after a slide
+//!   a confirmation is false                                          false
+//!   a contact, a part that slides                                    hurt if a point was commanded, or else apart
+//!   the operator has no try left                                     stranded
+//!   the command behind the interrupted one has finished              done
+//! ```
+
+use levels::ladder::Ladder;
+use neighbours::workstation::player::Workstation as _;
+use runtime::truth::Confirmation;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    super::{
+        harm::{World, is_commanded},
+        interruption::Kind,
+        known::End,
+        motion::Motion,
+    },
+    Observer, Trial, Until,
+};
+
+/// Ticks for which a branch continues after a commanded point has done damage: 2 s.
+const AFTERMATH: u64 = 50;
+/// Ticks for which a branch continues after a false confirmation, which the processes above pass on.
+const PASSED_ON: u64 = 12;
+
+/// The verdict on a branch.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The job continued.
+    Done,
+    /// The job did not continue, for the given reason.
+    Stranded,
+    /// An arm without pressure, its alignment, its own travel to HOME or a person has touched something, or let a part
+    /// slide in the fingers.
+    Apart,
+    /// A commanded point has done damage, or a finished command has not had its effect.
+    Hurt,
+    /// A command is reported as finished, and the cell is not as its goal has it.
+    False,
+}
+
+/// The result of a branch.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct BranchResult {
+    /// Tick after which the branch was interrupted.
+    pub at: u64,
+    /// The interruptions, as on the command line.
+    pub interruption: String,
+    /// The smallest series of interruptions with the same verdict and reason, if there were several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smallest: Option<String>,
+    /// What became of it.
+    pub verdict: Verdict,
+    /// Reason of a verdict other than done, without numbers, by which branches are counted.
+    pub reason: String,
+    /// The reason with numbers, the tick in which it began, and the process that reported it.
+    pub detail: String,
+    /// The line of the job that was interrupted.
+    pub line: String,
+    /// True if that line was a command.
+    pub met_command: bool,
+    /// The command of each process at the interruption.
+    pub doing: Vec<String>,
+    /// The commands that have ended since: tick, command and result.
+    pub ended: Vec<String>,
+    /// Last tick of the branch.
+    pub until: u64,
+    /// Ticks from the interruption to the last motion, if the branch is judged at rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest_after: Option<u64>,
+    /// The confirmations that are not true.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub untrue: Vec<Confirmation>,
+    /// Number of confirmations that were judged.
+    #[serde(default)]
+    pub judged: u64,
+    /// True if a command failed, a person undid the disturbance, and the job continued.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub remedied: bool,
+    /// True if the branch was to run to the end of the job.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub whole: bool,
+    /// Digest of its last state.
+    pub state: String,
+    /// Digest of all its ticks, if nothing has interrupted it: that of the ordinary run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub digest: Option<String>,
+}
+
+impl Trial<'_, '_> {
+    /// The verdict, as soon as the branch can be judged.
+    pub(super) fn verdict(&mut self, observer: &mut impl Observer) -> Option<Verdict> {
+        let mut reached = false;
+        for ended in self.operator.ended() {
+            let how = if ended.failure.is_empty() { "finished" } else { ended.failure.as_str() };
+            let text = format!("tick {}: {}: {how}", ended.tick.0, ended.command);
+            observer.say(ended.tick, &text);
+            self.ended.push((ended.tick, text));
+            if ended.of_job && ended.failure.is_empty() {
+                self.compare(ended.line, &ended.command);
+                reached |= ended.line >= self.goal && self.next().is_none();
+            }
+        }
+        if let Some(first) = self.untrue.iter().find(|confirmation| confirmation.is_false()) {
+            return (self.branch.at().0 >= first.tick + PASSED_ON).then_some(Verdict::False);
+        }
+        let worst = self.monitor.worst().map(|harm| (harm.commanded, harm.tick));
+        if self.mismatch.is_some() {
+            return Some(Verdict::Hurt);
+        }
+        if let Some(motion) = &self.motion {
+            return motion.verdict(worst.map(|(commanded, _)| commanded));
+        }
+        if let Some((true, tick)) = worst {
+            // Continue for a while, to learn the full extent of the damage.
+            return (self.branch.at().since(tick) >= AFTERMATH).then_some(Verdict::Hurt);
+        }
+        let stranded = self.operator.stranded().is_some() || self.branch.check().is_stuck();
+        let apart = worst.is_some() || (stranded && self.monitor.attribute_to_slide(""));
+        match (stranded, apart) {
+            (true, false) => Some(Verdict::Stranded),
+            (true, true) => Some(Verdict::Apart),
+            (false, _) if !reached && !self.operator.is_over() => None,
+            (false, false) => Some(Verdict::Done),
+            (false, true) => Some(Verdict::Apart),
+        }
+    }
+
+    /// Compare the world with that of the undisturbed run when a command finishes.
+    fn compare(&mut self, line: usize, command: &str) {
+        // A person has made the world another one.
+        if self.kind().disturbance().is_some() {
+            return;
+        }
+        let Some(world) = self.parent.world_after(line) else { return };
+        // A contact without command can have moved a part, and an arm without pressure sinks.
+        if self.monitor.worst().is_some() || !is_commanded(&self.branch) {
+            return;
+        }
+        let verb = command.split_whitespace().next().unwrap_or_default();
+        let moves = !matches!(verb, "STARTUP" | "SHUTDOWN");
+        if let Some(unlike) = World::of(&mut self.branch).unlike(world, moves) {
+            if self.monitor.attribute_to_slide(&unlike) {
+                return;
+            }
+            self.mismatch = Some((
+                format!("{verb} is finished, but {}", general(&unlike)),
+                format!("tick {}: {command} is finished, but {unlike}", self.branch.at().0),
+            ));
+        }
+    }
+
+    /// The report of a branch with this verdict.
+    pub(super) fn result(self, verdict: Verdict, end: &End, doing: Vec<String>) -> BranchResult {
+        let (reason, detail) = self.why(verdict);
+        let judged = self.judged();
+        let digest = (*self.kind() == Kind::None).then(|| self.branch.digest().to_string());
+        let line = match self.line.checked_sub(1) {
+            None => "PAUSE".to_owned(),
+            Some(at) => self
+                .branch
+                .facility()
+                .job
+                .steps
+                .get(at)
+                .map_or("the end", |line| line.text.as_str())
+                .to_owned(),
+        };
+        BranchResult {
+            at: self.begun_at.0,
+            interruption: self.series.to_string(),
+            smallest: None,
+            verdict,
+            reason,
+            detail,
+            line,
+            met_command: self.operator.command_at(self.line).is_some(),
+            doing,
+            ended: self.ended.into_iter().map(|(_, text)| text).collect(),
+            until: end.until.0,
+            rest_after: self.motion.as_ref().map(Motion::ticks),
+            untrue: self.untrue,
+            judged,
+            remedied: self.remedied,
+            whole: self.until == Until::Job,
+            state: end.state.to_string(),
+            digest,
+        }
+    }
+
+    /// The reason and the detail of a verdict.
+    fn why(&self, verdict: Verdict) -> (String, String) {
+        match verdict {
+            Verdict::Done => (String::new(), String::new()),
+            Verdict::False => {
+                let first = self.untrue.iter().find(|confirmation| confirmation.is_false());
+                first.map_or_else(Default::default, |first| {
+                    let verb = first.command.split_whitespace().next().unwrap_or_default();
+                    let cause = format!("{} {verb}: {}", first.level, general(&first.truth));
+                    (cause, format!("tick {}: {first}", first.tick))
+                })
+            }
+            Verdict::Hurt | Verdict::Apart => {
+                if let Some(mismatch) = &self.mismatch {
+                    return mismatch.clone();
+                }
+                let stranded =
+                    self.operator.stranded().map_or_else(String::new, |why| format!("; stranded: {why}"));
+                self.monitor.worst().map_or_else(Default::default, |harm| {
+                    (harm.kind.clone(), format!("tick {}: {}{stranded}", harm.tick.0, harm.what))
+                })
+            }
+            Verdict::Stranded if self.motion.is_some() => {
+                let reason = "something still moves after 300 s".to_owned();
+                (reason.clone(), reason)
+            }
+            Verdict::Stranded => {
+                let reason = match self.operator.stranded() {
+                    Some(reason) => reason.to_owned(),
+                    None => "the robot stands in something".to_owned(),
+                };
+                let known = self.branch.watch().failure(Ladder::processes());
+                let emergency = self.branch.workstation.emergency();
+                let detail = known.map(|known| format!("tick {}: {}", known.tick.0, known.text));
+                let detail = detail.or(emergency).unwrap_or_else(|| reason.clone());
+                (reason, detail)
+            }
+        }
+    }
+}
+
+/// A sentence without its numbers, by which it can be counted.
+fn general(text: &str) -> String {
+    let number = |word: &str| word.parse::<f64>().is_ok() && word.contains('.');
+    text.split(' ').map(|word| if number(word) { "some" } else { word }).collect::<Vec<_>>().join(" ")
+}
