@@ -103,7 +103,7 @@ endings! {
     bad_id_pins: "linkbar", "id-pins-bad" => Failing(1, "E-move", "the id pins of the quick change name another gripper, or none");
     a_stuck_ring: "tool-change", "lock-ring-stuck" => Failing(1, "Quick Change", "the locking ring of the quick change is stuck");
     a_blind_holster: "tool-change", "holster-eye-off" => Failing(1, "E-move", "the sensor condition did not come");
-    a_stuck_resolver: "linkbar", "resolver-stuck" => Failing(1, "Prim", "the robot did not come to rest at the goal");
+    a_stuck_resolver: "linkbar", "resolver-stuck" => Failing(1, "Prim", "the robot is off its commanded path");
     a_valve_that_stays_open: "linkbar", "valve-stuck-open" => Failing(1, "Grip", "the gripper does not finish");
     a_stuck_vise: "linkbar", "vise-stuck" => Failing(1, "HWSC", "the jaw of the vise does not move");
     a_pedestal_beside_its_mark: "clevis", "pedestal-moved" => Failing(1, "HWSC", "nothing is clamped in the vise");

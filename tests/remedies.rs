@@ -35,6 +35,10 @@ impl Operated {
     }
 
     fn with_faults(job: &str, faults: &str) -> Self {
+        Self::with(job, faults, |config| config)
+    }
+
+    fn with(job: &str, faults: &str, change: impl FnOnce(RunConfig) -> RunConfig) -> Self {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("remedy.job");
         fs::write(&path, job).unwrap();
@@ -46,7 +50,7 @@ impl Operated {
             faults: (!faults.is_empty()).then_some(plan),
             ..RunConfig::new(root().join("data"), path.to_string_lossy())
         };
-        let mut run = Run::new(config, Box::new(())).unwrap();
+        let mut run = Run::new(change(config), Box::new(())).unwrap();
         run.ask(WHO, Event::Connected).unwrap();
         Self { run: Some(run), _directory: directory }
     }
@@ -249,9 +253,11 @@ fn link_that_is_off_comes_back_with_hold() {
 /// The remedy "send the command that places the held object".
 #[test]
 fn gripper_that_holds_another_object_places_it_first() {
-    let mut it = Operated::start(&format!(
+    let job = format!(
         "** tray UNIT_1 3 LCLEVIS_BH 0 0 0\n{TO_VISE}== ACQUIRE LCLEVIS_BH +2 UNIT_1 3 +0 -- 0 -- 0\n"
-    ));
+    );
+    // The check of the paths finds beforehand that the held object would meet the other one.
+    let mut it = Operated::with(&job, "", |config| RunConfig { unchecked: true, ..config });
     it.fails(Reason::AlreadyHolding);
     it.does(&["TRANSFER LINKBAR1_BH +2 UNIT_1 4 +2 UNIT_1 4 -- 0"]).go();
     it.finishes();

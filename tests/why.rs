@@ -140,7 +140,7 @@ fn a_run_that_no_process_failed() {
 
 #[test]
 fn a_contact_leads_to_the_line_of_the_data_that_the_robot_followed() {
-    let outcome = run("linkbar", 1, "why-contact", Scratch::with_a_low_via_point);
+    let outcome = run_with("linkbar", 1, "why-contact", &["--unchecked"], Scratch::with_a_low_via_point);
     let (answer, text) = why(&outcome);
     let world = &answer["world"];
     assert!(world["text"].as_str().is_some_and(|said| said.contains(" runs into pot_")), "{text}");

@@ -25,7 +25,7 @@ use super::bench::{Controller, PATIENCE, make_keys};
 
 const JOB: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
 
-/// A run on stand-by at a port, with its keys and its log.
+/// A run at a port, on stand-by if an operator may connect, with its keys and its log.
 struct Cell {
     controller: Controller,
     keys: PathBuf,
@@ -43,7 +43,9 @@ impl Cell {
         let paths = [&keys, &log, &job].map(|path| path.display().to_string());
         let [keys_text, log_text, job_text] = paths.each_ref().map(String::as_str);
         let more = [
-            &["--clock", "5x", "--stand-by", "--operator", access, "--keys", keys_text][..],
+            &["--clock", "5x", "--operator", access, "--keys", keys_text][..],
+            // Without an operator nobody ends a stand-by.
+            if access == "none" { &[] } else { &["--stand-by"] },
             &["--run", name.as_str(), "--log", log_text, job_text],
         ];
         let controller = Controller::start_at(scratch, Some("tcp:127.0.0.1:0"), outside, &more.concat());

@@ -196,7 +196,7 @@ fn a_command_that_task_does_not_know_fails_and_the_next_one_is_carried_out() {
     let controller = Controller::start("unknown", "workstation", &["--json"]);
     let mut workstation = Workstation::connect(&controller);
     let outcome = workstation.carry_out(&bare(1, "FROBNICATE"));
-    assert_eq!(outcome, ("error".to_owned(), "the command is not known".to_owned()));
+    assert_eq!(outcome, ("error".to_owned(), "no command of Task is named FROBNICATE".to_owned()));
     let lost = HwsCommand { object: HwsCommand::default().object, ..bare(2, "TRANSFER") };
     let outcome = workstation.carry_out(&lost);
     assert_eq!(outcome.0, "error");

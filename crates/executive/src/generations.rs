@@ -31,6 +31,16 @@ impl Generations {
         &self.current
     }
 
+    /// The task data of the next tick, if only `proposed` is still queued before it: what [`Generations::advance`] makes
+    /// current after the tick whose buffers are `memory`.
+    #[must_use]
+    pub fn next<'a>(&'a self, memory: &CommonMemory, proposed: Option<&'a Store>) -> &'a Store {
+        if is_busy(memory) {
+            return &self.current;
+        }
+        self.waiting.front().or(proposed).unwrap_or(&self.current)
+    }
+
     /// Number of the generation in use.
     #[must_use]
     pub const fn number(&self) -> u32 {
@@ -97,6 +107,20 @@ mod tests {
         assert!(generations.advance(&memory));
         assert_eq!(generations.number(), 1);
         assert!(!generations.advance(&memory), "nothing waits any more");
+    }
+
+    #[test]
+    fn next_data_are_those_that_advance_makes_current() {
+        let mut generations = Generations::new(Store::default());
+        let mut memory = CommonMemory::default();
+        let proposed = Store::default();
+        let is = |found: &Store, expected: &Store| std::ptr::eq(found, expected);
+        assert!(is(generations.next(&memory, None), generations.current()));
+        assert!(is(generations.next(&memory, Some(&proposed)), &proposed));
+        generations.propose(Store::default());
+        assert!(is(generations.next(&memory, Some(&proposed)), &generations.waiting[0]));
+        memory.task.status.report = HwsReport::Executing;
+        assert!(is(generations.next(&memory, Some(&proposed)), generations.current()));
     }
 
     #[test]

@@ -1,5 +1,5 @@
 //! The goal of a command: what must hold at its end, and which sensors confirm it (V: execution depends on "whether any
-//! subgoals of the command have been achieved [and] what sensory values are being observed").
+//! subgoals of the command have been achieved", and on "what sensory values are being observed").
 //!
 //! `commands!` takes a goal for each command, so that a command without one does not compile. `rcs-run tables` prints
 //! them. [`CONFIRM`](crate::confirm::CONFIRM) compares the goal with the sensors when a row reports the end.

@@ -5,6 +5,7 @@
 //! that it uses. With `--unchecked` the second condition does not count. PAUSE always passes.
 
 use diagnostics::{Blame, Group, grouped};
+use executive::generations::Generations;
 use interfaces::{CommonMemory, HwsCommand, emove::Holding};
 use neighbours::{
     mailbox::Mailbox,
@@ -23,11 +24,33 @@ use taskdata::load::{
 
 use crate::{error::StartError, event::Event};
 
+/// The task data of the next tick, with which Task reads a command that is sent now.
+#[derive(Clone, Copy)]
+pub struct NextData<'a> {
+    /// The task data in use, and the queued ones.
+    pub generations: &'a Generations,
+    /// The job, with the task data that its lines load.
+    pub job: &'a Job,
+    /// Number of generations that no line of the job has made.
+    pub changed: u32,
+}
+
+impl<'a> NextData<'a> {
+    /// The task data after a tick whose buffers are `memory`; `load` is the first reload that the job has requested in
+    /// that tick.
+    fn store(&self, memory: &CommonMemory, load: Option<u32>) -> &'a Store {
+        let proposed = load.and_then(|number| self.job.reload(number + self.changed));
+        self.generations.next(memory, proposed.map(|reload| &reload.store))
+    }
+}
+
 /// Judges the commands of a tick.
 #[derive(Clone, Copy)]
 pub struct CommandJudge<'a> {
-    /// Task data.
-    pub store: &'a Store,
+    /// Task data of the next tick.
+    pub data: NextData<'a>,
+    /// Number of the first reload that the job has requested in this tick.
+    pub load: Option<u32>,
     /// Common memory after the tick.
     pub memory: &'a CommonMemory,
     /// Errors in the records that a command uses do not count.
@@ -36,7 +59,7 @@ pub struct CommandJudge<'a> {
 
 impl Judge for CommandJudge<'_> {
     fn verdict(&self, command: &HwsCommand) -> Option<String> {
-        verdict(command, self.store, &self.present(), self.unchecked)
+        verdict(command, self.store(), &present(self.memory), self.unchecked)
     }
 }
 
@@ -54,17 +77,25 @@ pub fn verdict(command: &HwsCommand, store: &Store, present: &Present, unchecked
     of_faults(&store.faults_of(command, &used(command, store, present)))
 }
 
-impl CommandJudge<'_> {
-    fn present(&self) -> Present {
-        let status = &self.memory.subtask.status;
-        Present {
-            place: self.memory.emove.beliefs.place.unwrap_or_default(),
-            gripper: status.end_effector_id,
-            held: match status.held {
-                Holding::Object(held) => Some((held.object, held.grip)),
-                Holding::Nothing | Holding::Something | Holding::NotKnown => None,
-            },
-        }
+impl<'a> CommandJudge<'a> {
+    /// Task data with which Task reads a command that is sent now.
+    #[must_use]
+    pub fn store(&self) -> &'a Store {
+        self.data.store(self.memory, self.load)
+    }
+}
+
+/// State of the robot before a command, according to the buffers of a tick.
+#[must_use]
+pub fn present(memory: &CommonMemory) -> Present {
+    let status = &memory.subtask.status;
+    Present {
+        place: memory.emove.beliefs.place.unwrap_or_default(),
+        gripper: status.end_effector_id,
+        held: match status.held {
+            Holding::Object(held) => Some((held.object, held.grip)),
+            Holding::Nothing | Holding::Something | Holding::NotKnown => None,
+        },
     }
 }
 

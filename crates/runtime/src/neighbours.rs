@@ -25,7 +25,6 @@ use neighbours::{
 };
 use plant::camera::Subject;
 use rcs_core::{Plain as _, tick::Tick};
-use taskdata::load::Store;
 
 use super::{
     commanded::Commanded,
@@ -36,7 +35,7 @@ use crate::{
     config::{ClockKind, RunConfig},
     error::StartError,
     event::Event,
-    judge::{CommandJudge, read_command},
+    judge::{CommandJudge, NextData, read_command},
     network::Network,
     observer::Observer,
 };
@@ -302,7 +301,7 @@ impl Neighbours {
         memory: &CommonMemory,
         inputs: &DeviceInputs,
         workstation: &mut SimulatedWorkstation,
-        store: &Store,
+        data: NextData<'_>,
     ) -> Progress {
         self.data_system.step(tick, &memory.task.data_base);
         self.events.extend(self.data_system.refusals().into_iter().map(Event::DataBaseRefuses));
@@ -310,7 +309,7 @@ impl Neighbours {
         self.events.extend(self.network.iter().flat_map(Network::events).map(Event::Network));
         self.step_vision(tick, memory, workstation);
         self.gate.write(memory, task_state(&memory.task.header, tick));
-        let judge = CommandJudge { store, memory, unchecked: self.unchecked };
+        let judge = CommandJudge { data, load: None, memory, unchecked: self.unchecked };
         let progress = match &mut self.workstation {
             _ if self.is_ending => Progress::Running,
             WorkstationSource::Emulator(emulator) => {
@@ -368,7 +367,8 @@ impl Emulator {
         };
         let retries = self.hwsc.retried().iter().skip(before);
         events.extend(retries.cloned().map(Event::Retries));
-        self.post(gate, judge, events).unwrap_or(progress)
+        let judge = CommandJudge { load: workstation.first_load(), ..*judge };
+        self.post(gate, &judge, events).unwrap_or(progress)
     }
 
     /// Send the command through the mailbox. Returns the failure if it does not fit.

@@ -184,7 +184,7 @@ impl OutsideWorkstation {
         if gate.command().number != before {
             self.begin(tick, gate.command());
         }
-        self.read_cell(workstation, judge.store, events);
+        self.read_cell(workstation, judge.store(), events);
         if gone { self.end(gate.command(), task, workstation) } else { Progress::Running }
     }
 

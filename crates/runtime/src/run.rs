@@ -33,6 +33,7 @@ use crate::{
     config::{ClockKind, RunConfig},
     contacts::ContactCheck,
     event::Event,
+    judge::NextData,
     live::Live,
     load::Loads,
     log::Log,
@@ -259,13 +260,8 @@ impl Run {
         let (lines, hws) = (self.job.steps.len(), &external.hws);
         self.observer.tick(&TickReport { tick, lines, steps, hws, memory: &memory });
         self.operate(tick);
-        let progress = self.neighbours.step(
-            tick,
-            &memory,
-            &self.inputs,
-            &mut self.workstation,
-            self.generations.current(),
-        );
+        let data = NextData { generations: &self.generations, job: &self.job, changed: self.changed };
+        let progress = self.neighbours.step(tick, &memory, &self.inputs, &mut self.workstation, data);
         self.load_for_workstation(tick);
         self.tell_operators(tick);
         self.note_neighbours(tick);

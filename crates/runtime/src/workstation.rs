@@ -116,6 +116,13 @@ impl SimulatedWorkstation {
         self.state.stopped && self.state.emergency.as_ref().is_some_and(sinks)
     }
 
+    /// Number of the first reload of task data that the job has requested since the last call of
+    /// [`SimulatedWorkstation::loads`].
+    #[must_use]
+    pub fn first_load(&self) -> Option<u32> {
+        self.state.loads.first().copied()
+    }
+
     /// Numbers of the reloads of task data that the job has requested since the last call.
     pub fn loads(&mut self) -> Vec<u32> {
         std::mem::take(&mut self.state.loads)

@@ -30,10 +30,7 @@ use interfaces::{
     CommonMemory, OperatorInputs,
     device::{JoystickBox, KNOB_FULL},
 };
-use neighbours::workstation::{
-    Judge as _,
-    player::{Hwsc, Progress},
-};
+use neighbours::workstation::player::{Hwsc, Progress};
 use plant::Joystick;
 use rcs_core::tick::Tick;
 use serde::Serialize;
@@ -44,7 +41,7 @@ use taskdata::load::{
 
 pub use self::source::{Input, Inputs, WORKSTATION};
 use self::{hold::Ended, request::Request, terminals::Terminals};
-use crate::{judge::CommandJudge, neighbours::Neighbours, workstation::SimulatedWorkstation};
+use crate::{judge, neighbours::Neighbours, workstation::SimulatedWorkstation};
 
 /// Largest number of requests carried out in a tick; others wait for the next one.
 pub const A_TICK: usize = 16;
@@ -98,7 +95,7 @@ pub struct Around<'a> {
     pub tick: Tick,
     /// Common memory after that tick.
     pub memory: &'a CommonMemory,
-    /// Task data, for reading lines of a job.
+    /// Task data of the next tick, for reading lines of a job.
     pub store: &'a Store,
     /// Errors in the records that a command uses do not count.
     pub unchecked: bool,
@@ -299,8 +296,8 @@ impl Operator {
                 Ok(self.what_holds_the_robot(around))
             }
             Request::Command(text, command) => {
-                let (store, memory, unchecked) = (around.store, around.memory, around.unchecked);
-                if let Some(wrong) = (CommandJudge { store, memory, unchecked }).verdict(&command) {
+                let present = judge::present(around.memory);
+                if let Some(wrong) = judge::verdict(&command, around.store, &present, around.unchecked) {
                     return Err(wrong);
                 }
                 let number = job(around)?.command_by_operator(tick, text, command);

@@ -48,7 +48,7 @@ impl Run {
             let mut around = Around {
                 tick,
                 memory: self.runner.memory(),
-                store: self.generations.current(),
+                store: self.generations.next(self.runner.memory(), None),
                 unchecked: self.config.unchecked,
                 data: &self.config.data,
                 neighbours: &mut self.neighbours,
