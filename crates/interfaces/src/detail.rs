@@ -80,7 +80,7 @@ fn off_place(memory: &CommonMemory) -> Option<NearPlace> {
 /// Location of the tool drum (V.4.1).
 const DRUM: &str = "TOOL-TRNS";
 
-/// Is it a command that ends with the way from the drum to its end-at location?
+/// True for a command that ends with the way from the drum to its end-at location.
 fn leaves_drum(hws: &HwsCommand) -> bool {
     let word = Name10::clipped(hws.command.as_str());
     ["RELEASE-TOOL", "REMOVE-TOOL"].iter().any(|command| Name10::clipped(command) == word)
