@@ -154,7 +154,7 @@ fn drawn_disturbances_repeat_and_each_branch_is_repeated_alone() {
     assert_eq!(alone["branches"][0]["state"], first["state"], "{kind} at {at}");
 }
 
-/// A part that is taken away before its picture: the command fails, which is true, and goes on when the part is back.
+/// A part is taken away before its picture. The command fails, which is true, and continues when the part is back.
 #[test]
 fn a_true_error_goes_on_after_its_remedy() {
     let campaign =

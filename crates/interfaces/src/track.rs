@@ -7,7 +7,7 @@ use rcs_core::Plain;
 /// Points of a [`Track`] at most.
 pub const TRACK_POINTS: usize = 32;
 
-/// What is known of the path from the last known place or way of the robot to where it is.
+/// State of the record of the path from the last known place or way of the robot to its present pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Course {
     /// Its place or way has not been known since the start.
@@ -26,7 +26,7 @@ pub enum Course {
 /// segments through points, and from the last point to the end (docs/design/recovery.md "Return").
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Track {
-    /// What is known of the path.
+    /// State of the record.
     pub course: Course,
     /// The joystick box has moved the robot since the last motion that was commanded.
     pub by_hand: bool,

@@ -18,7 +18,7 @@ use crate::{
     goal::Goal,
 };
 
-/// What the sensors say about the goal of the command.
+/// The goal of the command, compared with the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Evidence {
     /// The goal holds.
@@ -77,7 +77,7 @@ pub enum Reading {
 /// A command that a row reports as done, for [`CONFIRM`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Claim {
-    /// What the sensors say about its goal.
+    /// Its goal, compared with the sensors.
     pub evidence: Evidence,
     /// How new the readings are.
     pub reading: Reading,

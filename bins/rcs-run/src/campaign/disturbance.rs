@@ -56,7 +56,7 @@ impl Follow {
 /// A disturbance, and the command that follows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Disturbance {
-    /// What is done.
+    /// The disturbance.
     pub what: What,
     /// What follows.
     pub then: Follow,

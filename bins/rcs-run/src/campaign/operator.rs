@@ -160,7 +160,7 @@ impl<'f> Operator<'f> {
         self.second_pause = second_pause;
     }
 
-    /// Give up the present command of the job: the next line follows the PAUSE. A line that is no command goes on.
+    /// Give up the present command of the job: the next line follows the PAUSE. A line that is not a command continues.
     pub fn give_up(&mut self) {
         self.has_finished |= self.command_at(self.current).is_some();
     }

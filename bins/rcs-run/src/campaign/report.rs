@@ -196,7 +196,7 @@ impl<'a> CampaignReport<'a> {
         text
     }
 
-    /// What the judge has found in all branches.
+    /// The verdicts of the judge in all branches.
     fn confirmations(&self, text: &mut String) {
         let untrue = || self.results.iter().flat_map(|result| &result.untrue);
         let judged: u64 = self.results.iter().map(|result| result.judged).sum();
