@@ -80,9 +80,9 @@ fn the_headers_of_a_tick_are_whole_while_the_run_goes_on() {
     let name = RunName::unique("whole");
     let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
     let reader = Attached::open(&name).expect("the run lives");
-    let stop = AtomicBool::new(false);
+    let stop = &AtomicBool::new(false);
     std::thread::scope(|scope| {
-        let looks = scope.spawn(|| {
+        let looks = scope.spawn(move || {
             let mut found = 0;
             while !stop.load(Ordering::Acquire) {
                 let history = reader.history(Tick::BEFORE_START).expect("every entry is legal");

@@ -236,7 +236,9 @@ impl Coordinator {
 
     /// Check for a board; true if it has joined since the last check.
     fn look_for(&mut self, at: usize) -> Result<bool, SplitError> {
-        let (Some((_, node)), Some(seat)) = (&self.ports, self.seats.get_mut(at)) else { return Ok(false) };
+        let (Some((_, node)), Some(seat)) = (&mut self.ports, self.seats.get_mut(at)) else {
+            return Ok(false);
+        };
         let board = seat.board;
         if let Some(status) = seat.ended() {
             return Err(SplitError::Ended { board, status });
@@ -291,7 +293,7 @@ impl Coordinator {
 
     /// Free a board's place for the next process that joins.
     fn vacate(&mut self, at: usize) {
-        let (Some((giver, _)), Some(seat)) = (&self.ports, self.seats.get_mut(at)) else { return };
+        let (Some((giver, _)), Some(seat)) = (&mut self.ports, self.seats.get_mut(at)) else { return };
         // Kept until the successor has read the last outputs to the devices from them.
         seat.former.extend(seat.ports.take());
         seat.former_allocations += seat.report.allocations;
@@ -326,7 +328,7 @@ impl Coordinator {
     /// Announce a load, whose file exists, to the boards, which check it in parallel with their ticks.
     pub fn announce(&mut self, load: u32) {
         self.pulse.load = load;
-        if let Some((giver, _)) = &self.ports {
+        if let Some((giver, _)) = &mut self.ports {
             giver.give(&self.pulse);
         }
     }
@@ -432,7 +434,7 @@ impl Levels<TaskData<'_>> for Coordinator {
     ) -> Result<(), Lost> {
         *after = *before;
         self.pulse = SystemPulse { tick, external: *external, ..self.pulse };
-        if let Some((giver, _)) = &self.ports {
+        if let Some((giver, _)) = &mut self.ports {
             giver.give(&self.pulse);
         }
         self.await_stamps(tick)?;
@@ -446,7 +448,7 @@ impl Levels<TaskData<'_>> for Coordinator {
 
 impl Drop for Coordinator {
     fn drop(&mut self) {
-        if let Some((giver, _)) = &self.ports {
+        if let Some((giver, _)) = &mut self.ports {
             giver.give(&SystemPulse { over: true, ..self.pulse });
         }
         self.reap();

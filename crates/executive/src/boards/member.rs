@@ -172,7 +172,7 @@ impl Member {
             return Err(MemberError::Different { board, run: name.clone(), difference });
         }
         let deadline = Instant::now() + CROWDED;
-        let (pulse, writers, reports) = loop {
+        let (pulse, mut writers, mut reports) = loop {
             let pulse = taker.pulse()?;
             if pulse.over {
                 return Err(MemberError::RunIsOver(name.clone()));
@@ -329,7 +329,7 @@ impl Member {
     fn step(&mut self, pulse: &SystemPulse, data: &TaskData<'_>) -> Result<(), MemberError> {
         let _section = Section::enter();
         let started = Instant::now();
-        let Some(ports) = &self.ports else { return Ok(()) };
+        let Some(ports) = &mut self.ports else { return Ok(()) };
         let tick = pulse.tick;
         let [even, odd] = &mut self.halves;
         let (before, after) = if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) };
@@ -349,7 +349,7 @@ impl Member {
 
     /// Report the result of a check if it is new.
     fn tell(&mut self, checked: Checked) {
-        let Some(ports) = &self.ports else { return };
+        let Some(ports) = &mut self.ports else { return };
         if self.report.checked != checked {
             self.report.checked = checked;
             ports.reports.write(self.tick, &self.report);
@@ -359,7 +359,7 @@ impl Member {
 
     /// Report that this board will stamp no further tick.
     fn leave(&mut self) {
-        let Some(ports) = &self.ports else { return };
+        let Some(ports) = &mut self.ports else { return };
         self.report.ready = false;
         ports.reports.write(self.tick, &self.report);
         ports.taker.done();

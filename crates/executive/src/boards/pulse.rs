@@ -19,14 +19,12 @@ use interfaces::ExternalInputs;
 use rcs_core::{Plain, digest::Digest, plain::DecodeError, tick::Tick};
 use taskdata::load::Source;
 
-use super::{
-    BOARDS, Board,
-    exchange::{EntryReader, EntryWriter, READERS, entry_size, stamped},
-};
+use super::{BOARDS, Board, exchange::READERS};
 use crate::memory::{
     SharedMemoryError,
     layout::{Epoch, layout_version},
     runs::service_name,
+    slot::{self, NewService, ServiceReader, SlotReader, SlotWriter},
 };
 
 /// Epoch of the services of board 0, which is never replaced: a run ends with it.
@@ -139,10 +137,11 @@ pub struct BoardReport {
     pub checked: Checked,
 }
 
-/// Size of the entries, bytes.
-const PULSE: usize = entry_size::<SystemPulse>();
-const CARD: usize = entry_size::<RunCard>();
-const REPORT: usize = entry_size::<BoardReport>();
+/// Keys of the slots of [`PULSE_SERVICE`].
+const PULSE: u32 = 0;
+const CARD: u32 = 1;
+/// Key of the only slot of a board's service.
+const REPORT: u32 = 0;
 
 const PULSE_SERVICE: &str = "pulse";
 const WAKE: &str = "pulse/wake";
@@ -190,7 +189,7 @@ pub(super) fn sleep(listener: &Listener<ipc::Service>, at_most: Duration) {
 
 /// Board 0's side.
 pub(super) struct PulseGiver {
-    pulse: EntryWriter<PULSE, SystemPulse>,
+    pulse: SlotWriter<{ slot::size::<SystemPulse>() }, SystemPulse>,
     wake: Notifier<ipc::Service>,
     pub(super) done: Listener<ipc::Service>,
 }
@@ -201,23 +200,16 @@ impl PulseGiver {
         card: &RunCard,
         first: &SystemPulse,
     ) -> Result<Self, SharedMemoryError> {
-        let failed = failed(PULSE_SERVICE);
-        let factory = node
-            .service_builder(&service_name(PULSE_SERVICE, BOARD_0)?)
-            .blackboard_creator::<u32>()
-            .max_readers(READERS)
-            .max_nodes(READERS + 1)
-            .add::<[u8; PULSE]>(0, stamped(first.tick, first))
-            .add::<[u8; CARD]>(1, stamped(first.tick, card))
-            .create()
-            .map_err(|error| failed(&error))?;
-        let port = factory.writer_builder().create().map_err(|error| failed(&error))?;
-        let pulse = EntryWriter::new(port.entry(&0).map_err(|error| failed(&error))?);
+        let service = NewService::new(node, PULSE_SERVICE, BOARD_0, READERS)?
+            .slot::<{ slot::size::<SystemPulse>() }, _>(PULSE, first.tick, first)
+            .slot::<{ slot::size::<RunCard>() }, _>(CARD, first.tick, card)
+            .create()?;
+        let pulse = service.slot(PULSE)?;
         Ok(Self { pulse, wake: notifier(node, WAKE)?, done: listener(node, DONE)? })
     }
 
     /// Write a pulse and wake the boards.
-    pub(super) fn give(&self, pulse: &SystemPulse) {
+    pub(super) fn give(&mut self, pulse: &SystemPulse) {
         self.pulse.write(pulse.tick, pulse);
         self.wake();
     }
@@ -231,24 +223,18 @@ impl PulseGiver {
 
 /// The boards' side.
 pub(super) struct PulseTaker {
-    pulse: EntryReader<PULSE, SystemPulse>,
-    card: EntryReader<CARD, RunCard>,
+    pulse: SlotReader<{ slot::size::<SystemPulse>() }, SystemPulse>,
+    card: SlotReader<{ slot::size::<RunCard>() }, RunCard>,
     pub(super) wake: Listener<ipc::Service>,
     done: Notifier<ipc::Service>,
 }
 
 impl PulseTaker {
     pub(super) fn open(node: &Node<ipc::Service>) -> Result<Self, SharedMemoryError> {
-        let failed = failed(PULSE_SERVICE);
-        let factory = node
-            .service_builder(&service_name(PULSE_SERVICE, BOARD_0)?)
-            .blackboard_opener::<u32>()
-            .open()
-            .map_err(|error| failed(&error))?;
-        let port = factory.reader_builder().create().map_err(|error| failed(&error))?;
+        let service = ServiceReader::open(node, PULSE_SERVICE, BOARD_0)?;
         Ok(Self {
-            pulse: EntryReader::new(port.entry(&0).map_err(|error| failed(&error))?),
-            card: EntryReader::new(port.entry(&1).map_err(|error| failed(&error))?),
+            pulse: service.slot(PULSE)?,
+            card: service.slot(CARD)?,
             wake: listener(node, WAKE)?,
             done: notifier(node, DONE)?,
         })
@@ -269,7 +255,7 @@ impl PulseTaker {
 }
 
 /// A board's own report.
-pub(super) struct ReportWriter(EntryWriter<REPORT, BoardReport>);
+pub(super) struct ReportWriter(SlotWriter<{ slot::size::<BoardReport>() }, BoardReport>);
 
 impl ReportWriter {
     pub(super) fn create(
@@ -277,27 +263,21 @@ impl ReportWriter {
         board: Board,
         epoch: Epoch,
     ) -> Result<Self, SharedMemoryError> {
-        let failed = failed(board.name());
-        let factory = node
-            .service_builder(&service_name(board.name(), epoch)?)
-            .blackboard_creator::<u32>()
-            .max_readers(READERS)
-            .max_nodes(READERS + 1)
-            .add::<[u8; REPORT]>(0, stamped(Tick::BEFORE_START, &BoardReport::ZERO))
-            .create()
-            .map_err(|error| failed(&error))?;
-        let port = factory.writer_builder().create().map_err(|error| failed(&error))?;
-        Ok(Self(EntryWriter::new(port.entry(&0).map_err(|error| failed(&error))?)))
+        NewService::new(node, board.name(), epoch, READERS)?
+            .slot::<{ slot::size::<BoardReport>() }, _>(REPORT, Tick::BEFORE_START, &BoardReport::ZERO)
+            .create()?
+            .slot(REPORT)
+            .map(Self)
     }
 
     /// Write the report and stamp `tick`: it is done.
-    pub(super) fn write(&self, tick: Tick, report: &BoardReport) {
+    pub(super) fn write(&mut self, tick: Tick, report: &BoardReport) {
         self.0.write(tick, report);
     }
 }
 
 /// A board's report as board 0 reads it.
-pub(super) struct ReportReader(EntryReader<REPORT, BoardReport>);
+pub(super) struct ReportReader(SlotReader<{ slot::size::<BoardReport>() }, BoardReport>);
 
 impl ReportReader {
     pub(super) fn open(
@@ -305,14 +285,7 @@ impl ReportReader {
         board: Board,
         epoch: Epoch,
     ) -> Result<Self, SharedMemoryError> {
-        let failed = failed(board.name());
-        let factory = node
-            .service_builder(&service_name(board.name(), epoch)?)
-            .blackboard_opener::<u32>()
-            .open()
-            .map_err(|error| failed(&error))?;
-        let port = factory.reader_builder().create().map_err(|error| failed(&error))?;
-        Ok(Self(EntryReader::new(port.entry(&0).map_err(|error| failed(&error))?)))
+        ServiceReader::open(node, board.name(), epoch)?.slot(REPORT).map(Self)
     }
 
     /// The last tick that the board has stamped, and its report.

@@ -61,11 +61,11 @@ impl Attached {
     pub fn memory(&self) -> Result<CommonMemory, ReadError> {
         let Some(Ports { readers, .. }) = &self.ports else { return Err(ReadError::Busy) };
         for _ in 0..ATTEMPTS {
-            // The entry written last is read first, and the one written first is read last: if both are of one tick,
+            // The slot written last is read first, and the one written first is read last: if both are of one tick,
             // all others are too.
-            let tick = readers.executive.read()?.tick;
+            let (tick, _) = readers.executive.read()?;
             let memory = readers.processes()?;
-            if readers.outside.read()?.tick == tick {
+            if readers.outside.read()?.0 == tick {
                 return Ok(memory);
             }
             std::thread::yield_now();
@@ -79,7 +79,7 @@ impl Attached {
     /// [`ReadError`].
     pub fn external(&self) -> Result<ExternalInputs, ReadError> {
         let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
-        Ok(ports.readers.outside.read()?.inputs)
+        Ok(ports.readers.outside.read()?.1)
     }
 
     /// The executive's counts of the run.
@@ -88,7 +88,7 @@ impl Attached {
     /// [`ReadError`].
     pub fn pulse(&self) -> Result<Pulse, ReadError> {
         let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
-        Ok(ports.readers.executive.read()?)
+        Ok(ports.readers.executive.read()?.1)
     }
 
     /// The headers of the ticks after `after`, the oldest first: at most those of the last ten seconds.
@@ -98,7 +98,7 @@ impl Attached {
     /// [`ReadError`].
     pub fn history(&self, after: Tick) -> Result<Vec<Headers>, ReadError> {
         let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
-        let last = ports.readers.executive.read()?.tick;
+        let (last, _) = ports.readers.executive.read()?;
         Ok(ports.readers.history.read(after, last)?)
     }
 
@@ -109,7 +109,7 @@ impl Attached {
     /// [`ReadError`].
     pub fn cell(&self) -> Result<Option<CellView>, ReadError> {
         let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
-        let view = ports.readers.cell.read()?;
+        let (_, view) = ports.readers.cell.read()?;
         Ok((view.tick != Tick::BEFORE_START).then_some(view))
     }
 }

@@ -1,48 +1,38 @@
 //! The headers of the last ten seconds, in a separate service.
 //!
 //! A reader that reads every 80 ms sees at best every second tick, and one that has just attached sees no earlier tick.
-//! So the run keeps the headers of all processes for [`HISTORY_TICKS`] ticks in a ring with one entry per tick. A tick
-//! writes one entry of about a kilobyte; a reader takes all of them, or those since its last read.
+//! So the run keeps the headers of all processes for [`HISTORY_TICKS`] ticks in a ring with one slot per tick. A tick
+//! writes one slot of about a kilobyte; a reader takes all of them, or those since its last read.
 
-use iceoryx2::{
-    node::Node,
-    port::{reader::EntryHandle, writer::EntryHandleMut},
-    prelude::ipc,
-};
+use iceoryx2::{node::Node, prelude::ipc};
 use interfaces::{CommonMemory, Header, PROCESS_COUNT, ProcessId};
-use rcs_core::{
-    Plain,
-    plain::{DecodeError, from_bytes, to_bytes},
-    tick::Tick,
-};
+use rcs_core::{Plain, plain::DecodeError, tick::Tick};
 
-use super::{error::SharedMemoryError, layout::Epoch, runs};
+use super::{
+    error::SharedMemoryError,
+    layout::Epoch,
+    runs,
+    slot::{self, NewService, ServiceReader, SlotReader, SlotWriter, UNWRITTEN},
+};
 
 /// Number of ticks whose headers are kept: 10 s.
 pub const HISTORY_TICKS: u32 = 250;
 /// The name of the service.
 pub(super) const HISTORY: &str = "history";
 
+/// The headers of all processes, in the order of [`ProcessId`].
+pub(super) type AllHeaders = [Header; PROCESS_COUNT];
+
 /// The headers of all processes after a tick.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Headers {
     /// The tick.
     pub tick: Tick,
-    /// The headers in the order of [`ProcessId`].
+    /// The headers of all processes, in the order of [`ProcessId`].
     pub headers: [Header; PROCESS_COUNT],
 }
 
 impl Headers {
-    /// The headers in common memory.
-    #[must_use]
-    pub fn of(tick: Tick, memory: &CommonMemory) -> Self {
-        let mut headers = [Header::default(); PROCESS_COUNT];
-        for (header, process) in headers.iter_mut().zip(ProcessId::ALL) {
-            *header = *memory.header(*process);
-        }
-        Self { tick, headers }
-    }
-
     /// The header of a process.
     #[must_use]
     pub fn of_process(&self, process: ProcessId) -> &Header {
@@ -50,54 +40,46 @@ impl Headers {
     }
 }
 
-/// Index of a tick's entry.
+/// Index of a tick's slot.
 fn place(tick: Tick) -> usize {
     // The index is less than 250.
     usize::try_from(tick.0 % u64::from(HISTORY_TICKS)).unwrap_or_default()
 }
 
+const SIZE: usize = slot::size::<AllHeaders>();
+
 /// The writer's end.
-pub(super) struct HistoryWriter(Vec<EntryHandleMut<ipc::Service, u32, [u8; Headers::SIZE]>>);
+pub(super) struct HistoryWriter(Vec<SlotWriter<SIZE, AllHeaders>>);
 
 impl HistoryWriter {
-    /// Create the service, with entries that belong to no tick.
+    /// Create the service, with slots that belong to no tick.
     pub(super) fn create(node: &Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
-        let failed = |what: &dyn std::fmt::Debug| SharedMemoryError::service(HISTORY, what);
-        let name = runs::service_name(HISTORY, epoch)?;
-        let creator = node
-            .service_builder(&name)
-            .blackboard_creator::<u32>()
-            .max_readers(runs::MAX_READERS)
-            .max_nodes(runs::MAX_READERS + 1);
-        let creator = (0..HISTORY_TICKS)
-            .fold(creator, |creator, key| creator.add::<[u8; Headers::SIZE]>(key, to_bytes(&Headers::ZERO)));
-        let factory = creator.create().map_err(|error| failed(&error))?;
-        let port = factory.writer_builder().create().map_err(|error| failed(&error))?;
-        let entry = |key| port.entry(&key).map_err(|error| failed(&error));
-        (0..HISTORY_TICKS).map(entry).collect::<Result<_, _>>().map(Self)
+        let new = NewService::new(node, HISTORY, epoch, runs::MAX_READERS)?;
+        let new =
+            (0..HISTORY_TICKS).fold(new, |new, key| new.slot::<SIZE, _>(key, UNWRITTEN, &AllHeaders::ZERO));
+        let service = new.create()?;
+        (0..HISTORY_TICKS).map(|key| service.slot(key)).collect::<Result<_, _>>().map(Self)
     }
 
     /// Write the headers of a tick over those of ten seconds earlier. Does not allocate.
-    pub(super) fn write(&self, tick: Tick, memory: &CommonMemory) {
-        if let Some(entry) = self.0.get(place(tick)) {
-            entry.update_with_copy(to_bytes(&Headers::of(tick, memory)));
+    pub(super) fn write(&mut self, tick: Tick, memory: &CommonMemory) {
+        let Some(slot) = self.0.get_mut(place(tick)) else { return };
+        let mut headers = AllHeaders::ZERO;
+        for (header, process) in headers.iter_mut().zip(ProcessId::ALL) {
+            *header = *memory.header(*process);
         }
+        slot.write(tick, &headers);
     }
 }
 
 /// A reader's end.
-pub(super) struct HistoryReader(Vec<EntryHandle<ipc::Service, u32, [u8; Headers::SIZE]>>);
+pub(super) struct HistoryReader(Vec<SlotReader<SIZE, AllHeaders>>);
 
 impl HistoryReader {
     /// Open the service.
     pub(super) fn open(node: &Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
-        let failed = |what: &dyn std::fmt::Debug| SharedMemoryError::service(HISTORY, what);
-        let name = runs::service_name(HISTORY, epoch)?;
-        let factory =
-            node.service_builder(&name).blackboard_opener::<u32>().open().map_err(|error| failed(&error))?;
-        let port = factory.reader_builder().create().map_err(|error| failed(&error))?;
-        let entry = |key| port.entry(&key).map_err(|error| failed(&error));
-        (0..HISTORY_TICKS).map(entry).collect::<Result<_, _>>().map(Self)
+        let service = ServiceReader::open(node, HISTORY, epoch)?;
+        (0..HISTORY_TICKS).map(|key| service.slot(key)).collect::<Result<_, _>>().map(Self)
     }
 
     /// The headers of the ticks after `after` up to `last`, the oldest first. Ticks that were overwritten in the
@@ -106,12 +88,8 @@ impl HistoryReader {
         let first = after.next().0.max(last.next().0.saturating_sub(u64::from(HISTORY_TICKS)));
         let mut found = Vec::new();
         for tick in (first..=last.0).map(Tick) {
-            let Some(entry) = self.0.get(place(tick)) else { continue };
-            let image: [u8; Headers::SIZE] = *entry.get();
-            let headers: Headers = from_bytes(&image)?;
-            if headers.tick == tick {
-                found.push(headers);
-            }
+            let Some(slot) = self.0.get(place(tick)) else { continue };
+            found.extend(slot.read_at(tick)?.map(|headers| Headers { tick, headers }));
         }
         Ok(found)
     }

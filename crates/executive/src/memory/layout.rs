@@ -8,7 +8,7 @@ use rcs_core::{Plain, digest::Digest, plain::Schema, tick::Tick};
 
 use super::{
     cell::{CELL, CellView},
-    history::{HISTORY, Headers},
+    history::{AllHeaders, HISTORY},
 };
 
 /// Epoch of a service: 1 for the first writer, the next number for a writer that replaces a killed one, because a
@@ -32,15 +32,6 @@ pub struct Pulse {
     pub over: bool,
 }
 
-/// External inputs of a tick.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Outside {
-    /// The tick that reads them.
-    pub tick: Tick,
-    /// The inputs.
-    pub inputs: ExternalInputs,
-}
-
 /// The services of a run that are not outputs of a process.
 pub(super) const OUTSIDE: &str = "outside";
 pub(super) const EXECUTIVE: &str = "executive";
@@ -56,12 +47,12 @@ macro_rules! services {
             reads: $reads:expr;
         }
     )+) => {
-        /// The services of a run: for each its name and the schema of its entry.
+        /// The services of a run: for each its name and the schema of its slots.
         pub const SERVICES: &[(&str, Schema)] = &[
             $( (stringify!($field), <$outputs as Plain>::SCHEMA), )+
-            (OUTSIDE, Outside::SCHEMA),
+            (OUTSIDE, ExternalInputs::SCHEMA),
             (EXECUTIVE, Pulse::SCHEMA),
-            (HISTORY, Headers::SCHEMA),
+            (HISTORY, AllHeaders::SCHEMA),
             (CELL, CellView::SCHEMA),
         ];
     };

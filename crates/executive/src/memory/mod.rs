@@ -2,12 +2,12 @@
 //!
 //! The run publishes the outputs of its processes once a tick. Other programs attach and leave at any time and read the
 //! latest values; they cannot affect a tick. Each writer (a control process, the HWSC, the devices, the executive) has
-//! one iceoryx2 *blackboard* service: latest value, one writer, no allocation. Its buffers are the keys.
+//! one iceoryx2 *blackboard* service: latest value, one writer, no allocation.
 //!
-//! A value is bytes, never a Rust structure: a [`Header`](interfaces::Header) with the tick that wrote it, then the
-//! buffer's byte image (`rcs_core::record`). So there is no padding, no pointer and no enum that another program could
-//! make illegal; a reader decodes with checks.
+//! A value is bytes, never a Rust structure: the tick that wrote it, then the byte image ([`rcs_core::plain`]). So there
+//! is no padding, no pointer and no enum that another program could make illegal; a reader decodes with checks.
 //!
+//! * `slot`: one value in shared memory, also for the boards;
 //! * [`mod@layout`]: the list of services, [`buffers`]: writing and reading them;
 //! * [`publish`]: the writer's side, for the run;
 //! * [`attach`]: the readers' side;
@@ -31,6 +31,7 @@ mod place;
 mod presence;
 pub mod publish;
 pub mod runs;
+pub(crate) mod slot;
 mod text;
 
 pub use attach::{Attached, ReadError};

@@ -94,7 +94,7 @@ impl Publisher {
 
     /// Write the buffers of a tick in this order: external inputs, outputs of the processes, pulse. Does not allocate.
     pub fn publish(&mut self, external: &ExternalInputs, memory: &CommonMemory, pulse: Pulse) {
-        let Some(ports) = &self.ports else { return };
+        let Some(ports) = &mut self.ports else { return };
         ports.writers.write(external, memory, &pulse);
         self.pulse = pulse;
     }
@@ -114,17 +114,17 @@ impl Publisher {
 
 impl Publisher {
     /// Publish the simulated cell after a tick. Does not allocate.
-    pub fn show_cell(&self, view: &CellView) {
-        if let Some(ports) = &self.ports {
-            ports.writers.cell.write(view);
+    pub fn show_cell(&mut self, view: &CellView) {
+        if let Some(ports) = &mut self.ports {
+            ports.writers.cell.write(view.tick, view);
         }
     }
 }
 
 impl Drop for Publisher {
     fn drop(&mut self) {
-        if let Some(ports) = self.ports.take() {
-            ports.writers.executive.write(&Pulse { over: true, ..self.pulse });
+        if let Some(mut ports) = self.ports.take() {
+            ports.writers.executive.write(self.pulse.tick, &Pulse { over: true, ..self.pulse });
             drop(ports);
         }
         // A failure cannot be handled here; `rcs-run clean` tries again and reports it.
