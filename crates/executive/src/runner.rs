@@ -15,7 +15,7 @@ use crate::{
     course::{Course, Levels},
     failure::Watch,
     histogram::Histogram,
-    memory::{Publisher, layout::Pulse},
+    memory::{Publisher, cell::CellView, layout::Pulse},
     timing::{Stage, StageTimes},
 };
 
@@ -189,6 +189,14 @@ impl<L> Runner<L> {
     #[must_use]
     pub const fn publisher(&self) -> Option<&Publisher> {
         self.publisher.as_ref()
+    }
+
+    /// Publish the simulated cell after a tick to other programs; `view` is called if the run is published. Does not
+    /// allocate.
+    pub fn show_cell<'a>(&mut self, view: impl FnOnce() -> &'a CellView) {
+        if let Some(publisher) = &mut self.publisher {
+            publisher.show_cell(view());
+        }
     }
 }
 

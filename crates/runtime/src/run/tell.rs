@@ -32,12 +32,12 @@ impl Run {
 
     /// Publish the cell after a tick to other programs. A run with a robot at a port publishes none.
     pub(super) fn publish_cell(&mut self, tick: Tick) {
-        let publisher = self.runner.publisher().filter(|_| !self.robot.is_elsewhere());
-        if let Some(publisher) = publisher {
-            let job = (self.job.steps.len(), self.neighbours.begun_steps());
-            let cell = &self.workstation.cell;
-            publisher.show_cell(self.view.look(tick, cell, self.warning.as_ref(), job, &self.pace));
+        if self.robot.is_elsewhere() {
+            return;
         }
+        let job = (self.job.steps.len(), self.neighbours.begun_steps());
+        let (cell, warning) = (&self.workstation.cell, self.warning.as_ref());
+        self.runner.show_cell(|| self.view.look(tick, cell, warning, job, &self.pace));
     }
 
     /// Log the state of the line to the robot when it changes.
