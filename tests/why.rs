@@ -6,7 +6,7 @@
 use std::process::Command;
 
 use serde_json::Value;
-use whole_system_tests::{Outcome, Scratch, rcs_log, root, run, run_with};
+use whole_system_tests::{Outcome, Scratch, rcs_log, rcs_run, root, run, run_with};
 
 /// What `why` says of a log, for programs and for people.
 fn why(outcome: &Outcome) -> (Value, String) {
@@ -205,4 +205,33 @@ fn what_is_added_to_the_data_changes_no_run_that_does_not_use_it() {
     );
     let (status, said) = replay(&other.file("data"));
     assert_eq!(status, Some(1), "{said}");
+}
+
+#[test]
+fn a_missed_grasp_names_the_forms_of_its_object_among_files_with_the_same_lines() {
+    let outcome = run_with("hinge", 1, "why-hinge", &["--unchecked"], |scratch| {
+        scratch.copy_data();
+        let data = scratch.file("data");
+        let mut new = Command::new(rcs_run());
+        new.args(["new", "part", "HINGE", "--size", "3x1.5x1", "--like", "LCLEVIS", "--write", "--data"]);
+        let output = new.arg(&data).output().expect("rcs-run can be started");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        // The grip of the half-done part lies beside the part, so that the fingers close on nothing.
+        let path = data.join("objects/hinge.blk");
+        let text = std::fs::read_to_string(&path).expect("the forms are written");
+        let missed = text.replacen("1 t 67 49 140 -mtb- HINGE-3", "1 t 67 400 140 -mtb- HINGE-3", 1);
+        assert_ne!(missed, text);
+        std::fs::write(&path, missed).expect("the forms can be written");
+    });
+    let (answer, text) = why(&outcome);
+    let used: Vec<&str> =
+        answer["world"]["data"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    let expected = [
+        "point of the path: objects/hinge.blk, block 510 (offset 20000), line 13",
+        "grip 1 of HINGE_IH at PFIXTURE: objects/hinge.blk, block 507 (offset 20000), line 3",
+        "movetable HINGE-3 of the grip: objects/hinge.blk, block 506 (offset 20000), line 5",
+        "sizes and force of grip 1 of HINGE_IH, 50 lb: objects/hinge.blk, block 502 (offset 20000), line 2",
+        "location PFIXTURE: locations.blk, block 721 (offset 21000), line 7",
+    ];
+    assert_eq!(used, expected, "{text}");
 }

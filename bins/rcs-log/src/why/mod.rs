@@ -7,6 +7,7 @@
 //! was reported up to Task. All statements come from buffers and rows of the log ([`history`]); nothing is guessed.
 
 mod chain;
+mod data;
 mod evidence;
 mod history;
 mod world;

@@ -2,17 +2,14 @@
 //! the run if no process failed. From there the commands are traced up to the workstation controller, each with its
 //! row. The data that the last row used are listed with file, block and line.
 
-use interfaces::{CommonMemory, pose_range};
+use interfaces::{CommonMemory, emove::Way};
 use levels::ladder::ProcessId;
 use record::{Log, proto::foxglove::Level, replay::generations};
 use serde::Serialize;
-use taskdata::{
-    files::{EndEffId, LocptId, MovtabId, PoseId},
-    load::{At, Store},
-};
 
 use super::{
     chain::{self, Link, Root},
+    data,
     history::History,
 };
 use crate::story::moments;
@@ -33,6 +30,22 @@ pub struct World {
     pub data: Vec<String>,
 }
 
+/// The last command to Prim, and the path of E-move when it gave that command.
+#[derive(Default)]
+struct Motion {
+    number: u32,
+    way: Option<Way>,
+}
+
+impl Motion {
+    fn note(&mut self, memory: &CommonMemory) {
+        let number = memory.emove.prim.number;
+        if number != self.number {
+            *self = Self { number, way: memory.emove.beliefs.way };
+        }
+    }
+}
+
 /// The first thing that went wrong; `None` if nothing did.
 pub fn first(log: &Log, history: &History) -> Option<World> {
     // The cell reports an event with the tick after it.
@@ -45,15 +58,16 @@ pub fn first(log: &Log, history: &History) -> Option<World> {
             (end.get("failed_at")?.parse().ok()?, end.get("result")?.clone(), String::new())
         }
     };
-    let (memory, generation) = moments(log)
-        .map(|(moment, _)| moment)
-        .take_while(|moment| moment.tick.0 <= tick)
-        .last()
-        .map(|moment| (moment.before, moment.external.generation))?;
+    let (mut motion, mut last) = (Motion::default(), None);
+    for (moment, _) in moments(log).take_while(|(moment, _)| moment.tick.0 <= tick) {
+        motion.note(&moment.before);
+        last = Some((moment.before, moment.external.generation));
+    }
+    let (memory, generation) = last?;
     let process = mover(&code, &memory);
     let commands = chain::commands(history, Root { process, tick });
     let store = generations(log).ok().and_then(|all| all.into_iter().nth(usize::try_from(generation).ok()?));
-    let data = store.map_or_else(Vec::new, |store| data(&store, process, &memory));
+    let data = store.map_or_else(Vec::new, |store| data::used(&store, process, &memory, motion.way));
     Some(World { tick, text, commands, data })
 }
 
@@ -66,37 +80,4 @@ fn mover(code: &str, memory: &CommonMemory) -> ProcessId {
         "cell.dropped" if by_parts_gripper => ProcessId::Grip,
         _ => ProcessId::Prim,
     }
-}
-
-/// The data that the commands in the buffers name, with file, block and line.
-fn data(store: &Store, process: ProcessId, memory: &CommonMemory) -> Vec<String> {
-    let (view, origins) = (store.view(), store.origins());
-    let mut told = Vec::new();
-    let mut tell = |what: String, origins: &[At], position: Option<usize>| {
-        if let Some(at) = position.and_then(|position| origins.get(position)) {
-            told.push(format!("{what}: {}", store.place(*at)));
-        }
-    };
-    let (order, motion) = (&memory.subtask.emove, &memory.emove.prim);
-    if process == ProcessId::Grip {
-        let sizes = EndEffId::from_option(order.object_parameters);
-        if let (Some(object), Some(grip)) = (order.object, sizes.of(view.end_effs)) {
-            let what = format!("grip {} of {object}, {} lb", grip.grip, grip.grasp_force);
-            tell(what, &origins.end_effs, sizes.index());
-        }
-        return told;
-    }
-    if motion.pose < pose_range::CHANGING {
-        let pose = PoseId::new(motion.pose);
-        let name = pose.of(view.poses).map_or_else(String::new, |pose| pose.name.to_string());
-        tell(format!("pose {name}"), &origins.poses, pose.index());
-    }
-    let movetable = MovtabId::from_option(motion.movetable);
-    let name = movetable.of(view.movetables).map_or_else(String::new, |table| table.name.to_string());
-    tell(format!("movetable {name}"), &origins.movetables, movetable.index());
-    let point = view.path_points.iter().position(|point| point.para.number() == motion.trajectory_parameters);
-    tell("point of the path".to_owned(), &origins.path_points, point);
-    let location = LocptId::from_option(order.location_record);
-    tell(format!("location {}", order.location), &origins.locpts, location.index());
-    told
 }

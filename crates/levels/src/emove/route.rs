@@ -250,16 +250,21 @@ impl Route {
             approach: approach_to(to, data).unwrap_or(PathId::NULL),
             ..Self::default()
         };
-        route.stop = route.stop_parameters(data).ok_or(Planning::NoSpeed)?;
+        route.stop = route.stop_line(data).ok_or(Planning::NoSpeed)?.para;
         Ok(route)
     }
 
-    /// Parameters of the final motion: those of the approach's stop line; where no approach is written, those
-    /// of the last point before the goal (ASSUMED, SPECNOTES).
-    fn stop_parameters(&self, data: &TaskData<'_>) -> Option<TrajParaId> {
-        [self.approach, self.between, self.depart]
-            .into_iter()
-            .find_map(|path| Some(data.path(path).last()?.para))
+    /// The line of the task data that gives a point, from 0, and its parameters; the goal is the last point.
+    #[must_use]
+    pub fn written<'a>(&self, point: u16, data: &TaskData<'a>) -> Option<&'a PathPoint> {
+        let through = self.points(data).nth(usize::from(point)).map(|(_, found)| found);
+        through.or_else(|| self.stop_line(data))
+    }
+
+    /// The line with the parameters of the final motion: the approach's stop line; where no approach is written, the
+    /// last point before the goal (ASSUMED, SPECNOTES).
+    fn stop_line<'a>(&self, data: &TaskData<'a>) -> Option<&'a PathPoint> {
+        [self.approach, self.between, self.depart].into_iter().find_map(|path| data.path(path).last())
     }
 
     /// The points to go through, in the direction of the goal.

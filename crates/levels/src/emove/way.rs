@@ -71,7 +71,10 @@ pub fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
 }
 
 /// The route of a way, from its ends.
-pub(super) fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {
+///
+/// # Errors
+/// The data that are missing.
+pub fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {
     if way.straight {
         let stop = Route::between(&way.from, &way.to, data).map(|route| route.stop)?;
         Ok(Route::straight(&way.from, &way.to, stop))
