@@ -64,7 +64,7 @@ fn what_is_near_enough_is_said_in_the_cell_description() {
     let outcome = run("linkbar", 1, "finished-near", |scratch| {
         scratch.data_with("cell.toml", "placing_tolerance = 0.25", "placing_tolerance = 0.10");
     });
-    assert_fails(&outcome, &["0.15 in from the sector's centre", "within 0.1 in"]);
+    assert_fails(&outcome, &["0.15 in from the sector's centre", "within 0.10 in"]);
 }
 
 #[test]

@@ -15,6 +15,7 @@ mod linkbar;
 mod live;
 mod neighbours;
 mod operator;
+mod output;
 mod readme;
 mod remedies;
 mod replays;

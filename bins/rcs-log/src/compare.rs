@@ -77,7 +77,7 @@ pub fn compare(arguments: &Arguments) -> Result<ExitCode, Error> {
     let traces: Vec<Trace> = traces.into_iter().collect::<Result<_, _>>().map_err(|source| {
         let details = source.details();
         if !details.is_empty() {
-            os_io::stderr_line!("{}", details.trim_end());
+            os_io::console::stderr_drawn(details.trim_end());
         }
         Error::Start { source: Box::new(source) }
     })?;

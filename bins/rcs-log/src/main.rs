@@ -231,12 +231,11 @@ fn main() -> ExitCode {
 
 /// Prints an answer as JSON or as text.
 fn print<T: serde::Serialize + std::fmt::Display>(answer: &T, json: bool) -> Result<(), Error> {
-    let text = if json {
-        serde_json::to_string(answer).map_err(io::Error::from)? + "\n"
-    } else {
-        answer.to_string()
-    };
-    Ok(os_io::console::answer(&text)?)
+    if json {
+        let text = serde_json::to_string(answer).map_err(io::Error::from)?;
+        return Ok(os_io::console::json(&(text + "\n"))?);
+    }
+    Ok(os_io::console::answer(&answer.to_string())?)
 }
 
 #[cfg(test)]

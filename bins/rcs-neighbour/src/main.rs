@@ -108,7 +108,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             if let Error::Data { report, .. } = &error {
-                os_io::stderr_line!("{}", report.render_for_stderr().trim_end());
+                os_io::console::stderr_drawn(report.render_for_stderr().trim_end());
             }
             os_io::stderr_line!("rcs-neighbour: {error}");
             ExitCode::from(error.status())

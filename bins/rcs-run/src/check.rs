@@ -21,7 +21,8 @@ use diagnostics::{
 };
 use egm_robot::{RobotFile, placement::PlacementError};
 use os_io::{
-    console, files,
+    console::{self, shown},
+    files,
     replace::{Format, check_output, replace},
 };
 use paths::known::Known;
@@ -38,9 +39,10 @@ use runtime::{
 };
 
 use crate::{
+    answer_long_json,
     cli::CheckArguments,
     error::{Error, UNUSABLE},
-    explain, long_json, pose,
+    explain, pose,
     reach::Reach,
     ways,
 };
@@ -100,10 +102,12 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     let mut outcome = checked.outcome();
     let robot = arguments.robot.as_ref().filter(|_| outcome.ok);
     outcome.reach = robot.map(|robot| Reach::of(&arguments.data, robot)).transpose()?;
-    let in_words = || {
-        checked.text(arguments.all) + &outcome.reach.as_ref().map_or_else(String::new, ToString::to_string)
-    };
-    console::answer(&if arguments.json { long_json(&outcome)? } else { in_words() })?;
+    if arguments.json {
+        answer_long_json(&outcome)?;
+    } else {
+        console::drawn(&checked.text(arguments.all))?;
+        console::answer(&outcome.reach.as_ref().map_or_else(String::new, ToString::to_string))?;
+    }
     let is_reached = outcome.reach.as_ref().is_none_or(Reach::is_complete);
     if let Some(robot) = arguments.robot.as_ref().filter(|_| !is_reached) {
         os_io::stderr_line!(
@@ -224,26 +228,27 @@ impl Checked {
         grouped(&blames).into_iter().map(of_datum).collect()
     }
 
-    /// The findings of each datum, the worst datum first, and a summary of each report. Only the first finding of a
-    /// datum is printed, unless `all` are.
+    /// The findings of each datum, the worst datum first, and a summary of each report, as a person reads it. Only the
+    /// first finding of a datum is printed, unless `all` are.
     fn text(&self, all: bool) -> String {
         let graphical = io::stdout().is_terminal();
         let findings = self.findings();
         let mut text = String::new();
         let mut left_out = 0;
         for OfDatum { datum, findings: count, of, positions, .. } in self.by_datum() {
-            text += &format!("{datum}: {count} of {}\n", amount(of, "finding"));
-            let shown = if all { count } else { 1 };
-            left_out += count - shown;
-            for one in positions.iter().take(shown).filter_map(|&at| findings.get(at)) {
-                text += &one.render(graphical);
+            text += &shown(&format!("{datum}: {count} of {}\n", amount(of, "finding")));
+            let printed = if all { count } else { 1 };
+            left_out += count - printed;
+            for one in positions.iter().take(printed).filter_map(|&at| findings.get(at)) {
+                let one = one.render(graphical);
+                text += &if graphical { one } else { shown(&one).into_owned() };
             }
         }
         if left_out > 0 {
             text += &format!("{left_out} more of these data: --all prints them\n");
         }
         for (what, report) in &self.reports {
-            text += &format!("{what}: {}\n", report.summary().trim_end());
+            text += &shown(&format!("{what}: {}\n", report.summary().trim_end()));
         }
         text
     }

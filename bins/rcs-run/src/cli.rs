@@ -382,8 +382,8 @@ pub struct SendArguments {
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct PoseArguments {
-    /// The tool point, inches [default: the pose of --of, or the pose that was recorded in a run]
-    #[arg(value_names = ["X", "Y", "Z"], num_args = 3)]
+    /// The tool point, in the units of --units [default: the pose of --of, or the pose that was recorded in a run]
+    #[arg(value_names = ["X", "Y", "Z"], num_args = 3, value_parser = cli_pages::length)]
     pub point: Vec<f64>,
     /// Direction in which the tool leans, degrees from the X axis of the world; the finger point is horizontal, 90
     /// degrees further

@@ -36,7 +36,7 @@ use crate::{
     cli::{Cli, Command},
     error::Error,
 };
-use os_io::stderr_line;
+use os_io::{console::stderr_drawn, stderr_line};
 
 // Counts the allocations of the controller; the result of every run contains the count.
 #[global_allocator]
@@ -53,7 +53,7 @@ fn main() -> ExitCode {
             // The reason is the last line on standard error, after any details.
             let details = error.details();
             if !details.is_empty() {
-                stderr_line!("{}", details.trim_end());
+                stderr_drawn(details.trim_end());
             }
             stderr_line!("rcs-run: {error}");
             ExitCode::from(error.status())
@@ -63,17 +63,17 @@ fn main() -> ExitCode {
 
 /// Print an answer: as one line of JSON, or as text.
 fn answer<T: serde::Serialize + std::fmt::Display>(answer: &T, json: bool) -> Result<(), Error> {
-    let text = if json {
-        serde_json::to_string(answer).map_err(std::io::Error::from)? + "\n"
-    } else {
-        answer.to_string()
-    };
-    Ok(os_io::console::answer(&text)?)
+    if json {
+        let text = serde_json::to_string(answer).map_err(std::io::Error::from)?;
+        return Ok(os_io::console::json(&(text + "\n"))?);
+    }
+    Ok(os_io::console::answer(&answer.to_string())?)
 }
 
-/// A long answer as JSON on several lines.
-fn long_json(answer: &impl serde::Serialize) -> Result<String, Error> {
-    Ok(serde_json::to_string_pretty(answer).map_err(std::io::Error::from)? + "\n")
+/// Print a long answer as JSON on several lines.
+fn answer_long_json(answer: &impl serde::Serialize) -> Result<(), Error> {
+    let text = serde_json::to_string_pretty(answer).map_err(std::io::Error::from)?;
+    Ok(os_io::console::json(&(text + "\n"))?)
 }
 
 fn execute(cli: Cli) -> Result<ExitCode, Error> {

@@ -8,6 +8,7 @@ use executive::memory::{Attached, OnStuck, SET_UP_LIMIT, within_limit};
 use geometry::{
     frame::{Frame, Vector, rotation_from_x_y},
     pose::Pose,
+    units::Length,
 };
 use os_io::console;
 use paths::stand::{self, Standing};
@@ -108,10 +109,13 @@ fn named<'a>(name: &str, store: &'a Store) -> Result<&'a PoseRecord, Error> {
 /// # Errors
 /// A message about the number that is out of range.
 pub fn standing([x, y, z]: [f64; 3], azimuth: f64, tilt: f64, roll: f64) -> Result<Frame, String> {
-    let given = [x, y, z, azimuth, tilt, roll];
-    if let Some(found) = given.iter().find(|number| !(-FARTHEST..=FARTHEST).contains(*number)) {
-        let expected = format!("numbers from -{FARTHEST} to {FARTHEST} were expected");
-        return Err(format!("{expected}, inches and degrees; found {found}"));
+    let wrong =
+        |numbers: [f64; 3]| numbers.into_iter().find(|number| !(-FARTHEST..=FARTHEST).contains(number));
+    if let Some(found) = wrong([x, y, z]) {
+        return Err(format!("coordinates up to {} were expected, found {}", Length(FARTHEST), Length(found)));
+    }
+    if let Some(found) = wrong([azimuth, tilt, roll]) {
+        return Err(format!("angles up to {FARTHEST} degrees were expected, found {found} degrees"));
     }
     let [azimuth, tilt, roll] = [azimuth, tilt, roll].map(f64::to_radians);
     let pointing = Vector::new(tilt.sin() * azimuth.cos(), tilt.sin() * azimuth.sin(), -tilt.cos());

@@ -9,6 +9,7 @@ use executive::failure;
 use indicatif::{ProgressBar, ProgressStyle};
 use interfaces::{CommonMemory, HwsCommand};
 use levels::ladder::ProcessId;
+use os_io::console::shown;
 use runtime::{Observer, TickReport};
 
 /// Time between two updates.
@@ -41,7 +42,7 @@ impl Observer for Progress {
     /// Print a permanent line above the progress line.
     fn message(&mut self, text: &str) {
         match &self.bar {
-            Some(bar) => bar.println(format!("rcs-run: {text}")),
+            Some(bar) => bar.println(shown(&format!("rcs-run: {text}"))),
             None => os_io::stderr_line!("rcs-run: {text}"),
         }
     }
@@ -55,8 +56,8 @@ impl Observer for Progress {
         self.shown = Instant::now();
         bar.set_length(report.lines as u64 + 1);
         bar.set_position(report.steps.len() as u64);
-        bar.set_prefix(report.steps.last().map_or_else(String::new, |step| step.text.clone()));
-        bar.set_message(levels(report.hws, report.memory));
+        bar.set_prefix(report.steps.last().map_or_else(String::new, |step| shown(&step.text).into_owned()));
+        bar.set_message(shown(&levels(report.hws, report.memory)).into_owned());
     }
 }
 

@@ -46,12 +46,11 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
 }
 
 fn print(outcome: &RunOutcome, json: bool) -> Result<(), Error> {
-    let text = if json {
-        serde_json::to_string(&outcome.result).map_err(io::Error::from)? + "\n"
-    } else {
-        Page(outcome).to_string()
-    };
-    Ok(os_io::console::answer(&text)?)
+    if json {
+        let text = serde_json::to_string(&outcome.result).map_err(io::Error::from)?;
+        return Ok(os_io::console::json(&(text + "\n"))?);
+    }
+    Ok(os_io::console::answer(&Page(outcome).to_string())?)
 }
 
 /// The exit status; the reason is the last line on standard error.

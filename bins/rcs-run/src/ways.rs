@@ -21,9 +21,9 @@ use serde::Serialize;
 use taskdata::load::{Job, Store};
 
 use crate::{
+    answer_long_json,
     cli::CheckArguments,
     error::{Error, UNUSABLE},
-    long_json,
 };
 
 /// The findings in the motions of jobs, in their order, and in the stored routes. `known` contains motions that were
@@ -103,11 +103,11 @@ pub fn explain(arguments: &CheckArguments, name: &str) -> Result<ExitCode, Error
     let (job, _) = Job::load(&path, &store).map_err(unusable(format!("the job {}", path.display())))?;
     let cell = cell(data)?;
     let walked = walk_job(&job, &store, &Room::new(&cell), &Known::default());
-    console::answer(&if arguments.json {
-        long_json(&Explained { job: &walked, never_checked: NOT_CHECKED })?
+    if arguments.json {
+        answer_long_json(&Explained { job: &walked, never_checked: NOT_CHECKED })?;
     } else {
-        in_words(&walked)
-    })?;
+        console::answer(&in_words(&walked))?;
+    }
     let missing = |line: &JobLine| line.phases.iter().any(|phase| phase.plan.missing.is_some());
     let failed = walked.findings.iter().any(|finding| finding.error) || walked.lines.iter().any(missing);
     Ok(ExitCode::from(if failed { UNUSABLE } else { 0 }))
@@ -166,7 +166,7 @@ fn in_words(walked: &WalkedJob) -> String {
 fn in_a_row(segment: &Segment, seconds: f64) -> String {
     let Segment { part, from, to, joint, margin_deg, nearest, .. } = segment;
     let nearest = nearest.as_ref().map_or_else(
-        || "nothing within 2 in".to_owned(),
+        || "nothing within 2.00 in".to_owned(),
         |near| format!("{} {:.2} in from {}", near.mover, near.clearance_in, near.obstacle),
     );
     format!(

@@ -5,7 +5,9 @@
 mod markdown;
 
 use std::{
-    env, fs, io,
+    env,
+    ffi::OsString,
+    fs, io,
     path::{Path, PathBuf},
     process,
 };
@@ -13,8 +15,10 @@ use std::{
 use clap::{
     Arg, Command, Parser, ValueEnum,
     builder::{PathBufValueParser, TypedValueParser},
+    error::ErrorKind,
 };
 use clap_complete::{Generator, Shell};
+use os_io::units::Units;
 
 pub use markdown::markdown;
 
@@ -28,11 +32,21 @@ pub const VERSION: &str = if env!("RCS_COMMIT").is_empty() {
 /// The option that writes the pages; it stands first and alone.
 const GENERATE: &str = "generate";
 
-/// Read the command line; with `--generate DIR` write the pages there and end the process.
+/// The option and the variable with the units that a person reads and types.
+const UNITS: &str = "units";
+const UNITS_VARIABLE: &str = "RCS_UNITS";
+
+/// Read the command line; with `--generate DIR` write the pages there and end the process. Sets the units of the
+/// process by `--units`, or else by `RCS_UNITS`.
 #[must_use]
 pub fn parse<P: Parser>() -> P {
     let arguments: Vec<_> = env::args_os().collect();
     let mut command = command::<P>();
+    // Lengths in the other arguments have these units, so they are set first. A wrong value is refused below.
+    match units(&arguments, env::var_os(UNITS_VARIABLE)) {
+        Ok(units) => units.show(),
+        Err(wrong) => command.error(ErrorKind::InvalidValue, wrong).exit(),
+    }
     if let [_, option, directory] = arguments.as_slice()
         && option.to_str() == Some("--generate")
     {
@@ -46,6 +60,33 @@ pub fn parse<P: Parser>() -> P {
     }
     let mut matches = command.get_matches_mut();
     P::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| error.format(&mut command).exit())
+}
+
+/// The units of a command line: those of the option, else those of the variable, else inches. A wrong value of the
+/// option is left to the command line.
+///
+/// # Errors
+/// The variable has a wrong value.
+fn units(arguments: &[OsString], variable: Option<OsString>) -> Result<Units, String> {
+    let texts = || arguments.iter().skip(1).map(|argument| argument.to_str().unwrap_or_default());
+    let option = format!("--{UNITS}");
+    let follows = texts().zip(texts().skip(1)).find(|(name, _)| *name == option).map(|(_, value)| value);
+    let joined = || texts().find_map(|text| text.strip_prefix(&option)?.strip_prefix('='));
+    if let Some(value) = follows.or_else(joined) {
+        return Ok(value.parse().unwrap_or_default());
+    }
+    let variable = variable.filter(|value| !value.is_empty());
+    variable.map_or(Ok(Units::default()), |value| {
+        value.to_string_lossy().parse().map_err(|wrong| format!("{UNITS_VARIABLE}: {wrong}"))
+    })
+}
+
+/// The value of an argument that is a length: in inches, typed in the units of the command line.
+///
+/// # Errors
+/// What was expected.
+pub fn length(text: &str) -> Result<f64, String> {
+    Units::of_process().length(text)
 }
 
 /// The value of an option that names a file or directory: if it is not there, a carried one of that name counts.
@@ -62,7 +103,16 @@ pub fn command<P: Parser>() -> Command {
         .value_name("DIR")
         .exclusive(true)
         .help("Write manual pages, shell completions and the reference page into a directory, and exit");
-    P::command().version(VERSION).arg(generate)
+    let units = Arg::new(UNITS)
+        .long(UNITS)
+        .value_name("UNIT")
+        .global(true)
+        .value_parser(Units::WORDS)
+        .help(
+            "Units that texts show and that lengths are typed in: `in` (also in/s and lb) or `mm` (also mm/s and N); \
+             files, logs and JSON keep the manual's units [default: RCS_UNITS, else in]",
+        );
+    P::command().version(VERSION).arg(generate).arg(units)
 }
 
 /// Write `man/*.1`, `completions/*` and `PROGRAM.md` into a directory.
@@ -107,6 +157,25 @@ mod tests {
             #[arg(long, value_name = "N", default_value_t = 1)]
             times: u8,
         },
+    }
+
+    #[test]
+    fn the_option_decides_over_the_variable() {
+        let of = |arguments: &[&str], variable: Option<&str>| {
+            let arguments: Vec<OsString> = arguments.iter().map(OsString::from).collect();
+            units(&arguments, variable.map(OsString::from))
+        };
+        assert_eq!(of(&["program"], None), Ok(Units::Inches));
+        assert_eq!(of(&["program"], Some("mm")), Ok(Units::Millimetres));
+        assert_eq!(of(&["program", "one", "--units", "in"], Some("mm")), Ok(Units::Inches));
+        assert_eq!(of(&["program", "--units=mm", "one"], None), Ok(Units::Millimetres));
+        assert_eq!(of(&["program"], Some("")), Ok(Units::Inches));
+        assert_eq!(
+            of(&["program"], Some("cm")),
+            Err("RCS_UNITS: in or mm was expected, found cm".to_owned())
+        );
+        let wrong = command::<Program>().try_get_matches_from(["program", "--units", "cm", "one"]);
+        assert_eq!(wrong.unwrap_err().kind(), ErrorKind::InvalidValue);
     }
 
     #[test]

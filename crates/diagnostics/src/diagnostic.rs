@@ -3,6 +3,7 @@
 use std::{fmt, ops::Range, sync::Arc};
 
 use miette::{LabeledSpan, NamedSource, Severity as MietteSeverity, SourceCode, SourceSpan};
+use os_io::{console::shown, text::plain};
 
 use crate::{
     places::{Places, Position},
@@ -159,6 +160,18 @@ impl Diagnostic {
             Some(Position { line, column, .. }) => format!("{}: line {line}, column {column}", self.file),
             None => self.file.clone(),
         }
+    }
+
+    /// The finding as a person reads it: the source without control characters, the messages also in the units of the
+    /// person. Byte positions remain.
+    pub(super) fn shown(&self) -> Self {
+        let mut finding = self.clone();
+        finding.problem.message = shown(&self.problem.message).into_owned();
+        finding.problem.help = self.problem.help.as_deref().map(|help| shown(help).into_owned());
+        let source = self.source.as_ref();
+        finding.source =
+            source.map(|source| NamedSource::new(plain(source.name()), plain(source.inner()).into()));
+        finding
     }
 
     /// Place, message and help in one line.

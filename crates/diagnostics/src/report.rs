@@ -3,6 +3,7 @@
 use std::{fmt, io::IsTerminal};
 
 use miette::{GraphicalReportHandler, GraphicalTheme};
+use os_io::console::shown;
 
 use crate::{Diagnostic, Places, Problems, Severity, Source};
 
@@ -36,19 +37,22 @@ pub struct Diagnostics {
 }
 
 impl Diagnostic {
-    /// The finding as text: with source frame and colour if `graphical`, else in plain text.
+    /// The finding as text: with source frame and colour if `graphical`, else in plain text. The graphical form is made
+    /// for the terminal of a person, as [`os_io::console::shown`] makes it, and is written with
+    /// [`os_io::console::drawn`].
     #[must_use]
     pub fn render(&self, graphical: bool) -> String {
         if !graphical {
             return Plain(self).to_string();
         }
+        let shown = self.shown();
         let colourless = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         let theme = if colourless { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
         let handler = GraphicalReportHandler::new_themed(theme);
         let mut out = String::new();
         // Writing to a String cannot fail; a finding that cannot be drawn is given as plain text.
-        if handler.render_report(&mut out, self).is_err() {
-            out.push_str(self.message());
+        if handler.render_report(&mut out, &shown).is_err() {
+            out.push_str(shown.message());
         }
         out + "\n"
     }
@@ -129,10 +133,13 @@ impl Diagnostics {
         all.join("; ")
     }
 
-    /// The report for standard error: graphical on a terminal.
+    /// The report for standard error, graphical on a terminal; [`os_io::console::stderr_drawn`] writes it.
     #[must_use]
     pub fn render_for_stderr(&self) -> String {
-        self.render(std::io::stderr().is_terminal())
+        match std::io::stderr().is_terminal() {
+            true => self.render(true),
+            false => shown(&self.to_string()).into_owned(),
+        }
     }
 
     /// Numbers of errors, warnings, blocks, files and records, in one or two lines.

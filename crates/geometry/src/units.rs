@@ -1,7 +1,7 @@
 //! Conversions between the manual's integers and the controller's inches and radians. No other module converts them
 //! (docs/design/units.md "Manual").
 
-use core::f64::consts::PI;
+use core::{f64::consts::PI, fmt};
 
 /// Hundredths of an inch per inch (VII.1).
 const PER_INCH: f64 = 100.0;
@@ -36,6 +36,36 @@ pub fn hundredths_of_degree(radians: f64) -> i32 {
     rounded(radians * (PER_HALF_TURN / PI))
 }
 
+/// A length as text: a number with a decimal point, and its unit: `2.50 in`; two digits, or those of the format's
+/// precision. A program converts such texts for the person who reads them (docs/design/units.md "Text"): `in` after a
+/// number without a point is the preposition.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Length(
+    /// Inches.
+    pub f64,
+);
+
+impl fmt::Display for Length {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = f.precision().unwrap_or(2).max(1);
+        write!(f, "{:.digits$} in", self.0)
+    }
+}
+
+/// A point as text: `(1.00, 2.00, 3.00 in)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point(
+    /// X, Y, Z, inches.
+    pub [f64; 3],
+);
+
+impl fmt::Display for Point {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.0;
+        write!(f, "({x:.2}, {y:.2}, {z:.2} in)")
+    }
+}
+
 /// The nearest integer (halves away from zero); saturates, and NaN gives 0.
 #[must_use]
 #[expect(
@@ -50,6 +80,18 @@ pub fn rounded(value: f64) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lengths_in_texts_have_a_decimal_point_and_their_unit() {
+        let texts = std::format!(
+            "{} {:.3} {:.0} {}",
+            Length(2.0),
+            Length(-0.5),
+            Length(7.0),
+            Point([1.0, -2.5, 0.0])
+        );
+        assert_eq!(texts, "2.00 in -0.500 in 7.0 in (1.00, -2.50, 0.00 in)");
+    }
 
     #[test]
     fn rounds_to_the_nearest_and_saturates() {

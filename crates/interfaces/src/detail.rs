@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use geometry::units::Length;
 use rcs_core::name::{Name10, Name16};
 
 use crate::{
@@ -120,7 +121,7 @@ impl fmt::Display for Detail {
     }
 }
 
-/// `HOME is 4.41 in (-X 4.40, +Z 0.30) and 0.5 degrees away`: the way there along the world's axes, those of the
+/// `HOME is 4.41 in (-X 4.40 in, +Z 0.30 in) and 0.5 degrees away`: the way there along the world's axes, those of the
 /// joystick box in its frame `WORLD` (III.3.3).
 impl fmt::Display for NearPlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -130,7 +131,7 @@ impl fmt::Display for NearPlace {
         for (axis, along) in ["X", "Y", "Z"].into_iter().zip(offset) {
             if along.abs() >= LEAST_SHOWN {
                 let sign = if *along < 0.0 { '-' } else { '+' };
-                write!(f, "{separator}{sign}{axis} {:.2}", along.abs())?;
+                write!(f, "{separator}{sign}{axis} {}", Length(along.abs()))?;
                 separator = ", ";
             }
         }
@@ -186,7 +187,7 @@ mod tests {
         memory.emove.nearest =
             [near("HOME", 1.234, 0.5, [-1.2, 0.004, 0.3]), near("SAFE", 20.0, 90.0, [0.0; 3])];
         assert!(said(ProcessId::Task, Reason::UnknownStart, &hws, &memory).starts_with(
-            ": HOME is 1.23 in (-X 1.20, +Z 0.30) and 0.5 degrees away; SAFE is 20.00 in and 90.0 degrees away (move it"
+            ": HOME is 1.23 in (-X 1.20 in, +Z 0.30 in) and 0.5 degrees away; SAFE is 20.00 in and 90.0 degrees away (move it"
         ));
     }
 

@@ -2,7 +2,11 @@
 
 use core::fmt;
 
-use geometry::{frame::Distance, pose::WireFrame, units::inches};
+use geometry::{
+    frame::Distance,
+    pose::WireFrame,
+    units::{Point, inches},
+};
 use rcs_core::{Plain, handshake::Lower, tick::Tick};
 
 pub use depc::link::{LinkCounters, LinkFault};
@@ -161,10 +165,8 @@ impl fmt::Display for PathLeft {
             let Distance { inches, radians } = commanded.distance(&fed_back);
             write!(f, "{inches:.2} in and {:.1} degrees from ", radians.to_degrees())?;
         }
-        let [x, y, z] = self.commanded.tool.map(inches);
-        write!(f, "the commanded pose ({x:.2}, {y:.2}, {z:.2} in)")?;
-        let [x, y, z] = self.fed_back.tool.map(inches);
-        write!(f, ", fed back ({x:.2}, {y:.2}, {z:.2} in)")
+        let [commanded, fed_back] = [self.commanded, self.fed_back].map(|pose| Point(pose.tool.map(inches)));
+        write!(f, "the commanded pose {commanded}, fed back {fed_back}")
     }
 }
 

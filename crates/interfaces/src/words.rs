@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use geometry::units::Length;
 use rcs_core::name::Name;
 
 /// The object or the sensor of a command after its verb, if it has one.
@@ -28,7 +29,7 @@ pub(super) struct Inches(pub i32);
 
 impl fmt::Display for Inches {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:.2} in", geometry::units::inches(self.0))
+        Length(geometry::units::inches(self.0)).fmt(f)
     }
 }
 

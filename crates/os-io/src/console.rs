@@ -5,10 +5,21 @@
 //! | a message | [`stderr_line!`](crate::stderr_line) | lost | lost |
 //! | a line of a process that continues | [`stdout_line!`](crate::stdout_line) | lost | lost |
 //! | the answer of a tool, the result of a run | [`answer`] | no error: the reader has read enough | an error |
+//! | an answer for programs | [`json`] | likewise | an error |
+//!
+//! Text for a person passes [`shown`]: control characters are replaced ([`crate::text`]), and quantities are in the
+//! unit that the person has chosen ([`crate::units`]). A report that was drawn with colours has passed it before:
+//! [`drawn`] and [`stderr_drawn`] write it as it is.
 
 use std::{
+    borrow::Cow,
     fmt::Arguments,
     io::{self, ErrorKind, Write},
+};
+
+use crate::{
+    text::{escaped_json, plain},
+    units,
 };
 
 /// Writes a formatted line to standard error. If the write fails, the line is lost.
@@ -26,27 +37,58 @@ macro_rules! stdout_line {
 /// Function behind [`stderr_line!`](crate::stderr_line).
 pub fn stderr_line(message: Arguments<'_>) {
     // Nowhere is left to report the error to.
-    let _ = line(&mut io::stderr().lock(), message);
+    let _ = line(&mut io::stderr().lock(), &shown(&message.to_string()));
+}
+
+/// Writes a report that was drawn for a terminal to standard error, as a line. If the write fails, it is lost.
+pub fn stderr_drawn(report: &str) {
+    // Nowhere is left to report the error to.
+    let _ = line(&mut io::stderr().lock(), report);
 }
 
 /// Function behind [`stdout_line!`](crate::stdout_line).
 pub fn stdout_line(message: Arguments<'_>) {
     let mut out = io::stdout().lock();
     // An error loses the line, as the documentation of the macro says.
-    let _ = line(&mut out, message).and_then(|()| out.flush());
+    let _ = line(&mut out, &shown(&message.to_string())).and_then(|()| out.flush());
 }
 
-/// Writes the whole text to standard output. A reader that closes the pipe early, such as `head`, is no error.
+/// A text as a person reads it: without control characters, in the units of this process.
+#[must_use]
+pub fn shown(text: &str) -> Cow<'_, str> {
+    match plain(text) {
+        Cow::Borrowed(text) => units::shown(text),
+        Cow::Owned(text) => Cow::Owned(units::shown(&text).into_owned()),
+    }
+}
+
+/// Writes a text for a person to standard output. A reader that closes the pipe early, such as `head`, is no error.
 ///
 /// # Errors
 /// The error of the operating system, for example a full disk.
 pub fn answer(text: &str) -> io::Result<()> {
+    drawn(&shown(text))
+}
+
+/// Writes a report that was drawn for a terminal to standard output, as it is.
+///
+/// # Errors
+/// See [`answer`].
+pub fn drawn(report: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
-    answered(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+    answered(out.write_all(report.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// Writes JSON to standard output. Its values do not change: a control character is written as an escape.
+///
+/// # Errors
+/// See [`answer`].
+pub fn json(text: &str) -> io::Result<()> {
+    drawn(&escaped_json(text))
 }
 
 /// Writes a line with one call of `write`, so that lines of several processes on one terminal do not mix.
-fn line(out: &mut impl Write, message: Arguments<'_>) -> io::Result<()> {
+fn line(out: &mut impl Write, message: &str) -> io::Result<()> {
     out.write_all(format!("{message}\n").as_bytes())
 }
 
@@ -78,7 +120,7 @@ mod tests {
     #[test]
     fn a_line_is_one_write() {
         let mut calls = Calls(Vec::new());
-        line(&mut calls, format_args!("{} of {}", 1, "two")).unwrap();
+        line(&mut calls, "1 of two").unwrap();
         assert_eq!(calls.0, [b"1 of two\n"]);
     }
 

@@ -11,3 +11,5 @@ pub mod carried;
 pub mod console;
 pub mod files;
 pub mod replace;
+pub mod text;
+pub mod units;

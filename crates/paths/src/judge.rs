@@ -290,7 +290,7 @@ pub(crate) fn in_words(trouble: Trouble) -> (String, String, f64) {
                 None => "the arm is too short, or too long".to_owned(),
             };
             let text = format!(
-                "{what} at ({x:.2}, {y:.2}, {z:.2}): the robot controller stops with warning {code}, and the link is lost"
+                "{what} at ({x:.2}, {y:.2}, {z:.2} in): the robot controller stops with warning {code}, and the link is lost"
             );
             (text, code.to_owned(), joint.map_or(0.0, |(_, by)| by))
         }

@@ -1,6 +1,7 @@
 //! Checks what must be true in the cell before a step: a part for the fingers, open jaws and drum for a part that is
 //! carried away, support for a part that is released.
 
+use geometry::units::Length;
 use interfaces::emove::EmoveVerb;
 use plant::{
     description::Kind,
@@ -80,7 +81,7 @@ impl State<'_> {
         near.is_empty().then(|| {
             let name = &part.kind.name;
             finding(
-                format!("RELEASE {name}: nothing is within {DROP} in of {name}, which falls"),
+                format!("RELEASE {name}: nothing is within {} of {name}, which falls", Length(DROP)),
                 "send it to a tray, a vise, a nest or the pedestal",
             )
         })

@@ -8,6 +8,7 @@ use geometry::{
     kinematics::{HOME_JOINTS, JOINT_NAMES, T3},
     movetable::{MovetableLine, System},
     pose::Pose,
+    units::{Length, Point, inches},
 };
 use plant::{
     clearance::Contact,
@@ -93,6 +94,7 @@ impl fmt::Display for Standing {
         for (point, [x, y, z]) in ["wrist ", "tool  ", "finger"].iter().zip(self.points) {
             writeln!(f, "{point} {x:>8} {y:>8} {z:>8}   0.01 in")?;
         }
+        writeln!(f, "at      {}", Point(self.points[1].map(inches)))?;
         if let Some(why) = &self.unreachable {
             writeln!(f, "arm     {why}")?;
         }
@@ -119,7 +121,7 @@ impl fmt::Display for Standing {
             Some((mover, obstacle, inches)) => {
                 writeln!(f, "cell    {mover} is {inches:.2} in from {obstacle}")?
             }
-            None if self.joints.is_some() => writeln!(f, "cell    nothing within {NEAR:.0} in")?,
+            None if self.joints.is_some() => writeln!(f, "cell    nothing within {}", Length(NEAR))?,
             None => {}
         }
         let named = self.named.iter().map(|(name, inches)| format!("{name} {inches:.2} in"));

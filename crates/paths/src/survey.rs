@@ -3,7 +3,7 @@
 
 use std::{collections::BTreeMap, fmt};
 
-use geometry::kinematics::Joints;
+use geometry::{kinematics::Joints, units::Point};
 use plant::{
     clearance::{Body, Contact},
     description::Kind,
@@ -54,15 +54,12 @@ impl From<&Contact> for Passing {
 
 impl fmt::Display for Passing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { mover, obstacle, clearance_in, position_in: [x, y, z] } = self;
+        let Self { mover, obstacle, clearance_in, position_in } = self;
+        let at = Point(*position_in);
         if *clearance_in < 0.0 {
-            write!(
-                f,
-                "{mover} runs into {obstacle}, {:.2} in deep at ({x:.2}, {y:.2}, {z:.2})",
-                -clearance_in
-            )
+            write!(f, "{mover} runs into {obstacle}, {:.2} in deep at {at}", -clearance_in)
         } else {
-            write!(f, "{mover} passes {obstacle} by {clearance_in:.2} in at ({x:.2}, {y:.2}, {z:.2})")
+            write!(f, "{mover} passes {obstacle} by {clearance_in:.2} in at {at}")
         }
     }
 }

@@ -5,6 +5,7 @@ use geometry::{
     frame::Frame,
     kinematics::{HOME_JOINTS, JOINT_NAMES, T3},
     pose::Pose,
+    units::{Length, inches},
 };
 use interfaces::{
     Reason,
@@ -130,11 +131,11 @@ impl<'a> Walk<'a> {
         {
             phase.what = match verb {
                 EmoveVerb::GraspObj => format!(
-                    "GRASP-OBJ {object} with grip {grip:+}: to {} in with {} lb",
-                    inches(para.grasp_size),
+                    "GRASP-OBJ {object} with grip {grip:+}: to {} with {} lb",
+                    Length(inches(para.grasp_size)),
                     para.grasp_force
                 ),
-                _ => format!("RELEASE {object}: to {} in", inches(para.depart_size)),
+                _ => format!("RELEASE {object}: to {}", Length(inches(para.depart_size))),
             };
             self.entry(&mut phase, "grasp", &self.store.origins().end_effs, id.index());
         }
@@ -302,12 +303,6 @@ fn refusal(verb: EmoveVerb, route: Planning) -> Reason {
         Verdict::Decided(Decision { action: Action::Refuse(reason), .. }) => reason,
         Verdict::Decided(_) | Verdict::Passed(()) => Reason::None,
     }
-}
-
-/// Hundredths of an inch as text in inches.
-#[must_use]
-pub fn inches(hundredths: i32) -> String {
-    format!("{:.2}", f64::from(hundredths) / 100.0)
 }
 
 /// The legs with the number of ticks of each.

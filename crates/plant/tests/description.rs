@@ -104,7 +104,7 @@ fn a_value_out_of_range_is_told_with_the_range() {
         told,
         [
             "[-81.25, -0.25]",
-            "tray[1].sectors[0]: expected a point in the tray, within 10.5 in of -56, 5, found [-81.25, -0.25]"
+            "tray[1].sectors[0]: expected a point in the tray, within 10.50 in of -56.00, 5.00 in, found [-81.25, -0.25]"
         ]
     );
 }

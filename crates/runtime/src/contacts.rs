@@ -11,6 +11,7 @@
 use std::{collections::BTreeMap, fmt};
 
 use executive::failure::Failure;
+use geometry::units::Point;
 use interfaces::{CommonMemory, StatusReport, emove::EmoveVerb, subtask::SubtaskVerb};
 use plant::{clearance::Contact, description::Permits};
 use rcs_core::tick::Tick;
@@ -97,10 +98,11 @@ impl Collision {
 
 impl fmt::Display for Collision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { mover, obstacle, depth_in, position_in: [x, y, z], commands, .. } = self;
+        let Self { mover, obstacle, depth_in, position_in, commands, .. } = self;
         write!(
             f,
-            "{mover} runs into {obstacle}, {depth_in:.3} in deep, at ({x:.2}, {y:.2}, {z:.2}), during {commands}"
+            "{mover} runs into {obstacle}, {depth_in:.3} in deep, at {}, during {commands}",
+            Point(*position_in)
         )
     }
 }
@@ -251,10 +253,11 @@ impl ContactCheck {
             1 => format!("; and one contact more, {deepest:.3} in deep"),
             more => format!("; and {more} contacts more, up to {deepest:.3} in deep"),
         };
-        let Collision { mover, obstacle, depth_in, position_in: [x, y, z], tick, commands, .. } = first;
+        let Collision { mover, obstacle, depth_in, position_in, tick, commands, .. } = first;
         let text = format!(
-            "the robot ran into {obstacle}: {mover} was {depth_in:.3} in deep at ({x:.2}, {y:.2}, {z:.2}), from tick \
-             {tick} on, during {commands}{more}"
+            "the robot ran into {obstacle}: {mover} was {depth_in:.3} in deep at {}, from tick \
+             {tick} on, during {commands}{more}",
+            Point(*position_in)
         );
         let process = "cell".to_owned();
         Some(Failure { tick: Tick(*tick), process, table: None, row: None, text, stopped: false })
@@ -372,7 +375,7 @@ mod tests {
         assert_eq!(
             lines,
             [
-                "left_finger runs into BAR, 0.300 in deep, at (1.00, 2.00, 3.00), during MOV-TO-LOC of GOTO-DEST",
+                "left_finger runs into BAR, 0.300 in deep, at (1.00, 2.00, 3.00 in), during MOV-TO-LOC of GOTO-DEST",
                 "left_finger comes free of BAR after 3 ticks; it was 0.700 in deep",
             ]
         );
@@ -382,7 +385,7 @@ mod tests {
         assert_eq!(verdict.tick, Tick(2));
         assert_eq!(
             verdict.text,
-            "the robot ran into BAR: left_finger was 0.700 in deep at (1.00, 2.00, 3.00), from tick 2 on, during \
+            "the robot ran into BAR: left_finger was 0.700 in deep at (1.00, 2.00, 3.00 in), from tick 2 on, during \
              MOV-TO-LOC of GOTO-DEST"
         );
     }

@@ -7,6 +7,7 @@ use neighbours::{
     data_system::{OutboxError, StoreError},
     network::{KeysError, address::AddressError, listener::ListenError},
 };
+use os_io::console::shown;
 use plant::CellError;
 use record::RecordError;
 use taskdata::load::{Diagnostics, amount};
@@ -160,12 +161,12 @@ pub enum StartError {
 }
 
 impl StartError {
-    /// All findings in the data, to print before the error; empty or whole lines.
+    /// All findings in the data, to print with [`os_io::console::stderr_drawn`] before the error; empty or whole lines.
     #[must_use]
     pub fn details(&self) -> String {
         match self {
             Self::Data { report, .. } => report.render_for_stderr(),
-            Self::WrongData { wrong, .. } => wrong.iter().map(|line| format!("{line}\n")).collect(),
+            Self::WrongData { wrong, .. } => wrong.iter().map(|line| format!("{}\n", shown(line))).collect(),
             _ => String::new(),
         }
     }

@@ -304,7 +304,7 @@ impl Workstation for SimulatedWorkstation {
         let droop = self.cell.droop().filter(|droop| faulted && droop.cause.is_emergency())?;
         // Adding zero turns -0.0 into 0.0.
         let [x, y, z] = droop.position.map(|inches| (inches * 10.0).round() / 10.0 + 0.0);
-        Some(format!("{}, with the hand at ({x:.1} {y:.1} {z:.1})", droop.cause))
+        Some(format!("{}, with the hand at ({x:.1} {y:.1} {z:.1} in)", droop.cause))
     }
 }
 
@@ -403,7 +403,7 @@ mod tests {
         let mut bench = Bench::new();
         bench.play("** estop pedestal").unwrap();
         let said = bench.workstation.emergency().unwrap();
-        assert_eq!(said, "the E-stop near the pedestal was pressed, with the hand at (0.0 -71.4 -14.8)");
+        assert_eq!(said, "the E-stop near the pedestal was pressed, with the hand at (0.0 -71.4 -14.8 in)");
         let refused = bench.play("** panel fault-reset").unwrap_err();
         assert_eq!(refused, "the E-stop near the pedestal is still in: release it first");
         bench.play("** release pedestal").unwrap();

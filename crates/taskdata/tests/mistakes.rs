@@ -215,7 +215,7 @@ fn a_pose_is_within_reach() {
 error: poses.blk: block 612 (offset 21000), line 3, column 4: pose UT-1-P: out of reach by 16.91 in
        -9650     -550     1600
        ^^^^^^^^^^^^^^^^^^^^^^^
-    help: its tool point is at (-96.50, -5.50, -14.00) in
+    help: its tool point is at (-96.50, -5.50, -14.00 in)
 "#;
     assert_eq!(said, expected.trim_matches('\n'), "\n{said}");
 }
@@ -251,15 +251,15 @@ fn a_grip_is_within_reach_at_every_sector() {
 error: objects/linkbar.blk: block 260 (offset 20000), line 5, column 9: grip 2 of LINKBAR1_BH at UNIT_1 sector 1: out of reach by 1.28 in
      -grip- LINKBAR1_BH      2     $$$                  LK-GRP-1
             ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
-    help: its tool point is at (-82.25, -0.25, -16.35) in; the same at 3 more places
+    help: its tool point is at (-82.25, -0.25, -16.35 in); the same at 3 more places
 error: objects/linkbar.blk: block 260 (offset 20000), line 9, column 9: grip 2 of LINKBAR1 at UNIT_1 sector 1: out of reach by 1.28 in
      -grip- LINKBAR1         2     $$$                  LK-GRP-1
             ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
-    help: its tool point is at (-82.25, -0.25, -16.35) in; the same at 1 more place
+    help: its tool point is at (-82.25, -0.25, -16.35 in); the same at 1 more place
 error: objects/linkbar.blk: block 260 (offset 20000), line 11, column 9: grip 2 of LINKBAR1 at UNIT_2 sector 1: out of reach by 5.11 in
      -grip- LINKBAR1         2     lpt    UNIT_2        LK-GRP-1
             ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
-    help: its tool point is at (-82.25, -25.25, -16.35) in; the same at 1 more place
+    help: its tool point is at (-82.25, -25.25, -16.35 in); the same at 1 more place
 "#;
     assert_eq!(said, expected.trim_matches('\n'), "\n{said}");
 }

@@ -138,7 +138,7 @@ fn holds(field: &Field, filter: &str) -> bool {
 fn text(way: &str, field: &Field) -> Text {
     let Field { name, value, kind, unit, changed } = field;
     let (mark, tone) = if *changed { ("> ", Tone::Marked) } else { ("  ", Tone::Plain) };
-    Text::new(
+    Text::verbatim(
         tone,
         format!("{mark}{way} {name:<38} {:<20} {kind}", format!("{value} {unit}")).trim_end().to_owned(),
     )

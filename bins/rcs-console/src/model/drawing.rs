@@ -6,6 +6,7 @@ use std::path::Path;
 use geometry::{
     frame::Vector,
     kinematics::{Joints, T3},
+    units::Length,
 };
 use plant::{
     CellDescription,
@@ -215,7 +216,7 @@ impl Drawing {
             Text::new(tone, format!(" {} to {} {:.1} in", contact.mover, contact.obstacle, -contact.depth))
         };
         let lines: Vec<_> = contacts.iter().take(NAMED).map(line).collect();
-        let none = || vec![Text::plain(format!(" nothing within {NEAR:.0} in"))];
+        let none = || vec![Text::plain(format!(" nothing within {}", Length(NEAR)))];
         let lines = if lines.is_empty() { none() } else { lines };
         Section::new("nearest to the robot, with the gripper and the parts of the start", lines)
     }

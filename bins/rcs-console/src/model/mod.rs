@@ -17,7 +17,10 @@ pub mod text_of;
 pub mod units;
 pub mod views;
 
+use std::borrow::Cow;
+
 use interfaces::{ProcessId, device::JoystickBox};
+use os_io::units::shown;
 
 use self::{
     drawing::Drawing,
@@ -125,9 +128,20 @@ pub struct Text {
 }
 
 impl Text {
-    /// A line.
+    /// A line, with its quantities in the units of the person.
     #[must_use]
     pub fn new(tone: Tone, text: impl Into<String>) -> Self {
+        let text = text.into();
+        let text = match shown(&text) {
+            Cow::Borrowed(_) => text,
+            Cow::Owned(shown) => shown,
+        };
+        Self { tone, text }
+    }
+
+    /// A line of a file or a buffer, which keeps the units of the data.
+    #[must_use]
+    pub fn verbatim(tone: Tone, text: impl Into<String>) -> Self {
         Self { tone, text: text.into() }
     }
 

@@ -33,7 +33,7 @@ pub fn section(process: ProcessId, picture: &Picture, filter: &str) -> Section {
                 at = lines.len();
             }
             let (mark, tone) = if is_fired { ('>', Tone::Marked) } else { (' ', Tone::Plain) };
-            lines.push(Text::new(tone, format!("{mark}{number:>4} {line}")));
+            lines.push(Text::verbatim(tone, format!("{mark}{number:>4} {line}")));
         }
         if line.trim_end() == "}" {
             break;

@@ -236,7 +236,7 @@ pub fn lines(of: &[&str], picture: &Picture, last: Option<&Picture>) -> Vec<Text
             let name = manual_name(&field.name).unwrap_or_default();
             let (mark, tone) = if field.changed { ('>', Tone::Marked) } else { (' ', Tone::Plain) };
             let value = format!("{} {}", field.value, field.unit);
-            Text::new(tone, format!("{mark} {name:<22} {:<32} {}", field.name, value.trim_end()))
+            Text::verbatim(tone, format!("{mark} {name:<22} {:<32} {}", field.name, value.trim_end()))
         })
         .collect()
 }

@@ -10,7 +10,10 @@ mod panes;
 mod text;
 mod waiting;
 
+use std::borrow::Cow;
+
 use interfaces::device::DeviceInputs;
+use os_io::{text::plain, units};
 use ratatui::{
     Frame,
     style::{Color, Modifier, Style},
@@ -60,8 +63,12 @@ impl Look {
         Line::styled(self.signs(text.into()), self.style(tone))
     }
 
-    /// The text in the characters of the terminal.
+    /// The text in the characters of the terminal, without control characters.
     fn signs(self, text: String) -> String {
+        let text = match plain(&text) {
+            Cow::Borrowed(_) => text,
+            Cow::Owned(plain) => plain,
+        };
         let sign = |sign: char| match sign {
             '─' => '-',
             '│' => '|',
@@ -241,7 +248,7 @@ fn run(model: &Model, source: &dyn Source, about: &About<'_>, width: usize) -> S
 
 /// The news line: text input, answer to a key, alarm, or ending of the run.
 fn news(model: &Model, source: &dyn Source, about: &About<'_>, look: Look, width: usize) -> Line<'static> {
-    let line = |tone, text: &str| look.line(tone, fit(text, width));
+    let line = |tone, text: &str| look.line(tone, fit(&units::shown(text), width));
     match &model.prompt {
         Some(Prompt::Filter(text)) => {
             return line(Tone::Marked, &format!(" show lines with: {text}_   Enter  Esc"));

@@ -65,7 +65,8 @@ struct Forked {
     tick: u64,
     /// With `--at-failure`: the command that the next tick begins.
     before: Option<String>,
-    changes: Vec<String>,
+    /// The changes of `--set`.
+    set: Vec<String>,
     /// Simulated time divided by computing time.
     times_real_time: f64,
     /// Outcomes of the log and of the fork.
@@ -99,7 +100,7 @@ pub fn fork(arguments: &Arguments) -> Result<ExitCode, Error> {
         job: log.run.get("job").cloned().unwrap_or_default(),
         tick,
         before: command.map(|link| format!("{} {}", link.process, link.text)),
-        changes: arguments.changes.iter().map(ToString::to_string).collect(),
+        set: arguments.changes.iter().map(ToString::to_string).collect(),
         times_real_time: forked.end.seconds() / started.elapsed().as_secs_f64().max(1e-9),
         outcome: [logged.end.outcome.clone(), forked.end.outcome.clone()],
         seconds: [logged.end.seconds(), forked.end.seconds()],
@@ -186,7 +187,7 @@ impl fmt::Display for Forked {
         if let Some(before) = &self.before {
             writeln!(f, "{:<10} {before}", "before")?;
         }
-        self.changes.iter().try_for_each(|change| writeln!(f, "{:<10} {change}", "changed"))?;
+        self.set.iter().try_for_each(|change| writeln!(f, "{:<10} {change}", "changed"))?;
         if let Some(log) = &self.log {
             writeln!(f, "{:<10} {}", "log", log.display())?;
         }

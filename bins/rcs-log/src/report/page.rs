@@ -1,6 +1,7 @@
 //! The HTML page, for light and dark screens and for print. It loads nothing from other files.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use os_io::units::shown;
 use rcs_core::tick::TICK_S;
 use record::{Log, proto::foxglove::Level};
 
@@ -18,7 +19,7 @@ const CONTROLLER_LIMIT: f64 = 20.0;
 
 const STYLE: &str = include_str!("style.css");
 
-/// The page of a run.
+/// The page of a run, in the units of the person.
 #[must_use]
 pub fn page(log: &Log, run: &Run) -> String {
     let title = format!("Run of {}", log.run.get("job").map_or("unknown", String::as_str));
@@ -44,7 +45,7 @@ pub fn page(log: &Log, run: &Run) -> String {
             }
         }
     };
-    page.into_string()
+    shown(&page.into_string()).into_owned()
 }
 
 fn head(log: &Log, run: &Run, title: &str) -> Markup {
@@ -77,7 +78,11 @@ fn tiles(log: &Log, run: &Run) -> Markup {
     let mut tiles = vec![
         ("tile", duration(seconds), format!("{} ticks", run.ticks.len())),
         ("tile", format!("{finished} of {}", commands.len()), "commands finished".to_owned()),
-        (over(speed, SPEED_LIMIT), format!("{speed:.1} in/s"), format!("top speed, limit {SPEED_LIMIT}")),
+        (
+            over(speed, SPEED_LIMIT),
+            format!("{speed:.1} in/s"),
+            format!("top speed, limit {SPEED_LIMIT} in/s"),
+        ),
         (
             over(turning, TURNING_LIMIT),
             format!("{turning:.2} rad/s"),
@@ -257,14 +262,14 @@ fn paths(run: &Run) -> Markup {
             h2 { "Path of the tool point" }
             div.pair {
                 (path(
-                    "From above: +X (machine tool) to the right, +Y up; inches. Dots: where commands ended.",
+                    "From above: +X (machine tool) to the right, +Y up. Dots: where commands ended.",
                     &run.path,
                     &stops,
                     ring,
                     |p| [p[0], p[1]],
                 ))
                 (path(
-                    "From the side: distance from the base axis to the right, +Z up; inches.",
+                    "From the side: distance from the base axis to the right, +Z up.",
                     &run.path,
                     &stops,
                     ring,

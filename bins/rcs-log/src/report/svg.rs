@@ -175,13 +175,13 @@ pub fn curve(curve: &Curve<'_>, ticks: &[u64], axis: TimeAxis) -> Markup {
         svg viewBox=(format_args!("0 0 {WIDTH} {HEIGHT}")) role="img" {
             (grid(axis, HEIGHT))
             text x="0" y="18" { (curve.name) }
-            text.scale x="0" y="34" { (curve.unit) ", to " (format_args!("{most:.2}")) }
+            text.scale x="0" y="34" { "to " (format_args!("{most:.2} {}", curve.unit)) }
             line.axis x1=(LEFT) x2=(WIDTH) y1=(BASE) y2=(BASE) {}
             polygon.area points=(format_args!("{LEFT},{BASE} {line}{WIDTH},{BASE}")) {}
             polyline.curve points=(line) {}
             @if let Some(limit) = curve.limit {
                 line.limit x1=(LEFT) x2=(WIDTH) y1=(px(y(limit))) y2=(px(y(limit))) {}
-                text.limit-text x="0" y="50" { "limit " (limit) }
+                text.limit-text x="0" y="50" { "limit " (limit) " " (curve.unit) }
             }
         }
     }

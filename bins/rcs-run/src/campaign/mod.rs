@@ -129,7 +129,11 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
     }
     let called = format!("rcs-run campaign {job} --seed {}", arguments.seed);
     let report = CampaignReport::new(&facility.job.name, called, &parent, &results, &met);
-    console::answer(&if arguments.json { report.json()? } else { report.text() })?;
+    if arguments.json {
+        console::json(&report.json()?)?;
+    } else {
+        console::answer(&report.text())?;
+    }
     Ok(Some(report.column()))
 }
 

@@ -7,6 +7,7 @@ use std::{
 };
 
 use indicatif::{ProgressBar, ProgressStyle};
+use os_io::console::shown;
 
 use super::{
     arguments::CampaignArguments,
@@ -123,7 +124,8 @@ impl<'a> Runner<'a> {
     /// Show a branch that is hurt at once.
     fn warn(&self, result: &BranchResult) {
         if let (Some(bar), Verdict::Hurt) = (&self.bar, result.verdict) {
-            bar.println(format!("hurt: {} at {}: {}", result.interruption, result.at, result.detail));
+            let line = format!("hurt: {} at {}: {}", result.interruption, result.at, result.detail);
+            bar.println(shown(&line));
         }
     }
 

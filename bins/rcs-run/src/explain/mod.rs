@@ -6,6 +6,7 @@
 
 use std::{fmt, process::ExitCode};
 
+use geometry::units::{Length, inches};
 use interfaces::HwsCommand;
 use os_io::console;
 use paths::{
@@ -20,9 +21,9 @@ use serde::Serialize;
 use taskdata::load::{Diagnostics, Step, Store, job::reported_command};
 
 use crate::{
+    answer_long_json,
     cli::CheckArguments,
     error::{Error, UNUSABLE},
-    long_json,
 };
 
 /// The motion of a command.
@@ -47,7 +48,11 @@ pub fn explain(arguments: &CheckArguments, text: &str) -> Result<ExitCode, Error
     let command = command_of(text, &store).map_err(|report| StartError::Data { what, report })?;
     let explanation = explained(&store, &command, text, &arguments.from)?;
     let complete = explanation.phases.iter().all(|phase| phase.missing.is_none());
-    console::answer(&if arguments.json { long_json(&explanation)? } else { explanation.to_string() })?;
+    if arguments.json {
+        answer_long_json(&explanation)?;
+    } else {
+        console::answer(&explanation.to_string())?;
+    }
     if !complete {
         os_io::stderr_line!("rcs-run: a path is missing: see the lines with MISSING");
     }
@@ -132,13 +137,13 @@ fn leg_line(leg: &Leg, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let [x, y, z] = leg.position_in;
     write!(
         f,
-        "     {:<11}{:<10} ({x:7.2},{y:7.2},{z:7.2})  acc {:<3} vel {:<3} smooth {:<3} brk {}  {:5.2} s",
+        "     {:<11}{:<10} ({x:7.2},{y:7.2},{z:7.2} in)  acc {:<3} vel {:<3} smooth {:<3} brk {}  {:5.2} s",
         leg.part,
         leg.point,
         leg.acc_fac,
         leg.vel_max,
         leg.smooth,
-        walk::inches(leg.brk_dst),
+        Length(inches(leg.brk_dst)),
         walk::seconds(leg.ticks),
     )?;
     match (leg.joint, leg.margin_deg) {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use cli_pages::shipped_path;
+use cli_pages::{length, shipped_path};
 
 use super::size::Size;
 
@@ -46,7 +46,7 @@ pub struct PartArguments {
     /// Name of the part: capital letters and digits, 11 at most
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// Size of the blank as it lies in its tray, inches: length x width x height, where the fingers close on the width;
+    /// Size of the blank as it lies in its tray, in the units of --units: length x width x height, where the fingers close on the width;
     /// for a cylinder length x diameter
     #[arg(long, value_name = "LxWxH|LxD")]
     pub size: Size,
@@ -70,7 +70,7 @@ pub struct ToolArguments {
     /// Name of the tool: capital letters, digits and -, 11 at most
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// Length x diameter of the holder, inches [default: those of the tool of --like]
+    /// Length x diameter of the holder, in the units of --units [default: those of the tool of --like]
     #[arg(long, value_name = "LxD")]
     pub size: Option<Size>,
     /// Weight, pounds [default: scaled by volume from the tool of --like]
@@ -97,8 +97,8 @@ pub struct PlaceArguments {
     /// Name of the place: capital letters, digits and _, 8 at most
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// The tool point, inches
-    #[arg(value_names = ["X", "Y", "Z"], num_args = 3, required = true)]
+    /// The tool point, in the units of --units
+    #[arg(value_names = ["X", "Y", "Z"], num_args = 3, required = true, value_parser = length)]
     pub point: Vec<f64>,
     /// Direction in which the tool leans, degrees from the X axis of the world; the finger point is horizontal, 90
     /// degrees further
@@ -128,8 +128,8 @@ pub struct TrayArguments {
     /// Name of the tray: capital letters, digits and _, 8 at most
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// The centre of the tray, inches
-    #[arg(value_names = ["X", "Y"], num_args = 2, required = true)]
+    /// The centre of the tray, in the units of --units
+    #[arg(value_names = ["X", "Y"], num_args = 2, required = true, value_parser = length)]
     pub centre: Vec<f64>,
     /// A tray of the cell; the new tray is used as this one
     #[arg(long, value_name = "UNIT")]

@@ -106,7 +106,7 @@ impl Wanted {
         let [least, most] = self.backs(front)?;
         if step.back < least - ROUNDING || step.back > most + ROUNDING {
             return Err(format!(
-                "its back is at {:.2} in, and a part {:.3} in high needs one from {least:.2} to {most:.2}",
+                "its back is at {:.2} in, and a part {:.3} in high needs one from {least:.2} to {most:.2} in",
                 step.back, self.height
             ));
         }
@@ -114,12 +114,14 @@ impl Wanted {
         let narrow = 2.0 * step.depth + CLOSED;
         if self.narrowest < narrow {
             let width = self.narrowest;
-            return Err(format!("it takes parts {narrow:.2} in wide or wider, and this one has {width:.3}"));
+            return Err(format!(
+                "it takes parts {narrow:.2} in wide or wider, and this one has {width:.3} in"
+            ));
         }
         let gripped = step.ledge + self.length - self.fingers;
         if gripped < GRIPPED {
             return Err(format!(
-                "a part {:.2} in long comes {:.2} in above the jaws, and the fingers need {:.2}",
+                "a part {:.2} in long comes {:.2} in above the jaws, and the fingers need {:.2} in",
                 self.length,
                 step.ledge + self.length,
                 self.fingers + GRIPPED
@@ -139,7 +141,7 @@ impl Wanted {
         if outside > end {
             let widest = self.width - (outside - end);
             return Err(format!(
-                "the jaws open for parts up to {widest:.2} in, and this one is {:.2} wide",
+                "the jaws open for parts up to {widest:.2} in, and this one is {:.2} in wide",
                 self.width
             ));
         }
@@ -265,6 +267,6 @@ mod tests {
         let why = |wanted: &Wanted| chosen(wanted).err().unwrap_or_default().join("\n");
         assert!(why(&clevis(1.73, 3.5, 4.0)).contains("the jaws open for parts up to 3.00 in"));
         assert!(why(&clevis(1.73, 2.56, 1.0)).contains("comes 0.40 in above the jaws"));
-        assert!(why(&clevis(1.0, 0.5, 3.0)).contains("in wide or wider, and this one has 0.500"));
+        assert!(why(&clevis(1.0, 0.5, 3.0)).contains("in wide or wider, and this one has 0.500 in"));
     }
 }

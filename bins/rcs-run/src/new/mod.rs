@@ -82,8 +82,7 @@ fn part(order: &Order<'_>, (write, explain_job): (bool, bool), data: &Path) -> R
         return ways::explain(&CheckArguments::of(trial.data()), first);
     }
     let runs = made.jobs.iter().map(|job| trial.run(job, made.others)).sum::<Result<usize, Error>>()?;
-    let mut lines =
-        vec![(if tool { "tool" } else { "part" }, format!("{name}, {} in, like {like}", made.size))];
+    let mut lines = vec![(if tool { "tool" } else { "part" }, format!("{name}, {}, like {like}", made.size))];
     lines.extend(made.chosen);
     lines.push(("tried", format!("check finds no errors; {runs} runs finished")));
     lines.extend(trial.warnings.into_iter().map(|line| ("warning", line)));

@@ -160,7 +160,7 @@ fn fingers_reach(room: &Room, family: &Family, part: &PartType) -> Result<(), St
     let diameter = part.size[1];
     (least..=most - ROOM).contains(&diameter).then_some(()).ok_or_else(|| {
         format!(
-            "its gripper takes diameters from {least:.2} to {:.2} in, and it has {diameter:.2}",
+            "its gripper takes diameters from {least:.2} to {:.2} in, and it has {diameter:.2} in",
             most - ROOM
         )
     })

@@ -1,7 +1,10 @@
-//! The size of a blank in text form: three sides of a box, or length and diameter of a cylinder.
+//! The size of a blank in text form: three sides of a box, or length and diameter of a cylinder. A person types it in
+//! the units of the command line.
 
 use std::{fmt, str::FromStr};
 
+use cli_pages::length;
+use os_io::units;
 use plant::description::{PartType, Shape};
 
 /// Greatest side of a part, in.
@@ -20,17 +23,20 @@ impl FromStr for Size {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let sides: Option<Vec<f64>> = text.split('x').map(|side| side.trim().parse().ok()).collect();
+        let sides: Option<Vec<f64>> = text.split('x').map(|side| length(side).ok()).collect();
         let sides = sides.filter(|sides| sides.iter().all(|side| (0.1..=GREATEST).contains(side)));
         match sides.as_deref() {
             Some([length, width, height]) => {
                 Ok(Self::Box { length: *length, width: *width, height: *height })
             }
             Some([length, diameter]) => Ok(Self::Round { length: *length, diameter: *diameter }),
-            _ => Err(format!(
-                "length x width x height of the blank as it lies, such as 3x1.5x1, or length x diameter of a \
-                 cylinder, such as 4x1.5, was expected, 0.1 to {GREATEST} in each; found {text}"
-            )),
+            _ => {
+                let most = units::shown(&format!("0.10 to {GREATEST:.2} in")).into_owned();
+                Err(format!(
+                    "length x width x height of the blank as it lies, such as 3x1.5x1, or length x diameter of a \
+                     cylinder, such as 4x1.5, was expected, each side {most}; found {text}"
+                ))
+            }
         }
     }
 }
@@ -68,8 +74,8 @@ impl Size {
 impl fmt::Display for Size {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Box { length, width, height } => write!(f, "{length} x {width} x {height}"),
-            Self::Round { length, diameter } => write!(f, "{length} x {diameter}"),
+            Self::Box { length, width, height } => write!(f, "{length:.2} x {width:.2} x {height:.2} in"),
+            Self::Round { length, diameter } => write!(f, "{length:.2} x {diameter:.2} in"),
         }
     }
 }

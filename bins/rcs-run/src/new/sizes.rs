@@ -16,7 +16,10 @@ use taskdata::{
     load::entries::{GripEntry, MovetableEntry, Typed},
 };
 
-use geometry::movetable::{MovetableLine, System};
+use geometry::{
+    movetable::{MovetableLine, System},
+    units::Length,
+};
 
 use super::{
     change::Change,
@@ -132,7 +135,7 @@ impl<'a> Sizes<'a> {
         sizes.force = sizes.needed_force();
         let most = cell.gripper.parts.greatest_force;
         if sizes.force > most {
-            let why = format!("the fingers would need {:.0} lb to carry it, and have {most}", sizes.force);
+            let why = format!("the fingers would need {:.0} lb to carry it, and have {most} lb", sizes.force);
             return Err(refused(why));
         }
         Ok(sizes)
@@ -149,7 +152,7 @@ impl<'a> Sizes<'a> {
             self.cell.tray.iter().flat_map(|tray| tray.sectors.iter().map(|at| room(at, tray.centre)));
         let least = rooms.fold(f64::INFINITY, f64::min);
         (around <= least).then_some(()).ok_or_else(|| {
-            format!("a sector of the trays has {least:.2} in of room around its middle, and the part needs {around:.2}")
+            format!("a sector of the trays has {least:.2} in of room around its middle, and the part needs {around:.2} in")
         })
     }
 
@@ -285,8 +288,10 @@ impl Numbers for Sizes<'_> {
         let last = self.cell.vise.program.last().map_or("", |program| program.name.as_str());
         change.add_table(CELL, "vise.program", &format!("name = \"{last}\""), &table_of_program(program))?;
         let step = if self.step.is_new { "a step that is cut for it" } else { "a step that is there" };
-        let place = format!("back {}, depth {:.4}, ledge {}", program.back, program.depth, program.ledge);
-        let openings = format!("opens {} in, partially {} in", program.opening_open, program.opening_partial);
+        let [back, depth, ledge] = [program.back, program.depth, program.ledge].map(Length);
+        let place = format!("back {back}, depth {depth:.4}, ledge {ledge}");
+        let [open, partial] = [program.opening_open, program.opening_partial].map(Length);
+        let openings = format!("opens {open}, partially {partial}");
         Ok(Places {
             chosen: vec![("vise", format!("{step}: {place}")), ("vise", openings)],
             to_teach: vec![format!("vise: program {}, as above", program.name)],

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use diagnostics::nearest;
+use geometry::units::Length;
 use os_io::files;
 use plant::{CellDescription, description::Tray};
 use runtime::setup::{CELL, jobs};
@@ -102,7 +103,8 @@ fn stands_alone([x, y]: [f64; 2], cell: &CellDescription) -> Result<(), Error> {
     other.map_or(Ok(()), |other| {
         let unit = &other.unit;
         Err(Error::New(format!(
-            "the tray would stand in {unit}: {side} in are expected between them, in x or y"
+            "the tray would stand in {unit}: {} are expected between them, in x or y",
+            Length(side)
         )))
     })
 }

@@ -1,6 +1,6 @@
 //! Workstation actions besides those of the robot: put down and remove parts, operate the vise, machine parts.
 
-use geometry::frame::Frame;
+use geometry::{frame::Frame, units::Length};
 
 use super::Cell;
 use crate::{
@@ -237,8 +237,8 @@ pub enum WorkstationError {
     },
     /// The part is too far from its seat.
     #[error(
-        "{part} is {distance:.3} in and {degrees:.2} degrees from its seat; {} in and {} degrees are allowed",
-        .allowed.inches, .allowed.degrees
+        "{part} is {distance:.3} in and {degrees:.2} degrees from its seat; {} and {} degrees are allowed",
+        Length(.allowed.inches), .allowed.degrees
     )]
     NotSeated {
         /// The part.

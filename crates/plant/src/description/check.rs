@@ -11,7 +11,10 @@ use diagnostics::{
     Diagnostics, Problem, Problems,
     toml::{Path, StandIns, element, join},
 };
-use geometry::kinematics::{JOINT_NAMES, T3};
+use geometry::{
+    kinematics::{JOINT_NAMES, T3},
+    units::Length,
+};
 
 use self::collector::Check;
 use super::{CellDescription, DescriptionError, Gripper, ViseProgram};
@@ -121,8 +124,8 @@ impl CellDescription {
             let length = self.quick_change.length + gripper.plate();
             if check.trusts("quick_change.length") && check.trusts(&fingers) {
                 let expected = format!(
-                    "with quick_change.length and {fingers} the tool length of the arm, {} in",
-                    T3.plate_to_tool
+                    "with quick_change.length and {fingers} the tool length of the arm, {}",
+                    Length(T3.plate_to_tool)
                 );
                 let fits = (length - T3.plate_to_tool).abs() < 1e-6;
                 check.that(fits, &body, &expected, || length.to_string());

@@ -13,6 +13,7 @@ mod valve;
 
 use std::fmt;
 
+use geometry::units::Length;
 use rcs_core::tick::TICK_S;
 use serde::{Deserialize, Serialize};
 
@@ -195,13 +196,20 @@ impl fmt::Display for What {
                 let object = object.as_deref().unwrap_or("what is delivered");
                 match mishap {
                     Mishap::Missing => write!(f, "{object} does not come"),
-                    Mishap::Misplaced { x, y } => write!(f, "{object} lies {x} in, {y} in beside its place"),
+                    Mishap::Misplaced { x, y } => {
+                        write!(f, "{object} lies {}, {} beside its place", Length(*x), Length(*y))
+                    }
                     Mishap::Turned(angle) => write!(f, "{object} is turned by {angle} degrees"),
                     Mishap::WrongPart(part) => write!(f, "{part} comes instead of {object}"),
                 }
             }
             Self::PedestalMoved { x, y, angle } => {
-                write!(f, "the pedestal stands {x} in, {y} in, {angle} degrees beside its mark")
+                write!(
+                    f,
+                    "the pedestal stands {}, {}, {angle} degrees beside its mark",
+                    Length(*x),
+                    Length(*y)
+                )
             }
         }
     }

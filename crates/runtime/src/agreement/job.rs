@@ -1,5 +1,6 @@
 //! Follows the effects of a job's lines on the trays and the vise of the cell.
 
+use geometry::units::Length;
 use interfaces::HwsCommand;
 use plant::{
     CellDescription, Placement, WorkstationAction,
@@ -24,7 +25,7 @@ pub fn occupied(action: &WorkstationAction, cell: &CellDescription) -> Option<St
         Placement::At { x, y, .. } => ([*x, *y], 0.0),
     };
     let (fixture, distance, room) = in_the_way(cell, part, unit, *sector, off, random)?;
-    let how = if random > 0.0 { format!(", put down up to {random} in off,") } else { String::new() };
+    let how = if random > 0.0 { format!(", put down up to {} off,", Length(random)) } else { String::new() };
     Some(format!(
         "{} stands {distance:.2} in from there; {}{how} needs {room:.2} in",
         fixture.name, part.name
@@ -169,7 +170,7 @@ impl Jaws<'_> {
         let [x, y, z] = part.size;
         (!fits).then(|| {
             format!(
-                "the program {} takes parts {inner:.3} to {opening:.3} in wide when {how}; {} is {x} x {y} x {z} in",
+                "the program {} takes parts {inner:.3} to {opening:.3} in wide when {how}; {} is {x:.2} x {y:.2} x {z:.2} in",
                 self.program.name, part.name
             )
         })

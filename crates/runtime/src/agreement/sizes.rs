@@ -1,7 +1,7 @@
 //! Compares openings and forces of the forms with grippers and parts of the cell (VII.7.1, VII.7.2, VII.7.4), and view
 //! ranges with the camera (VII.7.6).
 
-use geometry::frame::Frame;
+use geometry::{frame::Frame, units::Length};
 use levels::subtask::aims::GRIPPERS;
 use plant::{
     camera::optics::Optics,
@@ -70,14 +70,16 @@ pub fn check(both: &mut Both<'_>) {
 fn beyond(what: &str, size: i32, [low, high]: [f64; 2], gripper: &str) -> Option<String> {
     let size = inches(size);
     let outside = size < low - ROUNDING || size > high + ROUNDING;
-    outside.then(|| format!("{what} {size:.2} in, {gripper} opens from {low:.2} to {high:.2}"))
+    outside.then(|| format!("{what} {size:.2} in, {gripper} opens from {low:.2} to {high:.2} in"))
 }
 
 /// The message for a force above the greatest of the fingers, or too small to hold anything.
 fn unfit_force(what: &str, force: i32, gripper: &Gripper) -> Option<String> {
     let greatest = gripper.greatest_force;
     if force <= 0 {
-        return Some(format!("{what} {force} lb, 1 to {greatest} expected: without force nothing is held"));
+        return Some(format!(
+            "{what} {force} lb, 1 to {greatest} lb expected: without force nothing is held"
+        ));
     }
     (f64::from(force) > greatest)
         .then(|| format!("{what} {force} lb, the fingers have {greatest} lb at most"))
@@ -148,9 +150,9 @@ fn grip(both: &mut Both<'_>, index: usize, record: &EndEffPara) {
     let (grasp, around) = (inches(record.grasp_size), inches(record.appr_size.min(record.depart_size)));
     let widths = widths(both, record, part);
     if !widths.iter().any(|width| grasp <= width + ROUNDING && *width < around) {
-        let shown: Vec<String> = widths.iter().map(|width| format!("{width}")).collect();
+        let shown: Vec<String> = widths.iter().map(|width| Length(*width).to_string()).collect();
         let message = format!(
-            "{what}: {} in between the fingers is not from the grasp size {grasp:.2} to the approach and depart sizes {:.2} and {:.2}",
+            "{what}: {} between the fingers is not from the grasp size {grasp:.2} in to the approach and depart sizes {:.2} in and {:.2} in",
             shown.join(" or "),
             inches(record.appr_size),
             inches(record.depart_size),

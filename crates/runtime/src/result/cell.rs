@@ -128,7 +128,7 @@ impl fmt::Display for PartResult {
             write!(f, ", {error:.2} in from {from}")?;
         }
         let [x, y, z] = self.position_in;
-        write!(f, " ({x:.2} {y:.2} {z:.2})")
+        write!(f, " ({x:.2} {y:.2} {z:.2} in)")
     }
 }
 

@@ -12,6 +12,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use executive::failure::Failure;
+use geometry::units::Length;
 use interfaces::{
     HwsCommand,
     hws::{HwsReport, HwsStatus},
@@ -194,11 +195,11 @@ impl PlacementCheck {
             let tick = moved.astray?;
             let place = match &moved.goal {
                 Goal::Gripper => "in the gripper".to_owned(),
-                Goal::At(Some((location, 0))) => format!("at {location}, within {} in", self.tolerance),
+                Goal::At(Some((location, 0))) => format!("at {location}, within {}", Length(self.tolerance)),
                 Goal::At(Some((location, sector))) => {
-                    format!("at {location} sector {sector}, within {} in", self.tolerance)
+                    format!("at {location} sector {sector}, within {}", Length(self.tolerance))
                 }
-                Goal::At(None) => format!("within {} in of where the fingers opened", self.tolerance),
+                Goal::At(None) => format!("within {} of where the fingers opened", Length(self.tolerance)),
             };
             let text =
                 format!("{}; {} was to leave it {place}", PartResult::from(part.clone()), moved.command);

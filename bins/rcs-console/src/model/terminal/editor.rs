@@ -318,9 +318,9 @@ impl Editor {
             Stage::Diff => {
                 let lines = self.changes().into_iter().flat_map(|(at, old, new)| {
                     let removed =
-                        (!old.is_empty()).then(|| Text::new(Tone::Faint, format!(" -{at:>2} {old}")));
+                        (!old.is_empty()).then(|| Text::verbatim(Tone::Faint, format!(" -{at:>2} {old}")));
                     let added =
-                        (!new.is_empty()).then(|| Text::new(Tone::Marked, format!(" +{at:>2} {new}")));
+                        (!new.is_empty()).then(|| Text::verbatim(Tone::Marked, format!(" +{at:>2} {new}")));
                     removed.into_iter().chain(added)
                 });
                 let mut lines: Vec<Text> = lines.collect();
@@ -341,7 +341,7 @@ impl Editor {
             let mark = if at == self.row { '>' } else { ' ' };
             let tone = if at == self.row { Tone::Marked } else { Tone::Plain };
             let text = if at == self.row { with_cursor(line, self.column) } else { line.clone() };
-            shown.push(Text::new(tone, format!("{mark}{at:>2} {text}")));
+            shown.push(Text::verbatim(tone, format!("{mark}{at:>2} {text}")));
             shown.extend(self.messages.iter().filter(|message| message.line == Some(at)).map(said));
         }
         shown.extend(self.messages.iter().filter(|message| message.line.is_none()).map(said));

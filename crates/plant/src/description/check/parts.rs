@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use diagnostics::toml::{element, join};
+use geometry::units::Length;
 use rcs_core::name::Name16;
 
 use super::Check;
@@ -35,7 +36,10 @@ impl CellDescription {
             let is_known = inside_is_known && check.trusts(&join(&element("tray", number), "centre"));
             for (sector, at) in tray.sectors.iter().enumerate().filter(|_| is_known) {
                 let inside = (at[0] - x).abs().max((at[1] - y).abs()) <= shape.inside / 2.0;
-                let expected = format!("a point in the tray, within {} in of {x}, {y}", shape.inside / 2.0);
+                let expected = format!(
+                    "a point in the tray, within {} of {x:.2}, {y:.2} in",
+                    Length(shape.inside / 2.0)
+                );
                 check.that(inside, &element(&path, sector), &expected, || format!("{at:?}"));
             }
         }
@@ -90,7 +94,7 @@ impl CellDescription {
             check.that(round, &size, "one diameter across a cylinder", || format!("{:?}", part.size));
             let inside = self.tray_shape.inside;
             let fits = self.has_a_nest(part) || y.max(z) < inside;
-            let expected = format!("a part that has a nest, or lies in a tray {inside} in wide");
+            let expected = format!("a part that has a nest, or lies in a tray {} wide", Length(inside));
             if check.trusts("tray_shape") && check.trusts("nest") {
                 check.that(fits, &size, &expected, || format!("{:?}", part.size));
             }

@@ -33,7 +33,7 @@ pub(super) fn fault(frame: &Frame) -> Option<Fault> {
         Ok(joints) => T3.within_limits(&joints),
         Err(error) => {
             let p = frame.position;
-            let help = format!("its tool point is at ({:.2}, {:.2}, {:.2}) in", p.x, p.y, p.z);
+            let help = format!("its tool point is at ({:.2}, {:.2}, {:.2} in)", p.x, p.y, p.z);
             return Some(Fault { code: "reach", message: error.to_string(), help });
         }
     };

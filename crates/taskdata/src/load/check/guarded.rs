@@ -121,7 +121,7 @@ fn speed(data: &TaskData<'_>, record: &RelativeMove, at: super::At, findings: &m
         "relative.speed",
         at,
         format!(
-            "{} at {velocity:.1} in/s against something hard ends at {reached:.0} {unit}; {} overloads at {most:.0}",
+            "{} at {velocity:.1} in/s against something hard ends at {reached:.0} {unit}; {} overloads at {most:.0} {unit}",
             record.name, sensor.name
         ),
         help,

@@ -1,0 +1,65 @@
+//! Text from files, sockets and logs without control characters. An escape sequence in a log or a job file could
+//! otherwise command the terminal of the person who reads a message.
+
+use std::borrow::Cow;
+
+/// Marks that change the direction of text, and separators of lines and paragraphs.
+const INVISIBLE: [char; 15] = [
+    '\u{61c}', '\u{200e}', '\u{200f}', '\u{2028}', '\u{2029}', '\u{202a}', '\u{202b}', '\u{202c}',
+    '\u{202d}', '\u{202e}', '\u{2066}', '\u{2067}', '\u{2068}', '\u{2069}', '\u{feff}',
+];
+
+/// True if a terminal must not receive the character: a control character other than tab and newline, or a mark that
+/// changes the direction of text.
+fn is_unsafe(character: char) -> bool {
+    (character.is_control() && !matches!(character, '\n' | '\t')) || INVISIBLE.contains(&character)
+}
+
+/// The text with `?` or another visible character for each control character. Tabs and newlines remain. Byte positions
+/// do not change, so that a place in the text remains the same place.
+#[must_use]
+pub fn plain(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_unsafe) {
+        return Cow::Borrowed(text);
+    }
+    let visible = |character: char| match character.len_utf8() {
+        _ if !is_unsafe(character) => character,
+        1 => '?',
+        2 => '\u{b7}',
+        _ => char::REPLACEMENT_CHARACTER,
+    };
+    Cow::Owned(text.chars().map(visible).collect())
+}
+
+/// JSON with an escape for each control character that JSON permits in strings, such as `\u009b`. The value does not
+/// change.
+#[must_use]
+pub fn escaped_json(json: &str) -> Cow<'_, str> {
+    if !json.contains(is_unsafe) {
+        return Cow::Borrowed(json);
+    }
+    let escape = |character: char| match is_unsafe(character) {
+        true => format!("\\u{:04x}", u32::from(character)),
+        false => character.to_string(),
+    };
+    Cow::Owned(json.chars().map(escape).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_become_visible_and_keep_byte_positions() {
+        let text = "one\u{1b}[31mtwo\x07\u{9b}2J\u{202e}x\ttab\nline\r\u{7f}";
+        let shown = plain(text);
+        assert_eq!(shown, "one?[31mtwo?\u{b7}2J\u{fffd}x\ttab\nline??");
+        assert_eq!(shown.len(), text.len());
+        assert!(matches!(plain("ordinary text, ä µ …\n"), Cow::Borrowed(_)));
+    }
+
+    #[test]
+    fn json_strings_keep_their_value() {
+        assert_eq!(escaped_json("{\"a\":\"\u{9b}2J\u{7f}\"}\n"), "{\"a\":\"\\u009b2J\\u007f\"}\n");
+    }
+}
