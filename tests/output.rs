@@ -108,7 +108,7 @@ fn every_json_output_has_each_key_once() {
     let of_run: &[&[&str]] = &[
         &["run", "linkbar", "--ticks", "100", "--log", "none", "--shared-memory", "off", "--json"],
         &["check", "--json"],
-        &["check", "--json", "--where", "HOME"],
+        &["check", "--json", "--where", "HOME-POS"],
         &[
             "check",
             "--json",
@@ -118,7 +118,7 @@ fn every_json_output_has_each_key_once() {
             "SAFE",
         ],
         &["check", "--json", "--explain-job", "linkbar"],
-        &["pose", "--json", "--of", "HOME"],
+        &["pose", "--json", "--of", "HOME-POS"],
         &["latency", "--json", "--seconds", "1"],
         &["campaign", "linkbar", "--json", "--at", "60,120", "--interrupt", "pause"],
     ];
@@ -230,7 +230,9 @@ fn quantities(text: &str, unit: &str) -> Vec<f64> {
     let is_unit = |word: &str| word.trim_end_matches([',', ';', ')', '.', ':']) == unit;
     let pairs = words.iter().zip(words.iter().skip(1)).filter(|(_, next)| is_unit(next));
     let number = |word: &str| word.trim_start_matches(['(', '+']).parse::<f64>().ok();
-    pairs.filter(|(word, _)| word.contains('.')).filter_map(|(word, _)| number(word)).collect()
+    // `0.01 in` is the unit of the numbers in a form.
+    let is_length = |word: &str| word.contains('.') && word != "0.01";
+    pairs.filter(|(word, _)| is_length(word)).filter_map(|(word, _)| number(word)).collect()
 }
 
 #[test]
@@ -238,7 +240,7 @@ fn texts_in_inches_and_in_millimetres_agree() {
     let scratch = with_logs("units");
     let explain = ["check", "--explain", "MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0", "--from", "SAFE"];
     let cases: &[(&Path, &[&str])] = &[
-        (rcs_run(), &["pose", "--of", "HOME"]),
+        (rcs_run(), &["pose", "--of", "HOME-POS"]),
         (rcs_run(), &["check", "--where", "UNIT-V1"]),
         (rcs_run(), &explain),
         (rcs_run(), &["check", "--explain-job", "linkbar"]),
