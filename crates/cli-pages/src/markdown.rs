@@ -60,7 +60,7 @@ fn text(argument: &Arg) -> String {
     let help = argument.get_long_help().or(argument.get_help()).map(ToString::to_string).unwrap_or_default();
     let mut text = sentence(&help.split("\n\n").map(sentence).collect::<Vec<_>>().join(" "));
     let values = argument.get_possible_values();
-    if argument.get_action().takes_values() && !values.is_empty() {
+    if argument.get_action().takes_values() && !argument.is_hide_possible_values_set() && !values.is_empty() {
         let value = |value: &clap::builder::PossibleValue| {
             let help = value.get_help().map(|help| format!(" ({help})")).unwrap_or_default();
             format!("`{}`{help}", value.get_name())

@@ -2,6 +2,7 @@
 
 use std::{io, path::PathBuf};
 
+use diagnostics::UnknownFile;
 use executive::{boards::SplitError, serial::OpenError};
 use neighbours::{
     data_system::{OutboxError, StoreError},
@@ -37,14 +38,9 @@ pub enum StartError {
         /// A line for each command, with its first error.
         wrong: Vec<String>,
     },
-    /// The job does not exist.
-    #[error("there is no job {job}: {}", known_jobs(.known))]
-    NoJob {
-        /// The requested name.
-        job: String,
-        /// Jobs of the data directory.
-        known: Vec<String>,
-    },
+    /// The job or the fault file does not exist.
+    #[error(transparent)]
+    NoFile(#[from] UnknownFile),
     /// A file cannot be read.
     #[error("{} cannot be read: {source}", path.display())]
     Read {
@@ -168,13 +164,5 @@ impl StartError {
             Self::WrongData { wrong, .. } => wrong.iter().map(|line| format!("{line}\n")).collect(),
             _ => String::new(),
         }
-    }
-}
-
-fn known_jobs(known: &[String]) -> String {
-    match known {
-        [] => "the data directory has no jobs".to_owned(),
-        [only] => format!("the data directory has {only}"),
-        more => format!("the data directory has {}", more.join(", ")),
     }
 }

@@ -15,7 +15,7 @@ use record::{Attachment, Log};
 
 use crate::{
     config::{LogTarget, RobotConfig, RunConfig},
-    log::{DATA_BASE, FAULTS, IN_MEMORY, LOADS, OUTSIDE, RETRY, STAND_BY, TICKS, UNCHECKED},
+    log::{DATA, DATA_BASE, FAULTS, IN_MEMORY, LOADS, OUTSIDE, RETRY, STAND_BY, TICKS, UNCHECKED},
     setup::{CELL, EXTENSION},
 };
 
@@ -113,6 +113,8 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
         inputs: operated.then(|| log.path().to_owned()),
         stand_by,
         unchecked: said(UNCHECKED).is_some(),
+        // The directory of the files is temporary.
+        remarks: said(DATA).map(|data| (DATA.to_owned(), data.to_owned())).into_iter().collect(),
         log: LogTarget::None,
         shared_memory: false,
         ..RunConfig::new(data, job.to_string_lossy())
