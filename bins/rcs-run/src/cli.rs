@@ -598,6 +598,13 @@ mod tests {
     }
 
     #[test]
+    fn database_has_its_old_name_too() {
+        let database = |option| Cli::parse_from(["rcs-run", option, "items.db"]).run.database;
+        assert_eq!(database("--database"), Some(PathBuf::from("items.db")));
+        assert_eq!(database("--data-base"), database("--database"));
+    }
+
+    #[test]
     fn a_board_is_one_that_has_processes() {
         let board = |number| {
             let command = Cli::try_parse_from(["rcs-run", "board", number, "--run", "x", "linkbar"])?.command;

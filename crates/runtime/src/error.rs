@@ -76,11 +76,11 @@ pub enum StartError {
     /// The log whose inputs are to be replayed cannot be read.
     #[error("the operator's inputs cannot be replayed: {0}")]
     Inputs(#[source] Box<record::ReadError>),
-    /// The data base of the Data System cannot be opened.
+    /// The database of the Data System cannot be opened.
     #[error("the Data System cannot keep its items: {0}")]
     DataBase(#[from] StoreError),
     /// Another process keeps the items of the Data System.
-    #[error("the Data System is another process: name the data base there, not here")]
+    #[error("the Data System is another process: name the database there, not here")]
     DataBaseElsewhere,
     /// The file for pending updates of the Data System cannot be used.
     #[error("{0}; --outbox names another file")]

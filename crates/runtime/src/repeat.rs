@@ -78,7 +78,7 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
         return Err(RepeatError::Elsewhere(format!("{outside} in another process")));
     }
     if said(DATA_BASE).is_some_and(|place| place != IN_MEMORY) {
-        return Err(RepeatError::Elsewhere("a data base in a file".to_owned()));
+        return Err(RepeatError::Elsewhere("a database in a file".to_owned()));
     }
     let robot = said("robot").ok_or(RepeatError::Missing("robot"))?;
     let robot: RobotConfig =
