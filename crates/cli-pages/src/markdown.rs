@@ -51,7 +51,8 @@ fn label(argument: &Arg) -> String {
     let typed =
         option.into_iter().chain((!values.is_empty()).then_some(values)).collect::<Vec<_>>().join(" ");
     let default: Vec<_> = argument.get_default_values().iter().map(|value| value.to_string_lossy()).collect();
-    let taken = argument.get_action().takes_values() && !default.is_empty();
+    let is_shown = !argument.is_hide_default_value_set() && !default.is_empty();
+    let taken = argument.get_action().takes_values() && is_shown;
     if taken { format!("`{typed}` (default `{}`)", default.join(",")) } else { format!("`{typed}`") }
 }
 
