@@ -6,6 +6,7 @@ use std::{
     process::{Command, Output},
 };
 
+use serde_json::Value;
 use whole_system_tests::{Scratch, rcs_cell, rcs_console, rcs_log, rcs_neighbour, rcs_run, root};
 
 /// What stands before the pages of the programs.
@@ -63,6 +64,9 @@ fn a_program_runs_in_an_empty_directory() {
     assert_eq!(failed.status.code(), Some(1), "{}", text(&failed.stderr));
     assert!(text(&failed.stderr).contains("vision sees no object"), "{}", text(&failed.stderr));
     assert!(!scratch.file("data").exists());
+    assert!(text(&failed.stdout).contains("data       built into the program, "), "{}", text(&failed.stdout));
+    let info = in_directory(rcs_log(), &scratch.file("."), &["info", "runs/linkbar.mcap"]);
+    assert!(text(&info.stdout).contains("data       built into the program, "), "{}", text(&info.stdout));
     let why = in_directory(rcs_log(), &scratch.file("."), &["why", "runs/linkbar.mcap"]);
     assert!(text(&why.stdout).contains("LOCATE-OBJ"), "{}", text(&why.stdout));
 }
@@ -73,6 +77,50 @@ fn a_directory_that_is_named_must_be_there() {
     let run = in_directory(rcs_run(), &scratch.file("."), &["--data", "elsewhere"]);
     assert_eq!(run.status.code(), Some(2));
     assert!(text(&run.stderr).contains("there is no task data directory elsewhere"), "{}", text(&run.stderr));
+}
+
+#[test]
+fn built_in_data_are_used_if_named_or_if_there_is_no_directory() {
+    let scratch = Scratch::new("built-in");
+    let run = |arguments: &[&str]| in_directory(rcs_run(), &scratch.file("."), arguments);
+    let short = |more: &[&str]| {
+        let output = run(&[&["--ticks", "3", "--log", "none", "--json"], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        serde_json::from_slice::<Value>(&output.stdout).expect("a result")["data"].take()
+    };
+    assert_eq!(short(&[])["directory"], Value::Null);
+    // A directory that is named must exist, also the default one.
+    let refused = run(&["--data", "data"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("no task data directory data; built-in names"));
+    // A robot at a port stands in a cell of its own.
+    let at_port = ["--robot", "serial:/dev/null", "--clock", "real"];
+    let refused = run(&at_port);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("with --data built-in"), "{}", text(&refused.stderr));
+    let named = run(&[&at_port[..], &["--data", "built-in"]].concat());
+    assert!(text(&named.stderr).contains("is no terminal device"), "{}", text(&named.stderr));
+    let made = run(&["init", "."]);
+    assert!(made.status.success(), "{}", text(&made.stderr));
+    let own = short(&[]);
+    assert!(own["directory"].as_str().is_some_and(|path| path.starts_with('/') && path.ends_with("/data")));
+    let built_in = short(&["--data", "built-in"]);
+    assert_eq!((&built_in["directory"], &built_in["files"]), (&Value::Null, &own["files"]));
+}
+
+#[test]
+fn completions_know_jobs_faults_robots_and_interruptions() {
+    let scratch = Scratch::new("completions");
+    let made = in_directory(rcs_run(), &scratch.file("."), &["--generate", "pages"]);
+    assert!(made.status.success(), "{}", text(&made.stderr));
+    for shell in ["rcs-run.bash", "_rcs-run", "rcs-run.fish"] {
+        let completions =
+            fs::read_to_string(scratch.file("pages/completions").join(shell)).expect("the file is made");
+        for name in ["turned-part", "lock-ring-stuck", "irb6700", "answer-late", "fault:lock-ring-stuck"] {
+            // The signs that a shell must not read are escaped.
+            assert!(completions.replace('\\', "").contains(name), "{name} in {shell}");
+        }
+    }
 }
 
 #[test]

@@ -69,8 +69,9 @@ fn process(command: &str) -> Process {
         Some(("", arguments)) => (rcs_run(), arguments),
         _ => (rcs_run(), rest),
     };
-    let mut process = Process::new(program);
-    process.args(words(arguments));
+    // Both outputs in one stream, in the order in which a terminal shows them.
+    let mut process = Process::new("sh");
+    process.args(["-c", r#"exec "$0" "$@" 2>&1"#]).arg(program).args(words(arguments));
     process
 }
 

@@ -11,6 +11,7 @@ mod faults;
 mod finished;
 mod jobs;
 mod jogs;
+mod last_lines;
 mod linkbar;
 mod live;
 mod neighbours;

@@ -20,7 +20,7 @@ fn items(file: &Path) -> Vec<Item> {
 fn shift_alone() -> (u64, Vec<Item>) {
     let scratch = Scratch::new("inside");
     let file = scratch.file("items.db");
-    let bits = computed_alone("shift", &["--data-base", &file.display().to_string()]);
+    let bits = computed_alone("shift", &["--database", &file.display().to_string()]);
     (bits, items(&file))
 }
 

@@ -3,7 +3,7 @@
 use std::{path::PathBuf, str::FromStr};
 
 use clap::Parser;
-use cli_pages::shipped_path;
+use cli_pages::{data_directory, fault_file};
 use depc::Limits;
 use egm_robot::EgmOptions;
 
@@ -25,7 +25,7 @@ Examples:
   rcs-cell --link /tmp/t3              the console: start the robot step by step
   rcs-cell --link /tmp/t3 --auto       with the start-up done, ready for a host
   rcs-run --robot serial:/tmp/t3 --clock real    a host (in another terminal)
-  rcs-cell --link /tmp/t3 --auto --faults data/faults/noisy-line.toml    the same over a bad line
+  rcs-cell --link /tmp/t3 --auto --faults noisy-line    the same over a bad line
   rcs-cell --link /tmp/t3 --egm 6510   a gateway: the robot with EGM that sends to UDP port 6510, as a T3
   rcs-cell --emulate egm:6510          an EGM robot that sends to UDP port 6510 of this machine
   rcs-cell --emulate egm:10.0.0.7:6510,gain=10,loss=5,jitter=10    to another machine, over a bad network
@@ -51,8 +51,15 @@ pub struct Cli {
     /// silent-at, silent-for=S, seed=N.
     #[arg(long, value_name = "egm:PORT", conflicts_with_all = ["link", "auto", "faults"])]
     pub emulate: Option<EgmTarget>,
-    /// Directory with robots/NAME.toml
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    /// Directory with robots/NAME.toml [default: data; if there is none: built-in,
+    /// the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
     pub data: PathBuf,
     /// Do the start-up without a person, and press ENTER when a host connects
     #[arg(long)]
@@ -64,8 +71,9 @@ pub struct Cli {
     /// Seed of the joints' distances from HOME at start-up and of their alignment errors
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Fault plan (TOML) for the bytes on the line; its ticks are steps of the controller, about one per period
-    #[arg(long, value_name = "FILE")]
+    /// Fault plan for the bytes on the line: a name in the data directory, or a file (TOML); its ticks are steps of the
+    /// controller, about one per period
+    #[arg(long, value_name = "NAME|FILE", value_parser = fault_file(), hide_possible_values = true)]
     pub faults: Option<PathBuf>,
 }
 

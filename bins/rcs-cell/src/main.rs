@@ -30,7 +30,7 @@ use std::{
 };
 
 use depc::fault::{FaultKind, Plan, Rule};
-use diagnostics::Source;
+use diagnostics::{FAULTS, Source};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::{cli::Cli, emulate::Emulation, gateway::Gateway, pty::Pty, shell::Shell};
@@ -50,7 +50,7 @@ fn main() -> ExitCode {
         }
     }
     let Some(link) = &cli.link else { return emulate(&cli, &stop) };
-    let plan = match cli.faults.as_deref().map(plan).transpose() {
+    let plan = match cli.faults.as_deref().map(|name| plan(name, &cli.data)).transpose() {
         Ok(plan) => plan,
         Err(reason) => return fail(UNUSABLE, &reason),
     };
@@ -84,9 +84,10 @@ fn emulate(cli: &Cli, stop: &Arc<AtomicBool>) -> ExitCode {
 }
 
 /// Reads a fault plan; an error if the plan has faults that a pseudo-terminal cannot produce.
-fn plan(path: &Path) -> Result<Plan, String> {
+fn plan(name: &Path, data: &Path) -> Result<Plan, String> {
+    let path = FAULTS.find(name, data).map_err(|error| error.to_string())?;
     let refused = |why: String| format!("{}: {why}", path.display());
-    let text = os_io::files::read_text(path).map_err(|error| refused(error.to_string()))?;
+    let text = os_io::files::read_text(&path).map_err(|error| refused(error.to_string()))?;
     let source = Source { name: path.display().to_string(), text: text.into() };
     let plan = plant::fault::text::parse_line(&source).map_err(|report| report.render_for_stderr())?;
     let useless = |rule: &Rule| rule.kind == FaultKind::CtsLow && !rule.to_controller;

@@ -33,8 +33,15 @@ pub struct Cli {
     /// Operate the run, instead of only looking at it; the run needs --clock real
     #[arg(long, conflicts_with_all = ["once", "tick"])]
     pub operate: bool,
-    /// Task data whose blocks screen 5 lists [with --operate those of the run, with a log those in the log]
-    #[arg(long, value_name = "DIR", default_value = "data")]
+    /// Task data whose blocks screen 5 lists [with --operate those of the run, with a log those in the log; else data, or
+    /// built-in, the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = cli_pages::data_directory()
+    )]
     pub data: PathBuf,
     /// Whether to use colours, which only repeat what the text says; auto follows NO_COLOR and TERM=dumb
     #[arg(long, value_enum, default_value_t = Colour::Auto)]

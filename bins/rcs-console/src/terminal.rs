@@ -64,7 +64,7 @@ pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
         drawn: None,
         log: cli.log.clone(),
         operate: cli.operate,
-        data: shipped::resolve(cli.data.clone()),
+        data: cli.data.clone(),
         watch: watch::place(),
         watched: Vec::new(),
     }

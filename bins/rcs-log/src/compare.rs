@@ -8,8 +8,10 @@ use std::{
     process::ExitCode,
 };
 
+use cli_pages::{data_directory, job};
+use diagnostics::JOBS;
 use interfaces::CommonMemory;
-use runtime::{LogTarget, Run, RunConfig, StartError, setup};
+use runtime::{LogTarget, Run, RunConfig, StartError};
 use serde::Serialize;
 
 use crate::{
@@ -23,13 +25,13 @@ use crate::{
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
     /// The old data directory
-    #[arg(value_name = "DATA-OLD")]
+    #[arg(value_name = "DATA-OLD", value_parser = data_directory())]
     pub old: PathBuf,
     /// The other
-    #[arg(value_name = "DATA-NEW")]
+    #[arg(value_name = "DATA-NEW", value_parser = data_directory())]
     pub new: PathBuf,
     /// The jobs [default: all of both directories]
-    #[arg(value_name = "JOB")]
+    #[arg(value_name = "JOB", value_parser = job(), hide_possible_values = true)]
     pub jobs: Vec<String>,
     /// Seed of the cell's sensor noise and of the positions of delivered parts
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -65,7 +67,7 @@ pub fn compare(arguments: &Arguments) -> Result<ExitCode, Error> {
     let Arguments { old, new, .. } = arguments;
     let mut names: BTreeSet<String> = arguments.jobs.iter().cloned().collect();
     if names.is_empty() {
-        let both = [old, new].into_iter().flat_map(|data| setup::jobs(data));
+        let both = [old, new].into_iter().flat_map(|data| JOBS.all(data));
         names.extend(both.filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())));
     }
     if names.is_empty() {

@@ -174,6 +174,7 @@ impl fmt::Display for Info {
             of("robot")
         )?;
         writeln!(f, "started    {}", of("command_line"))?;
+        writeln!(f, "data       {}", of("data"))?;
         let end = match (&self.result, self.complete) {
             (Some(result), true) => result.clone(),
             _ => "the log has no end: the run was killed, or its log could not be written".to_owned(),

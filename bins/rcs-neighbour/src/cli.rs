@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use cli_pages::shipped_path;
+use cli_pages::data_directory;
 use neighbours::network::Address;
 
 use crate::vision::Fault;
@@ -98,10 +98,17 @@ pub struct WorkstationArguments {
     #[command(flatten)]
     pub controller: ControllerArguments,
     /// Name of a job in the data directory, or a path
-    #[arg(default_value = "linkbar")]
+    #[arg(default_value = "linkbar", value_parser = cli_pages::job(), hide_possible_values = true)]
     pub job: String,
-    /// Jobs, and the task data with which the job is checked
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    /// Jobs, and the task data with which the job is checked [default: data; if there is none: built-in,
+    /// the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
     pub data: PathBuf,
     /// After a command that ends with an error, send PAUSE and the same command again, at most N times for a line of
     /// the job
@@ -117,7 +124,7 @@ pub struct DataSystemArguments {
     pub controller: ControllerArguments,
     /// The SQLite file, created if missing
     #[arg(value_name = "FILE")]
-    pub data_base: PathBuf,
+    pub database: PathBuf,
 }
 
 /// Arguments of `pedestal`.
@@ -134,8 +141,15 @@ pub struct VisionArguments {
     /// Where the controller is.
     #[command(flatten)]
     pub controller: ControllerArguments,
-    /// Directory with the cell description of the run, cell.toml
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    /// Directory with the cell description of the run, cell.toml [default: data; if there is none: built-in,
+    /// the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
     pub data: PathBuf,
     /// Faults of pictures, separated by commas: N:KIND or N-M:KIND; pictures count from 1 over all runs
     ///

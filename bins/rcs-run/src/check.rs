@@ -11,13 +11,14 @@ mod variants;
 use std::{
     collections::HashMap,
     io::{self, IsTerminal as _},
-    path::{Path, PathBuf},
+    path::Path,
     process::ExitCode,
     sync::{Arc, Mutex, PoisonError},
 };
 
 use diagnostics::{
-    Blame, Diagnostic, Diagnostics, Finding, Group, Problems, Severity, Source, amount, grouped,
+    Blame, Diagnostic, Diagnostics, FAULTS, Finding, Group, JOBS, Problems, ROBOTS, Severity, Source, amount,
+    grouped,
 };
 use egm_robot::{RobotFile, placement::PlacementError};
 use os_io::{
@@ -33,10 +34,7 @@ use plant::{
 use serde::Serialize;
 use taskdata::load::{Job, Store};
 
-use runtime::{
-    StartError, agreement,
-    setup::{fault_file, jobs},
-};
+use runtime::{StartError, agreement, setup::fault_file};
 
 use crate::{
     answer_long_json,
@@ -169,7 +167,7 @@ impl Checked {
         let path = data.join(CELL);
         let (cell, of_cell) = cell(&path, store.as_ref().ok());
         let (mut names, mut sound, mut rows) = (Vec::new(), Vec::new(), Vec::new());
-        for job in jobs(data) {
+        for job in JOBS.all(data) {
             let name = job.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let report = match (&store, &cell) {
                 (Err(part), _) => Job::check_part(&job, part),
@@ -308,7 +306,7 @@ fn cell(path: &Path, store: Option<&Store>) -> (Option<(Cell, Source)>, Diagnost
 /// The findings in the fault files of a data directory.
 fn faults(data: &Path, cell: &CellDescription) -> Diagnostics {
     let mut all = Diagnostics::default();
-    for path in toml_files(&data.join("faults")) {
+    for path in FAULTS.all(data) {
         all.files += 1;
         match fault_file(&path, cell) {
             Ok(_) => {}
@@ -322,7 +320,7 @@ fn faults(data: &Path, cell: &CellDescription) -> Diagnostics {
 /// The findings in the robot files of a data directory.
 fn robots(data: &Path) -> Diagnostics {
     let mut all = Diagnostics::default();
-    for path in toml_files(&data.join("robots")) {
+    for path in ROBOTS.all(data) {
         all.files += 1;
         if let Err(error) = RobotFile::load(&path) {
             all = all.with(match error {
@@ -332,13 +330,6 @@ fn robots(data: &Path) -> Diagnostics {
         }
     }
     all
-}
-
-/// The TOML files in a directory; none if there is no such directory.
-fn toml_files(directory: &Path) -> Vec<PathBuf> {
-    let mut paths = files::list(directory).unwrap_or_default();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-    paths
 }
 
 /// A report with one error of a file.

@@ -6,8 +6,12 @@ use std::{
 };
 
 use crate::{campaign::CampaignArguments, new::NewArguments};
-use clap::{Args, Parser, Subcommand, ValueEnum, builder::ArgPredicate};
-use cli_pages::shipped_path;
+use clap::{
+    Args, Parser, Subcommand, ValueEnum,
+    builder::{ArgPredicate, StringValueParser, TypedValueParser},
+};
+use cli_pages::{data_directory, default_data, fault_file, with_names};
+use diagnostics::ROBOTS;
 use executive::{boards::Board, memory::RunName, overrun::Policy};
 use live::Origin;
 use neighbours::network::{Address, Role};
@@ -26,8 +30,7 @@ Examples:
   rcs-run                              run the linkbar as fast as the cell can be simulated
   rcs-run linkbar --clock real         the same, one tick every 40 ms
   rcs-run my.job --seed 7 --json       a job file, other noise, the result as JSON
-  rcs-run --faults data/faults/air-lost.toml
-                                       the air fails in the middle of the job
+  rcs-run --faults air-lost            the air fails in the middle of the job
   rcs-run --boards split               one operating system process a board; the same result, bit for bit
   rcs-run link-test --robot serial:/dev/ttyUSB0
                                        test the serial line to a robot; nothing moves
@@ -40,6 +43,7 @@ Examples:
                                        take commands from a workstation controller in another process
   rcs-run new part HINGE --size 3x1.5x1 --like LCLEVIS
                                        data for a part of another size, tested before they are shown
+  rcs-run jobs                         the jobs, one line each
   rcs-run status                       what the run in the other terminal is doing
   rcs-run tables > tables.md           all decision tables
 
@@ -67,6 +71,8 @@ pub enum Command {
     Board(BoardArguments),
     /// Load task data, jobs and the cell description; print what was loaded, and all errors and warnings
     Check(CheckArguments),
+    /// List the jobs, one line each
+    Jobs(JobsArguments),
     /// Print every decision table as Markdown
     Tables,
     /// Measure how late this machine wakes a thread on the 40 ms grid, and say whether that is good enough for a robot
@@ -90,12 +96,13 @@ pub enum Command {
 /// Arguments of `run`.
 #[derive(Clone, Debug, Args)]
 pub struct RunArguments {
-    /// Name of a job in the data directory, or a path
-    #[arg(default_value = "linkbar")]
+    /// Name of a job in the data directory, or a path; `rcs-run jobs` lists the names
+    #[arg(default_value = "linkbar", value_parser = cli_pages::job(), hide_possible_values = true)]
     pub job: String,
-    /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
-    pub data: PathBuf,
+    /// Task data, jobs and cell description [default: data; if there is none: built-in, the data of the program, but not
+    /// with a robot at a port]
+    #[arg(long, value_name = "DIR", value_parser = data_directory())]
+    pub data: Option<PathBuf>,
     /// When ticks run. fast: one after the other, without waiting; real: one every 40 ms; Nx, such as 5x: N every 40
     /// ms, with the simulated robot
     #[arg(
@@ -125,11 +132,11 @@ pub struct RunArguments {
     /// Options of EGM: robot=NAME|FILE, the robot's frames (data/robots/NAME.toml); from=ADDRESS, ignore datagrams from
     /// other addresses; speed-ref=on|off (on); slack=MS (10), how late a tick may be. egm:sim[,OPTION...] is an
     /// emulated robot in simulated time; docs/egm.md has its options.
-    #[arg(long, value_name = "ROBOT", default_value = "sim")]
+    #[arg(long, value_name = "ROBOT", default_value = "sim", value_parser = robot(), hide_possible_values = true)]
     pub robot: RobotConfig,
-    /// Fault plan: faults of the cell and of the line to the simulated robot, at set ticks or at random (TOML;
-    /// data/README.md)
-    #[arg(long, value_name = "FILE", value_parser = shipped_path())]
+    /// Fault plan: faults of the cell and of the line to the simulated robot, at set ticks or at random; a name in the
+    /// data directory, such as air-lost for data/faults/air-lost.toml, or a file (TOML; data/README.md)
+    #[arg(long, value_name = "NAME|FILE", value_parser = fault_file(), hide_possible_values = true)]
     pub faults: Option<PathBuf>,
     /// How the control processes are distributed over boards
     #[arg(long, value_enum, default_value_t = Boards::One)]
@@ -148,8 +155,8 @@ pub struct RunArguments {
     pub log: Option<LogTarget>,
     /// Keep the items of the Data System in this SQLite file, created if missing [default: keep them during the run
     /// only]
-    #[arg(long, value_name = "FILE")]
-    pub data_base: Option<PathBuf>,
+    #[arg(long, value_name = "FILE", alias = "data-base")]
+    pub database: Option<PathBuf>,
     /// Address at which neighbours in other processes, and operators of --operator network, connect: unix:PATH, or with
     /// --keys tcp:IP:PORT, zenoh:NAME or zenoh:NAME@ENDPOINT (docs/neighbours.md)
     #[arg(long, value_name = "ADDRESS")]
@@ -221,7 +228,7 @@ pub struct BoardArguments {
     #[arg(value_name = "BOARD")]
     pub board: Board,
     /// The job of the run: name in the data directory, or a path
-    #[arg(default_value = "linkbar")]
+    #[arg(default_value = "linkbar", value_parser = cli_pages::job(), hide_possible_values = true)]
     pub job: String,
     /// The run has no job: a workstation controller in another process commands it
     #[arg(long, conflicts_with = "job")]
@@ -229,8 +236,15 @@ pub struct BoardArguments {
     /// Name of the run, as rcs-run prints it
     #[arg(long, value_name = "NAME")]
     pub run: RunName,
-    /// Task data and jobs; they must be those of the run
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    /// Task data and jobs; they must be those of the run [default: data; if there is none: built-in,
+    /// the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
     pub data: PathBuf,
     /// CPU core to run on if ticks come every 40 ms [default: the highest number that this process may use]
     #[arg(long, value_name = "N")]
@@ -257,7 +271,7 @@ impl RunArguments {
             wait: own.wait,
             seed: own.seed,
             log: own.log.unwrap_or(LogTarget::Default),
-            data_base: own.data_base,
+            database: own.database,
             network: own.network,
             outside: own.outside,
             stand_alone: own.stand_alone,
@@ -273,7 +287,7 @@ impl RunArguments {
             live: own.live,
             live_origins: own.live_origin,
             shared_memory: own.shared_memory == Switch::On,
-            ..RunConfig::new(own.data, own.job)
+            ..RunConfig::new(own.data.unwrap_or_else(default_data), own.job)
         }
     }
 }
@@ -416,8 +430,15 @@ pub struct PoseArguments {
     /// Write no pose, but a movetable that leads from this pose of the task data to the one that is shown
     #[arg(long, value_name = "POSE", requires = "write", conflicts_with = "movetable")]
     pub relative: Option<String>,
-    /// Task data and cell description
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    /// Task data and cell description [default: data; if there is none: built-in,
+    /// the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
     pub data: PathBuf,
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
@@ -435,11 +456,18 @@ pub struct InitArguments {
 /// Arguments of `check`.
 #[derive(Clone, Debug, Args)]
 pub struct CheckArguments {
-    /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    /// Task data, jobs and cell description [default: data; if there is none: built-in,
+    /// the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
     pub data: PathBuf,
     /// The same as --data DIR
-    #[arg(value_name = "DIR", conflicts_with = "data", value_parser = shipped_path())]
+    #[arg(value_name = "DIR", conflicts_with = "data", value_parser = data_directory())]
     pub directory: Option<PathBuf>,
     /// Print all findings of each datum, not only the first
     #[arg(long)]
@@ -454,7 +482,13 @@ pub struct CheckArguments {
     #[arg(long, value_name = "COMMAND")]
     pub explain: Option<String>,
     /// Print the paths of all lines of a job: times, joints, smallest clearances
-    #[arg(long, value_name = "JOB", conflicts_with = "explain")]
+    #[arg(
+        long,
+        value_name = "JOB",
+        conflicts_with = "explain",
+        value_parser = cli_pages::job(),
+        hide_possible_values = true
+    )]
     pub explain_job: Option<String>,
     /// Print the joints of a pose, the joint nearest to a limit, and what is nearest to the robot there, as
     /// `rcs-run pose --of NAME` does
@@ -465,8 +499,31 @@ pub struct CheckArguments {
     pub from: String,
     /// Check also whether the arm of this robot reaches every taught pose and can follow every path of every job: a
     /// name in data/robots, or a file, with a table `arm` (docs/egm.md)
-    #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["explain", "explain_job", "place"])]
+    #[arg(
+        long,
+        value_name = "NAME|FILE",
+        conflicts_with_all = ["explain", "explain_job", "place"],
+        value_parser = cli_pages::robot(),
+        hide_possible_values = true
+    )]
     pub robot: Option<String>,
+}
+
+/// Arguments of `jobs`.
+#[derive(Clone, Debug, Args)]
+pub struct JobsArguments {
+    /// The data directory with the jobs [default: data; if there is none: built-in, the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
+    pub data: PathBuf,
+    /// Print one JSON object on standard output, and nothing else there
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// When ticks are run.
@@ -494,6 +551,15 @@ impl FromStr for Clock {
         };
         Ok(Self { kind, speed })
     }
+}
+
+/// A robot. Completions offer the simulated ones, and the emulated ones with the frames of each robot of the data.
+fn robot() -> impl TypedValueParser<Value = RobotConfig> {
+    let parser = StringValueParser::new().try_map(|text| text.parse());
+    with_names(parser, || {
+        let own = ["sim".to_owned(), "egm:sim".to_owned()].into_iter();
+        own.chain(cli_pages::names(&ROBOTS).iter().map(|name| format!("egm:sim,robot={name}"))).collect()
+    })
 }
 
 /// A port of this machine.
@@ -529,6 +595,13 @@ mod tests {
         let Some(Command::Run(long)) = long.command else { panic!("run was asked for") };
         assert_eq!((short.run.job, short.run.seed, short.run.log), (long.job, long.seed, long.log));
         assert_eq!(Cli::parse_from(["rcs-run"]).run.job, "linkbar");
+    }
+
+    #[test]
+    fn database_has_its_old_name_too() {
+        let database = |option| Cli::parse_from(["rcs-run", option, "items.db"]).run.database;
+        assert_eq!(database("--database"), Some(PathBuf::from("items.db")));
+        assert_eq!(database("--data-base"), database("--database"));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! `rcs-run --console`: starts the operator's console on the terminal of the run.
 
 use std::{
-    env, io,
+    io,
     path::PathBuf,
     process::{Child, Command},
     sync::{
@@ -13,7 +13,7 @@ use std::{
 
 use executive::memory::RunName;
 
-use crate::error::Error;
+use crate::{error::Error, programs};
 
 /// Name of the console program, which is installed in the same directory.
 const PROGRAM: &str = "rcs-console";
@@ -29,7 +29,7 @@ impl Console {
     /// # Errors
     /// [`Error::NoConsole`] if it is not beside this program.
     pub fn program() -> Result<PathBuf, Error> {
-        let program = env::current_exe()?.with_file_name(PROGRAM);
+        let program = programs::beside(PROGRAM)?;
         if program.is_file() { Ok(program) } else { Err(Error::NoConsole(program)) }
     }
 

@@ -45,6 +45,28 @@ pub enum Error {
         /// Error of the system.
         source: io::Error,
     },
+    /// A job of the list cannot be read.
+    #[error("{} cannot be read: {source}", path.display())]
+    Unlisted {
+        /// Path of the job.
+        path: PathBuf,
+        /// Error of the system.
+        source: io::Error,
+    },
+    /// A robot at a port, and no data that a person has named.
+    #[error(
+        "a robot at a port needs data of its own cell, and there is no directory data here: name one with --data DIR, \
+         or take those of the program with --data built-in"
+    )]
+    BuiltInAtPort,
+    /// A word that is no job, but nearly a subcommand.
+    #[error("there is no job {word}: the nearest is the subcommand {subcommand}")]
+    Subcommand {
+        /// The word.
+        word: String,
+        /// The subcommand.
+        subcommand: String,
+    },
     /// A run cannot be forked.
     #[error("the run cannot be forked: {0}")]
     Fork(String),

@@ -16,12 +16,15 @@ mod error;
 mod explain;
 mod init;
 mod interrupt;
+mod jobs;
+mod last_lines;
 mod latency;
 mod link_test;
 mod memory_fault;
 mod new;
 mod page;
 mod pose;
+mod programs;
 mod progress;
 mod reach;
 mod run;
@@ -83,6 +86,7 @@ fn execute(cli: Cli) -> Result<ExitCode, Error> {
         Some(Command::Board(arguments)) => board::board(&arguments),
         Some(Command::LinkTest(arguments)) => link_test::link_test(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
+        Some(Command::Jobs(arguments)) => jobs::jobs(&arguments),
         Some(Command::Tables) => tables::tables(),
         Some(Command::Latency(arguments)) => latency::latency(&arguments),
         Some(Command::Status(arguments)) => status::status(&arguments),

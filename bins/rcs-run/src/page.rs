@@ -42,11 +42,8 @@ impl fmt::Display for Page<'_> {
         if let Some(operator) = &result.operator {
             writeln!(f, "operator   {} requests, {} refused", operator.requests, operator.refused)?;
         }
-        for part in &result.parts {
-            writeln!(f, "part       {part}")?;
-        }
         for item in &result.data_base {
-            writeln!(f, "data base  {item}")?;
+            writeln!(f, "database   {item}")?;
         }
         if let Some(nearest) = &result.clearance {
             writeln!(f, "clearance  {nearest}")?;
@@ -106,23 +103,32 @@ impl fmt::Display for Page<'_> {
                 port.sent, port.received, port.unsent, port.losses
             )?;
         }
-        let times = &result.tick_us;
         let allocations = result.allocations_after_start.map_or("not counted".to_owned(), |n| n.to_string());
-        writeln!(
-            f,
-            "controller {} ticks: p50 {:.1} us, p99 {:.1} us, max {:.1} us; {} slots skipped; \
-             allocations: {allocations}",
-            result.ticks, times.p50, times.p99, times.max, result.overruns
-        )?;
+        // In the fast clock nothing has to be on time, so times are no result.
+        let is_timed = result.late_us.is_some();
+        let times = &result.tick_us;
+        let mut timing = String::new();
+        if is_timed {
+            let TickTimes { p50, p99, max } = times;
+            timing = format!(
+                ": p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us; {} slots skipped",
+                result.overruns
+            );
+        }
+        writeln!(f, "controller {} ticks{timing}; allocations: {allocations}", result.ticks)?;
         for board in result.boards.iter().flatten() {
             let TickTimes { p50, p99, max } = board.tick_us;
+            let mut timing = String::new();
+            if is_timed {
+                timing = format!("p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us; ");
+            }
             writeln!(
                 f,
-                "board {}    p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us; allocations: {}; process {}: {}",
+                "board {}    {timing}allocations: {}; process {}: {}",
                 board.board, board.allocations, board.pid, board.processes
             )?;
         }
-        if result.boards.is_none() {
+        if is_timed && result.boards.is_none() {
             writeln!(f, "slowest    {slowest}")?;
         }
         if let Some(TickTimes { p50, p99, max }) = &result.late_us {
@@ -136,6 +142,7 @@ impl fmt::Display for Page<'_> {
             )?;
         }
         writeln!(f, "digest     {}", result.digest)?;
+        writeln!(f, "data       {}", result.data)?;
         writeln!(f, "log        {log}")
     }
 }

@@ -4,6 +4,7 @@ mod form;
 
 use std::{path::Path, process::ExitCode};
 
+use diagnostics::alternatives;
 use executive::memory::{Attached, OnStuck, SET_UP_LIMIT, within_limit};
 use geometry::{
     frame::{Frame, Vector, rotation_from_x_y},
@@ -98,7 +99,8 @@ fn named<'a>(name: &str, store: &'a Store) -> Result<&'a PoseRecord, Error> {
     let data = store.view();
     let unknown = || {
         let known: Vec<_> = data.poses.iter().map(|record| record.name.to_string()).collect();
-        Error::Pose(format!("no pose is named {name}; there are {}", known.join(", ")))
+        let others = alternatives(name, known.iter().map(String::as_str), "there are");
+        Error::Pose(format!("no pose is named {name}: {others}"))
     };
     let name: Name10 = Name::new(name).map_err(|_| unknown())?;
     data.pose_named(&name).and_then(|id| data.pose(id)).ok_or_else(unknown)

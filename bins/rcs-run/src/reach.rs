@@ -6,10 +6,11 @@
 
 use std::{fmt, panic::resume_unwind, path::Path, thread};
 
+use diagnostics::{JOBS, ROBOTS};
 use egm_robot::{
     Placement, RobotFile,
     arm::{Arm, Axes, Track},
-    options::robot_path,
+    placement::PlacementError,
 };
 use geometry::{frame::Frame, kinematics::T3};
 use paths::{
@@ -19,10 +20,7 @@ use paths::{
 };
 use plant::{CellDescription, description::Actuators, room::Room};
 use rcs_core::tick::TICK_S;
-use runtime::{
-    StartError,
-    setup::{CELL, jobs},
-};
+use runtime::{StartError, setup::CELL};
 use serde::Serialize;
 use taskdata::load::{Job, Store};
 
@@ -81,7 +79,8 @@ impl Reach {
     /// # Errors
     /// If the file of the robot, the task data or the cell cannot be used.
     pub fn of(data: &Path, robot: &str) -> Result<Self, Error> {
-        let path = robot_path(robot, data);
+        let path =
+            ROBOTS.find(Path::new(robot), data).map_err(PlacementError::from).map_err(StartError::from)?;
         let RobotFile { placement, arm, .. } = RobotFile::load(&path).map_err(StartError::from)?;
         let Some(arm) = arm else {
             return Err(Error::Reach(format!(
@@ -162,7 +161,7 @@ impl Bench<'_> {
     /// Results per job and start.
     fn jobs(&self, data: &Path, store: &Store, starts: &[Axes]) -> Vec<Vec<JobReach>> {
         let known = &Known::default();
-        let jobs: Vec<_> = jobs(data).iter().filter_map(|path| Job::load(path, store).ok()).collect();
+        let jobs: Vec<_> = JOBS.all(data).iter().filter_map(|path| Job::load(path, store).ok()).collect();
         let follow = |job| self.follow(&walk_job(job, store, self.room, known), starts);
         let follow = &follow;
         thread::scope(|scope| {

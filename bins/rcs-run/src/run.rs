@@ -2,15 +2,18 @@
 
 use std::{env, io, process::ExitCode, sync::Arc};
 
+use clap::CommandFactory as _;
+use diagnostics::{JOBS, UnknownFile, nearest};
 use executive::memory::{OnStuck, RunName};
-use os_io::stderr_line;
-use runtime::{Ending, Observer, Run, RunConfig, RunOutcome, result::FailureResult};
+use os_io::{carried::is_carried, stderr_line};
+use runtime::{Ending, Observer, Run, RunConfig, RunOutcome, StartError, result::FailureResult};
 
 use crate::{
-    cli::RunArguments,
+    cli::{Cli, RunArguments},
     console::Console,
     error::{Error, FAILED, STOPPED},
     interrupt::interruption,
+    last_lines::LastLines,
     memory_fault,
     page::Page,
     progress::Progress,
@@ -34,7 +37,10 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     // The console uses the terminal; the log of the run contains its messages, too.
     let observer: Box<dyn Observer> =
         if console.is_some() { Box::new(()) } else { Box::new(Progress::default()) };
-    let run = Run::new(config, observer)?;
+    if config.robot.kind.lives_in_real_time() && arguments.data.is_none() && is_carried(&config.data) {
+        return Err(Error::BuiltInAtPort);
+    }
+    let run = Run::new(config, observer).map_err(explained)?;
     let console =
         console.zip(name).map(|(program, name)| Console::start(program, &name, stop)).transpose()?;
     let outcome = run.complete();
@@ -42,7 +48,26 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         console.wait();
     }
     print(&outcome, arguments.json)?;
-    Ok(ExitCode::from(status(&outcome)))
+    let status = status(&outcome);
+    if !arguments.json {
+        os_io::console::answer(&LastLines(&outcome).to_string())?;
+    }
+    Ok(ExitCode::from(status))
+}
+
+/// The error of the start; a word that is nearer to a subcommand than to any job was meant as one.
+fn explained(error: StartError) -> Error {
+    if let StartError::NoFile(UnknownFile { what, name, known }) = &error
+        && *what == JOBS.what
+    {
+        let program = Cli::command();
+        let subcommands = program.get_subcommands().map(clap::Command::get_name);
+        let near = nearest(name, known.iter().map(String::as_str).chain(subcommands));
+        if let Some(near) = near.filter(|near| !known.iter().any(|job| job == near)) {
+            return Error::Subcommand { word: name.clone(), subcommand: near.to_owned() };
+        }
+    }
+    error.into()
 }
 
 fn print(outcome: &RunOutcome, json: bool) -> Result<(), Error> {

@@ -3,7 +3,7 @@
 
 use std::{panic::resume_unwind, path::Path, process::ExitCode, thread};
 
-use diagnostics::{At, Diagnostics, Problems, Source};
+use diagnostics::{At, Diagnostics, JOBS, Problems, Source};
 use os_io::console;
 use paths::{
     finding::Segment,
@@ -13,10 +13,7 @@ use paths::{
     walk::seconds,
 };
 use plant::{CellDescription, room::Room};
-use runtime::{
-    StartError,
-    setup::{CELL, job_path},
-};
+use runtime::{StartError, setup::CELL};
 use serde::Serialize;
 use taskdata::load::{Job, Store};
 
@@ -99,7 +96,7 @@ pub fn explain(arguments: &CheckArguments, name: &str) -> Result<ExitCode, Error
     let data = &arguments.data;
     let (store, _) =
         Store::load(data).map_err(unusable(format!("the task data under {}", data.display())))?;
-    let path = job_path(name, data)?;
+    let path = JOBS.find(Path::new(name), data).map_err(StartError::from)?;
     let (job, _) = Job::load(&path, &store).map_err(unusable(format!("the job {}", path.display())))?;
     let cell = cell(data)?;
     let walked = walk_job(&job, &store, &Room::new(&cell), &Known::default());

@@ -177,6 +177,21 @@ fn usage_errors_have_status_2_and_a_sentence() {
         (&["--clock", "slow"], "fast, real"),
         (&["--data", "/nowhere"], "there is no task data directory /nowhere"),
         (&["no-such-job"], "there is no job no-such-job: the data directory has "),
+        // The nearest name.
+        (&["lnkbar"], "there is no job lnkbar: the nearest is linkbar"),
+        (&["chekc"], "there is no job chekc: the nearest is the subcommand check"),
+        (&["chekc", "--all"], "a similar subcommand exists: 'check'"),
+        (&["--faults", "air-lots"], "there is no fault file air-lots: the nearest is air-lost"),
+        (&["--faults", "data/faults/air-lots.toml"], "air-lots.toml: the nearest is air-lost"),
+        (&["--robot", "egm:sim,robot=irb670"], "there is no robot irb670: the nearest is irb6700"),
+        (&["check", "--robot", "smae"], "there is no robot smae: the nearest is same"),
+        (&["check", "--explain-job", "cleivs"], "there is no job cleivs: the nearest is clevis"),
+        (&["check", "--explain", "MOVE LINKBR1 +2 UNIT_1 1 +2 PFIXTURE 0 -- 0"], "LINKBAR1"),
+        (&["pose", "--of", "HOME-PSO"], "no pose is named HOME-PSO: the nearest is HOME-POS"),
+        (&["new", "part", "X", "--size", "1x1x1", "--like", "LINKBR1"], "the nearest is LINKBAR1"),
+        (&["campaign", "--interrupt", "puase"], "no interruption puase: the nearest is pause"),
+        (&["campaign", "--interrupt", "held:emov"], "no interruption held:emov: the nearest is emove"),
+        (&["campaign", "--interrupt", "fault:air-lots"], "the nearest is air-lost"),
     ] {
         let output = rcs_run(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -184,6 +199,32 @@ fn usage_errors_have_status_2_and_a_sentence() {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(said.contains(sentence), "{arguments:?}: {said}");
     }
+}
+
+#[test]
+fn jobs_are_listed_one_per_line() {
+    let listed = stdout(&rcs_run(&["jobs"]));
+    let names: Vec<_> = listed.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    assert_eq!(names, ["clevis", "linkbar", "shift", "tool-change", "turned-part"]);
+    assert!(listed.contains("linkbar      The linkbar (VIII.2)\n"), "{listed}");
+    assert!(listed.lines().all(|line| line.chars().count() <= 104), "{listed}");
+    assert_eq!(json(&rcs_run(&["jobs", "--json"]))["jobs"][1]["job"], "linkbar");
+}
+
+#[test]
+fn faults_are_found_by_name() {
+    let place = Place::new();
+    let by = |faults: &str| {
+        let output = rcs_run(&["--faults", faults, "--ticks", "90", "--log", "none", "--json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", last_line(&output));
+        json(&output)["cell_faults"].clone()
+    };
+    let named = by("blank-missing");
+    assert_eq!(named[0]["number"], 1, "{named}");
+    assert_eq!(by("data/faults/blank-missing.toml"), named);
+    let own = place.0.path().join("mine.toml");
+    fs::copy(data().join("faults/blank-missing.toml"), &own).unwrap();
+    assert_eq!(by(&own.display().to_string()), named);
 }
 
 #[test]

@@ -3,24 +3,20 @@
 #![forbid(unsafe_code)]
 
 mod markdown;
+mod values;
 
-use std::{
-    env,
-    ffi::OsString,
-    fs, io,
-    path::{Path, PathBuf},
-    process,
-};
+use std::{env, ffi::OsString, fs, io, path::Path, process};
 
 use clap::{
     Arg, Command, Parser, ValueEnum,
-    builder::{PathBufValueParser, TypedValueParser},
-    error::ErrorKind,
+    error::{ContextKind, ContextValue, ErrorKind},
 };
 use clap_complete::{Generator, Shell};
+use diagnostics::nearest;
 use os_io::units::Units;
 
 pub use markdown::markdown;
+pub use values::{data_directory, default_data, fault_file, job, names, robot, with_names};
 
 /// The version, and the commit that the program was built from if that is known.
 pub const VERSION: &str = if env!("RCS_COMMIT").is_empty() {
@@ -58,7 +54,13 @@ pub fn parse<P: Parser>() -> P {
             }
         });
     }
-    let mut matches = command.get_matches_mut();
+    let mut matches = command.try_get_matches_from_mut(&arguments).unwrap_or_else(|mut error| {
+        if let Some(near) = misspelt_subcommand(&command, arguments.get(1)) {
+            let tip = format!("a similar subcommand exists: '{near}'");
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
+        error.exit()
+    });
     P::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| error.format(&mut command).exit())
 }
 
@@ -89,10 +91,12 @@ pub fn length(text: &str) -> Result<f64, String> {
     Units::of_process().length(text)
 }
 
-/// The value of an option that names a file or directory: if it is not there, a carried one of that name counts.
-#[must_use]
-pub fn shipped_path() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().map(shipped::resolve)
+/// The subcommand that the first argument probably means, if it is none: a program that runs a job without a subcommand
+/// takes the word for a job, and refuses the options of the subcommand.
+fn misspelt_subcommand<'c>(command: &'c Command, first: Option<&OsString>) -> Option<&'c str> {
+    let first = first?.to_str()?;
+    let names = || command.get_subcommands().map(Command::get_name);
+    nearest(first, names()).filter(|_| names().all(|name| name != first))
 }
 
 /// The definition of a program with its version and `--generate`.

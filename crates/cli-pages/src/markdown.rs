@@ -53,7 +53,8 @@ fn label(argument: &Arg) -> String {
     let typed =
         option.into_iter().chain((!values.is_empty()).then_some(values)).collect::<Vec<_>>().join(" ");
     let default: Vec<_> = argument.get_default_values().iter().map(|value| value.to_string_lossy()).collect();
-    let taken = argument.get_action().takes_values() && !default.is_empty();
+    let is_shown = !argument.is_hide_default_value_set() && !default.is_empty();
+    let taken = argument.get_action().takes_values() && is_shown;
     if taken { format!("`{typed}` (default `{}`)", default.join(",")) } else { format!("`{typed}`") }
 }
 
@@ -62,7 +63,7 @@ fn text(argument: &Arg) -> String {
     let help = argument.get_long_help().or(argument.get_help()).map(ToString::to_string).unwrap_or_default();
     let mut text = sentence(&help.split("\n\n").map(sentence).collect::<Vec<_>>().join(" "));
     let values = argument.get_possible_values();
-    if argument.get_action().takes_values() && !values.is_empty() {
+    if argument.get_action().takes_values() && !argument.is_hide_possible_values_set() && !values.is_empty() {
         let value = |value: &clap::builder::PossibleValue| {
             let help = value.get_help().map(|help| format!(" ({help})")).unwrap_or_default();
             format!("`{}`{help}", value.get_name())

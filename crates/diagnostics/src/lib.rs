@@ -12,6 +12,7 @@
 mod diagnostic;
 mod finding;
 mod groups;
+mod named_files;
 mod names;
 mod places;
 mod problem;
@@ -23,7 +24,8 @@ pub mod toml;
 pub use diagnostic::Diagnostic;
 pub use finding::Finding;
 pub use groups::{Blame, Group, grouped};
-pub use names::{distance, nearest};
+pub use named_files::{FAULTS, JOBS, NamedFiles, ROBOTS, UnknownFile};
+pub use names::{alternatives, distance, nearest};
 pub use places::{Places, Position};
 pub use problem::{Problem, Problems, Severity};
 pub use report::{Diagnostics, Loaded, amount};

@@ -20,6 +20,18 @@ pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) 
     best.map(|(_, name)| name)
 }
 
+/// The help in a message about an unknown name: `the nearest is NAME` if the difference can be a typing error, else all
+/// known names after `listing`, such as `there are`.
+#[must_use]
+pub fn alternatives<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>, listing: &str) -> String {
+    let known: Vec<_> = known.into_iter().collect();
+    match nearest(wanted, known.iter().copied()) {
+        Some(near) => format!("the nearest is {near}"),
+        None if known.is_empty() => format!("{listing} none"),
+        None => format!("{listing} {}", known.join(", ")),
+    }
+}
+
 /// Edit distance of two words: number of characters inserted, deleted, replaced, or swapped with the next.
 #[must_use]
 pub fn distance(one: &str, other: &str) -> usize {
@@ -38,5 +50,13 @@ mod tests {
         assert_eq!(near("lk-grp-fx3"), Some("LK-GRP-FX1"));
         assert_eq!(near("HONE"), Some("HOME"));
         assert_eq!(near("PFIXTURE"), None);
+    }
+
+    #[test]
+    fn help_is_the_nearest_name_or_all_names() {
+        let help = |name| alternatives(name, ["clevis", "linkbar"], "there are");
+        assert_eq!(help("linkbr"), "the nearest is linkbar");
+        assert_eq!(help("drum"), "there are clevis, linkbar");
+        assert_eq!(alternatives("drum", [], "there are"), "there are none");
     }
 }

@@ -3,14 +3,14 @@
 use std::{
     net::{IpAddr, Ipv4Addr, SocketAddr},
     ops::RangeInclusive,
-    path::{Path, PathBuf},
+    path::Path,
     str::FromStr,
     time::Duration,
 };
 
 use depc::track::LAG_MS;
+use diagnostics::ROBOTS;
 use egm::host::Settings;
-use os_io::files;
 
 use crate::{
     Placement,
@@ -20,8 +20,6 @@ use crate::{
     simulated::SimulatedLine,
 };
 
-/// Subdirectory of the data directory with the files of the robots.
-const ROBOTS: &str = "robots";
 /// Time constant of the robot's position loop at the default gain of 5, ms.
 const LOOP_MS: u16 = 200;
 /// Permitted slack, ms.
@@ -194,7 +192,7 @@ impl EgmOptions {
     /// [`PlacementError`] if the file cannot be used.
     pub fn file(&self, data: &Path) -> Result<RobotFile, PlacementError> {
         let Some(robot) = &self.robot else { return Ok(RobotFile::default()) };
-        RobotFile::load(&robot_path(robot, data))
+        RobotFile::load(&ROBOTS.find(Path::new(robot), data)?)
     }
 
     /// The frames of the robot.
@@ -235,13 +233,6 @@ impl EgmOptions {
     pub fn networks(&self) -> [Network; 2] {
         [0, 1].map(|direction| Network::new(self.quality, self.seed.wrapping_mul(2).wrapping_add(direction)))
     }
-}
-
-/// The path of a robot's file: the file of that name in `data/robots` if it exists, else `robot` as a path.
-#[must_use]
-pub fn robot_path(robot: &str, data: &Path) -> PathBuf {
-    let named = data.join(ROBOTS).join(robot).with_added_extension("toml");
-    if files::is_file(&named) { named } else { PathBuf::from(robot) }
 }
 
 fn switch(name: &str, value: &str) -> Result<bool, String> {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use depc::{Plate, plate::HALF_TURN, track::MOST_LAG_MS};
 use diagnostics::{
-    Diagnostics, Problem, Source,
+    Diagnostics, Problem, Source, UnknownFile,
     toml::{Document, FileKind, element, join},
 };
 use egm::{Limits, Pose, pose};
@@ -40,6 +40,9 @@ pub(crate) const KIND: FileKind = FileKind {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlacementError {
+    /// There is no such robot.
+    #[error(transparent)]
+    Unknown(#[from] UnknownFile),
     /// The file cannot be read.
     #[error("the robot's frames {} cannot be read: {source}", path.display())]
     Read {

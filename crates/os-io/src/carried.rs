@@ -29,6 +29,12 @@ pub fn carry(files: &'static [Carried]) {
     let _ = CARRIED.set(files);
 }
 
+/// True for the path of a built-in file or directory.
+#[must_use]
+pub fn is_carried(path: &Path) -> bool {
+    inside(path).is_some()
+}
+
 /// Removes the prefix from the path of a built-in file or directory; `None` for a path of the file system.
 pub(crate) fn inside(path: &Path) -> Option<&str> {
     path.to_str()?.strip_prefix(PREFIX)

@@ -59,7 +59,8 @@ pub struct RunConfig {
     #[serde(with = "as_text")]
     pub log: LogTarget,
     /// SQLite file of the Data System's items; without it they are in memory and lost at the end.
-    pub data_base: Option<PathBuf>,
+    #[serde(alias = "data-base")]
+    pub database: Option<PathBuf>,
     /// Address at which neighbours in other processes connect.
     #[serde(with = "as_text::option")]
     pub network: Option<Address>,
@@ -124,7 +125,7 @@ impl RunConfig {
             wait: 300,
             seed: 1,
             log: LogTarget::Default,
-            data_base: None,
+            database: None,
             network: None,
             outside: Vec::new(),
             stand_alone: false,

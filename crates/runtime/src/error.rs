@@ -2,6 +2,7 @@
 
 use std::{io, path::PathBuf};
 
+use diagnostics::UnknownFile;
 use executive::{boards::SplitError, serial::OpenError};
 use neighbours::{
     data_system::{OutboxError, StoreError},
@@ -38,14 +39,9 @@ pub enum StartError {
         /// A line for each command, with its first error.
         wrong: Vec<String>,
     },
-    /// The job does not exist.
-    #[error("there is no job {job}: {}", known_jobs(.known))]
-    NoJob {
-        /// The requested name.
-        job: String,
-        /// Jobs of the data directory.
-        known: Vec<String>,
-    },
+    /// The job or the fault file does not exist.
+    #[error(transparent)]
+    NoFile(#[from] UnknownFile),
     /// A file cannot be read.
     #[error("{} cannot be read: {source}", path.display())]
     Read {
@@ -81,11 +77,11 @@ pub enum StartError {
     /// The log whose inputs are to be replayed cannot be read.
     #[error("the operator's inputs cannot be replayed: {0}")]
     Inputs(#[source] Box<record::ReadError>),
-    /// The data base of the Data System cannot be opened.
+    /// The database of the Data System cannot be opened.
     #[error("the Data System cannot keep its items: {0}")]
     DataBase(#[from] StoreError),
     /// Another process keeps the items of the Data System.
-    #[error("the Data System is another process: name the data base there, not here")]
+    #[error("the Data System is another process: name the database there, not here")]
     DataBaseElsewhere,
     /// The file for pending updates of the Data System cannot be used.
     #[error("{0}; --outbox names another file")]
@@ -169,13 +165,5 @@ impl StartError {
             Self::WrongData { wrong, .. } => wrong.iter().map(|line| format!("{}\n", shown(line))).collect(),
             _ => String::new(),
         }
-    }
-}
-
-fn known_jobs(known: &[String]) -> String {
-    match known {
-        [] => "the data directory has no jobs".to_owned(),
-        [only] => format!("the data directory has {only}"),
-        more => format!("the data directory has {}", more.join(", ")),
     }
 }

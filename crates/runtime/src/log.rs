@@ -34,7 +34,9 @@ pub const FAULTS: &str = "faults.toml";
 /// Directory, among the attachments, of the files that the job can load during the run.
 pub const LOADS: &str = "loads/";
 
-/// Key of the metadata: number of times that a command is sent again after an error.
+/// Key of the metadata: origin of the task data, and the number of files.
+pub const DATA: &str = "data";
+/// Key: number of times that a command is sent again after an error.
 pub const RETRY: &str = "retry";
 /// Key: neighbours in other processes.
 pub const OUTSIDE: &str = "outside";
@@ -124,7 +126,7 @@ impl Log {
             ClockKind::Fast => (Pace::Wait, Epoch::Fixed),
             ClockKind::Real => (Pace::Drop, Epoch::now()),
         };
-        let run = metadata(config, &setup.job, &attachments);
+        let run = metadata(config, setup, &attachments);
         let start = record::Setup { epoch, run, attachments, cell: Some(model) };
         let recorder = Recorder::start_in(file, pace, start, tap)?;
         Ok(Self {
@@ -294,7 +296,7 @@ fn attachments(setup: &Setup) -> Vec<Attachment> {
 }
 
 /// Metadata of the run. Two equal runs have equal metadata.
-fn metadata(config: &RunConfig, job: &Job, attachments: &[Attachment]) -> BTreeMap<String, String> {
+fn metadata(config: &RunConfig, setup: &Setup, attachments: &[Attachment]) -> BTreeMap<String, String> {
     let mut configuration = Digest::new();
     for attachment in attachments {
         configuration.add(attachment.name.as_bytes());
@@ -304,13 +306,14 @@ fn metadata(config: &RunConfig, job: &Job, attachments: &[Attachment]) -> BTreeM
     let faults = faults.map(|name| name.to_string_lossy().into_owned());
     let command_line = std::env::args().collect::<Vec<_>>().join(" ");
     let outside: Vec<String> = config.outside.iter().map(ToString::to_string).collect();
-    let items = if config.data_base.is_some() { "file" } else { IN_MEMORY };
+    let items = if config.database.is_some() { "file" } else { IN_MEMORY };
     let entries = [
         ("program", "rcs-run".to_owned()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ("commit", crate::COMMIT.to_owned()),
         ("command_line", command_line),
-        ("job", job.name.clone()),
+        ("job", setup.job.name.clone()),
+        (DATA, setup.data.to_string()),
         ("seed", config.seed.to_string()),
         ("clock", config.clock.text().to_owned()),
         ("robot", config.robot.to_string()),

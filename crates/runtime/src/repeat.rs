@@ -15,7 +15,7 @@ use record::{Attachment, Log};
 
 use crate::{
     config::{LogTarget, RobotConfig, RunConfig},
-    log::{DATA_BASE, FAULTS, IN_MEMORY, LOADS, OUTSIDE, RETRY, STAND_BY, TICKS, UNCHECKED},
+    log::{DATA, DATA_BASE, FAULTS, IN_MEMORY, LOADS, OUTSIDE, RETRY, STAND_BY, TICKS, UNCHECKED},
     setup::{CELL, EXTENSION},
 };
 
@@ -78,7 +78,7 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
         return Err(RepeatError::Elsewhere(format!("{outside} in another process")));
     }
     if said(DATA_BASE).is_some_and(|place| place != IN_MEMORY) {
-        return Err(RepeatError::Elsewhere("a data base in a file".to_owned()));
+        return Err(RepeatError::Elsewhere("a database in a file".to_owned()));
     }
     let robot = said("robot").ok_or(RepeatError::Missing("robot"))?;
     let robot: RobotConfig =
@@ -113,6 +113,8 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
         inputs: operated.then(|| log.path().to_owned()),
         stand_by,
         unchecked: said(UNCHECKED).is_some(),
+        // The directory of the files is temporary.
+        remarks: said(DATA).map(|data| (DATA.to_owned(), data.to_owned())).into_iter().collect(),
         log: LogTarget::None,
         shared_memory: false,
         ..RunConfig::new(data, job.to_string_lossy())

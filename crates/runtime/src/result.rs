@@ -1,6 +1,7 @@
 //! The result of a run: the JSON object, from which the text is made.
 
 mod cell;
+mod data;
 mod robot;
 mod timing;
 
@@ -12,6 +13,7 @@ use serde::Serialize;
 
 pub use self::{
     cell::{CellFaultResult, ContactResult, EmergencyResult, EventResult, Events, ItemResult, PartResult},
+    data::DataResult,
     robot::{EgmResult, FaultsResult, LinkResult, PortResult},
     timing::{BoardResult, TickTimes},
 };
@@ -105,6 +107,8 @@ pub const SIMULATED: &str =
 pub struct RunResult {
     /// Name of the job.
     pub job: String,
+    /// The task data and the cell description.
+    pub data: DataResult,
     /// Commands that were sent to Task.
     pub commands: Vec<CommandResult>,
     /// Commands that failed and were sent again, after a PAUSE (`--retry`).

@@ -41,7 +41,7 @@ use crate::{
     observer::{Observer, TickReport},
     operator::{Inputs, Operator},
     pace::Pace,
-    result::Events,
+    result::{DataResult, Events},
     robot::Robot,
     truth::{TruthCheck, placement::PlacementCheck},
     verdict::{Ending, outside},
@@ -79,6 +79,8 @@ pub struct Run {
     pub(crate) robot: Robot,
     pub(crate) log: Option<Log>,
     log_path: Option<PathBuf>,
+    /// Origin of the task data.
+    data: DataResult,
     /// The live view.
     live: Option<Live>,
     pace: Pace,

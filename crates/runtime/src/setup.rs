@@ -7,6 +7,7 @@ use std::{
 };
 
 use depc::fault::Injector;
+use diagnostics::JOBS;
 use executive::serial::SerialLine;
 use neighbours::{
     data_system::{self, ANSWER_TICKS, Agent, DataSystem, Outbox, Pace},
@@ -38,14 +39,13 @@ use crate::{
     network::Network,
     observer::Observer,
     own::{OwnPort, OwnRobot},
+    result::DataResult,
     robot::{Port, Robot},
     switched::Switched,
 };
 
-/// Directory of the jobs in the data directory.
-pub const JOBS: &str = "jobs";
 /// Extension of job files.
-pub const EXTENSION: &str = "job";
+pub const EXTENSION: &str = JOBS.extension;
 
 pub use plant::description::CELL;
 
@@ -56,6 +56,8 @@ pub const MOST_SPEED: u8 = 20;
 pub struct Setup {
     /// Task data.
     pub store: Store,
+    /// Origin of the task data and of the cell description.
+    pub data: DataResult,
     /// The job.
     pub job: Job,
     /// Text of the cell description.
@@ -131,8 +133,11 @@ impl Setup {
             RobotKind::Egm(options) => Robot::Egm(Box::new(EgmPort::open(options, config, observer)?)),
             RobotKind::Own => Robot::Own(OwnPort::new(own.ok_or(StartError::NoOwnRobot)?)),
         };
+        // The cell description is a file, too.
+        let data = DataResult::new(data, store.sources().len() + 1);
         Ok(Self {
             store,
+            data,
             job,
             description_text,
             description,
@@ -171,7 +176,7 @@ impl TaskFiles {
             return Err(StartError::NoData(data.to_owned()));
         }
         let (store, in_data) = Store::load_with_faults(data);
-        let job_path = job.map(|job| job_path(job, data)).transpose()?.unwrap_or_default();
+        let job_path = job.map(|job| JOBS.find(Path::new(job), data)).transpose()?.unwrap_or_default();
         let without_lines = |name: String| Job::from_source(Source { name, text: "".into() }, &store);
         let what = || format!("the job {}", job_path.display());
         let mut left_out = None;
@@ -279,7 +284,7 @@ fn neighbours(
     let data_system = match items {
         Some(endpoint) => DataSystem::elsewhere(Agent::new(endpoint, outbox(config)?), pace),
         None => {
-            let file = config.data_base.as_deref();
+            let file = config.database.as_deref();
             let items = file.map_or_else(data_system::Store::in_memory, data_system::Store::open)?;
             DataSystem::new(items, ANSWER_TICKS, pace)
         }
@@ -304,7 +309,7 @@ fn neighbours(
 
 /// The file for updates that wait for a Data System in another process.
 fn outbox(config: &RunConfig) -> Result<Outbox, StartError> {
-    if config.data_base.is_some() {
+    if config.database.is_some() {
         return Err(StartError::DataBaseElsewhere);
     }
     let file = &config.outbox;
@@ -347,28 +352,4 @@ fn warning(report: &Diagnostics, what: &str) -> Option<String> {
         1 => Some(format!("1 warning in {what}; rcs-run check shows it")),
         count => Some(format!("{count} warnings in {what}; rcs-run check shows them")),
     }
-}
-
-/// The file of a job: `job` as a path if it looks like one or exists, else as a name in the data directory.
-pub fn job_path(job: &str, data: &Path) -> Result<PathBuf, StartError> {
-    let path = PathBuf::from(job);
-    let named = data.join(JOBS).join(job).with_added_extension(EXTENSION);
-    if files::is_file(&named) {
-        return Ok(named);
-    }
-    if files::is_file(&path) {
-        return Ok(path);
-    }
-    let known = jobs(data);
-    let known =
-        known.iter().filter_map(|path| path.file_stem()).map(|name| name.to_string_lossy().into_owned());
-    Err(StartError::NoJob { job: job.to_owned(), known: known.collect() })
-}
-
-/// All jobs of a data directory.
-#[must_use]
-pub fn jobs(data: &Path) -> Vec<PathBuf> {
-    let mut jobs = files::list(&data.join(JOBS)).unwrap_or_default();
-    jobs.retain(|path| path.extension().is_some_and(|e| e == EXTENSION));
-    jobs
 }

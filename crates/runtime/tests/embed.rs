@@ -66,7 +66,7 @@ fn a_run_that_is_told_to_stop_brings_the_robot_to_rest() {
 fn what_cannot_be_run_is_refused_before_anything_moves() {
     let error = Run::new(config("no-such-job"), Box::new(())).err().unwrap();
     assert!(
-        matches!(&error, StartError::NoJob { known, .. } if known.contains(&"linkbar".to_owned())),
+        matches!(&error, StartError::NoFile(file) if file.known.contains(&"linkbar".to_owned())),
         "{error}"
     );
     let nowhere = RunConfig { data: "/no/such/directory".into(), ..config("linkbar") };

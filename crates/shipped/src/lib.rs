@@ -16,6 +16,26 @@ use os_io::{
 /// All files of `data/`.
 pub static FILES: &[Carried] = include!(concat!(env!("OUT_DIR"), "/files.rs"));
 
+/// The name of the built-in data on the command line.
+pub const BUILT_IN: &str = "built-in";
+/// The data directory if no other one is named.
+const DATA: &str = "data";
+
+/// The value of `--data` if none is given: `data` in the working directory, or [`BUILT_IN`] if there is nothing of that
+/// name.
+#[must_use]
+pub fn default_data() -> &'static str {
+    if fs::symlink_metadata(DATA).is_ok() { DATA } else { BUILT_IN }
+}
+
+/// The data directory that a person names: [`BUILT_IN`], or an existing directory. `None` if there is no such directory.
+#[must_use]
+pub fn data_directory(named: &Path) -> Option<PathBuf> {
+    let directory =
+        if named == BUILT_IN { PathBuf::from(format!("{PREFIX}{DATA}")) } else { named.to_owned() };
+    files::is_directory(&directory).then_some(directory)
+}
+
 /// Make the files readable under `shipped:data/`, for the whole process.
 pub fn carry() {
     carried::carry(FILES);
@@ -93,7 +113,10 @@ mod tests {
         fs::write(&mine, "").unwrap();
         assert_eq!(resolve(mine.clone()), mine);
         // Tests run in the directory of their crate, which has no data.
-        assert_eq!(resolve("data".into()), Path::new("shipped:data"));
+        assert_eq!(default_data(), BUILT_IN);
+        assert_eq!(data_directory(Path::new(BUILT_IN)).as_deref(), Some(Path::new("shipped:data")));
+        assert_eq!(data_directory(Path::new("data")), None, "a directory that is named must exist");
+        assert_eq!(data_directory(place.path()).as_deref(), Some(place.path()));
         assert_eq!(
             resolve("data/faults/air-lost.toml".into()),
             Path::new("shipped:data/faults/air-lost.toml")

@@ -6,6 +6,7 @@ use std::{
     str::FromStr,
 };
 
+use diagnostics::alternatives;
 use os_io::files;
 use plant::{
     CellDescription,
@@ -301,7 +302,9 @@ fn missing(table: &toml::Table, key: &str) -> RefusedChange {
         known = inner.keys().cloned().collect();
         at = next;
     }
-    RefusedChange::Key { key: key.to_owned(), known: format!("there are {}", known.join(", ")) }
+    let last = key.rsplit('.').next().unwrap_or(key);
+    let known = alternatives(last, known.iter().map(String::as_str), "there are");
+    RefusedChange::Key { key: key.to_owned(), known }
 }
 
 #[cfg(test)]

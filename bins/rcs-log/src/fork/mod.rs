@@ -121,7 +121,7 @@ fn run(log: &Log, arguments: &Arguments, tick: u64) -> Result<Trace, ForkError> 
         check_output(output, Format::Mcap, [arguments.file.as_path()])
             .map_err(|source| ForkError::Output { path: output.clone(), source })?;
         let changes: Vec<String> = arguments.changes.iter().map(ToString::to_string).collect();
-        config.remarks = repeat::fork_remarks(tick, &changes);
+        config.remarks.extend(repeat::fork_remarks(tick, &changes));
         config.log = LogTarget::File(output.clone());
     }
     let mut run = Repetition::new(Run::new(config, Box::new(()))?);

@@ -2,19 +2,30 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, builder::ArgPredicate};
-use cli_pages::shipped_path;
+use clap::{
+    Args,
+    builder::{ArgPredicate, StringValueParser},
+};
+use cli_pages::{data_directory, with_names};
+use diagnostics::FAULTS;
 
-use super::{operator::Recovery, trial::Until};
+use super::{interruption::first_words, operator::Recovery, trial::Until};
 
 /// Arguments of `rcs-run campaign`.
 #[derive(Clone, Debug, Args)]
 pub struct CampaignArguments {
     /// Names of jobs in the data directory, or paths
-    #[arg(default_value = "linkbar")]
+    #[arg(default_value = "linkbar", value_parser = cli_pages::job(), hide_possible_values = true)]
     pub jobs: Vec<String>,
-    /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    /// Task data, jobs and cell description [default: data; if there is none: built-in,
+    /// the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
     pub data: PathBuf,
     /// Seed of the cell's sensor noise and of the positions of delivered parts
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -28,6 +39,8 @@ pub struct CampaignArguments {
         long,
         value_name = "KIND",
         value_delimiter = ',',
+        value_parser = with_names(StringValueParser::new(), interruption_names),
+        hide_possible_values = true,
         default_value = "pause",
         default_value_if("random", ArgPredicate::IsPresent, "all")
     )]
@@ -84,4 +97,10 @@ pub struct CampaignArguments {
     /// Ticks before and after the interruption for which a single branch prints every row that fires
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub around: u64,
+}
+
+/// The interruptions that completions offer: all first words, and a `fault` with each fault file.
+fn interruption_names() -> Vec<String> {
+    let faults = cli_pages::names(&FAULTS).into_iter().map(|name| format!("fault:{name}"));
+    first_words().map(str::to_owned).chain(faults).collect()
 }

@@ -3,6 +3,7 @@
 use std::{fmt, path::Path, sync::Arc};
 
 use depc::fault::FaultKind;
+use diagnostics::{FAULTS, nearest};
 use interfaces::device::single_step;
 use levels::ladder::ProcessId;
 use plant::{
@@ -83,6 +84,8 @@ const PLAIN: [(&str, Kind); 13] = [
     ("estop", Kind::Estop),
     ("cut", Kind::Cut),
 ];
+/// Interruptions of a process, `WORD:PROCESS`.
+const OF_PROCESS: [&str; 3] = ["held", "restart", "lost"];
 /// Processes with a switch on the joystick box.
 const SWITCHES: [(ProcessId, u8); 4] = [
     (ProcessId::Task, single_step::TASK),
@@ -94,9 +97,9 @@ const SWITCHES: [(ProcessId, u8); 4] = [
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Held(process) => write!(f, "held:{}", word(*process)),
-            Self::Restart(process) => write!(f, "restart:{}", word(*process)),
-            Self::Lost(process) => write!(f, "lost:{}", word(*process)),
+            Self::Held(process) => write!(f, "held:{}", word_of(*process)),
+            Self::Restart(process) => write!(f, "restart:{}", word_of(*process)),
+            Self::Lost(process) => write!(f, "lost:{}", word_of(*process)),
             Self::Fault(name, _) => write!(f, "fault:{name}"),
             Self::Disturbed(disturbance) => disturbance.fmt(f),
             plain => f.write_str(PLAIN.iter().find(|(_, kind)| kind == plain).map_or("", |(name, _)| name)),
@@ -105,7 +108,7 @@ impl fmt::Display for Kind {
 }
 
 /// Name of a process on the command line.
-fn word(process: ProcessId) -> &'static str {
+fn word_of(process: ProcessId) -> &'static str {
     process.field()
 }
 
@@ -116,7 +119,7 @@ impl Kind {
     /// # Errors
     /// [`Error::Campaign`] for an unknown word; it lists all words.
     pub fn named(text: &str, data: &Path, cell: &CellDescription) -> Result<Vec<Self>, Error> {
-        let process = |name: &str| ProcessId::ALL.iter().copied().find(|process| word(*process) == name);
+        let process = |name: &str| ProcessId::ALL.iter().copied().find(|process| word_of(*process) == name);
         let found = match text.split_once(':') {
             None if text == "all" => {
                 let plain = PLAIN[1..].iter().map(|(_, kind)| kind);
@@ -142,12 +145,22 @@ impl Kind {
                 Disturbance::named(text).map(|disturbance| vec![Self::Disturbed(disturbance)])
             }
             Some(("fault", name)) => {
-                fault(&data.join("faults").join(name).with_added_extension("toml"), cell)?
-                    .map(|kind| vec![kind])
+                let path = FAULTS.find(Path::new(name), data).map_err(StartError::from)?;
+                fault(&path, cell)?.map(|kind| vec![kind])
             }
             Some(_) => None,
         };
-        found.ok_or_else(|| Error::Campaign(format!("no interruption {text}: expected {}", words())))
+        found.ok_or_else(|| {
+            let (word, of) = text.split_once(':').unwrap_or((text, ""));
+            let near = if OF_PROCESS.contains(&word) {
+                nearest(of, ProcessId::ALL.iter().map(|process| word_of(*process)))
+            } else {
+                nearest(word, first_words().filter(|known| *known != word))
+            };
+            let help =
+                near.map_or_else(|| format!("expected {}", words()), |near| format!("the nearest is {near}"));
+            Error::Campaign(format!("no interruption {text}: {help}"))
+        })
     }
 
     /// True if the interrupted command continues by itself unless it fails.
@@ -233,10 +246,16 @@ impl Kind {
     }
 }
 
+/// The first words of all interruptions.
+pub fn first_words() -> impl Iterator<Item = &'static str> {
+    let plain = PLAIN.iter().map(|(name, _)| *name);
+    plain.chain(OF_PROCESS).chain(["fault", "all"]).chain(disturbance::WORDS)
+}
+
 /// All words of the command line, for messages.
 fn words() -> String {
     let plain = PLAIN.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-    let processes = ProcessId::ALL.iter().map(|process| word(*process)).collect::<Vec<_>>().join(", ");
+    let processes = ProcessId::ALL.iter().map(|process| word_of(*process)).collect::<Vec<_>>().join(", ");
     format!(
         "{plain}, held[:PROCESS], restart[:PROCESS], lost[:PROCESS], fault[:FILE], jog:X:Y:Z, take:PART, \
          move:PART:X:Y, swap:PART:KIND, add:KIND:PLACE:SECTOR or all; processes are {processes}"
@@ -245,11 +264,7 @@ fn words() -> String {
 
 /// All fault files that can be switched on.
 fn faults(data: &Path, cell: &CellDescription) -> Result<Vec<Kind>, Error> {
-    let directory = data.join("faults");
-    let unreadable = |source| StartError::Read { path: directory.clone(), source };
-    let mut paths = os_io::files::list(&directory).map_err(unreadable)?;
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-    paths.iter().filter_map(|path| fault(path, cell).transpose()).collect()
+    FAULTS.all(data).iter().filter_map(|path| fault(path, cell).transpose()).collect()
 }
 
 /// The faults of a file; `None` if the file has none that can be limited to a time.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use cli_pages::{length, shipped_path};
+use cli_pages::{data_directory, length};
 
 use super::size::Size;
 
@@ -59,8 +59,15 @@ pub struct PartArguments {
     /// Print the paths of all lines of the job, as `check --explain-job` does
     #[arg(long)]
     pub explain_job: bool,
-    /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    /// Task data, jobs and cell description [default: data; if there is none: built-in,
+    /// the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
     pub data: PathBuf,
 }
 
@@ -85,8 +92,15 @@ pub struct ToolArguments {
     /// Print the paths of all lines of the job, as `check --explain-job` does
     #[arg(long)]
     pub explain_job: bool,
-    /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    /// Task data, jobs and cell description [default: data; if there is none: built-in,
+    /// the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
     pub data: PathBuf,
 }
 
@@ -116,8 +130,15 @@ pub struct PlaceArguments {
     /// Write the files; without this option they are only shown
     #[arg(long)]
     pub write: bool,
-    /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    /// Task data, jobs and cell description [default: data; if there is none: built-in,
+    /// the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
     pub data: PathBuf,
 }
 
@@ -137,7 +158,14 @@ pub struct TrayArguments {
     /// Write the files; without this option they are only shown
     #[arg(long)]
     pub write: bool,
-    /// Task data, jobs and cell description
-    #[arg(long, value_name = "DIR", default_value = "data", value_parser = shipped_path())]
+    /// Task data, jobs and cell description [default: data; if there is none: built-in,
+    /// the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
     pub data: PathBuf,
 }

@@ -2,13 +2,12 @@
 
 use std::path::Path;
 
-use diagnostics::nearest;
+use diagnostics::{JOBS, alternatives};
 use plant::{
     CellDescription,
     description::{PartType, ViseProgram},
 };
 use rcs_core::name::Name16;
-use runtime::setup::jobs;
 use taskdata::load::{
     BlockNumber, Job, Source, Step, Store, Workstation,
     entries::{Entry, GripEntry, MovetableEntry},
@@ -41,13 +40,11 @@ impl Family {
     /// [`Error::New`] if the part or a job with it does not exist, or its parts' names have no common beginning.
     pub fn of(like: &str, store: &Store, cell: &CellDescription, data: &Path) -> Result<Self, Error> {
         let Some(part) = cell.part(like) else {
-            let known: Vec<_> = cell.part.iter().map(|part| part.name.as_str()).collect();
-            let near = nearest(like, known.iter().copied());
-            let near = near.map_or_else(String::new, |near| format!("; the nearest is {near}"));
-            let known = known.join(", ");
-            return Err(Error::New(format!("no part is named {like}{near}; the cell has {known}")));
+            let known = cell.part.iter().map(|part| part.name.as_str());
+            let others = alternatives(like, known, "the cell has");
+            return Err(Error::New(format!("no part is named {like}: {others}")));
         };
-        let loaded = jobs(data).into_iter().filter_map(|path| Some(Job::load(&path, store).ok()?.0));
+        let loaded = JOBS.all(data).into_iter().filter_map(|path| Some(Job::load(&path, store).ok()?.0));
         let with_parts = loaded.map(|job| (parts(&job, cell), job));
         let with_it = with_parts.filter(|(parts, _)| parts.iter().any(|part| part.name == like));
         let (all, job) = with_it

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use diagnostics::{At, BlockNumber, nearest};
+use diagnostics::{At, BlockNumber, alternatives};
 use geometry::{frame::Frame, pose::Pose};
 use rcs_core::name::{Name, Name10};
 use taskdata::{
@@ -89,9 +89,8 @@ pub fn is_name(name: &str, store: &Store) -> Result<(), Error> {
 
 fn unknown(like: &str, store: &Store) -> Error {
     let known: Vec<String> = store.view().locpts.iter().map(|point| point.name.to_string()).collect();
-    let near = nearest(like, known.iter().map(String::as_str));
-    let near = near.map_or_else(String::new, |near| format!("; the nearest is {near}"));
-    Error::New(format!("no location point is named {like}{near}; there are {}", known.join(", ")))
+    let others = alternatives(like, known.iter().map(String::as_str), "there are");
+    Error::New(format!("no location point is named {like}: {others}"))
 }
 
 /// A name of a form that was not read from a file.

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use diagnostics::nearest;
+use diagnostics::{JOBS, alternatives};
 use geometry::units::Length;
 use os_io::files;
 use plant::{CellDescription, description::Tray};
-use runtime::setup::{CELL, jobs};
+use runtime::setup::CELL;
 use taskdata::load::{
     Store,
     entries::{Entry, PoseEntry, Typed},
@@ -87,10 +87,8 @@ pub fn make(
 }
 
 fn unknown(like: &str, cell: &CellDescription) -> Error {
-    let known: Vec<_> = cell.tray.iter().map(|tray| tray.unit.as_str()).collect();
-    let near = nearest(like, known.iter().copied());
-    let near = near.map_or_else(String::new, |near| format!("; the nearest is {near}"));
-    Error::New(format!("no tray is named {like}{near}; the cell has {}", known.join(", ")))
+    let known = cell.tray.iter().map(|tray| tray.unit.as_str());
+    Error::New(format!("no tray is named {like}: {}", alternatives(like, known, "the cell has")))
 }
 
 /// Check that no other tray is at the point.
@@ -171,7 +169,7 @@ fn job(like: &str, name: &str, cell: &CellDescription, data: &Path) -> Result<(S
         matches!(words.as_slice(), ["**", "tray", unit, _, part, ..] if *unit == like && loose(part))
     };
     let is_tray = |line: &&str| line.starts_with("** tray");
-    let texts = jobs(data).into_iter().filter_map(|path| files::read_text(&path).ok());
+    let texts = JOBS.all(data).into_iter().filter_map(|path| files::read_text(&path).ok());
     let mut fit: Vec<String> = texts
         .filter(|text| {
             let mut trays = text.lines().filter(is_tray).peekable();

@@ -2,7 +2,8 @@
 
 use std::{panic::resume_unwind, path::Path, thread};
 
-use runtime::{Ending, LogTarget, Run, RunConfig, result::FailureResult, setup::jobs};
+use diagnostics::JOBS;
+use runtime::{Ending, LogTarget, Run, RunConfig, result::FailureResult};
 use tempfile::TempDir;
 
 use super::change::Change;
@@ -50,7 +51,7 @@ impl Trial {
     /// [`Error::New`] with the first run that did not finish.
     pub fn run(&self, job: &str, others: bool) -> Result<usize, Error> {
         let mut wanted: Vec<(String, u64)> = SEEDS.map(|seed| (job.to_owned(), seed)).into();
-        let all = jobs(self.data()).into_iter().filter(|_| others);
+        let all = JOBS.all(self.data()).into_iter().filter(|_| others);
         let names = all.filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned()));
         wanted.extend(names.filter(|name| name != job).map(|name| (name, 1)));
         for some in wanted.chunks(AT_A_TIME) {

@@ -2,6 +2,8 @@
 
 use std::{fmt::Debug, io, path::PathBuf, time::Duration};
 
+use diagnostics::alternatives;
+
 use super::name::{NameError, RunName};
 
 /// Errors of shared memory.
@@ -11,7 +13,7 @@ pub enum SharedMemoryError {
     #[error(transparent)]
     BadName(#[from] NameError),
     /// There is no living run of that name, or no living run at all.
-    #[error("there is no run{}: {}", .run.as_ref().map_or_else(String::new, |run| format!(" named {run}")), alive_in_words(.alive))]
+    #[error("there is no run{}: {}", .run.as_ref().map_or_else(String::new, |run| format!(" named {run}")), alive_in_words(.run.as_deref(), .alive))]
     NoSuchRun {
         /// The requested name; `None` if any run was accepted.
         run: Option<String>,
@@ -96,9 +98,9 @@ fn seconds(limit: Duration) -> String {
     format!("{} s", limit.as_secs())
 }
 
-fn alive_in_words(alive: &[RunName]) -> String {
+fn alive_in_words(wanted: Option<&str>, alive: &[RunName]) -> String {
     match alive {
         [] => "no run shows its buffers at the moment".to_owned(),
-        some => format!("there is {}", some.iter().map(RunName::as_str).collect::<Vec<_>>().join(", ")),
+        some => alternatives(wanted.unwrap_or_default(), some.iter().map(RunName::as_str), "there is"),
     }
 }

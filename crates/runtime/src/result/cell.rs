@@ -98,6 +98,8 @@ pub struct PartResult {
     pub sector: u16,
     /// True if the gripper holds it.
     pub held: bool,
+    /// True if the vise clamps it.
+    pub clamped: bool,
     /// Position of its middle, world coordinates, in.
     pub position_in: [f64; 3],
     /// Distance from the centre of its sector, or from its seat in the vise, in.
@@ -111,6 +113,7 @@ impl From<PartState> for PartResult {
             location: part.location,
             sector: part.sector,
             held: part.held,
+            clamped: part.clamped,
             position_in: part.position,
             error_in: part.error,
         }
@@ -119,7 +122,14 @@ impl From<PartState> for PartResult {
 
 impl fmt::Display for PartResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} at {}", self.name, self.location)?;
+        let place = match self.location.as_str() {
+            "gripper" => "in the gripper".to_owned(),
+            "floor" => "on the floor".to_owned(),
+            "elsewhere" => "at no place of the cell".to_owned(),
+            vise if self.clamped => format!("clamped in {vise}"),
+            location => format!("at {location}"),
+        };
+        write!(f, "{} is {place}", self.name)?;
         if self.sector > 0 {
             write!(f, " sector {}", self.sector)?;
         }

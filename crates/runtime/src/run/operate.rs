@@ -3,6 +3,7 @@
 use std::path::{Component, Path};
 
 use ::operator::Event;
+use diagnostics::JOBS;
 use os_io::files;
 use rcs_core::tick::Tick;
 use record::OperatorLine;
@@ -16,7 +17,6 @@ use crate::{
     judge::check_job,
     load::{Answer, Asker, LoadError},
     operator::{A_TICK, Around, Input, Later, WORKSTATION},
-    setup::{EXTENSION, JOBS},
     workstation::orders,
 };
 
@@ -178,9 +178,10 @@ impl Run {
 fn job_named(name: &str, data: &Path) -> Result<Source, String> {
     let mut parts = Path::new(name).components();
     if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None)) {
-        return Err(format!("the name of a job under {}/{JOBS} was expected; found {name}", data.display()));
+        let jobs = data.join(JOBS.directory);
+        return Err(format!("the name of a job under {} was expected; found {name}", jobs.display()));
     }
-    let path = data.join(JOBS).join(name).with_added_extension(EXTENSION);
+    let path = JOBS.named(Path::new(name), data).map_err(|error| error.to_string())?;
     let text = files::read_text(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     Ok(Source { name: path.display().to_string(), text: text.into() })
 }

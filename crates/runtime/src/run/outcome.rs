@@ -73,6 +73,7 @@ impl Run {
         });
         RunResult {
             job: self.job.name.clone(),
+            data: self.data.clone(),
             commands: commands.collect(),
             retries: self.neighbours.retried().iter().map(Into::into).collect(),
             ticks: ticks - u64::from(ramp_ticks),
@@ -138,7 +139,7 @@ impl Run {
                     0 => String::new(),
                     lost => format!("; {lost} ticks found no room and are missing"),
                 };
-                format!("{file} ({size:.1} MB{lost}): rerun {file}, or open it in Foxglove or Lichtblick")
+                format!("{file} ({size:.1} MB{lost})")
             }
             Err(error) => {
                 self.observer.message(&format!("the log ended before the run did: {error}"));

@@ -1,6 +1,7 @@
 //! The start of a run, before the first tick.
 
 use depc::host::{PATIENCE_TICKS, RESTART_TICKS};
+use diagnostics::FAULTS;
 use executive::{
     generations::Generations,
     memory::{Mirror, Publisher, RunName, SET_UP_LIMIT, within_limit},
@@ -82,10 +83,11 @@ impl Run {
     }
 
     fn start(
-        config: RunConfig,
+        mut config: RunConfig,
         own: Option<Box<dyn OwnRobot>>,
         mut observer: Box<dyn Observer>,
     ) -> Result<Self, StartError> {
+        config.faults = config.faults.map(|name| FAULTS.find(&name, &config.data)).transpose()?;
         let mut setup = Setup::load(&config, own, &mut *observer)?;
         setup.neighbours.gather(&config, &mut *observer)?;
         setup.robot.gather(&config, &mut *observer);
@@ -95,7 +97,7 @@ impl Run {
         let log_path = file.as_ref().map(|file| file.path().to_owned());
         let log = file.map(|file| Log::start(file, &config, &setup)).transpose()?;
         let publisher = publisher(&config, &name, &mut *observer);
-        let Setup { store, job, description, cell, robot, neighbours, mut live, .. } = setup;
+        let Setup { store, data, job, description, cell, robot, neighbours, mut live, .. } = setup;
         let workstation = SimulatedWorkstation::new(cell);
         let workstation = if robot.is_elsewhere() { workstation.with_robot_elsewhere() } else { workstation };
         let workstation = if neighbours.can_switch() { workstation.with_hand_over() } else { workstation };
@@ -128,6 +130,7 @@ impl Run {
             name,
             log,
             log_path,
+            data,
             live,
             pace: Pace::fast(config.overrun),
             started: None,

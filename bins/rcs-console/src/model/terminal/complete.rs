@@ -3,6 +3,7 @@
 
 use std::{collections::BTreeSet, path::Path};
 
+use diagnostics::JOBS;
 use interfaces::operator::Variable;
 use taskdata::load::{BlockNumber, Source, Store, source::blocks, verdict::TASK_COMMANDS};
 
@@ -29,7 +30,7 @@ impl Names {
     pub fn of(sources: &[Source], directory: &Path) -> Self {
         let numbers = sources.iter().flat_map(|source| blocks(0, source).0).map(|block| block.number);
         let numbers: BTreeSet<BlockNumber> = numbers.collect();
-        let jobs = runtime_jobs(directory);
+        let jobs = JOBS.names(directory);
         let mut names = Self { blocks: numbers.into_iter().collect(), jobs, ..Self::default() };
         let Ok((store, _)) = Store::from_sources(sources.to_vec()) else { return names };
         let data = store.view();
@@ -57,13 +58,6 @@ impl Names {
             data.end_effs.iter().filter_map(|grip| Some((object(grip.object)?, grip.grip))).collect();
         names
     }
-}
-
-/// The jobs of a data directory.
-fn runtime_jobs(directory: &Path) -> Vec<String> {
-    let files = os_io::files::list(&directory.join("jobs")).unwrap_or_default();
-    let jobs = files.iter().filter(|file| file.extension().is_some_and(|extension| extension == "job"));
-    jobs.filter_map(|file| Some(file.file_stem()?.to_string_lossy().into_owned())).collect()
 }
 
 /// The words that can follow the first words of a line. `*` in an entry matches any word.

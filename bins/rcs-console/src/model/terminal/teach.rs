@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use diagnostics::alternatives;
 use geometry::pose::Pose;
 use paths::stand::{Standing, movetable_between, movetable_form, pose_form};
 use plant::{CellDescription, room::Room};
@@ -60,8 +61,11 @@ impl Lesson {
             None => pose_form(name.as_str(), "...", &pose),
             Some(from) => {
                 let known = Name::<10>::new(from).ok().and_then(|from| data.pose_named(&from));
-                let from =
-                    known.and_then(|id| data.pose(id)).ok_or_else(|| format!("no pose is named {from}"))?;
+                let from = known.and_then(|id| data.pose(id)).ok_or_else(|| {
+                    let poses: Vec<String> = data.poses.iter().map(|pose| pose.name.to_string()).collect();
+                    let others = alternatives(from, poses.iter().map(String::as_str), "there are");
+                    format!("no pose is named {from}: {others}")
+                })?;
                 let to = pose.to_frame().map_err(|error| error.to_string())?;
                 movetable_form(name.as_str(), &movetable_between(&from.frame, &to))
             }

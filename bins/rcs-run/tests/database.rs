@@ -33,7 +33,7 @@ impl Place {
         let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-run"));
         command
             .arg(path)
-            .args(["--json", "--log", "none", "--shared-memory", "off", "--data-base"])
+            .args(["--json", "--log", "none", "--shared-memory", "off", "--database"])
             .arg(self.file("items.db"))
             .args(more)
             .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))

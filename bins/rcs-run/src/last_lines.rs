@@ -1,0 +1,37 @@
+//! The last lines of a run: first where the parts are, then the commands with which a person continues.
+
+use std::fmt;
+
+use runtime::{Ending, RunOutcome};
+
+use crate::programs::{quoted, start_of};
+
+/// The lines. A run without a log leaves nothing to open.
+pub struct LastLines<'a>(pub &'a RunOutcome);
+
+impl fmt::Display for LastLines<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(RunOutcome { ending, result, .. }) = self;
+        writeln!(f)?;
+        if result.simulated.is_some() {
+            writeln!(f, "In the simulated cell, which follows the robot:")?;
+        }
+        if result.parts.is_empty() {
+            writeln!(f, "No part is in the cell.")?;
+        }
+        // What the gripper holds is the first thing that a person must know.
+        let (held, others): (Vec<_>, Vec<_>) = result.parts.iter().partition(|part| part.held);
+        for part in held.into_iter().chain(others) {
+            writeln!(f, "{part}")?;
+        }
+        let Some(log) = result.log.as_deref().map(quoted) else { return Ok(()) };
+        let tick = match ending {
+            Ending::Failed(failure) => format!(" --tick {}", failure.tick),
+            Ending::Finished | Ending::Stopped => String::new(),
+        };
+        writeln!(f)?;
+        writeln!(f, "watch      {} --log {log}{tick}", start_of("rcs-console"))?;
+        writeln!(f, "open       rerun {log}    # or open the file in Foxglove or Lichtblick")?;
+        writeln!(f, "ask why    {} why {log}", start_of("rcs-log"))
+    }
+}

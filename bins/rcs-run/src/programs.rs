@@ -1,0 +1,61 @@
+//! The other programs of this workspace: where they are, and how a person starts them from the present terminal.
+
+use std::{
+    env, io,
+    path::{Path, PathBuf},
+};
+
+/// Path of a program that is installed in the directory of this one.
+///
+/// # Errors
+/// The error of the system if the path of this program is unknown.
+pub fn beside(program: &str) -> io::Result<PathBuf> {
+    Ok(env::current_exe()?.with_file_name(program))
+}
+
+/// The beginning of a command line that starts a program in the way in which this one was started: with cargo, by a
+/// path, or by its name.
+pub fn start_of(program: &str) -> String {
+    let is_by_cargo = env::var_os("CARGO_MANIFEST_DIR").is_some();
+    let own = env::args_os().next().map(PathBuf::from).unwrap_or_default();
+    started_as(program, is_by_cargo, &own)
+}
+
+fn started_as(program: &str, is_by_cargo: bool, own: &Path) -> String {
+    if is_by_cargo {
+        let profile = if cfg!(debug_assertions) { "" } else { " --release" };
+        return format!("cargo run{profile} -p {program} --");
+    }
+    let is_by_path = own.parent().is_some_and(|directory| !directory.as_os_str().is_empty());
+    if is_by_path { quoted(&own.with_file_name(program)) } else { program.to_owned() }
+}
+
+/// A path as one word of a shell.
+pub fn quoted(path: &Path) -> String {
+    let text = path.to_string_lossy();
+    let is_plain = |sign: char| sign.is_alphanumeric() || "/._-+=:,@%".contains(sign);
+    if !text.is_empty() && text.chars().all(is_plain) {
+        return text.into_owned();
+    }
+    format!("'{}'", text.replace('\'', r"'\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn program_is_started_like_this_one() {
+        let as_by = |own: &str| started_as("rcs-log", false, Path::new(own));
+        assert_eq!(as_by("rcs-run"), "rcs-log");
+        assert_eq!(as_by("target/release/rcs-run"), "target/release/rcs-log");
+        assert_eq!(as_by("/opt/my robot/rcs-run"), "'/opt/my robot/rcs-log'");
+        assert!(started_as("rcs-log", true, Path::new("x/rcs-run")).ends_with(" -p rcs-log --"));
+    }
+
+    #[test]
+    fn path_is_one_word_of_a_shell() {
+        assert_eq!(quoted(Path::new("runs/linkbar-2.mcap")), "runs/linkbar-2.mcap");
+        assert_eq!(quoted(Path::new("it's $HOME")), r"'it'\''s $HOME'");
+    }
+}

@@ -1,0 +1,38 @@
+//! The data of a run in the result.
+
+use std::{
+    fmt,
+    path::{self, Path, PathBuf},
+};
+
+use os_io::carried::is_carried;
+use serde::Serialize;
+use taskdata::load::amount;
+
+/// The task data and the cell description of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct DataResult {
+    /// Their directory, an absolute path; `None` if they are built into the program.
+    pub directory: Option<PathBuf>,
+    /// Number of files that were read.
+    pub files: usize,
+}
+
+impl DataResult {
+    /// The data of a directory, of which `files` were read.
+    #[must_use]
+    pub fn new(directory: &Path, files: usize) -> Self {
+        let absolute = || path::absolute(directory).unwrap_or_else(|_| directory.to_owned());
+        Self { directory: (!is_carried(directory)).then(absolute), files }
+    }
+}
+
+impl fmt::Display for DataResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let files = amount(self.files, "file");
+        match &self.directory {
+            Some(directory) => write!(f, "{}, {files}", directory.display()),
+            None => write!(f, "built into the program, {files}"),
+        }
+    }
+}

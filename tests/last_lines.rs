@@ -1,0 +1,107 @@
+//! The last lines of a run on a terminal: first where the parts are, then commands that can be pasted into a shell.
+
+use std::{
+    io::Read as _,
+    process::{Command, Stdio},
+    thread,
+    time::Duration,
+};
+
+use rustix::process::{Pid, Signal, kill_process};
+use whole_system_tests::{Scratch, rcs_console, rcs_log, rcs_run};
+
+/// A command whose two outputs are one stream, as on a terminal, started by its path and not by cargo.
+fn on_terminal(scratch: &Scratch, line: &str) -> Command {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &format!("exec {line} 2>&1")]).current_dir(scratch.file("."));
+    shell.env_remove("CARGO_MANIFEST_DIR");
+    shell
+}
+
+/// The output of a command, and whether it succeeded.
+fn shown(scratch: &Scratch, line: &str) -> (String, bool) {
+    let output = on_terminal(scratch, line).output().expect("a shell can be started");
+    (String::from_utf8_lossy(&output.stdout).into_owned(), output.status.success())
+}
+
+fn run(scratch: &Scratch, arguments: &str) -> String {
+    shown(scratch, &format!("{} {arguments}", rcs_run().display())).0
+}
+
+/// The command after a label.
+fn command<'o>(output: &'o str, label: &str) -> &'o str {
+    let line = output.lines().find_map(|line| line.strip_prefix(label));
+    line.unwrap_or_else(|| panic!("no line {label:?} in\n{output}")).trim()
+}
+
+/// The number of the only line that starts with a text.
+fn line_of(output: &str, start: &str) -> usize {
+    let found: Vec<_> =
+        output.lines().enumerate().filter(|(_, line)| line.starts_with(start)).map(|(at, _)| at).collect();
+    assert_eq!(found.len(), 1, "{start:?} in\n{output}");
+    found[0]
+}
+
+#[test]
+fn finished_run_ends_with_the_place_of_the_part_and_the_next_commands() {
+    // The commands need the other programs beside rcs-run.
+    let (_, _) = (rcs_log(), rcs_console());
+    let scratch = Scratch::new("last-finished");
+    let output = run(&scratch, "linkbar");
+    let lines: Vec<_> = output.lines().collect();
+    let [.., part, empty, watch, open, why] = lines[..] else { panic!("{output}") };
+    assert!(part.starts_with("LINKBAR1 is at UNIT_1 sector 1, "), "{output}");
+    assert_eq!(empty, "");
+    assert!(watch.starts_with("watch ") && why.starts_with("ask why "), "{output}");
+    assert!(open.starts_with("open       rerun runs/linkbar.mcap"), "{output}");
+    // Nothing has to be on time in the fast clock.
+    for timing in [" p50 ", "slowest", "punctual", "slots skipped"] {
+        assert!(!output.contains(timing), "{timing} in\n{output}");
+    }
+    let (screen, is_shown) = shown(&scratch, &format!("{} --once ladder", command(&output, "watch")));
+    assert!(is_shown && screen.contains("E-move"), "{screen}");
+    let (why, is_answered) = shown(&scratch, command(&output, "ask why"));
+    assert!(is_answered && !why.is_empty(), "{why}");
+}
+
+#[test]
+fn failed_run_ends_with_reason_then_part_then_commands() {
+    let (_, _) = (rcs_log(), rcs_console());
+    let scratch = Scratch::new("last-failed");
+    let output = run(&scratch, "--faults air-lost --log \"it's my run.mcap\"");
+    let reason = line_of(&output, "rcs-run: linkbar failed at tick ");
+    let part = line_of(&output, "LINKBAR1_BH is clamped in PFIXTURE");
+    let watch = line_of(&output, "watch ");
+    assert!(reason < part && part < watch, "{output}");
+    // The file name has a blank and an apostrophe.
+    let (why, is_answered) = shown(&scratch, command(&output, "ask why"));
+    assert!(is_answered && why.contains("air"), "{why}");
+    let watch = command(&output, "watch");
+    let (_, tick) = watch.rsplit_once(" --tick ").expect("the screen of the failure");
+    let (screen, is_shown) = shown(&scratch, &format!("{watch} --once ladder"));
+    assert!(is_shown && screen.contains(tick), "{screen}");
+}
+
+#[test]
+fn run_without_part_or_log_has_only_that_line() {
+    let scratch = Scratch::new("last-none");
+    let output = run(&scratch, "--faults blank-missing --log none");
+    assert_eq!(output.lines().last(), Some("No part is in the cell."), "{output}");
+}
+
+#[test]
+fn interrupted_run_in_real_time_has_its_times_and_the_last_lines() {
+    let scratch = Scratch::new("last-stopped");
+    let line = format!("{} --clock 20x", rcs_run().display());
+    let mut run =
+        on_terminal(&scratch, &line).stdout(Stdio::piped()).spawn().expect("a shell can be started");
+    // The robot carries the blank from tick 1400 to tick 2400.
+    thread::sleep(Duration::from_millis(3700));
+    kill_process(Pid::from_child(&run), Signal::INT).expect("the run goes on");
+    let mut output = String::new();
+    run.stdout.take().expect("it is piped").read_to_string(&mut output).expect("text");
+    run.wait().expect("the run ends");
+    assert!(line_of(&output, "LINKBAR1_BH is in the gripper") < line_of(&output, "watch "), "{output}");
+    assert!(output.contains("controller ") && output.contains(" slots skipped"), "{output}");
+    assert!(output.contains("slowest "), "{output}");
+}
