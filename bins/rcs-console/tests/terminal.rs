@@ -366,6 +366,7 @@ fn teach(console: &mut Terminal, pause: Duration) {
     thread::sleep(pause);
     console.press("m");
     console.wait_for("joystick record: tick");
+    console.wait_for("suspended until carriage return");
     thread::sleep(Duration::from_secs(1));
     thread::sleep(pause);
     console.press("M");
