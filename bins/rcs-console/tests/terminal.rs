@@ -430,6 +430,26 @@ fn a_via_point_is_taught_and_the_job_goes_through_it() {
     assert!(text("trajectories.blk").contains("pos    VIA-1"));
 }
 
+/// IV.4.2 step 3, IV.2.6: the stages of STARTUP, and the record of a pointer, in a run.
+#[test]
+fn startup_displays_its_stages_and_a_pointer_its_record() {
+    let directory = tempfile::tempdir().unwrap();
+    let name = format!("startup-{}", std::process::id());
+    let (run, _) = waiting_run(directory.path(), &shipped(), &name, 1);
+    let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);
+    console.wait_for("JOB WAITS");
+    console.press("5:STARTUP\r");
+    console.wait_for("Aborting... Initiating... Connecting... Finished");
+    console.press(":BOARD 2 :S sensor-pose-^-out\r");
+    console.wait_for("a pose of Prim");
+    console.press("::R\r");
+    console.press(":job go\r");
+    console.wait_for("ENDED at tick");
+    console.press("q");
+    assert_eq!(console.end(), Some(0));
+    assert_eq!(run.join().unwrap().last(), Some(&"finished"));
+}
+
 /// IV.2.1, IV.2.8: the console shows a run that waits for its boards, and the missing boards.
 #[test]
 fn a_run_whose_boards_come_up_is_waited_for() {

@@ -368,7 +368,7 @@ mod tests {
             memory.task.status = HwsStatus { report, ..executing };
             memory.task.header.step = Some(Name::clipped(step));
             let external = ExternalInputs::default();
-            follow(&mut exchange, &Picture { tick: Tick(9), external, memory: memory.clone(), timing: None });
+            follow(&mut exchange, &Picture { tick: Tick(9), external, memory, timing: None });
         };
         for step in steps.variants {
             look(step.text, HwsReport::Executing);
