@@ -63,6 +63,16 @@ fn the_tools_are_exchanged() {
 }
 
 #[test]
+fn a_blank_is_released_in_the_vise_and_fetched_again() {
+    assert_ends_well("vise-and-back", 1, &[&[("LINKBAR1_BH", "UNIT_1", 4, 0.1)]]);
+}
+
+#[test]
+fn the_brush_is_taken_from_its_bracket_and_returned() {
+    assert_ends_well("brush", 1, &[&[("HAND-BRUSH", "BRUSH", 0, 0.1)]]);
+}
+
+#[test]
 fn a_shift_is_all_of_them_in_a_row() {
     assert_ends_well("shift", 1, &[LINKBAR, CLEVIS, TURNED_PART, TOOL_CHANGE]);
 }
