@@ -4,7 +4,7 @@
 //! `RCS_FAULT_RUNS` is the number of random schedules that are tried, a handful if it is not set;
 //! `RCS_FAULT_SEED` the first of their seeds.
 
-use std::{env, fmt::Write as _};
+use std::{env, fmt::Write as _, fs};
 
 use record::replay;
 use serde_json::Value;
@@ -104,11 +104,35 @@ endings! {
     a_stuck_ring: "tool-change", "lock-ring-stuck" => Failing(1, "Quick Change", "the locking ring of the quick change is stuck");
     a_blind_holster: "tool-change", "holster-eye-off" => Failing(1, "E-move", "the sensor condition did not come");
     a_stuck_resolver: "linkbar", "resolver-stuck" => Failing(1, "Prim", "the robot is off its commanded path");
+    an_offset_resolver: "linkbar", "resolver-offset" => Failing(1, "Prim", "the robot is off its commanded path");
     a_valve_that_stays_open: "linkbar", "valve-stuck-open" => Failing(1, "Grip", "the gripper does not finish");
     a_stuck_vise: "linkbar", "vise-stuck" => Failing(1, "HWSC", "the jaw of the vise does not move");
     a_pedestal_beside_its_mark: "clevis", "pedestal-moved" => Failing(1, "HWSC", "nothing is clamped in the vise");
     a_drifting_force_sensor: "tool-change", "force-drift" => Well;
     a_noisy_cell: "linkbar", "noisy-cell" => Well;
+}
+
+/// IV.3.3 step 11: with the robot at HOME, the reset of the joint repairs its reading, and the job goes on.
+#[test]
+fn a_reset_at_home_repairs_an_offset_resolver() {
+    const RESET: &str = "** resolvers manual\n** resolvers joint 2\n** resolvers auto\n";
+    const TO_SAFE: &str = "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0";
+    let ends = |reset: &str| {
+        let job = format!(
+            "** wait 100\n{TO_SAFE} expect error\n{reset}== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n{TO_SAFE}\n"
+        );
+        let outcome = run("reset.job", 1, "resolver-reset", |scratch| {
+            scratch
+                .faults("[[fault]]\nkind = \"offset\"\nsensor = \"resolver.elbow\"\nby = 200\nfrom = 100\n");
+            fs::write(scratch.file("reset.job"), job).expect("the job can be written");
+        });
+        assert_sound("a reset of a resolver", &outcome);
+        outcome
+    };
+    let (repaired, not) = (ends(RESET), ends(""));
+    assert_eq!(repaired.status, Some(0), "{}", repaired.last_words);
+    assert_eq!(not.status, Some(1), "{}", not.last_words);
+    assert!(not.last_words.contains("the robot is at no known location"), "{}", not.last_words);
 }
 
 #[test]

@@ -39,6 +39,8 @@ struct Page {
     lines: Vec<Line>,
     /// What the interfaces have beyond the manual: code and reason. A star means all of a type.
     beyond: Vec<(String, String)>,
+    /// Names whose meaning differs from the manual's: name, whose, the manual, here.
+    differences: Vec<[String; 4]>,
     /// The mailboxes of chapter IX: description, address, bytes, section, test.
     mailboxes: Vec<[String; 5]>,
     /// The figures at the top: kind, total, in the code, tested.
@@ -53,7 +55,13 @@ fn cells(line: &str) -> Option<Vec<String>> {
 
 fn page() -> Page {
     let text = fs::read_to_string(root().join("docs/traceability.md")).expect("the page is there");
-    let mut page = Page { lines: Vec::new(), beyond: Vec::new(), mailboxes: Vec::new(), figures: Vec::new() };
+    let mut page = Page {
+        lines: Vec::new(),
+        beyond: Vec::new(),
+        differences: Vec::new(),
+        mailboxes: Vec::new(),
+        figures: Vec::new(),
+    };
     let mut heading = "";
     for line in text.lines() {
         if let Some(title) = line.strip_prefix("## ") {
@@ -68,6 +76,9 @@ fn page() -> Page {
                 page.figures.push((kind.clone(), numbers.try_into().expect("three figures")));
             }
             ("Beyond the manual", [code, why]) => page.beyond.push((code.clone(), why.clone())),
+            ("Differences", [name, of, manual, here]) => {
+                page.differences.push([name, of, manual, here].map(Clone::clone));
+            }
             ("Mailboxes", [mailbox, address, bytes, section, test]) => {
                 let line = [mailbox, address, bytes, section, test];
                 page.mailboxes.push(line.map(Clone::clone));
@@ -181,6 +192,17 @@ fn everything_that_the_interfaces_have_is_on_the_page_once() {
     assert!(wrong.is_empty(), "not in one of the tables, and in one only: {wrong:#?}");
     let unique: BTreeSet<_> = page.lines.iter().map(|line| (line.kind, &line.name, &line.of)).collect();
     assert_eq!(unique.len(), page.lines.len(), "no line stands twice");
+}
+
+#[test]
+fn every_difference_is_that_of_a_name_on_the_page() {
+    let page = page();
+    assert!(!page.differences.is_empty());
+    for [name, of, manual, here] in &page.differences {
+        let is_named = |line: &Line| (&line.name, &line.of) == (name, of) && line.code.is_some();
+        assert!(page.lines.iter().any(is_named), "{name} of {of} is not among the names");
+        assert!(!manual.is_empty() && !here.is_empty(), "{name} differs from something in something");
+    }
 }
 
 /// A code without its last word: `Type::` or `Record.`.

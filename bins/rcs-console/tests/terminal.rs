@@ -366,6 +366,7 @@ fn teach(console: &mut Terminal, pause: Duration) {
     thread::sleep(pause);
     console.press("m");
     console.wait_for("joystick record: tick");
+    console.wait_for("suspended until carriage return");
     thread::sleep(Duration::from_secs(1));
     thread::sleep(pause);
     console.press("M");
@@ -427,6 +428,26 @@ fn a_via_point_is_taught_and_the_job_goes_through_it() {
     let text = |file: &str| std::fs::read_to_string(data.join(file)).unwrap();
     assert!(text("poses.blk").contains("-pose-   ...         VIA-1"));
     assert!(text("trajectories.blk").contains("pos    VIA-1"));
+}
+
+/// IV.4.2 step 3, IV.2.6: the stages of STARTUP, and the record of a pointer, in a run.
+#[test]
+fn startup_displays_its_stages_and_a_pointer_its_record() {
+    let directory = tempfile::tempdir().unwrap();
+    let name = format!("startup-{}", std::process::id());
+    let (run, _) = waiting_run(directory.path(), &shipped(), &name, 1);
+    let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);
+    console.wait_for("JOB WAITS");
+    console.press("5:STARTUP\r");
+    console.wait_for("Aborting... Initiating... Connecting... Finished");
+    console.press(":BOARD 2 :S sensor-pose-^-out\r");
+    console.wait_for("a pose of Prim");
+    console.press("::R\r");
+    console.press(":job go\r");
+    console.wait_for("ENDED at tick");
+    console.press("q");
+    assert_eq!(console.end(), Some(0));
+    assert_eq!(run.join().unwrap().last(), Some(&"finished"));
 }
 
 /// IV.2.1, IV.2.8: the console shows a run that waits for its boards, and the missing boards.

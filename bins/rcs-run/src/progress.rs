@@ -54,8 +54,8 @@ impl Observer for Progress {
             return;
         }
         self.shown = Instant::now();
-        bar.set_length(report.lines as u64 + 1);
-        bar.set_position(report.steps.len() as u64);
+        bar.set_length(report.lines as u64);
+        bar.set_position(report.line as u64);
         bar.set_prefix(report.steps.last().map_or_else(String::new, |step| shown(&step.text).into_owned()));
         bar.set_message(shown(&levels(report.hws, report.memory)).into_owned());
     }

@@ -317,6 +317,7 @@ fn act(state: &mut State<'_>, action: &Workstation) -> bool {
         | Workstation::Release(_)
         | Workstation::Panel(_)
         | Workstation::Table(_)
+        | Workstation::Resolvers(_)
         | Workstation::HandOver => return false,
     }
     true

@@ -52,6 +52,16 @@ fn tool_change() {
 }
 
 #[test]
+fn vise_and_back() {
+    sound("vise-and-back");
+}
+
+#[test]
+fn brush() {
+    sound("brush");
+}
+
+#[test]
 fn stored_routes() {
     let (store, _) = Store::load(data()).unwrap_or_else(|report| panic!("{report}"));
     let room = Room::new(&CellDescription::load(&data().join("cell.toml")).unwrap());

@@ -24,13 +24,14 @@ pub struct View {
 
 impl View {
     /// Fill the view with the cell after `tick`. `warning` is the last warning on the screen of the robot controller;
-    /// `lines` is the number of lines of the job, `steps` are those that have begun.
+    /// `place` is the number of the job's line that was begun last and the number of its lines; `steps` are all that have
+    /// begun.
     pub fn look(
         &mut self,
         tick: Tick,
         cell: &Cell,
         warning: Option<&(Tick, String)>,
-        (lines, steps): (usize, &[BegunStep]),
+        (place, steps): ((usize, usize), &[BegunStep]),
         pace: &Pace,
     ) -> &CellView {
         let parts = cell.parts();
@@ -49,7 +50,7 @@ impl View {
             gripper: cell.gripper(),
             part_count: count(parts.len()),
             parts: shown(&parts),
-            job: job(lines, steps),
+            job: job(place, steps),
             lateness: lateness(self.shown.lateness, tick, pace),
         };
         &self.shown
@@ -117,11 +118,11 @@ fn shown(parts: &[PartState]) -> [PartView; PARTS] {
     views
 }
 
-fn job(lines: usize, steps: &[BegunStep]) -> JobView {
+fn job((begun, lines): (usize, usize), steps: &[BegunStep]) -> JobView {
     let last = steps.last();
     JobView {
         lines: count(lines),
-        begun: count(steps.len()),
+        begun: count(begun),
         line: last.map_or_else(Text::default, |step| Text::clipped(&step.text)),
         began: last.map_or(Tick::BEFORE_START, |step| step.began),
     }

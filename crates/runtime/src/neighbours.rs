@@ -261,6 +261,17 @@ impl Neighbours {
         }
     }
 
+    /// Number of the job's line that was begun last, 0 before the first, and the number of its lines; both 0 without a
+    /// job.
+    #[must_use]
+    pub fn place(&self) -> (usize, usize) {
+        match &self.workstation {
+            WorkstationSource::Emulator(emulator) => emulator.hwsc.place(),
+            WorkstationSource::Outside(_) => (0, 0),
+            WorkstationSource::Switched(switched) => switched.place(),
+        }
+    }
+
     /// The same, with the commands of a workstation controller to which the job has handed over.
     #[must_use]
     pub fn all_steps(&self) -> Vec<BegunStep> {

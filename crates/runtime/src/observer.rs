@@ -11,9 +11,11 @@ use crate::event::Event;
 pub struct TickReport<'a> {
     /// The tick.
     pub tick: Tick,
-    /// Number of lines of the job; the first PAUSE is an additional step.
+    /// Number of the job's line that was begun last, 0 before the first.
+    pub line: usize,
+    /// Number of lines of the job.
     pub lines: usize,
-    /// Steps of the job that have begun, in order.
+    /// Steps that have begun, in order: the first PAUSE, lines of the job and their repetitions, commands of operators.
     pub steps: &'a [BegunStep],
     /// The command to Task.
     pub hws: &'a HwsCommand,

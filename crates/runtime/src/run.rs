@@ -259,8 +259,8 @@ impl Run {
         self.judge(tick, &memory);
         self.runner.stage_times_mut().mark(Stage::Cell);
         let steps = self.neighbours.begun_steps();
-        let (lines, hws) = (self.job.steps.len(), &external.hws);
-        self.observer.tick(&TickReport { tick, lines, steps, hws, memory: &memory });
+        let ((line, lines), hws) = (self.neighbours.place(), &external.hws);
+        self.observer.tick(&TickReport { tick, line, lines, steps, hws, memory: &memory });
         self.operate(tick);
         let data = NextData { generations: &self.generations, job: &self.job, changed: self.changed };
         let progress = self.neighbours.step(tick, &memory, &self.inputs, &mut self.workstation, data);

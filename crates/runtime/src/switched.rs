@@ -85,6 +85,12 @@ impl Switched {
         &mut self.outside
     }
 
+    /// Number of the job's line that was begun last, and the number of its lines.
+    #[must_use]
+    pub fn place(&self) -> (usize, usize) {
+        self.job.hwsc.place()
+    }
+
     /// Steps of the job, or the commands of the workstation controller since it took over.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {

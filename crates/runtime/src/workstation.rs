@@ -3,13 +3,13 @@
 use interfaces::device::{joystick_frame, single_step};
 use neighbours::workstation::player::Workstation;
 use plant::{
-    BoxAction, BoxButton, Cell, CellDescription, CellEvent, Droop, EStop, Key, Placement, TableKey,
-    WorkstationAction, WorkstationError, t3::Stage,
+    BoxAction, BoxButton, Cell, CellDescription, CellEvent, Droop, EStop, Key, Placement, ResolverKey,
+    TableKey, WorkstationAction, WorkstationError, t3::Stage,
 };
 use rcs_core::tick::{TICK_MS, Tick};
 use taskdata::load::job::{
-    Drum, EStop as Site, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, TablePanel,
-    ViseOpening, Workstation as Action,
+    Drum, EStop as Site, Joystick, JoystickButton, JoystickFrame, Offset, Panel, ResolverPanel, Stepped,
+    TablePanel, ViseOpening, Workstation as Action,
 };
 
 /// Time limit for an arm without pressure to come to rest before the run ends, ticks: two minutes. From HOME it takes
@@ -188,6 +188,12 @@ pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<Workstation
         Action::Release(site) => WorkstationAction::T3(Key::Release(estop(*site))),
         Action::Panel(key) => WorkstationAction::T3(at_the_panel(*key)),
         Action::Table(key) => WorkstationAction::Table(at_the_table(*key)),
+        Action::Resolvers(ResolverPanel::Manual(on)) => {
+            WorkstationAction::Resolvers(ResolverKey::Manual(*on))
+        }
+        Action::Resolvers(ResolverPanel::Joint(joint)) => {
+            WorkstationAction::Resolvers(ResolverKey::Joint(*joint))
+        }
         // These actions do not affect the cell.
         Action::Wait { .. } | Action::Load { .. } | Action::HandOver => return Ok(Vec::new()),
     }])

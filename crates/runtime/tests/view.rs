@@ -35,8 +35,8 @@ fn the_cell_shows_what_it_does() {
     assert!(controller.lamps.power && controller.lamps.hydraulics_on && !controller.lamps.fault_reset);
     assert_eq!((controller.estops, controller.cut.as_str()), ([false; 5], ""));
     assert_eq!(
-        (view.job.line.as_str(), view.job.begun),
-        ("== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0", 4)
+        (view.job.line.as_str(), view.job.begun, view.job.lines),
+        ("== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0", 3, 13)
     );
     assert!(view.job.began > Tick(70) && view.job.began < Tick(80), "{:?}", view.job);
     assert_eq!((view.gripper, view.part_count), (Some(1), 1));

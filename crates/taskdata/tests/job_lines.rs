@@ -5,7 +5,10 @@ use std::path::Path;
 use rcs_core::name::Name16;
 use taskdata::load::{
     Job, Source, Step, Store, ViseOpening, Workstation,
-    job::{Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, TablePanel},
+    job::{
+        Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, ResolverPanel, Stepped,
+        TablePanel,
+    },
     source::read_blocks_under,
 };
 
@@ -68,6 +71,15 @@ fn drum_and_wait() {
     assert_eq!(action("** drum tool LINKBAR1"), Workstation::Drum(Drum::Tool(name("LINKBAR1"))));
     assert_eq!(action("** wait 50"), Workstation::Wait { ticks: 50 });
     assert_eq!(action("** workstation"), Workstation::HandOver);
+}
+
+#[test]
+fn resolver_electronics() {
+    assert_eq!(action("** resolvers manual"), Workstation::Resolvers(ResolverPanel::Manual(true)));
+    assert_eq!(action("** resolvers auto"), Workstation::Resolvers(ResolverPanel::Manual(false)));
+    assert_eq!(action("** resolvers joint 5"), Workstation::Resolvers(ResolverPanel::Joint(5)));
+    let report = load("** resolvers joint 6").unwrap_err();
+    assert!(report.contains("number of a joint"), "{report}");
 }
 
 #[test]

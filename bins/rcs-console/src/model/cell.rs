@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use executive::memory::cell::{CellView, PartView};
+use executive::memory::cell::{CellView, JobView, PartView};
 use geometry::kinematics::{JOINT_NAMES, Joints, T3};
 use interfaces::{
     CommonMemory,
@@ -218,16 +218,25 @@ fn shown(view: &CellView) -> Vec<Text> {
             format!("!! its screen since tick {}: {}", view.controller.screen_tick, view.controller.screen);
         lines.push(Text::new(Tone::Trouble, text));
     }
-    lines
-        .push(Text::plain(format!(" job: line {} of {}, {}", view.job.begun, view.job.lines, view.job.line)));
+    lines.push(Text::plain(format!(" {}", progress(&view.job))));
     lines.push(Text::plain(format!(" vise {:.2} in", view.vise_opening)));
     lines.push(Text::new(Tone::Faint, " clearances are in the log of the run"));
     lines
 }
 
+/// The line of the job, and the step that was begun last.
+fn progress(job: &JobView) -> String {
+    match (job.lines, job.line.as_str()) {
+        (_, "") => "job: nothing has begun yet".to_owned(),
+        (0, step) => format!("workstation controller: {step}"),
+        (lines, step) => format!("job: line {} of {lines}; last {step}", job.begun),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use executive::memory::Text as MemoryText;
 
     #[test]
     fn angles_are_turned_into_the_limits() {
@@ -265,6 +274,16 @@ mod tests {
         let lines = parts(&Cell::Shown(Box::new(view))).lines;
         assert_eq!(lines.len(), 1);
         assert!(lines[0].text.contains("3.50 in") && lines[0].text.contains("held by the gripper"));
+    }
+
+    #[test]
+    fn progress_names_the_line_and_the_last_step() {
+        let mut job = JobView { lines: 1, begun: 1, ..JobView::default() };
+        assert_eq!(progress(&job), "job: nothing has begun yet");
+        job.line = MemoryText::clipped("PAUSE");
+        assert_eq!(progress(&job), "job: line 1 of 1; last PAUSE");
+        job.lines = 0;
+        assert_eq!(progress(&job), "workstation controller: PAUSE");
     }
 
     #[test]

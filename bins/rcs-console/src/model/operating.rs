@@ -155,7 +155,7 @@ impl Model {
             Key::F1 | Key::Char('!') => {
                 operating.is_armed = true;
                 let what = if self.robot_elsewhere {
-                    "the E-stops are at the robot; F1 again holds Prim and drops the link: its controller warns (WD)"
+                    "the E-stops are at the robot; F1 again holds Prim and stops board 4: the robot gets no further frame"
                 } else {
                     "F1 again presses the E-stop near the terminals: the arm sinks; Space is gentler (IV.3.1)"
                 };

@@ -83,7 +83,8 @@ pub fn sections(
     cell: &Cell,
     operating: Option<&Operating>,
 ) -> Vec<Section> {
-    let mut sections = vec![joystick_box(&devices.joystick, operating), controller(cell)];
+    let mut sections =
+        vec![joystick_box(&devices.joystick, memory.prim.status.recording, operating), controller(cell)];
     let mut lines = vec![pedestal(memory)];
     if let Cell::Shown(view) = cell {
         lines.push(rotary_table(&devices.pedestal, view.table));
@@ -112,7 +113,7 @@ fn frame(joystick: &JoystickBox) -> &'static str {
     }
 }
 
-fn joystick_box(joystick: &JoystickBox, operating: Option<&Operating>) -> Section {
+fn joystick_box(joystick: &JoystickBox, recording: bool, operating: Option<&Operating>) -> Section {
     let processes = [
         (single_step::TASK, "Task"),
         (single_step::SUBTASK, "Subtask"),
@@ -129,6 +130,12 @@ fn joystick_box(joystick: &JoystickBox, operating: Option<&Operating>) -> Sectio
         Text::plain(format!(" knob    {percent:>3} %  {bar}")),
         Text::plain(format!(" holds   {held}")),
     ];
+    if recording {
+        lines.push(Text::new(
+            Tone::Marked,
+            " record  E-move and Prim are suspended until carriage return (M)",
+        ));
+    }
     if let Some(operating) = operating {
         let jog = JOGS.get(operating.jog).copied().unwrap_or_default();
         let keys = [
@@ -143,9 +150,16 @@ fn joystick_box(joystick: &JoystickBox, operating: Option<&Operating>) -> Sectio
 }
 
 fn controller(cell: &Cell) -> Section {
-    let Cell::Shown(view) = cell else {
-        let text = " the robot is not simulated here: its panel and its E-stops are at the robot";
-        return Section::new("robot controller", vec![Text::new(Tone::Faint, text)]);
+    let view = match cell {
+        Cell::Shown(view) => view,
+        Cell::NotPublished => {
+            let text = " the robot is not simulated here: its panel and its E-stops are at the robot";
+            return Section::new("robot controller", vec![Text::new(Tone::Faint, text)]);
+        }
+        Cell::Recorded { .. } => {
+            let text = " a log has no panel: the messages of the controller are on screen 3";
+            return Section::new("robot controller", vec![Text::new(Tone::Faint, text)]);
+        }
     };
     let t3 = &view.controller;
     let lit = |on: bool, name: &'static str| on.then_some(name);
@@ -224,4 +238,27 @@ fn keys(operating: &Operating) -> Section {
     let shown = KEYS.iter().enumerate().skip(first).take(SHOWN).map(line);
     let title = format!("keys, {} of {}: j k=choose, Enter=press", operating.cursor + 1, KEYS.len());
     Section::new(title, shown.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(section: Section) -> String {
+        section.lines.into_iter().map(|line| line.text).collect::<Vec<_>>().join("\n")
+    }
+
+    #[test]
+    fn a_recorded_pose_suspends_prim_and_emove_until_carriage_return() {
+        let shown = |recording| text(joystick_box(&JoystickBox::default(), recording, None));
+        assert!(!shown(false).contains("suspended"));
+        assert!(shown(true).contains("E-move and Prim are suspended until carriage return (M)"));
+    }
+
+    #[test]
+    fn a_log_is_not_a_robot_at_a_port() {
+        let log = Cell::Recorded { parts: Vec::new(), clearance: None, contacts: None };
+        assert!(!text(controller(&log)).contains("at the robot"));
+        assert!(text(controller(&Cell::NotPublished)).contains("its E-stops are at the robot"));
+    }
 }

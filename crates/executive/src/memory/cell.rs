@@ -116,11 +116,11 @@ pub struct PartView {
 /// Progress of the job.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct JobView {
-    /// Number of lines of the job, without the first PAUSE.
+    /// Number of lines of the job; 0 if a workstation controller commands from the start.
     pub lines: u32,
-    /// Number of lines that were begun, including the first PAUSE; 0 before it.
+    /// Number of the line that was begun last; 0 before the first.
     pub begun: u32,
-    /// The last line that was begun.
+    /// The step that was begun last: a line of the job, PAUSE, or a command of an operator.
     pub line: Text<96>,
     /// The tick after which it was begun.
     pub began: Tick,

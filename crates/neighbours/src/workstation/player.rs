@@ -197,6 +197,15 @@ impl Hwsc {
         std::mem::take(&mut self.to_send).then_some(&self.command)
     }
 
+    /// Number of the job's line that was begun last, 0 before the first, and the number of its lines. Commands of an
+    /// operator, PAUSE before a line and repetitions do not count.
+    #[must_use]
+    pub fn place(&self) -> (usize, usize) {
+        let lines = self.steps.len();
+        let begun = self.current.saturating_sub(usize::from(self.waits_before_line()));
+        (begun.min(lines), lines)
+    }
+
     /// All steps begun so far, the first PAUSE included.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {

@@ -51,6 +51,7 @@ use crate::{
     noise::{Noise, Stream},
     part::{Part, PartState},
     pedestal::{Pedestal, TablePanel},
+    resolver_box::ResolverBox,
     scene::{Block, FINGER, furniture},
     sensor::DeadTimes,
     t3::{DriveError, Key, Message, Refusal, StepInputs, StepOutputs, T3Controller},
@@ -91,6 +92,7 @@ pub struct Cell {
     resolver_noise: Noise,
     dead_times: DeadTimes,
     faults: Injector,
+    resolver_box: ResolverBox,
     /// Number of ticks in which the jaw of the vise should have moved and did not.
     jaw_waits: u32,
     events: Vec<CellEvent>,
@@ -164,6 +166,7 @@ impl Cell {
             resolver_noise: Noise::new(seed, Stream::Resolvers),
             dead_times: DeadTimes::new(&description.sensors),
             faults: Injector::new(faults, seed),
+            resolver_box: ResolverBox::default(),
             jaw_waits: 0,
             events: Vec::new(),
             stays_behind: false,

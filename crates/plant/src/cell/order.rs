@@ -64,7 +64,8 @@ impl CellDescription {
             | WorkstationAction::DrumRelease
             | WorkstationAction::Joystick(_)
             | WorkstationAction::T3(_)
-            | WorkstationAction::Table(_) => Ok(()),
+            | WorkstationAction::Table(_)
+            | WorkstationAction::Resolvers(_) => Ok(()),
         }
     }
 

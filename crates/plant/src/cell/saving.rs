@@ -17,7 +17,7 @@ use crate::{description::CellDescription, fingerprint, scene::furniture};
 /// First bytes of every saved cell.
 const MAGIC: [u8; 8] = *b"RCSCELL\0";
 /// Version of the saved state: increase it with every change of the fields of a cell.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 /// Bytes before the state.
 const HEADER: usize = 28;
 
@@ -114,7 +114,8 @@ impl Cell {
         let robot = (&self.t3, &self.droop, &self.changer, &self.grippers, camera, &self.joystick);
         let beside = (&self.drum, &self.pedestal, &self.vise, &self.parts, self.next_part, &self.clearance);
         let noise = (&self.gripper_noise, &self.pedestal_noise, &self.force_noise, &self.placement_noise);
-        let sensors = (&self.resolver_noise, &self.dead_times, &self.faults, self.jaw_waits);
+        let sensors =
+            (&self.resolver_noise, &self.resolver_box, &self.dead_times, &self.faults, self.jaw_waits);
         fingerprint::append(&(robot, beside, noise, sensors, &self.events), &mut bytes)
             .expect("devices are plain values, which can be written down");
         digest_of(&bytes)

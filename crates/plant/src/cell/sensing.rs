@@ -113,6 +113,7 @@ impl Cell {
         };
         self.dead_times.hold_back(&mut inputs);
         self.faults.inputs(&mut inputs);
+        self.resolver_box.show(&mut inputs.resolvers);
         inputs
     }
 

@@ -7,6 +7,7 @@ use crate::{
     description::Tolerance,
     joystick::BoxAction,
     pedestal::{TableKey, TableRefusal},
+    resolver_box::{ResolverKey, ResolverRefusal},
     t3::{Key, Refusal},
     vise::Jaws,
 };
@@ -88,6 +89,8 @@ pub enum WorkstationAction {
     T3(Key),
     /// Operate the panel of the rotary table's controller.
     Table(TableKey),
+    /// Operate the resolver electronics.
+    Resolvers(ResolverKey),
 }
 
 /// Reasons for which the workstation refuses an action.
@@ -256,6 +259,9 @@ pub enum WorkstationError {
     /// The rotary table's controller refuses the key in its present state.
     #[error(transparent)]
     TableRefused(#[from] TableRefusal),
+    /// The resolver electronics does not react.
+    #[error(transparent)]
+    ResolversRefused(#[from] ResolverRefusal),
     /// The next part is larger than the blank.
     #[error("{to} does not fit into {from}")]
     TooLarge {
@@ -299,6 +305,7 @@ impl Cell {
             }
             WorkstationAction::T3(key) => Ok(self.press(*key)?),
             WorkstationAction::Table(key) => Ok(self.pedestal.table.press(*key)?),
+            WorkstationAction::Resolvers(key) => Ok(self.resolver_box.press(*key)?),
         }
     }
 

@@ -232,11 +232,9 @@ impl Terminals {
 /// Effect of a stop of a board on robot and grippers, as text.
 const fn what_stops(board: u8) -> &'static str {
     match board {
-        0 => {
-            "there is no pulse: no process is stepped, the robot gets no frame, and its controller will warn (WD)"
-        }
+        0 => "there is no pulse: no process is stepped, and the robot stands where it was sent last",
         2 => "E-move and Prim are stopped: the robot stands where it was sent last",
-        4 => "T3 Interface is stopped: the robot gets no frame, and its controller will warn (WD)",
+        4 => "T3 Interface is stopped: the robot gets no frame, and stands where it was sent last",
         6 => "Task and Subtask are stopped; what E-move has begun goes on",
         _ => "Quick Change and the grippers are stopped: valves stay as they are",
     }

@@ -35,7 +35,7 @@ impl Run {
         if self.robot.is_elsewhere() {
             return;
         }
-        let job = (self.job.steps.len(), self.neighbours.begun_steps());
+        let job = (self.neighbours.place(), self.neighbours.begun_steps());
         let (cell, warning) = (&self.workstation.cell, self.warning.as_ref());
         self.runner.show_cell(|| self.view.look(tick, cell, warning, job, &self.pace));
     }

@@ -70,7 +70,7 @@ pub const DATA_SYSTEM: Procedure = Procedure {
         },
         Step {
             ask: &[Line("STARTUP")],
-            how: "667 line 0. Aborting, Initiating, Connecting, Finished: screen 1 shows each.",
+            how: "667 line 0. Screen 5 shows Aborting, Initiating, Connecting, Finished.",
             until: "4",
             ..state(
                 "3",

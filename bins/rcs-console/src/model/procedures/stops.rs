@@ -114,27 +114,60 @@ pub const WARNING: Procedure = Procedure {
 /// Note on the three address switches and the button of a joint (IV.3.3 step 11).
 const SWITCHES: &str = "The switches are read from the left: 4, 2, 1.";
 
+/// Effect of a button.
+const AT_HOME: &str = "It sets the reading of the joint to that of HOME, where the robot must be.";
+
 /// IV.3.3 step 11, a to q.
 pub const RESOLVERS: Procedure = Procedure {
     section: "IV.3.3",
     title: "Reset the resolver electronics, 11 a to q",
     steps: &[
         real("a", "the Resolver Electronics Box has power"),
-        real("b", "MANUAL/AUTO stands at MANUAL"),
+        Step {
+            ask: &[Line("resolvers manual")],
+            ..event("b", "MANUAL/AUTO stands at MANUAL", &[Condition::Taken])
+        },
         Step { how: SWITCHES, ..real("c", "address switches down, down, down") },
-        real("d", "the button of joint 0 is pressed"),
+        Step {
+            ask: &[Line("resolvers joint 0")],
+            how: AT_HOME,
+            ..event("d", "the button of joint 0 is pressed", &[Condition::Taken])
+        },
         Step { how: SWITCHES, ..real("e", "address switches down, down, up") },
-        real("f", "the button of joint 1 is pressed"),
+        Step {
+            ask: &[Line("resolvers joint 1")],
+            how: AT_HOME,
+            ..event("f", "the button of joint 1 is pressed", &[Condition::Taken])
+        },
         Step { how: SWITCHES, ..real("g", "address switches down, up, down") },
-        real("h", "the button of joint 2 is pressed"),
+        Step {
+            ask: &[Line("resolvers joint 2")],
+            how: AT_HOME,
+            ..event("h", "the button of joint 2 is pressed", &[Condition::Taken])
+        },
         Step { how: SWITCHES, ..real("i", "address switches down, up, up") },
-        real("j", "the button of joint 3 is pressed"),
+        Step {
+            ask: &[Line("resolvers joint 3")],
+            how: AT_HOME,
+            ..event("j", "the button of joint 3 is pressed", &[Condition::Taken])
+        },
         Step { how: SWITCHES, ..real("k", "address switches up, down, down") },
-        real("l", "the button of joint 4 is pressed"),
+        Step {
+            ask: &[Line("resolvers joint 4")],
+            how: AT_HOME,
+            ..event("l", "the button of joint 4 is pressed", &[Condition::Taken])
+        },
         Step { how: SWITCHES, ..real("m", "address switches up, down, up") },
-        real("n", "the button of joint 5 is pressed"),
+        Step {
+            ask: &[Line("resolvers joint 5")],
+            how: AT_HOME,
+            ..event("n", "the button of joint 5 is pressed", &[Condition::Taken])
+        },
         Step { how: SWITCHES, ..real("o", "address switches down, down, down") },
-        real("p", "MANUAL/AUTO stands at AUTO"),
+        Step {
+            ask: &[Line("resolvers auto")],
+            ..event("p", "MANUAL/AUTO stands at AUTO", &[Condition::Taken])
+        },
         Step { show: Show::Frame, ..state("q", "frame-feedback is that of HOME", &[Condition::AtHome]) },
     ],
 };

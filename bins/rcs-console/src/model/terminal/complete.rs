@@ -61,7 +61,7 @@ impl Names {
 }
 
 /// The words that can follow the first words of a line. `*` in an entry matches any word.
-static FOLLOWING: [(&[&str], &[&str]); 31] = [
+static FOLLOWING: [(&[&str], &[&str]); 33] = [
     (&["job"], &["wait", "go", "skip"]),
     (&["db-done"], ON_OFF),
     (&["pedestal"], &["pre-grip", "grip", "flip", "release", "pause"]),
@@ -107,6 +107,8 @@ static FOLLOWING: [(&[&str], &[&str]); 31] = [
     (&["table"], &["power", "mode", "run+", "run-", "step+", "step-", "reset"]),
     (&["table", "power"], ON_OFF),
     (&["table", "mode"], &["manual", "prog"]),
+    (&["resolvers"], &["manual", "joint", "auto"]),
+    (&["resolvers", "joint"], &["0", "1", "2", "3", "4", "5"]),
     (&["panel", "manual"], ON_OFF),
     (&["panel", "hold"], ON_OFF),
     (&["panel", "hydraulics"], &["enable", "disable"]),
@@ -123,7 +125,7 @@ const LEVELS: &[&str] = &["TASK", "SUBTASK", "EMOVE", "PRIM"];
 const ESTOPS: &[&str] = &["control-panel", "teach-pendant", "terminals", "joystick-box", "pedestal"];
 const ON_OFF: &[&str] = &["on", "off"];
 /// Requests in today's words.
-const REQUESTS: [&str; 26] = [
+const REQUESTS: [&str; 27] = [
     "board",
     "confirm",
     "db-done",
@@ -141,6 +143,7 @@ const REQUESTS: [&str; 26] = [
     "panel",
     "pedestal",
     "release",
+    "resolvers",
     "robot-init",
     "run",
     "send",

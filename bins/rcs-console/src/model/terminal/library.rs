@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use taskdata::load::{
-    BlockNumber, Source,
+    BlockNumber, Source, Store,
     source::{BLOCK_LINES, blocks, read_blocks_under},
 };
 
@@ -33,6 +33,7 @@ pub struct Library {
     directory: PathBuf,
     read: Option<Vec<Source>>,
     names: Option<Names>,
+    store: Option<Store>,
 }
 
 impl Library {
@@ -57,7 +58,7 @@ impl Library {
     /// Read the directory again at the next request.
     pub fn forget(&mut self) {
         if !self.directory.as_os_str().is_empty() {
-            (self.read, self.names) = (None, None);
+            (self.read, self.names, self.store) = (None, None, None);
         }
     }
 
@@ -68,6 +69,14 @@ impl Library {
             self.names = Some(Names::of(self.sources(), &directory));
         }
         self.names.get_or_insert_default()
+    }
+
+    /// The records of the blocks, numbered as in the run; `None` without blocks.
+    pub fn store(&mut self) -> Option<&Store> {
+        if self.store.is_none() && !self.sources().is_empty() {
+            self.store = Some(Store::from_sources_with_faults(self.sources().to_vec()).0);
+        }
+        self.store.as_ref()
     }
 
     /// All texts with blocks.

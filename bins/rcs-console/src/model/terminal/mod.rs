@@ -4,6 +4,7 @@ pub mod complete;
 mod disk;
 pub mod editor;
 pub mod library;
+pub mod pointer;
 mod said;
 mod screen;
 mod teach;
@@ -33,6 +34,17 @@ pub use self::{screen::sections, words::known};
 pub const BOARDS: [u8; 6] = [0, 2, 4, 6, 8, 12];
 /// Number of typed lines that are kept.
 const KEPT: usize = 100;
+
+/// The command that connects the Data System (V.4.1).
+const STARTUP: &str = "STARTUP";
+/// The steps of Task's table STARTUP after the first, and what the original terminal displayed (IV.4.2 step 3). Earlier
+/// updates are sent while it connects.
+const STAGES: [(&str, &str); 4] = [
+    ("aborting", "Aborting..."),
+    ("initiating", "Initiating..."),
+    ("connecting", "Connecting..."),
+    ("settling", "Connecting..."),
+];
 
 /// The mode of a terminal (IV.2.6).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -271,6 +283,7 @@ impl Model {
 
     /// Carry out a key that only the terminal has. Returns false for other keys.
     pub(super) fn work_the_terminal(&mut self, key: Key) -> bool {
+        let is_recording = self.picture.as_ref().is_some_and(|picture| picture.memory.prim.status.recording);
         let board = &mut self.terminal.board;
         let at = BOARDS.iter().position(|number| *number == board.number).unwrap_or_default();
         match key {
@@ -282,6 +295,13 @@ impl Model {
                 None => self.answer = Some("n LIST lists a block, F2 edits it; so does n EDIT".to_owned()),
             },
             Key::Interrupt if self.operating.is_some() => self.enter("^C"),
+            // The carriage return after the record button (III.3.3).
+            Key::Enter if is_recording && board.number == ProcessId::Prim.board() => {
+                match &mut self.operating {
+                    Some(operating) => operating.ask("joystick resume"),
+                    None => return false,
+                }
+            }
             Key::Esc if board.shown.is_some() => board.shown = None,
             _ => return false,
         }
@@ -293,6 +313,13 @@ fn look_only() -> Text {
     Text::new(Tone::Trouble, "!!this console looks only: start it with --operate to work on the run")
 }
 
+/// The stage of STARTUP in the words of the original terminal (IV.4.2 step 3); `None` before the first.
+fn connecting(picture: &Picture) -> Option<&'static str> {
+    let step = picture.memory.task.header.step?;
+    let (_, shown) = STAGES.iter().find(|(name, _)| *name == step.as_str())?;
+    Some(shown)
+}
+
 /// Update the progress of the command that a request has sent, in the words of the original terminal (IV.4.2 step 3).
 pub fn follow(exchange: &mut Exchange, picture: &Picture) {
     let Some(Ok(answer)) = &exchange.answer else { return };
@@ -301,13 +328,54 @@ pub fn follow(exchange: &mut Exchange, picture: &Picture) {
     if number != Some(status.echo) {
         return;
     }
-    let step = picture.memory.task.header.step.unwrap_or_default();
-    let stage = match (status.report, step.as_str()) {
-        (HwsReport::Finished, _) => format!("Finished{}", status.unconfirmed.suffix()),
-        (HwsReport::Executing, "Aborting" | "Initiating" | "Connecting") => format!("{step}..."),
-        (report, _) => report.to_string(),
+    let stage = match status.report {
+        HwsReport::Finished => format!("Finished{}", status.unconfirmed.suffix()),
+        HwsReport::Executing if status.command.as_str() == STARTUP => match connecting(picture) {
+            Some(stage) => stage.to_owned(),
+            None => return,
+        },
+        report => report.to_string(),
     };
     if exchange.stages.last() != Some(&stage) {
         exchange.stages.push(stage);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::{CommonMemory, ExternalInputs, hws::HwsStatus};
+    use levels::ladder::Ladder;
+    use rcs_core::{
+        name::{Name, Name16},
+        tick::Tick,
+    };
+
+    /// The names of the stages are those of the steps in Task's table.
+    #[test]
+    fn startup_shows_the_stages_of_the_manual() {
+        let tables = Ladder::processes()[ProcessId::Task.position()].tables;
+        let steps = tables.iter().find(|table| table.name == STARTUP).unwrap().steps.unwrap();
+        let mut exchange = Exchange {
+            number: 1,
+            line: "STARTUP".into(),
+            answer: Some(Ok("tick 5: command 7".into())),
+            stages: Vec::new(),
+        };
+        let mut memory = CommonMemory::default();
+        let executing = HwsStatus { echo: 7, command: Name16::clipped(STARTUP), ..HwsStatus::default() };
+        let mut look = |step: &str, report| {
+            memory.task.status = HwsStatus { report, ..executing };
+            memory.task.header.step = Some(Name::clipped(step));
+            let external = ExternalInputs::default();
+            follow(&mut exchange, &Picture { tick: Tick(9), external, memory, timing: None });
+        };
+        for step in steps.variants {
+            look(step.text, HwsReport::Executing);
+        }
+        look("", HwsReport::Finished);
+        let shown = ["Aborting...", "Initiating...", "Connecting...", "Finished"];
+        assert_eq!(exchange.stages, shown);
+        assert_eq!(steps.variants.len(), STAGES.len() + 1, "a step has no stage");
     }
 }

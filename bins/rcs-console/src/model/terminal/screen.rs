@@ -1,8 +1,8 @@
 //! The terminal as text: settings, show word, and typed lines with their answers, newest first.
 
-use interfaces::operator::BOARDS as RUNNING;
+use interfaces::{CommonMemory, ProcessId, operator::BOARDS as RUNNING};
 
-use super::{Board, BoardTerminal, Mode, Typed};
+use super::{Board, BoardTerminal, Mode, Typed, pointer::nine};
 use crate::{
     model::{Operating, Section, Text, Tone, operating::Exchange, views::lines},
     picture::Picture,
@@ -22,6 +22,7 @@ pub fn sections(
         let title = format!("{}: {}", word.word, word.about);
         sections.push(Section::new(title, lines(word.buffers, picture, last)));
     }
+    sections.extend(recorded(&terminal.board, &picture.memory));
     sections.push(Section::new("entered, newest first", conversation(terminal, operating)));
     sections
 }
@@ -36,6 +37,26 @@ fn title(board: &Board) -> String {
     };
     let mode = if board.mode == Mode::Run { ":R" } else { ":S" };
     format!("board {}: {what}; {}; offset {}; {mode}", board.number, board.vocabulary, board.offset)
+}
+
+/// The pose that the record button has displayed on the terminal of the Prim board (III.3.3).
+fn recorded(board: &Board, memory: &CommonMemory) -> Option<Section> {
+    if board.number != ProcessId::Prim.board() {
+        return None;
+    }
+    let status = &memory.prim.status;
+    let pose = memory.changing_pose(status.recorded_pose?)?;
+    let heads = ["wrist", "tool", "finger"];
+    let mut lines: Vec<Text> = heads
+        .into_iter()
+        .zip(nine(pose))
+        .map(|(head, values)| Text::plain(format!(" {head:<8}{values}")))
+        .collect();
+    if status.recording {
+        let text = " E-move and Prim are suspended until carriage return: Enter";
+        lines.push(Text::new(Tone::Marked, text));
+    }
+    Some(Section::new("recorded pose, 0.01 in", lines))
 }
 
 /// The boards and the source of commands; before the first input also the possible inputs.
@@ -101,4 +122,27 @@ fn of_request(exchange: &Exchange) -> Vec<Text> {
         Some(Err(why)) => (Tone::Trouble, format!("!!refused: {why}")),
     };
     vec![Text::new(Tone::Marked, format!(" : {}", exchange.line)), Text::new(tone, text)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::pose::Pose;
+    use interfaces::{ChangingPose, pose_range};
+
+    #[test]
+    fn a_recorded_pose_is_displayed_on_the_terminal_of_the_prim_board() {
+        let mut memory = CommonMemory::default();
+        let number = pose_range::PRIM + 9;
+        let pose = Pose { wrist: [0, -4145, -4602], tool: [0, -7145, -1483], finger: [3000, -7145, -1483] };
+        memory.prim.poses[0] = ChangingPose { number: Some(number), pose };
+        let board = |number| Board { number, ..Board::default() };
+        assert!(recorded(&board(2), &memory).is_none(), "nothing was recorded");
+        (memory.prim.status.recorded_pose, memory.prim.status.recording) = (Some(number), true);
+        assert!(recorded(&board(6), &memory).is_none(), "Task has its own terminal");
+        let lines = recorded(&board(2), &memory).unwrap().lines;
+        let lines: Vec<&str> = lines.iter().map(|line| line.text.as_str()).collect();
+        assert_eq!(lines[1], " tool          0    -7145    -1483");
+        assert_eq!(lines[3], " E-move and Prim are suspended until carriage return: Enter");
+    }
 }

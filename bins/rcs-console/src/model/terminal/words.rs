@@ -6,7 +6,7 @@ use interfaces::{ProcessId, operator::Variable};
 use levels::ladder::Ladder;
 use taskdata::load::{BlockNumber, source::BLOCK_LINES};
 
-use super::{BOARDS, Board, Mode, library::Library, said, teach::Lesson};
+use super::{BOARDS, Board, Mode, library::Library, pointer::target, said, teach::Lesson};
 use crate::{
     model::{
         Text, Tone,
@@ -234,7 +234,11 @@ impl<'a> Interpreter<'a> {
                 "there is no such variable; names are those of chapters V and VI, or of screen 2".to_owned()
             );
         }
-        let shown = lines(&fields, picture, self.last);
+        let mut shown = Vec::new();
+        for field in &fields {
+            shown.extend(lines(&[field], picture, self.last));
+            shown.extend(target(field, picture, self.library).into_iter().map(Text::plain));
+        }
         self.outcome.said.extend(shown.into_iter().take(BLOCK_LINES));
         if let Some(variable) = self.board.variable {
             let (form, owner) = (variable.form(), variable.owner());
@@ -343,8 +347,9 @@ fn variable_named(name: &str) -> Option<Variable> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::{CommonMemory, ExternalInputs};
-    use rcs_core::tick::Tick;
+    use geometry::pose::Pose;
+    use interfaces::{ChangingPose, CommonMemory, ExternalInputs, pose_range};
+    use rcs_core::{name::Name10, tick::Tick};
     use std::path::Path;
 
     struct Bench {
@@ -457,5 +462,39 @@ mod tests {
         assert!(bench.said("frame-command-in").contains("board 2 has it"));
         assert!(bench.said("bogus-variable").contains("no such variable"));
         assert_eq!((bench.said(":R TAI"), bench.board.shown.unwrap().word), (String::new(), "TAI"));
+    }
+
+    #[test]
+    fn show_mode_follows_a_pointer_to_its_record() {
+        let mut bench = Bench::new(6);
+        assert!(!bench.said(":S task.subtask.pose").contains("T-POSE"), "no record yet");
+        let number = pose_range::TASK + 3;
+        bench.picture.memory.task.subtask.pose = Some(number);
+        let pose = Pose { wrist: [0, -4145, -4602], tool: [0, -7145, -1483], finger: [3000, -7145, -1483] };
+        bench.picture.memory.task.poses[1] = ChangingPose { number: Some(number), pose };
+        let said = bench.said("pose-^-in");
+        assert!(said.contains("T-POSE-2") && said.contains("      0    -7145    -1483"), "{said}");
+        // Records of the task data.
+        let store = bench.library.store().unwrap();
+        let data = store.view();
+        let pose = data.pose_named(&Name10::clipped("TOOL-TRNS")).unwrap().number();
+        let movetable = data.movetable_named(&Name10::clipped("LK-GRP-1")).unwrap().number();
+        let place = data.locpt_named(&Name10::clipped("PFIXTURE")).unwrap().number();
+        let mut bench = Bench::new(2);
+        bench.picture.memory.emove.prim.pose = pose;
+        bench.picture.memory.emove.prim.movetable = Some(movetable);
+        bench.picture.memory.emove.prim.trajectory_parameters = 1;
+        bench.picture.memory.subtask.emove.location_record = Some(place);
+        for (line, found) in [
+            (":S ^-pose", "   6497    -2366     1569"),
+            ("^-movtab", "to     -300        0      0      -mtb-   LK-GRP-1"),
+            ("^-traj-para", "  fac "),
+            ("locpt-^-in", "  PFIXTURE, at PFIX-P"),
+        ] {
+            let said = bench.said(line);
+            assert!(said.contains(found), "{line}: {said}");
+        }
+        bench.picture.memory.emove.prim.pose = 999_999;
+        assert!(bench.said("^-pose").contains("not in the blocks"));
     }
 }

@@ -121,6 +121,11 @@ impl Hwsc {
         matches!(self.intervention.state, State::Waits { .. })
     }
 
+    /// True if the job waits for an operator before a line that has not been begun.
+    pub(super) const fn waits_before_line(&self) -> bool {
+        matches!(self.intervention.state, State::Waits { before_line: true, .. })
+    }
+
     /// The reason for which the job has begun to wait; each reason is returned once.
     pub fn operator_news(&mut self) -> Option<WaitReason> {
         self.intervention.news.take()

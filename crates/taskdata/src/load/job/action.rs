@@ -189,6 +189,15 @@ pub enum TablePanel {
     Reset,
 }
 
+/// Actions at the resolver electronics (IV.3.3 step 11).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ResolverPanel {
+    /// Set the MANUAL/AUTO switch to MANUAL (true) or to AUTO.
+    Manual(bool),
+    /// Set the address switches to a joint, 0 to 5, and press its button.
+    Joint(u8),
+}
+
 /// An action other than a command to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Workstation {
@@ -231,6 +240,8 @@ pub enum Workstation {
     Panel(Panel),
     /// An action at the panel of the rotary table's controller.
     Table(TablePanel),
+    /// An action at the resolver electronics.
+    Resolvers(ResolverPanel),
     /// Blocks are loaded into the running system.
     Load {
         /// Number of the reload in the job, from 1.

@@ -51,8 +51,8 @@ pub use own_line::{OwnLineError, is_command, own_command, own_line, reported_com
 pub use reload::Reload;
 
 pub use action::{
-    Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, TablePanel, ViseOpening,
-    Workstation,
+    Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, ResolverPanel, Stepped, TablePanel,
+    ViseOpening, Workstation,
 };
 
 use super::{

@@ -22,6 +22,7 @@ enum Verb {
     Release,
     Panel,
     Table,
+    Resolvers,
     Wait,
     Load,
     After,
@@ -38,6 +39,7 @@ const VERBS: &[(&str, Verb)] = &[
     ("release", Verb::Release),
     ("panel", Verb::Panel),
     ("table", Verb::Table),
+    ("resolvers", Verb::Resolvers),
     ("wait", Verb::Wait),
     ("load", Verb::Load),
     ("after", Verb::After),
@@ -194,6 +196,7 @@ impl Reader<'_, '_> {
             Verb::Release => self.estop(fields).map(Workstation::Release),
             Verb::Panel => self.panel(fields).map(Workstation::Panel),
             Verb::Table => self.table(fields).map(Workstation::Table),
+            Verb::Resolvers => self.resolvers(fields).map(Workstation::Resolvers),
             Verb::HandOver => Some(Workstation::HandOver),
             Verb::Load => {
                 let at = fields.at();

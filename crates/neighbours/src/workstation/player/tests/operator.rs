@@ -57,6 +57,25 @@ impl Stage {
     }
 }
 
+#[test]
+fn commands_of_an_operator_and_repetitions_do_not_advance_the_line_number() {
+    let mut stage = Stage::commands();
+    assert_eq!(stage.hwsc.place(), (0, 2));
+    stage.until(|stage| stage.task.received.len() == 2);
+    for verb in ["TRANSFER", "POSITION", "TRANSFER"] {
+        stage.order(verb);
+        stage.until(is_idle);
+    }
+    assert_eq!((stage.hwsc.begun_steps().len(), stage.hwsc.place()), (5, (1, 2)));
+    stage.go_on();
+    stage.hwsc.wait_for_operator().unwrap();
+    stage.until(|stage| stage.hwsc.is_waiting());
+    assert_eq!(stage.hwsc.place(), (1, 2), "the second line has not begun");
+    stage.go_on();
+    stage.until(is_over);
+    assert_eq!(stage.hwsc.place(), (2, 2));
+}
+
 fn is_over(stage: &Stage) -> bool {
     *stage.hwsc.progress() == Progress::Over
 }

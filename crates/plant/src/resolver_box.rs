@@ -1,0 +1,120 @@
+//! The resolver electronics (III.3.2) and its reset (IV.3.3 step 11, a to q): a button for each joint sets the reading
+//! of the joint to that of HOME, while the MANUAL/AUTO switch is at MANUAL.
+//!
+//! The address switches and the button of a joint are one action here. The electronics cannot tell whether the robot is
+//! at HOME: elsewhere the reset makes the readings wrong (CHOSEN).
+
+use geometry::kinematics::HOME_JOINTS;
+use interfaces::device::{RESOLVER_COUNTS, Resolvers};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    noise::{Noise, Stream},
+    sensor::resolver,
+};
+
+/// An action at the resolver electronics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ResolverKey {
+    /// Set the MANUAL/AUTO switch to MANUAL (true) or to AUTO.
+    Manual(bool),
+    /// Set the address switches to a joint, 0 for the base to 5 for the roll, and press its button.
+    Joint(u8),
+}
+
+/// Reasons for which the electronics does not react.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ResolverRefusal {
+    /// The switch is at AUTO.
+    #[error("the resolver electronics is at AUTO: `resolvers manual` comes first")]
+    Auto,
+    /// No such joint.
+    #[error("the resolver electronics has joints 0 to 5, and no joint {0}")]
+    NoJoint(u8),
+}
+
+/// The electronics: its switch, and what it adds to each resolver.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct ResolverBox {
+    manual: bool,
+    /// Counts added to each joint.
+    zero: [u32; 6],
+    /// The last readings, with `zero`.
+    shown: [u32; 6],
+}
+
+impl ResolverBox {
+    /// Add the zeros to the words of a tick.
+    pub fn show(&mut self, resolvers: &mut Resolvers) {
+        for (word, zero) in resolvers.counts.iter_mut().zip(self.zero) {
+            *word = (*word + zero) % RESOLVER_COUNTS;
+        }
+        self.shown = resolvers.counts;
+    }
+
+    /// Turn the switch or press a button.
+    ///
+    /// # Errors
+    /// [`ResolverRefusal`]; the state is unchanged.
+    pub fn press(&mut self, key: ResolverKey) -> Result<(), ResolverRefusal> {
+        match key {
+            ResolverKey::Manual(on) => self.manual = on,
+            ResolverKey::Joint(joint) => {
+                let at = usize::from(joint);
+                if !self.manual {
+                    return Err(ResolverRefusal::Auto);
+                }
+                let (Some(zero), Some(shown)) = (self.zero.get_mut(at), self.shown.get_mut(at)) else {
+                    return Err(ResolverRefusal::NoJoint(joint));
+                };
+                let home = resolver::counts(HOME_JOINTS[at], 0.0, &mut Noise::new(0, Stream::Resolvers));
+                *zero = (*zero + RESOLVER_COUNTS + home - *shown) % RESOLVER_COUNTS;
+                *shown = home;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at_home(offset: u32) -> Resolvers {
+        let mut noise = Noise::new(0, Stream::Resolvers);
+        let counts =
+            HOME_JOINTS.map(|angle| (resolver::counts(angle, 0.0, &mut noise) + offset) % RESOLVER_COUNTS);
+        Resolvers { counts, valid: true }
+    }
+
+    /// The readings of a robot at HOME whose resolvers are off by an offset.
+    fn shown(electronics: &mut ResolverBox, offset: u32) -> [u32; 6] {
+        let mut words = at_home(offset);
+        electronics.show(&mut words);
+        words.counts
+    }
+
+    #[test]
+    fn a_button_sets_the_reading_of_its_joint_to_that_of_home() {
+        for offset in [200, RESOLVER_COUNTS - 200] {
+            let mut electronics = ResolverBox::default();
+            let home = at_home(0).counts;
+            assert_ne!(shown(&mut electronics, offset), home);
+            assert_eq!(electronics.press(ResolverKey::Joint(2)), Err(ResolverRefusal::Auto));
+            electronics.press(ResolverKey::Manual(true)).unwrap();
+            electronics.press(ResolverKey::Joint(2)).unwrap();
+            let now = shown(&mut electronics, offset);
+            assert_eq!((now[2], now[1] == home[1]), (home[2], false), "the other joints stay as they are");
+            for joint in 0..6 {
+                electronics.press(ResolverKey::Joint(joint)).unwrap();
+            }
+            assert_eq!(shown(&mut electronics, offset), home);
+            // Once more: nothing changes.
+            electronics.press(ResolverKey::Joint(2)).unwrap();
+            assert_eq!(shown(&mut electronics, offset), home);
+            assert_eq!(electronics.press(ResolverKey::Joint(6)), Err(ResolverRefusal::NoJoint(6)));
+            electronics.press(ResolverKey::Manual(false)).unwrap();
+            assert_eq!(electronics.press(ResolverKey::Joint(0)), Err(ResolverRefusal::Auto));
+        }
+    }
+}
