@@ -138,7 +138,13 @@ impl Run {
                     0 => String::new(),
                     lost => format!("; {lost} ticks found no room and are missing"),
                 };
-                format!("{file} ({size:.1} MB{lost}): rerun {file}, or open it in Foxglove or Lichtblick")
+                let earlier = match summary.earlier {
+                    0 => String::new(),
+                    earlier => format!("; {earlier} logs before, under the times of their ends"),
+                };
+                format!(
+                    "{file} ({size:.1} MB{lost}{earlier}): rerun {file}, or open it in Foxglove or Lichtblick"
+                )
             }
             Err(error) => {
                 self.observer.message(&format!("the log ended before the run did: {error}"));
