@@ -6,6 +6,7 @@ mod command_lines;
 mod contacts;
 mod drum;
 mod egm;
+mod ends;
 mod estop;
 mod faults;
 mod finished;

@@ -35,6 +35,7 @@ use crate::{
     model::{Effect, Key, Model, Operating, Place, Screen, terminal::library::Library},
     redraw::{cleared, suspended, with_control},
     search::Search,
+    hang_up::end_with_terminal,
     source::{Live, Recorded, Source, State},
     view::{Look, Scene, Waiting, draw},
     watch,
@@ -60,6 +61,7 @@ pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
     let ended = Session {
         console: scene,
         look: cli.look(),
+    end_with_terminal().map_err(ConsoleError::Terminal)?;
         stop,
         drawn: None,
         log: cli.log.clone(),

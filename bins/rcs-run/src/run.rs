@@ -4,7 +4,10 @@ use std::{env, io, process::ExitCode, sync::Arc};
 
 use executive::memory::{OnStuck, RunName};
 use os_io::stderr_line;
-use runtime::{Ending, Observer, Run, RunConfig, RunOutcome, result::FailureResult};
+use runtime::{
+    Ending, Observer, Run, RunConfig, RunOutcome,
+    result::{FailureResult, RunResult},
+};
 
 use crate::{
     cli::RunArguments,
@@ -56,6 +59,11 @@ fn print(outcome: &RunOutcome, json: bool) -> Result<(), Error> {
 
 /// The exit status; the reason is the last line on standard error.
 fn status(outcome: &RunOutcome) -> u8 {
+    if let Ending::StoppedByUser = outcome.ending {
+        let RunResult { job, ticks, .. } = &outcome.result;
+        stderr_line!("rcs-run: {job} was stopped by the user at tick {ticks}");
+        return STOPPED;
+    }
     let (Ending::Failed(failure), Some(FailureResult { line, .. })) =
         (&outcome.ending, &outcome.result.failure)
     else {

@@ -1,6 +1,6 @@
 //! Writes lines to standard output and standard error. Nothing here panics.
 //!
-//! | for | call | if the reader has closed the pipe | if the write fails otherwise |
+//! | for | call | if the reader has closed the pipe or the terminal | if the write fails otherwise |
 //! |---|---|---|---|
 //! | a message | [`stderr_line!`](crate::stderr_line) | lost | lost |
 //! | a line of a process that continues | [`stdout_line!`](crate::stdout_line) | lost | lost |
@@ -8,8 +8,13 @@
 
 use std::{
     fmt::Arguments,
+    fs::File,
     io::{self, ErrorKind, Write},
+    os::{fd::AsFd as _, unix::fs::FileTypeExt as _},
 };
+
+/// Error number of Linux for a terminal without the other end.
+const EIO: i32 = 5;
 
 /// Writes a formatted line to standard error. If the write fails, the line is lost.
 #[macro_export]
@@ -36,13 +41,24 @@ pub fn stdout_line(message: Arguments<'_>) {
     let _ = line(&mut out, message).and_then(|()| out.flush());
 }
 
-/// Writes the whole text to standard output. A reader that closes the pipe early, such as `head`, is no error.
+/// Writes the whole text to standard output. A reader that closes the pipe early, such as `head`, is no error, and
+/// neither is a terminal that has disappeared.
 ///
 /// # Errors
 /// The error of the operating system, for example a full disk.
 pub fn answer(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
-    answered(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+    let written = answered(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
+    if matches!(&written, Err(error) if error.raw_os_error() == Some(EIO)) && is_device() {
+        return Ok(());
+    }
+    written
+}
+
+/// True if standard output is a device, such as a terminal, and no file.
+fn is_device() -> bool {
+    let file = io::stdout().as_fd().try_clone_to_owned().map(File::from);
+    file.and_then(|file| file.metadata()).is_ok_and(|found| found.file_type().is_char_device())
 }
 
 /// Writes a line with one call of `write`, so that lines of several processes on one terminal do not mix.

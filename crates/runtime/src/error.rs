@@ -151,8 +151,8 @@ pub enum StartError {
     /// The system provides no random numbers.
     #[error(transparent)]
     NoRandom(#[from] ::live::NoRandom),
-    /// A signal came before the first tick.
-    #[error("{0} failed at tick 0: interrupted")]
+    /// The user has stopped the run before the first tick.
+    #[error("{0} was stopped by the user before the first tick")]
     Interrupted(String),
     /// Not all boards of a run have started.
     #[error("not all boards have started: {0}")]

@@ -105,6 +105,8 @@ pub const SIMULATED: &str =
 pub struct RunResult {
     /// Name of the job.
     pub job: String,
+    /// How the run ended: `finished`, `stopped` or `failed`.
+    pub ending: &'static str,
     /// Commands that were sent to Task.
     pub commands: Vec<CommandResult>,
     /// Commands that failed and were sent again, after a PAUSE (`--retry`).

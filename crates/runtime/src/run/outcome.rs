@@ -73,6 +73,7 @@ impl Run {
         });
         RunResult {
             job: self.job.name.clone(),
+            ending: ending.word(),
             commands: commands.collect(),
             retries: self.neighbours.retried().iter().map(Into::into).collect(),
             ticks: ticks - u64::from(ramp_ticks),
@@ -113,7 +114,7 @@ impl Run {
                 Ending::Failed(failure) => {
                     Some(FailureResult::new(failure, self.neighbours.line_at(failure.tick), self.remedy))
                 }
-                Ending::Finished | Ending::Stopped => None,
+                Ending::Finished | Ending::Stopped | Ending::StoppedByUser => None,
             },
         }
     }
