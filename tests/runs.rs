@@ -10,6 +10,7 @@ mod ends;
 mod estop;
 mod faults;
 mod finished;
+mod found;
 mod jobs;
 mod jogs;
 mod linkbar;

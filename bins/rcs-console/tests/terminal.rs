@@ -485,7 +485,7 @@ fn a_signal_leaves_the_terminal_as_it_was() {
     let directory = tempfile::tempdir().unwrap();
     // A directory of its own contains no run.
     for signal in [Signal::TERM, Signal::HUP, Signal::INT] {
-        let console = Terminal::start(&["--ascii"], directory.path(), &[("TMPDIR", directory.path())]);
+        let console = Terminal::start(&["--ascii"], directory.path(), &[("RCS_RUNS", directory.path())]);
         console.wait_for("Looking for runs");
         kill_process(Pid::from_child(&console.child), signal).unwrap();
         assert_eq!(console.end(), Some(0), "{signal:?}");
@@ -497,7 +497,7 @@ fn a_signal_leaves_the_terminal_as_it_was() {
 fn a_console_is_suspended_and_goes_on() {
     let directory = tempfile::tempdir().unwrap();
     let state = directory.path();
-    let mut console = Terminal::start(&[], state, &[("TMPDIR", state)]);
+    let mut console = Terminal::start(&[], state, &[("RCS_RUNS", state)]);
     console.wait_for("Looking for runs");
     let pid = console.child.id();
     let is_stopped = || {
@@ -554,7 +554,7 @@ fn a_terminal_that_disappears_ends_the_console_at_once() {
 #[test]
 fn a_signal_ends_it_while_the_terminal_takes_no_output() {
     let directory = tempfile::tempdir().unwrap();
-    let mut console = Terminal::start(&["--ascii"], directory.path(), &[("TMPDIR", directory.path())]);
+    let mut console = Terminal::start(&["--ascii"], directory.path(), &[("RCS_RUNS", directory.path())]);
     console.wait_for("Looking for runs");
     // The same as Ctrl-S: further output waits.
     tcflow(&console.slave, Action::OOff).unwrap();

@@ -2,7 +2,7 @@
 
 use std::{io, path::PathBuf};
 
-use executive::{boards::SplitError, serial::OpenError};
+use executive::{boards::SplitError, memory::SharedMemoryError, serial::OpenError};
 use neighbours::{
     data_system::{OutboxError, StoreError},
     network::{KeysError, address::AddressError, listener::ListenError},
@@ -154,6 +154,9 @@ pub enum StartError {
     /// The user has stopped the run before the first tick.
     #[error("{0} was stopped by the user before the first tick")]
     Interrupted(String),
+    /// A living run has the name that was chosen.
+    #[error(transparent)]
+    NameInUse(SharedMemoryError),
     /// Not all boards of a run have started.
     #[error("not all boards have started: {0}")]
     Boards(#[from] SplitError),

@@ -16,7 +16,7 @@ use executive::{
     boards::Lost,
     failure::Failure,
     generations::Generations,
-    memory::{Mirror, RunName},
+    memory::{Announced, Mirror, RunName},
     rest::RestWatch,
     runner::Runner,
     timing::Stage,
@@ -113,6 +113,8 @@ pub struct Run {
     trouble: Option<&'static str>,
     /// What a person must do before the failed job can continue.
     remedy: Option<&'static str>,
+    /// The run for programs that look for it. It must be dropped after `runner`.
+    announced: Option<Announced>,
 }
 
 impl Run {

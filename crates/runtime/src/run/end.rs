@@ -32,6 +32,9 @@ impl Run {
     pub(super) fn end_at_rest(&mut self, ending: Ending) {
         if self.ramp.is_none() {
             self.neighbours.stop_commanding();
+            if let Some(announced) = &self.announced {
+                announced.say("ends: the robot ramps to rest");
+            }
             let before = self.runner.digest();
             self.ramp = Some(Ramp { ending, ticks: 0, before });
         }
