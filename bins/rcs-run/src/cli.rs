@@ -48,7 +48,8 @@ Examples:
   rcs-run tables > tables.md           all decision tables
 
 Exit status: 0 finished; 1 the job failed; 2 usage, configuration or data error;
-3 stopped by the user, an emergency stop or a lost link, or no link to test. The reason is the last line on standard error."
+3 stopped by the user, an emergency stop or a lost link, or no link to test.
+The reason is the last line on standard error."
 )]
 pub struct Cli {
     /// What to do; without it, run a job.

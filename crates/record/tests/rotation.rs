@@ -16,6 +16,9 @@ const TICKS: u64 = 1000;
 /// Size of a log, bytes: some seconds of this run.
 const SIZE: u64 = 60_000;
 
+/// Tick in which the run gets another file.
+const ADDED: u64 = 30;
+
 /// Inputs that move something in every tick.
 fn inputs(tick: Tick) -> ExternalInputs {
     let mut external = ExternalInputs::default();
@@ -55,7 +58,7 @@ fn recorded(directory: &std::path::Path, kept: Option<usize>) -> (Vec<PathBuf>, 
     for tick in (1..=TICKS).map(Tick) {
         let (before, external) = (memory, inputs(tick));
         ladder.step(tick, &before, &external, &TaskData::default(), &mut memory);
-        if tick.0 == 30 {
+        if tick.0 == ADDED {
             recorder.attach(tick, Attachment::text("added.txt", "a file of the run"));
         }
         recorder.tick(tick, &external, &memory, || ladder.state());
@@ -81,8 +84,9 @@ fn every_log_of_a_run_is_complete_and_replays_alone() {
         assert!(log.complete && log.damage().is_none(), "{}", path.display());
         let ticks: Vec<u64> = log.ticks().map(|tick| tick.unwrap().tick.0).collect();
         assert_eq!(ticks, (next..next + ticks.len() as u64).collect::<Vec<_>>(), "{}", path.display());
-        let is_there = log.attachment("added.txt").is_some();
-        assert!(is_there && log.attachment(Attachment::JOB).is_some(), "{}", path.display());
+        let has_added = log.attachment("added.txt").is_some();
+        assert_eq!(has_added, next + ticks.len() as u64 > ADDED, "{}", path.display());
+        assert!(log.attachment(Attachment::JOB).is_some(), "{}", path.display());
         let report = replay(path).unwrap();
         assert!(report.first_difference.is_none(), "{}: {:?}", path.display(), report.first_difference);
         // The first tick of a later log is taken over with its states.

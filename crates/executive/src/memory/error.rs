@@ -23,7 +23,8 @@ pub enum SharedMemoryError {
     },
     /// A run that has not published its buffers yet.
     #[error(
-        "{run} {phase}: it can be watched and operated while its buffers are in shared memory, usually from its first tick on"
+        "{run} {phase}: it can be watched and operated while its buffers are in shared memory, usually from its \
+         first tick on"
     )]
     Starting {
         /// Its name.
