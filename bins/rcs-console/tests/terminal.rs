@@ -228,7 +228,8 @@ fn begin(config: RunConfig) -> Running {
     });
     // A run exists when it has published its first tick.
     let begun = Instant::now();
-    let listed = || executive::memory::list().unwrap().iter().any(|run| run.name == name && run.alive);
+    let is_alive = || executive::memory::list().unwrap().iter().any(|run| run.name == name && run.alive);
+    let listed = || is_alive() && executive::memory::starting(&name).is_none();
     while !listed() {
         assert!(begun.elapsed() < PATIENCE, "the run does not begin");
         thread::sleep(Duration::from_millis(50));
