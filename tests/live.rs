@@ -2,8 +2,10 @@
 
 use std::{
     collections::BTreeMap,
+    io::{BufRead as _, BufReader},
     net::TcpStream,
     path::Path,
+    process::{Command, Stdio},
     sync::{Arc, Mutex},
     thread,
     time::{Duration, Instant},
@@ -12,6 +14,7 @@ use std::{
 use executive::memory::{Attached, RunName};
 use record::Log;
 use runtime::{ClockKind, LogTarget, Observer, OperatorAccess, Run, RunConfig, RunOutcome, StartError};
+use rustix::process::{Pid, Signal, kill_process};
 use serde_json::{Value, json};
 use tempfile::{TempDir, tempdir};
 use tungstenite::{
@@ -19,6 +22,7 @@ use tungstenite::{
     client::IntoClientRequest,
     http::{HeaderValue, header},
 };
+use whole_system_tests::rcs_run;
 
 /// Longest time for anything to happen.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -464,4 +468,36 @@ fn a_view_needs_a_log_and_a_port() {
         .unwrap_err();
     assert!(error.to_string().contains("--live PORT names another port"), "{error}");
     assert!(!directory.path().join("log.mcap").exists(), "a run that cannot begin leaves no log");
+}
+
+/// Ctrl-Z, a debugger or a full disk: the run stands still for longer than a viewer may be silent.
+#[test]
+fn a_run_that_was_frozen_keeps_its_viewers() {
+    let arguments =
+        ["linkbar", "--clock", "real", "--log", "run.mcap", "--live", "0", "--shared-memory", "off"];
+    let directory = tempdir().unwrap();
+    let mut child = Command::new(rcs_run())
+        .args(arguments)
+        .current_dir(directory.path())
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+    let line = lines.find(|line| line.contains("viewers can connect at ws://")).unwrap();
+    let address = line.split("ws://").nth(1).unwrap().split([' ', ';']).next().unwrap().to_owned();
+    let mut viewer = Viewer::connect(&address, "foxglove.sdk.v1");
+    viewer.subscribe(|topic| topic == "/tf");
+    let pid = Pid::from_child(&child);
+    kill_process(pid, Signal::STOP).unwrap();
+    thread::sleep(Duration::from_secs(7));
+    kill_process(pid, Signal::CONT).unwrap();
+    // 100 ticks after the gap, four seconds long: a viewer is looked after in every one of them.
+    let got = viewer.rest().filter(|got| matches!(got, Got::Time(_))).take(100).count();
+    kill_process(pid, Signal::TERM).unwrap();
+    assert_eq!(got, 100);
+    let said: Vec<_> = lines.collect();
+    assert!(!said.iter().any(|line| line.contains("is disconnected")), "{said:?}");
+    child.wait().unwrap();
 }

@@ -7,7 +7,7 @@
 //!
 //! It prints how many cases there were and how they ended, and each finding on standard error; the exit
 //! status is 1 if there is one. The tests `survival::campaign` run a sample of it. Everything happens in a
-//! `/dev/shm` and a `TMPDIR` of its own.
+//! `/dev/shm` and an `RCS_RUNS` of its own.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program of the developers, at a terminal")]
 
@@ -114,7 +114,7 @@ fn private_memory(scratch: &Scratch) -> Option<Command> {
     let flags = ways.into_iter().find(works)?;
     let own = env::current_exe().expect("a program has a path");
     let mut command = command(flags, &own);
-    command.args(env::args_os().skip(1)).env(PRIVATE, "1").env("TMPDIR", scratch.file(""));
+    command.args(env::args_os().skip(1)).env(PRIVATE, "1").env("RCS_RUNS", scratch.file(""));
     Some(command)
 }
 

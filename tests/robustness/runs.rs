@@ -41,7 +41,7 @@ pub fn judge(ended: &Ended) -> Outcome {
     assert!(!ended.said.contains("panicked"), "{}", ended.said);
     match ended.status {
         Some(0) => Outcome::WentOn,
-        Some(1) if ended.last_words().ends_with("interrupted") => Outcome::InOrder,
+        Some(3) if ended.last_words().contains("was stopped by the user") => Outcome::InOrder,
         Some(1..=3) if ended.last_words().starts_with("rcs-run: ") => Outcome::InWords,
         None => Outcome::BySignal,
         other => panic!("status {other:?}: {}", ended.said),

@@ -30,17 +30,27 @@ fn clean_leaves_a_run_of_the_same_name_under_another_directory_alone() {
         let more = ["--run", "same-name", "--clock", "real", "--log", "none", "--ticks", ticks];
         let all: Vec<&str> = arguments.iter().map(String::as_str).chain(more).collect();
         let mut command = rcs(&tmp, &all);
-        command.env("TMPDIR", &tmp).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts")
+        command
+            .env("RCS_RUNS", &tmp)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("it starts")
     };
     let status = |place: &str| {
         let tmp = scratch.file(place);
-        rcs(&tmp, &["status", "same-name"]).env("TMPDIR", &tmp).output().expect("it starts").status.success()
+        rcs(&tmp, &["status", "same-name"])
+            .env("RCS_RUNS", &tmp)
+            .output()
+            .expect("it starts")
+            .status
+            .success()
     };
     let (first, mut second) = (start("first", "100"), start("second", "10000"));
     wait_for("both runs show their buffers", || status("first") && status("second"));
     second.kill().and_then(|()| second.wait()).expect("it can be killed");
     let tmp = scratch.file("second");
-    let cleaned = rcs(&tmp, &["clean"]).env("TMPDIR", &tmp).output().expect("it starts");
+    let cleaned = rcs(&tmp, &["clean"]).env("RCS_RUNS", &tmp).output().expect("it starts");
     assert_eq!(cleaned.status.code(), Some(0), "{}", String::from_utf8_lossy(&cleaned.stderr));
     assert!(String::from_utf8_lossy(&cleaned.stdout).contains("removed same-name"));
     assert!(status("first"), "it lives on");
@@ -76,7 +86,7 @@ fn another_user_opens_nothing_of_a_run_and_keeps_none_from_starting() {
         .arg(rcs_run())
         .args(arguments.iter().map(String::as_str).chain(["--ticks", "30", "--log", "none"]))
         .current_dir(&place)
-        .env("TMPDIR", &place)
+        .env("RCS_RUNS", &place)
         .output();
     // In a changed root without a mount point of its own `unshare` itself fails.
     let refused = |output: &Output| output.status.code() == Some(9) || output.stderr.starts_with(b"unshare:");
@@ -101,7 +111,7 @@ fn a_program_that_stopped_with_the_lock_holds_no_run_up() {
     let more = ["--ticks", "30", "--log", "none"];
     let run = || {
         let all: Vec<&str> = arguments.iter().map(String::as_str).chain(more).collect();
-        Ended::of(&rcs(&tmp, &all).env("TMPDIR", &tmp).output().expect("it starts"))
+        Ended::of(&rcs(&tmp, &all).env("RCS_RUNS", &tmp).output().expect("it starts"))
     };
     run().assert_shared();
     let lock = scratch.file(&format!("rcs-runs-{}/lock", geteuid().as_raw()));

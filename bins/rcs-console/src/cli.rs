@@ -21,7 +21,7 @@ Examples:
   rcs-console --log runs/linkbar.mcap          a log
   rcs-console --log runs/linkbar.mcap --once ladder --tick 623   one screen as text
 
-Exit status: 0 quit; 2 usage, or what is to be shown cannot be read."
+Exit status: 0 quit; 1 the terminal has disappeared; 2 usage, or what is to be shown cannot be read."
 )]
 pub struct Cli {
     /// The run to look at [default: the only one in progress]

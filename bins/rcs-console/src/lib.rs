@@ -13,7 +13,8 @@
 //! * [`terminal`]: keys, signals, and restoring the terminal at the end.
 //!
 //! * `watch`: saves the watched fields between sessions;
-//! * `hand`: the session of an operator with a run, with `--operate`.
+//! * `hand`: the session of an operator with a run, with `--operate`;
+//! * `hang_up`: the end of the console if its terminal disappears.
 //!
 //! Without `--operate` the console only reads. A run never waits for the console.
 
@@ -23,6 +24,7 @@
 pub mod cli;
 pub mod error;
 mod hand;
+mod hang_up;
 pub mod model;
 pub mod once;
 pub mod picture;

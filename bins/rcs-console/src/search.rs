@@ -33,7 +33,9 @@ impl Search {
             self.looked = Instant::now();
         }
         match &waiting.runs[..] {
-            [only] if waiting.refused.is_none() && waiting.boards.is_empty() => Some(only.clone()),
+            [only] if waiting.refused.is_none() && waiting.boards.is_empty() && waiting.phase.is_none() => {
+                Some(only.clone())
+            }
             _ => None,
         }
     }
@@ -47,6 +49,7 @@ impl Search {
                 );
                 // A new run may accept operators a moment after its start: if it is the only one, try again.
                 waiting.refused.take_if(|_| waiting.runs.len() == 1);
+                waiting.phase = waiting.chosen().and_then(memory::starting);
                 waiting.boards = waiting.chosen().and_then(boards::coming_up).unwrap_or_default();
             }
             Err(error) => waiting.refused = Some(error.to_string()),

@@ -15,7 +15,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use executive::{boards, memory::RunName};
+use executive::{
+    boards,
+    memory::{self, RunName},
+};
 use ratatui::{
     DefaultTerminal,
     crossterm::{
@@ -32,6 +35,7 @@ use crate::{
     cli::Cli,
     error::ConsoleError,
     hand::Hand,
+    hang_up::end_with_terminal,
     model::{Effect, Key, Model, Operating, Place, Screen, terminal::library::Library},
     redraw::{cleared, suspended, with_control},
     search::Search,
@@ -57,6 +61,7 @@ pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
     // Errors of the source are reported before the terminal changes.
     let scene = Console::open(cli)?;
     let screen = ratatui::try_init().map_err(ConsoleError::Terminal)?;
+    end_with_terminal().map_err(ConsoleError::Terminal)?;
     let ended = Session {
         console: scene,
         look: cli.look(),
@@ -87,8 +92,10 @@ impl Console {
         let mut model = Model::new(Screen::Ladder);
         let mut hand = None;
         let source: Box<dyn Source> = match (&cli.run, &cli.log) {
-            // The boards of the run are starting: it can be shown from its first tick on.
-            (Some(run), _) if boards::coming_up(run).is_some() => return Ok(Self::search(Some(run.clone()))),
+            // The run waits for boards or neighbours: it can be shown from its first tick on.
+            (Some(run), _) if memory::starting(run).is_some() || boards::coming_up(run).is_some() => {
+                return Ok(Self::search(Some(run.clone())));
+            }
             (Some(run), _) => {
                 hand = cli.operate.then(|| Hand::reach(run)).transpose()?;
                 Box::new(Live::open(run, Some(stuck))?)

@@ -40,6 +40,38 @@ impl Observer for Silent {
     fn message(&mut self, _: &str) {}
 }
 
+/// Both ends of a new terminal. Programs that this one starts do not keep it open.
+fn open_terminal() -> (OwnedFd, OwnedFd) {
+    let flags = pty::OpenptFlags::RDWR | pty::OpenptFlags::NOCTTY | pty::OpenptFlags::CLOEXEC;
+    let master = pty::openpt(flags).unwrap();
+    pty::unlockpt(&master).unwrap();
+    let name = pty::ptsname(&master, Vec::new()).unwrap();
+    let slave = open(&*name, OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC, Mode::empty()).unwrap();
+    let size = Winsize { ws_row: LINES.get(), ws_col: COLUMNS.get(), ws_xpixel: 0, ws_ypixel: 0 };
+    tcsetwinsize(&slave, size).unwrap();
+    (master, slave)
+}
+
+/// Start the console on a terminal, in a directory, with an environment of its own.
+fn begin_console(
+    arguments: &[&str],
+    directory: &Path,
+    environment: &[(&str, &Path)],
+    slave: &OwnedFd,
+) -> Child {
+    let end = || slave.try_clone().unwrap();
+    Command::new(env!("CARGO_BIN_EXE_rcs-console"))
+        .args(arguments)
+        .current_dir(directory)
+        .env("LC_ALL", "C.UTF-8")
+        .envs(environment.iter().copied())
+        .stdin(end())
+        .stdout(end())
+        .stderr(end())
+        .spawn()
+        .unwrap()
+}
+
 /// Output of a program, each piece with its time.
 type Written = Vec<(Duration, Vec<u8>)>;
 
@@ -57,26 +89,9 @@ struct Terminal {
 impl Terminal {
     /// Start the console in a directory, with an environment of its own.
     fn start(arguments: &[&str], directory: &Path, environment: &[(&str, &Path)]) -> Self {
-        // Programs that this one starts must not keep the terminal open.
-        let flags = pty::OpenptFlags::RDWR | pty::OpenptFlags::NOCTTY | pty::OpenptFlags::CLOEXEC;
-        let master = pty::openpt(flags).unwrap();
-        pty::unlockpt(&master).unwrap();
-        let name = pty::ptsname(&master, Vec::new()).unwrap();
-        let slave = open(&*name, OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC, Mode::empty()).unwrap();
-        let size = Winsize { ws_row: LINES.get(), ws_col: COLUMNS.get(), ws_xpixel: 0, ws_ypixel: 0 };
-        tcsetwinsize(&slave, size).unwrap();
+        let (master, slave) = open_terminal();
         let before = tcgetattr(&slave).unwrap();
-        let end = || slave.try_clone().unwrap();
-        let child = Command::new(env!("CARGO_BIN_EXE_rcs-console"))
-            .args(arguments)
-            .current_dir(directory)
-            .env("LC_ALL", "C.UTF-8")
-            .envs(environment.iter().copied())
-            .stdin(end())
-            .stdout(end())
-            .stderr(end())
-            .spawn()
-            .unwrap();
+        let child = begin_console(arguments, directory, environment, &slave);
         let parser = Arc::new(Mutex::new(vt100::Parser::new(LINES, COLUMNS, 0)));
         let mut screen = File::from(master.try_clone().unwrap());
         let written = Arc::<Mutex<Written>>::default();
@@ -213,7 +228,8 @@ fn begin(config: RunConfig) -> Running {
     });
     // A run exists when it has published its first tick.
     let begun = Instant::now();
-    let listed = || executive::memory::list().unwrap().iter().any(|run| run.name == name && run.alive);
+    let is_alive = || executive::memory::list().unwrap().iter().any(|run| run.name == name && run.alive);
+    let listed = || is_alive() && executive::memory::starting(&name).is_none();
     while !listed() {
         assert!(begun.elapsed() < PATIENCE, "the run does not begin");
         thread::sleep(Duration::from_millis(50));
@@ -491,7 +507,7 @@ fn a_signal_leaves_the_terminal_as_it_was() {
     let directory = tempfile::tempdir().unwrap();
     // A directory of its own contains no run.
     for signal in [Signal::TERM, Signal::HUP, Signal::INT] {
-        let console = Terminal::start(&["--ascii"], directory.path(), &[("TMPDIR", directory.path())]);
+        let console = Terminal::start(&["--ascii"], directory.path(), &[("RCS_RUNS", directory.path())]);
         console.wait_for("Looking for runs");
         kill_process(Pid::from_child(&console.child), signal).unwrap();
         assert_eq!(console.end(), Some(0), "{signal:?}");
@@ -503,7 +519,7 @@ fn a_signal_leaves_the_terminal_as_it_was() {
 fn a_console_is_suspended_and_goes_on() {
     let directory = tempfile::tempdir().unwrap();
     let state = directory.path();
-    let mut console = Terminal::start(&[], state, &[("TMPDIR", state)]);
+    let mut console = Terminal::start(&[], state, &[("RCS_RUNS", state)]);
     console.wait_for("Looking for runs");
     let pid = console.child.id();
     let is_stopped = || {
@@ -534,10 +550,33 @@ fn what_cannot_be_read_is_said_before_the_terminal_changes() {
     assert_eq!(console.end(), Some(2));
 }
 
+/// What `tmux kill-session` and a closed window do.
+#[test]
+fn a_terminal_that_disappears_ends_the_console_at_once() {
+    let directory = tempfile::tempdir().unwrap();
+    let (master, slave) = open_terminal();
+    let mut child = begin_console(&["--ascii"], directory.path(), &[], &slave);
+    let (mut screen, mut parser) = (File::from(master), vt100::Parser::new(LINES, COLUMNS, 0));
+    while !parser.screen().contents().contains("Looking for runs") {
+        let mut bytes = [0; 4096];
+        let count = screen.read(&mut bytes).unwrap();
+        parser.process(&bytes[..count]);
+    }
+    drop(screen);
+    let begun = Instant::now();
+    while child.try_wait().unwrap().is_none() && begun.elapsed() < PATIENCE {
+        thread::sleep(Duration::from_millis(20));
+    }
+    // A failed test leaves no program running.
+    let _ = child.kill();
+    assert_eq!(child.wait().unwrap().code(), Some(1), "the console does not end");
+    assert!(begun.elapsed() < Duration::from_secs(2), "{:?}", begun.elapsed());
+}
+
 #[test]
 fn a_signal_ends_it_while_the_terminal_takes_no_output() {
     let directory = tempfile::tempdir().unwrap();
-    let mut console = Terminal::start(&["--ascii"], directory.path(), &[("TMPDIR", directory.path())]);
+    let mut console = Terminal::start(&["--ascii"], directory.path(), &[("RCS_RUNS", directory.path())]);
     console.wait_for("Looking for runs");
     // The same as Ctrl-S: further output waits.
     tcflow(&console.slave, Action::OOff).unwrap();

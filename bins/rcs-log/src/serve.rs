@@ -3,6 +3,7 @@
 use std::{
     path::PathBuf,
     process::ExitCode,
+    sync::mpsc::channel,
     thread,
     time::{Duration, Instant},
 };
@@ -54,7 +55,10 @@ pub fn serve(arguments: &Arguments) -> Result<ExitCode, Error> {
     let port = Port::take(arguments.port).map_err(unreachable)?;
     let name = arguments.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let info = ServerInfo { name, metadata: log.run.clone(), ..ServerInfo::new()? };
-    let options = Options { origins: arguments.live_origin.clone(), info, ..Options::default() };
+    let (sender, notices) = channel::<String>();
+    thread::spawn(move || notices.iter().for_each(|why| stderr_line!("rcs-log: {why}")));
+    let origins = arguments.live_origin.clone();
+    let options = Options { origins, info, notices: Some(sender), ..Options::default() };
     let feed = Feed::default();
     let mut tap = feed.tap();
     log.tell_channels(&mut *tap);

@@ -10,7 +10,7 @@ use crate::{Error, Reconnect, cli::DataSystemArguments, connect, connect_again};
 
 /// Serves runs until none connects within the waiting time.
 pub fn serve(arguments: &DataSystemArguments) -> Result<(), Error> {
-    let mut server = Server::new(Store::open(&arguments.database)?);
+    let mut server = Server::new(Store::open_alone(&arguments.database)?);
     let mut peer = connect(&arguments.controller, Role::DataSystem)?;
     let mut reconnect = Reconnect::new();
     loop {

@@ -16,7 +16,11 @@ use executive::{boards::Board, memory::RunName, overrun::Policy};
 use live::Origin;
 use neighbours::network::{Address, Role};
 use rcs_core::name::Name10;
+use record::LogLimit;
 use runtime::{Boards, ClockKind, LogTarget, OperatorAccess, RobotConfig, RunConfig, setup::MOST_SPEED};
+
+/// Bytes of a megabyte.
+const MEGABYTE: u64 = 1_000_000;
 
 /// The RCS-II/T3 controller: runs jobs in the simulated cell, with a robot at a serial port, or with one by EGM.
 #[derive(Debug, Parser)]
@@ -48,7 +52,8 @@ Examples:
   rcs-run tables > tables.md           all decision tables
 
 Exit status: 0 finished; 1 the job failed; 2 usage, configuration or data error;
-3 stopped by an emergency stop or a lost link, or no link to test. The reason is the last line on standard error."
+3 stopped by the user, an emergency stop or a lost link, or no link to test.
+The reason is the last line on standard error."
 )]
 pub struct Cli {
     /// What to do; without it, run a job.
@@ -153,6 +158,14 @@ pub struct RunArguments {
     /// File to write the log into; none for no log [default: runs/JOB.mcap]
     #[arg(long, value_name = "FILE")]
     pub log: Option<LogTarget>,
+    /// Begin a new log when this one has reached MB megabytes; the log before is kept under the time of its end
+    ///
+    /// Each log can be read and replayed without the others.
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub log_limit: Option<u64>,
+    /// Keep at most N logs before this one, also of earlier runs with the same log, and remove the oldest
+    #[arg(long, value_name = "N", requires = "log_limit")]
+    pub log_keep: Option<usize>,
     /// Keep the items of the Data System in this SQLite file, created if missing [default: keep them during the run
     /// only]
     #[arg(long, value_name = "FILE", alias = "data-base")]
@@ -271,6 +284,9 @@ impl RunArguments {
             wait: own.wait,
             seed: own.seed,
             log: own.log.unwrap_or(LogTarget::Default),
+            log_limit: own
+                .log_limit
+                .map(|size| LogLimit { bytes: size.saturating_mul(MEGABYTE), kept: own.log_keep }),
             database: own.database,
             network: own.network,
             outside: own.outside,

@@ -1,7 +1,7 @@
 //! `rcs-run --console`: starts the operator's console on the terminal of the run.
 
 use std::{
-    io,
+    env, io,
     path::PathBuf,
     process::{Child, Command},
     sync::{
@@ -9,17 +9,24 @@ use std::{
         atomic::{AtomicBool, Ordering},
     },
     thread::{self, JoinHandle},
+    time::Duration,
 };
 
 use executive::memory::RunName;
+use rustix::process::{Pid, Signal, kill_process};
 
 use crate::{error::Error, programs};
 
 /// Name of the console program, which is installed in the same directory.
 const PROGRAM: &str = "rcs-console";
+/// Time between two looks at the console.
+const LOOK: Duration = Duration::from_millis(20);
 
 /// The console of a run.
 pub struct Console {
+    stop: Arc<AtomicBool>,
+    /// Set when the run has ended.
+    over: Arc<AtomicBool>,
     waiting: JoinHandle<()>,
 }
 
@@ -33,29 +40,42 @@ impl Console {
         if program.is_file() { Ok(program) } else { Err(Error::NoConsole(program)) }
     }
 
-    /// Show a run with shared memory. When the operator leaves the console, `stop` is set: the robot ramps to rest, and
-    /// the run ends.
+    /// Show a run with shared memory. When the operator leaves the console, or its terminal disappears, `stop` is set:
+    /// the robot ramps to rest, and the run ends.
     ///
     /// # Errors
     /// [`Error::Console`] if it cannot be started.
     pub fn start(program: PathBuf, run: &RunName, stop: Arc<AtomicBool>) -> Result<Self, Error> {
         let mut command = Command::new(program);
-        let mut child = command.args(["--operate", "--run", run.as_str()]).spawn().map_err(Error::Console)?;
-        let waiting = thread::spawn(move || {
-            // However the console ends, nobody watches the robot any more.
-            let _ = ended(&mut child);
-            stop.store(true, Ordering::Relaxed);
-        });
-        Ok(Self { waiting })
+        let child = command.args(["--operate", "--run", run.as_str()]).spawn().map_err(Error::Console)?;
+        let over = Arc::<AtomicBool>::default();
+        let (stopped, ended) = (Arc::clone(&stop), Arc::clone(&over));
+        let waiting = thread::spawn(move || watch(child, &stopped, &ended));
+        Ok(Self { stop, over, waiting })
     }
 
-    /// Wait until the operator leaves the console, which shows the last picture after the end of a run.
+    /// After the end of a run: wait until the operator leaves the console, which shows the last picture. If a signal
+    /// has ended the run, or comes now, the console ends, too.
     pub fn wait(self) {
+        while !self.waiting.is_finished() {
+            self.over.store(self.stop.load(Ordering::Relaxed), Ordering::Relaxed);
+            thread::sleep(LOOK);
+        }
         // The thread does not panic.
         let _ = self.waiting.join();
     }
 }
 
-fn ended(child: &mut Child) -> io::Result<()> {
-    child.wait().map(|_| ())
+/// Wait for the end of the console, and set `stop` then: nobody watches the robot any more. `over` ends the console.
+fn watch(mut child: Child, stop: &AtomicBool, over: &AtomicBool) {
+    let mut is_asked = false;
+    while matches!(child.try_wait(), Ok(None)) {
+        if over.load(Ordering::Relaxed) && !is_asked {
+            // It restores the terminal. An error means that it has just ended.
+            let _ = kill_process(Pid::from_child(&child), Signal::TERM);
+            is_asked = true;
+        }
+        thread::sleep(LOOK);
+    }
+    stop.store(true, Ordering::Relaxed);
 }

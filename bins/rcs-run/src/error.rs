@@ -13,7 +13,7 @@ use runtime::StartError;
 pub const FAILED: u8 = 1;
 /// Exit status of a usage, configuration or data error.
 pub const UNUSABLE: u8 = 2;
-/// Exit status of a run that an emergency stop or a lost link ended.
+/// Exit status of a run that the user, an emergency stop or a lost link ended.
 pub const STOPPED: u8 = 3;
 
 /// Errors of a subcommand.
@@ -112,11 +112,11 @@ pub enum Error {
 }
 
 impl Error {
-    /// The exit status. An interruption counts as it does after the first tick.
+    /// The exit status. A stop by the user counts as it does after the first tick.
     #[must_use]
     pub const fn status(&self) -> u8 {
         match self {
-            Self::Start(StartError::Interrupted(_)) => FAILED,
+            Self::Start(StartError::Interrupted(_)) => STOPPED,
             _ => UNUSABLE,
         }
     }

@@ -1,24 +1,70 @@
 //! Signals that end a command in an orderly way.
 
-use std::sync::{Arc, atomic::AtomicBool};
+use std::{
+    io,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
 
+use os_io::stderr_line;
 use signal_hook::{
     consts::{SIGHUP, SIGINT, SIGTERM},
-    flag,
+    iterator::Signals,
+    low_level,
 };
 
 use crate::error::Error;
 
-/// A flag that an interrupt, a hang-up or a termination request sets; the second signal ends the program at once.
+/// Signals within this time after the first one count as one: a terminal, a shell, `timeout` and a service manager send
+/// several at once.
+const SAME: Duration = Duration::from_secs(1);
+
+/// A flag that an interrupt, a hang-up or a termination request sets. A second signal, [`SAME`] later, ends the program
+/// at once.
 ///
 /// # Errors
-/// [`Error::Signals`] if the system refuses the handlers.
+/// [`Error::Signals`] if the system refuses the handlers, or a thread.
 pub fn interruption() -> Result<Arc<AtomicBool>, Error> {
     let stop = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM, SIGHUP] {
-        flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&stop))
-            .map_err(Error::Signals)?;
-        flag::register(signal, Arc::clone(&stop)).map_err(Error::Signals)?;
-    }
+    watch(Arc::clone(&stop)).map_err(Error::Signals)?;
     Ok(stop)
+}
+
+fn watch(stop: Arc<AtomicBool>) -> io::Result<()> {
+    let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP])?;
+    let wait = move || {
+        let mut first = None;
+        for signal in signals.forever() {
+            stop.store(true, Ordering::Relaxed);
+            if is_second(&mut first, Instant::now()) {
+                stderr_line!("rcs-run: a second signal ends the program at once");
+                // Without destructors: whatever blocks the orderly end must not block this one.
+                low_level::exit(128 + signal);
+            }
+        }
+    };
+    thread::Builder::new().name("signals".into()).spawn(wait).map(drop)
+}
+
+/// Records the first signal; true for one that does not count as the same.
+fn is_second(first: &mut Option<Instant>, now: Instant) -> bool {
+    now.saturating_duration_since(*first.get_or_insert(now)) > SAME
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signals_within_a_second_count_as_one() {
+        let (begin, mut first) = (Instant::now(), None);
+        for milliseconds in [0, 1, 400, 1000] {
+            assert!(!is_second(&mut first, begin + Duration::from_millis(milliseconds)), "{milliseconds} ms");
+        }
+        assert!(is_second(&mut first, begin + Duration::from_millis(1001)));
+    }
 }

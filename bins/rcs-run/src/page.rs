@@ -19,8 +19,7 @@ impl fmt::Display for Page<'_> {
         let Self(RunOutcome { ending, result, steps, log, slowest, .. }) = self;
         let outcome = match ending {
             Ending::Failed(_) => "failed",
-            Ending::Stopped => "stopped as requested",
-            Ending::Finished => "finished",
+            other => other.text(),
         };
         writeln!(
             f,

@@ -1,4 +1,5 @@
-//! Progress on a terminal: the present line of the job, and the commands of the levels.
+//! Progress on a terminal: the present line of the job, and the commands of the levels. A run in the background of a
+//! shell prints its messages only.
 
 use std::{
     io::{self, IsTerminal},
@@ -6,11 +7,13 @@ use std::{
 };
 
 use executive::failure;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use interfaces::{CommonMemory, HwsCommand};
 use levels::ladder::ProcessId;
 use os_io::console::shown;
-use runtime::{Observer, TickReport};
+use rcs_core::tick::Tick;
+use runtime::{Observer, TickReport, event::Event};
+use rustix::{process::getpgrp, termios::tcgetpgrp};
 
 /// Time between two updates.
 const PERIOD: Duration = Duration::from_millis(100);
@@ -20,6 +23,8 @@ const LEVELS: usize = 4;
 /// The progress line of a run. If standard error is not a terminal, only messages are printed.
 pub struct Progress {
     bar: Option<ProgressBar>,
+    /// True while the line can be drawn: the run is in the foreground of its terminal.
+    drawn: bool,
     shown: Instant,
 }
 
@@ -34,26 +39,55 @@ impl Default for Progress {
             }
             bar
         });
-        Self { bar, shown: Instant::now() }
+        Self { bar, drawn: true, shown: Instant::now() }
     }
+}
+
+impl Progress {
+    /// The progress line, if it can be drawn now. A shell can move the run to the background and back at any time.
+    fn line(&mut self) -> Option<&ProgressBar> {
+        let bar = self.bar.as_ref()?;
+        let drawn = is_in_foreground();
+        if drawn != self.drawn {
+            self.drawn = drawn;
+            bar.set_draw_target(if drawn {
+                ProgressDrawTarget::stderr()
+            } else {
+                ProgressDrawTarget::hidden()
+            });
+        }
+        drawn.then_some(bar)
+    }
+}
+
+/// True unless another process group has the terminal of standard error. A terminal that belongs to another session
+/// has no background for this run.
+fn is_in_foreground() -> bool {
+    tcgetpgrp(io::stderr()).map_or(true, |foreground| foreground == getpgrp())
 }
 
 impl Observer for Progress {
     /// Print a permanent line above the progress line.
     fn message(&mut self, text: &str) {
-        match &self.bar {
+        match self.line() {
             Some(bar) => bar.println(shown(&format!("rcs-run: {text}"))),
             None => os_io::stderr_line!("rcs-run: {text}"),
         }
     }
 
+    fn event(&mut self, _: Tick, event: &Event) {
+        if matches!(event, Event::UserStops) {
+            self.message("Ctrl-C once more ends the run at once, also with the robot in motion");
+        }
+    }
+
     /// Update the progress line, at most ten times a second.
     fn tick(&mut self, report: &TickReport<'_>) {
-        let Some(bar) = &self.bar else { return };
         if self.shown.elapsed() < PERIOD {
             return;
         }
         self.shown = Instant::now();
+        let Some(bar) = self.line() else { return };
         bar.set_length(report.lines as u64);
         bar.set_position(report.line as u64);
         bar.set_prefix(report.steps.last().map_or_else(String::new, |step| shown(&step.text).into_owned()));
@@ -63,7 +97,7 @@ impl Observer for Progress {
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
+        if let Some(bar) = self.line() {
             bar.finish_and_clear();
         }
     }

@@ -6,7 +6,10 @@ use clap::CommandFactory as _;
 use diagnostics::{JOBS, UnknownFile, nearest};
 use executive::memory::{OnStuck, RunName};
 use os_io::{carried::is_carried, stderr_line};
-use runtime::{Ending, Observer, Run, RunConfig, RunOutcome, StartError, result::FailureResult};
+use runtime::{
+    Ending, Observer, Run, RunConfig, RunOutcome, StartError,
+    result::{FailureResult, RunResult},
+};
 
 use crate::{
     cli::{Cli, RunArguments},
@@ -80,6 +83,11 @@ fn print(outcome: &RunOutcome, json: bool) -> Result<(), Error> {
 
 /// The exit status; the reason is the last line on standard error.
 fn status(outcome: &RunOutcome) -> u8 {
+    if let Ending::StoppedByUser = outcome.ending {
+        let RunResult { job, ticks, .. } = &outcome.result;
+        stderr_line!("rcs-run: {job} was stopped by the user at tick {ticks}");
+        return STOPPED;
+    }
     let (Ending::Failed(failure), Some(FailureResult { line, .. })) =
         (&outcome.ending, &outcome.result.failure)
     else {

@@ -2,7 +2,7 @@
 
 use std::{process::ExitCode, time::Duration};
 
-use executive::memory::operator_socket;
+use executive::memory::{SharedMemoryError, operator_socket, starting};
 use neighbours::network::{NeighbourKeys, Peer, Role};
 use operator::Client;
 use os_io::{console, stderr_line};
@@ -17,6 +17,9 @@ use crate::{
 fn connect(arguments: &SendArguments) -> Result<Client, Error> {
     let Some(address) = &arguments.connect else {
         let run = arguments.run.clone().map_or_else(only_run, Ok)?;
+        if let Some(phase) = starting(&run) {
+            return Err(SharedMemoryError::Starting { run, phase }.into());
+        }
         return Ok(Client::connect(&operator_socket(&run), &arguments.name)?);
     };
     let keys = arguments.keys.as_deref().map(|keys| NeighbourKeys::load(keys, Role::Operator)).transpose()?;

@@ -1,13 +1,15 @@
 //! `rcs-run status`: prints the state of a run in progress, read from its shared memory.
 
-use std::process::ExitCode;
+use std::{fmt, process::ExitCode};
 
 use executive::{
+    boards,
     memory::{self, Attached, OnStuck, RunName, SET_UP_LIMIT, SharedMemoryError, mirror, within_limit},
     status::Status,
 };
 
 use os_io::console;
+use serde::Serialize;
 
 use crate::{answer, cli::StatusArguments, error::Error, memory_fault::stuck};
 
@@ -21,14 +23,51 @@ pub fn status(arguments: &StatusArguments) -> Result<ExitCode, Error> {
         Some(name) => name.clone(),
         None => only_run()?,
     };
+    if let Some(phase) = memory::starting(&name) {
+        answer(&Starting::of(&name, phase), arguments.json)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let run = within_limit(SET_UP_LIMIT, Some(stuck as OnStuck), || Attached::open(&name))?;
     if arguments.directory {
         console::answer(&format!("{}\n", mirror::directory(&name).display()))?;
         return Ok(ExitCode::SUCCESS);
     }
     let status = Status::of(name.as_str(), &run.external()?, &run.memory()?, &run.pulse()?);
-    answer(&status, arguments.json)?;
+    let phase = memory::phase(&name).filter(|phase| phase != "runs");
+    answer(&Status { phase, ..status }, arguments.json)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// A run before its first tick.
+#[derive(Serialize)]
+struct Starting {
+    run: String,
+    phase: String,
+    /// Boards that have not joined yet.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    missing_boards: Vec<u8>,
+}
+
+impl Starting {
+    fn of(name: &RunName, phase: String) -> Self {
+        let boards = boards::coming_up(name).unwrap_or_default();
+        let missing = boards.iter().filter(|(_, is_there)| !is_there);
+        Self {
+            run: name.to_string(),
+            phase,
+            missing_boards: missing.map(|(board, _)| board.number()).collect(),
+        }
+    }
+}
+
+impl fmt::Display for Starting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.run, self.phase)?;
+        for (at, board) in self.missing_boards.iter().enumerate() {
+            write!(f, "{} {board}", if at == 0 { "; missing: board" } else { "," })?;
+        }
+        writeln!(f)
+    }
 }
 
 /// The run in progress, if there is exactly one.

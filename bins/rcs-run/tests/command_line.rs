@@ -552,9 +552,9 @@ fn an_interrupt_ends_the_run_in_order() {
     let mut output = Output { status: child.wait().unwrap(), stdout: Vec::new(), stderr: Vec::new() };
     std::io::Read::read_to_end(&mut child.stdout.take().unwrap(), &mut output.stdout).unwrap();
     std::io::Read::read_to_end(&mut child.stderr.take().unwrap(), &mut output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1));
-    assert!(last_line(&output).ends_with("interrupted"), "{}", last_line(&output));
-    assert_eq!(json(&output)["failure"]["text"], "interrupted");
+    assert_eq!(output.status.code(), Some(3));
+    assert!(last_line(&output).contains("was stopped by the user"), "{}", last_line(&output));
+    assert_eq!(json(&output)["ending"], "stopped");
     assert!(fs::metadata(&log).unwrap().len() > 0);
     assert_eq!(executive_runs(child.id()), 0, "nothing is left in shared memory");
 }

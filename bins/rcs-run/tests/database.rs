@@ -112,3 +112,28 @@ fn a_file_of_another_kind_is_refused_before_the_first_tick() {
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(error.contains("the Data System cannot keep its items") && error.contains("items.db"), "{error}");
 }
+
+/// Before, the second run closed the session of the first, whose job failed.
+#[test]
+fn a_second_run_with_the_same_file_is_refused_and_the_first_goes_on() {
+    let place = Place::new();
+    let first = place
+        .command(&format!("{CONNECT}{FETCH}"), &["--clock", "5x", "--operator", "none"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    for _ in 0..600 {
+        thread::sleep(Duration::from_millis(100));
+        if place.file("items.db.lock").exists() {
+            break;
+        }
+    }
+    let second = place.run(CONNECT);
+    let said = String::from_utf8_lossy(&second.stderr).into_owned();
+    assert_eq!(second.status.code(), Some(2), "{said}");
+    assert!(said.contains("items.db: another run or Data System uses this database"), "{said}");
+    let first = first.wait_with_output().unwrap();
+    assert!(first.status.success(), "{}", String::from_utf8_lossy(&first.stderr));
+    assert_eq!(place.items(), [in_hand()]);
+}

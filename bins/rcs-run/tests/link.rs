@@ -457,8 +457,8 @@ fn a_signal_brings_it_to_rest(signal: Signal, word: &str) {
     send(&child, signal);
     let output = child.wait_with_output().unwrap();
     let result = json(&output);
-    assert_eq!(output.status.code(), Some(1), "{word}: {}", last_words(&output));
-    assert!(last_words(&output).contains("interrupted"), "{word}: {}", last_words(&output));
+    assert_eq!(output.status.code(), Some(3), "{word}: {}", last_words(&output));
+    assert!(last_words(&output).contains("stopped by the user"), "{word}: {}", last_words(&output));
     assert!(result["ramp_ticks"].as_u64() > Some(0), "{word}: {result}");
     let (state, robot) = peer.pull_robot();
     assert_eq!((state, robot.last), (ControllerState::Running, [0; 3]), "{word}");

@@ -128,8 +128,8 @@ fn a_hang_up_ends_a_run_in_order() {
         }
         kill_process(Pid::from_child(&child), Signal::HUP).unwrap();
         let output = ended(child);
-        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
-        assert!(said(&output).ends_with("interrupted"), "{}", said(&output));
+        assert_eq!(output.status.code(), Some(3), "{}", said(&output));
+        assert!(said(&output).contains("was stopped by the user"), "{}", said(&output));
         assert!(record::Log::open(&log).unwrap().complete);
     }
 }

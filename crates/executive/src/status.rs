@@ -40,6 +40,9 @@ pub struct ProcessStatus {
 pub struct Status {
     /// Name of the run.
     pub run: String,
+    /// What the run says about its state, as a phrase after its name; `None` if it runs, or if that is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase: Option<String>,
     /// The tick that was run last.
     pub tick: u64,
     /// Simulated time, s.
@@ -79,6 +82,7 @@ impl Status {
         });
         Self {
             run: run.to_owned(),
+            phase: None,
             tick: pulse.tick.0,
             simulated_s: pulse.tick.0 as f64 * TICK_S,
             skipped: pulse.skipped,
@@ -109,6 +113,9 @@ impl fmt::Display for Status {
             self.allocations,
             self.controller_us
         )?;
+        if let Some(phase) = &self.phase {
+            writeln!(f, "  {} {phase}", self.run)?;
+        }
         if let Some(link) = self.link {
             writeln!(f, "  {link}")?;
         }

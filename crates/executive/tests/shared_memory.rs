@@ -10,7 +10,9 @@ use std::{
     },
 };
 
-use executive::memory::{self, Attached, Publisher, RunName, SharedMemoryError, layout::Pulse, list};
+use executive::memory::{
+    self, Announced, Attached, Publisher, RunName, SharedMemoryError, layout::Pulse, list,
+};
 use interfaces::{CommonMemory, Decided, ExternalInputs, Header, emove::EmoveVerb, hws::HwsReport};
 use rcs_core::{
     Plain,
@@ -212,4 +214,37 @@ fn any_common_memory_survives_the_way_through_shared_memory() {
         publisher.publish(&external, &memory, pulse);
         assert_eq!(reader.memory(), Ok(memory));
     }
+}
+
+#[test]
+fn an_announced_run_is_found_before_its_first_tick_and_its_name_is_taken() {
+    let name: RunName = format!("announced-{}", std::process::id()).parse().unwrap();
+    let announced = Announced::named(name.clone()).unwrap();
+    assert_eq!(memory::starting(&name).as_deref(), Some("starts"));
+    announced.say("waits for its boards");
+    assert!(matches!(
+        Attached::open(&name),
+        Err(SharedMemoryError::Starting { phase, .. }) if phase == "waits for its boards"
+    ));
+    assert!(matches!(Announced::named(name.clone()), Err(SharedMemoryError::NameInUse { .. })));
+    let publisher = Publisher::create(&name).unwrap();
+    assert_eq!(memory::starting(&name), None);
+    drop(Attached::open(&name).unwrap());
+    drop(publisher);
+    drop(announced);
+    assert_eq!(memory::traces(&name), Vec::<PathBuf>::new());
+    drop(Announced::named(name).unwrap());
+}
+
+#[test]
+fn runs_of_a_job_in_one_process_have_names_of_their_own() {
+    let first = Announced::of_job("twice").unwrap();
+    let second = Announced::of_job("twice").unwrap();
+    assert_eq!(second.name().as_str(), format!("{}.1", first.name()));
+}
+
+/// A directory for temporary files is cleaned while a run lives, and a service has one of its own.
+#[test]
+fn the_directory_of_runs_is_in_shared_memory() {
+    assert!(memory::root().starts_with("/dev/shm"), "{}", memory::root().display());
 }

@@ -1,8 +1,10 @@
 //! The thread of a client: reads its messages, and sends the queued ones.
+//!
+//! A client stays as long as it reads, however slowly. It reads if it answers a ping, sends anything, or takes bytes
+//! after it has taken none for a while.
 
 use std::{
-    io::{self, ErrorKind, Read, Write},
-    net::TcpStream,
+    io::{self, ErrorKind},
     sync::Arc,
     thread,
     time::{Duration, Instant},
@@ -17,10 +19,13 @@ use tungstenite::{
 
 use crate::{
     commands::Access,
-    feed::{Feed, Item, Queue},
+    connection::Connection,
+    feed::{Feed, Queue},
+    outgoing::Outgoing,
     protocol::{self, StatusLevel},
-    server::Options,
+    server::{Notices, Options},
     session::{Action, Rights, Session},
+    silence::Silence,
 };
 
 /// Sleep of a thread with nothing to do: a quarter of a tick.
@@ -33,6 +38,8 @@ const PING_OPERATOR: Duration = ALIVE;
 const REQUEST_AGE: Duration = Duration::from_secs(2);
 /// Time limit for closing a connection.
 const CLOSING_LIMIT: Duration = Duration::from_millis(500);
+/// Time for which a client that has stopped reading can still read the reason of its end, while the feed goes on.
+const LATE_READER: Duration = Duration::from_secs(30);
 /// Interval between reports of the number of dropped messages.
 const COUNT: Duration = Duration::from_secs(5);
 /// Greatest number of a client's messages read before messages are written.
@@ -40,54 +47,13 @@ const READS: usize = 16;
 /// Greatest number of items written before messages of the client are read.
 const WRITES: usize = 512;
 
-/// A connection. During the handshake, reads wait up to a time limit and then fail; afterwards they never wait.
-pub struct Connection {
-    stream: TcpStream,
-    until: Option<Instant>,
-}
-
-impl Connection {
-    /// A connection with a time limit for its handshake.
-    pub fn new(stream: TcpStream, handshake: Duration) -> io::Result<Self> {
-        stream.set_nodelay(true)?;
-        stream.set_write_timeout(Some(handshake))?;
-        Ok(Self { stream, until: Some(Instant::now() + handshake) })
-    }
-
-    fn never_wait(&mut self) -> io::Result<()> {
-        self.until = None;
-        self.stream.set_nonblocking(true)
-    }
-}
-
-impl Read for Connection {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        if let Some(until) = self.until {
-            let left = until.saturating_duration_since(Instant::now());
-            if left.is_zero() {
-                return Err(ErrorKind::TimedOut.into());
-            }
-            self.stream.set_read_timeout(Some(left))?;
-        }
-        self.stream.read(buffer)
-    }
-}
-
-impl Write for Connection {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.stream.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.stream.flush()
-    }
-}
-
 /// Why a session ends.
 #[derive(Debug)]
 enum End {
-    /// The client has disconnected, or it reads nothing.
+    /// The client has disconnected.
     Gone,
+    /// The client has read nothing for this time.
+    Silent(Duration),
     /// The server closes the session with a code and a reason.
     Told(CloseCode, String),
 }
@@ -115,6 +81,7 @@ pub struct Client {
     socket: WebSocket<Connection>,
     feed: Feed,
     queue: Arc<Queue>,
+    outgoing: Outgoing,
     session: Session,
     /// Access to the run for requests.
     access: Option<Access>,
@@ -122,8 +89,11 @@ pub struct Client {
     operator: Option<Operator>,
     /// Name of the operator session.
     name: Name,
-    /// Time after which a client that reads nothing is disconnected.
+    /// Time after which a client that reads nothing is disconnected, and the present time without reading.
     patience: Duration,
+    silence: Silence,
+    /// Receives the reason when the server disconnects the client.
+    notices: Option<Notices>,
     /// Time at which the session began.
     began: Instant,
     /// Number and time of the last ping. The number is the time of the ping, ms since the session began.
@@ -143,17 +113,20 @@ impl Client {
         name: Name,
     ) -> Self {
         let now = Instant::now();
-        let Options { knob, access, patience, .. } = options;
+        let Options { knob, access, patience, notices, .. } = options;
         let token = access.as_ref().map(|access| access.token.clone());
         Self {
             socket,
             feed,
             queue,
+            outgoing: Outgoing::default(),
             session: Session::new(Rights { knob: knob.clone(), token }),
             access: access.clone(),
             operator: None,
             name,
             patience: *patience,
+            silence: Silence::new(now),
+            notices: notices.clone(),
             began: now,
             ping: (0, now),
             pong: (0, now),
@@ -164,23 +137,35 @@ impl Client {
     /// Serves the client until it disconnects or the feed is over. `first` holds the first messages to send.
     pub fn run(mut self, mut first: Vec<String>) {
         first.extend(self.session.services());
-        if let Err(End::Told(code, reason)) = self.serve(first) {
-            self.close(code, reason);
+        let (code, reason, limit) = match self.serve(first) {
+            Ok(()) | Err(End::Gone) => return,
+            Err(End::Told(code, reason)) => (code, reason, CLOSING_LIMIT),
+            Err(End::Silent(time)) => {
+                let reason = format!("the viewer has read nothing for {:.1} s", time.as_secs_f32());
+                (CloseCode::Policy, reason, LATE_READER)
+            }
+        };
+        if code != CloseCode::Away
+            && let Some(notices) = &self.notices
+        {
+            // Without a receiver, nobody wants to know.
+            let _ = notices.send(format!("{} is disconnected: {reason}", self.name));
         }
+        self.close(code, reason, limit);
     }
 
     fn serve(&mut self, first: Vec<String>) -> Result<(), End> {
         self.socket.get_mut().never_wait()?;
-        for text in first {
-            self.write(Message::text(text))?;
-        }
+        first.into_iter().for_each(|text| self.outgoing.reply(Message::text(text)));
         loop {
-            let is_busy = self.flush()? && (self.listen()? | self.speak()?);
+            // A client that takes no output may still have answered a ping.
+            let has_read = self.outgoing.takes_replies() && self.listen()?;
+            let is_busy = self.flush()? && self.speak()?;
             self.look_after()?;
-            if self.queue.is_over() && self.flush()? {
+            if self.queue.is_over() && self.outgoing.is_empty() && self.flush()? {
                 return Err(End::Told(CloseCode::Away, "there are no more messages".to_owned()));
             }
-            if !is_busy {
+            if !has_read && !is_busy {
                 thread::sleep(IDLE);
             }
         }
@@ -189,37 +174,40 @@ impl Client {
     /// Reads messages of the client; returns true if more may be waiting.
     fn listen(&mut self) -> Result<bool, End> {
         for _ in 0..READS {
-            let actions = match self.socket.read() {
-                Ok(Message::Text(text)) => self.session.text(&text, |channel| self.feed.has(channel)),
-                Ok(Message::Binary(bytes)) => self.session.binary(&bytes),
-                Ok(Message::Pong(number)) => {
+            let message = match self.socket.read() {
+                Ok(message) => message,
+                Err(Error::Io(error)) if error.kind() == ErrorKind::WouldBlock => return Ok(false),
+                Err(error) => return Err(error.into()),
+            };
+            self.silence.end();
+            let actions = match message {
+                Message::Text(text) => self.session.text(&text, |channel| self.feed.has(channel)),
+                Message::Binary(bytes) => self.session.binary(&bytes),
+                Message::Pong(number) => {
                     self.answered(&number);
                     continue;
                 }
-                Ok(_) => continue,
-                Err(Error::Io(error)) if error.kind() == ErrorKind::WouldBlock => return Ok(false),
-                Err(error) => return Err(error.into()),
+                _ => continue,
             };
             for action in actions {
                 self.act(action)?;
             }
+            // Send the answers before more requests are read, so that they do not accumulate.
+            if !self.outgoing.takes_replies() {
+                return Ok(false);
+            }
         }
-        // Send the answers before more requests are read, so that they do not accumulate.
-        self.flush()
+        Ok(true)
     }
 
     fn act(&mut self, action: Action) -> Result<(), End> {
         match action {
-            Action::Text(text) => {
-                self.write(Message::text(text))?;
-            }
+            Action::Text(text) => self.outgoing.reply(Message::text(text)),
             Action::Subscribe { channel, subscription } => {
                 self.feed.subscribe(&self.queue, channel, subscription);
             }
             Action::Unsubscribe { channel } => self.queue.unsubscribe(channel),
-            Action::Bytes(bytes) => {
-                self.write(Message::binary(bytes))?;
-            }
+            Action::Bytes(bytes) => self.outgoing.reply(Message::binary(bytes)),
             Action::Ask { line, reply } => {
                 let verdict = self.ask(&line);
                 for action in self.session.answered(reply, verdict) {
@@ -249,19 +237,15 @@ impl Client {
         answer.map_err(|error| error.to_string())?
     }
 
-    /// Sends queued items to the client; returns true if more may be waiting.
+    /// Sends replies and queued items to the client; returns true if more may be waiting.
     fn speak(&mut self) -> Result<bool, End> {
         for _ in 0..WRITES {
-            let Some(item) = self.queue.pop() else {
+            if self.outgoing.is_ping_due() && !self.check_reading()? {
+                return Ok(false);
+            }
+            let Some(message) = self.outgoing.next(&self.queue) else {
                 self.flush()?;
                 return Ok(false);
-            };
-            let message = match item {
-                Item::Text(text) => Message::text(text.as_ref()),
-                Item::Time(time) => Message::binary(protocol::time(time)),
-                Item::Message { subscription, time, data } => {
-                    Message::binary(protocol::message(subscription, time, &data))
-                }
             };
             if !self.write(message)? {
                 return Ok(false);
@@ -270,25 +254,42 @@ impl Client {
         self.flush()
     }
 
-    /// Checks that the client still answers pings, and sends it the number of dropped messages.
+    /// Sends a ping; returns false if the client does not take it at once.
+    fn check_reading(&mut self) -> Result<bool, End> {
+        self.outgoing.pinged();
+        let number = u64::try_from(self.began.elapsed().as_millis()).unwrap_or(u64::MAX);
+        self.ping = (number, Instant::now());
+        self.write(Message::Ping(number.to_le_bytes().to_vec().into()))
+    }
+
+    /// Checks that the client still reads, and sends it the number of dropped messages.
     fn look_after(&mut self) -> Result<(), End> {
-        if self.pong.1.elapsed() > self.patience {
-            return Err(End::Gone);
+        if self.socket.get_mut().has_drained() {
+            self.silence.end();
+        }
+        let silent = self.silence.length(Instant::now());
+        if silent > self.patience {
+            return Err(End::Silent(silent));
         }
         let interval = if self.operator.is_some() { PING_OPERATOR } else { PING.min(self.patience / 4) };
         if self.ping.1.elapsed() > interval && self.flush()? {
-            let number = u64::try_from(self.began.elapsed().as_millis()).unwrap_or(u64::MAX);
-            self.ping = (number, Instant::now());
-            self.write(Message::Ping(self.ping.0.to_le_bytes().to_vec().into()))?;
+            self.check_reading()?;
+        }
+        if !self.outgoing.takes_replies() {
+            return Ok(());
         }
         if let Some(text) = self.session.knob() {
-            self.write(Message::text(text))?;
+            self.outgoing.reply(Message::text(text));
         }
         let dropped = self.queue.dropped();
-        if dropped > self.dropped.0 && self.dropped.1.elapsed() > COUNT && self.flush()? {
+        if dropped > self.dropped.0 && self.dropped.1.elapsed() > COUNT {
             let text = format!("{dropped} messages are left out so far: the viewer reads them too slowly");
             self.dropped = (dropped, Instant::now());
-            self.write(Message::text(protocol::status(StatusLevel::Warning, &text, Some("left-out"))))?;
+            self.outgoing.reply(Message::text(protocol::status(
+                StatusLevel::Warning,
+                &text,
+                Some("left-out"),
+            )));
         }
         Ok(())
     }
@@ -315,16 +316,19 @@ impl Client {
         taken(self.socket.flush())
     }
 
-    /// Closes the session with a reason, and waits briefly until the client has read it.
-    fn close(mut self, code: CloseCode, reason: String) {
+    /// Closes the session with a reason, and waits for at most `limit` until the client has read it.
+    fn close(mut self, code: CloseCode, reason: String, limit: Duration) {
         // A reason has at most 123 bytes (RFC 6455, 5.5).
         let mut reason = reason;
         while reason.len() > 123 {
             reason.pop();
         }
-        let until = Instant::now() + CLOSING_LIMIT;
+        // It gets no more messages.
+        self.feed.leave(&self.queue);
+        let (now, soon) = (Instant::now(), Instant::now() + CLOSING_LIMIT);
+        let until = now + limit;
         let _ = self.socket.close(Some(CloseFrame { code, reason: reason.into() }));
-        while Instant::now() < until {
+        while Instant::now() < if self.feed.is_over() { soon } else { until } {
             let _ = self.socket.flush();
             match self.socket.read() {
                 Ok(_) => {}

@@ -113,6 +113,12 @@ impl Feed {
         lock(&self.0).queues.iter().any(|queue| !lock(&queue.0).subscriptions.is_empty())
     }
 
+    /// Returns true if the feed has ended.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        lock(&self.0).is_over
+    }
+
     /// Ends the feed.
     pub fn finish(&self) {
         let mut inner = lock(&self.0);
@@ -128,6 +134,10 @@ impl Tap for Tapped {
     fn channel(&mut self, id: u16, channel: &Channel<'_>) {
         let advertised = protocol::channel(id, channel);
         let mut inner = lock(&self.0.0);
+        // The next log of a run has the same channels.
+        if inner.channels.get(&id).is_some_and(|known| known.advertised == advertised) {
+            return;
+        }
         let text: Arc<str> = protocol::advertise([advertised.as_str()].into_iter()).into();
         for queue in &inner.queues {
             lock(&queue.0).first.push_back(Item::Text(Arc::clone(&text)));

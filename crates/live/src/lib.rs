@@ -10,8 +10,8 @@
 //! * [`feed`]: channels, the newest message of each, and a queue per client;
 //! * [`server`]: listens on this machine, with one thread per client.
 //!
-//! The run never waits for a client. A full queue drops its oldest messages and counts them, and a client that reads
-//! nothing for five seconds is disconnected.
+//! The run never waits for a client. A full queue drops its oldest messages and counts them. A client that reads nothing
+//! for five seconds is disconnected, with the reason; one that reads slowly stays.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
@@ -22,12 +22,15 @@
 
 mod client;
 pub mod commands;
+mod connection;
 pub mod feed;
 mod frames;
 pub mod origin;
+mod outgoing;
 pub mod protocol;
 pub mod server;
 pub mod session;
+mod silence;
 
 pub use feed::Feed;
 pub use origin::Origin;

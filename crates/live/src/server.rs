@@ -6,6 +6,7 @@ use std::{
     sync::{
         Arc,
         atomic::{AtomicBool, AtomicUsize, Ordering},
+        mpsc::Sender,
     },
     thread::{self, JoinHandle},
     time::{Duration, Instant},
@@ -20,8 +21,9 @@ use tungstenite::{
 };
 
 use crate::{
-    client::{Client, Connection},
+    client::Client,
     commands::{Access, Knob},
+    connection::Connection,
     feed::Feed,
     origin::Origin,
     protocol::{SUBPROTOCOLS, ServerInfo},
@@ -42,6 +44,9 @@ const LAST: Duration = Duration::from_secs(2);
 /// Pause after a connection that could not be accepted.
 const AGAIN: Duration = Duration::from_millis(100);
 
+/// Receives a sentence for each client that the server disconnects, with the name of the client and the reason.
+pub type Notices = Sender<String>;
+
 /// Options of the server.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -55,12 +60,14 @@ pub struct Options {
     pub knob: Option<Knob>,
     /// Access for requests; `None` if the run accepts none.
     pub access: Option<Access>,
+    /// Receives the reasons of disconnects; `None` if nobody wants to know.
+    pub notices: Option<Notices>,
 }
 
 impl Default for Options {
     fn default() -> Self {
         let (info, origins) = (ServerInfo::default(), Vec::new());
-        Self { origins, info, patience: PATIENCE, knob: None, access: None }
+        Self { origins, info, patience: PATIENCE, knob: None, access: None, notices: None }
     }
 }
 

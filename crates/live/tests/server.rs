@@ -3,6 +3,7 @@
 use std::{
     io::{ErrorKind, Read, Write},
     net::{SocketAddr, TcpStream},
+    sync::mpsc::channel,
     thread,
     time::{Duration, Instant},
 };
@@ -267,4 +268,84 @@ fn clients_that_take_nothing_are_disconnected_and_others_stay() {
         ends(&mut stream);
     }
     assert!(longest < sent / 2, "a message took {longest:?} to be handed over");
+}
+
+/// A connection that reads 100 kB/s, whatever the program asks for.
+struct Slow(TcpStream);
+
+impl Read for Slow {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        thread::sleep(Duration::from_millis(100));
+        let length = buffer.len().min(10_000);
+        self.0.read(&mut buffer[..length])
+    }
+}
+
+impl Write for Slow {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.0.flush()
+    }
+}
+
+/// The meshes of a run have 1.1 MB. Before the pings went between their pieces, the answer came after all of them.
+#[test]
+fn a_viewer_that_reads_slowly_receives_large_messages_and_stays() {
+    let (sender, notices) = channel();
+    let patience = Duration::from_secs(1);
+    let (server, mut tap) = serve(Options { patience, notices: Some(sender), ..Options::default() });
+    let large = vec![7; 400_000];
+    tap.message(1, 1, &large);
+    let mut request = format!("ws://{}", server.address()).into_client_request().unwrap();
+    request.headers_mut().insert(header::SEC_WEBSOCKET_PROTOCOL, HeaderValue::from_static("foxglove.sdk.v1"));
+    let stream = TcpStream::connect(server.address()).unwrap();
+    let (mut socket, _) = tungstenite::client(request, Slow(stream)).unwrap();
+    let subscribe = json!({ "op": "subscribe", "subscriptions": [{ "id": 1, "channelId": 1 }] });
+    socket.send(Message::text(subscribe.to_string())).unwrap();
+    let reading = thread::spawn(move || {
+        let mut lengths = Vec::new();
+        loop {
+            match socket.read().unwrap() {
+                Message::Binary(bytes) if bytes.len() > 9 => lengths.push(bytes.len()),
+                Message::Close(frame) => return (lengths, frame.unwrap().code),
+                _ => {}
+            }
+        }
+    });
+    for time in 2..=60 {
+        thread::sleep(Duration::from_millis(100));
+        tap.message(1, time, &[1; 1000]);
+    }
+    drop(tap);
+    let (lengths, code) = reading.join().unwrap();
+    assert_eq!((lengths[0], lengths.len(), code), (13 + large.len(), 60, CloseCode::Away));
+    assert_eq!(notices.try_iter().collect::<Vec<_>>(), [""; 0]);
+    drop(server);
+}
+
+#[test]
+fn a_viewer_that_stops_reading_is_told_why_it_is_disconnected() {
+    let (sender, notices) = channel();
+    let patience = Duration::from_millis(400);
+    let (server, mut tap) = serve(Options { patience, notices: Some(sender), ..Options::default() });
+    let mut socket = connect(server.address());
+    say(&mut socket, json!({ "op": "subscribe", "subscriptions": [{ "id": 1, "channelId": 1 }] }));
+    for time in 0..200 {
+        tap.message(1, time, &[7; 100_000]);
+    }
+    let notice = notices.recv_timeout(Duration::from_secs(20)).unwrap();
+    assert!(notice.starts_with("viewer-1 is disconnected: the viewer has read nothing for 0."), "{notice}");
+    // It reads again.
+    let reason = loop {
+        match socket.read() {
+            Ok(Message::Close(frame)) => break frame.unwrap(),
+            Ok(_) => {}
+            Err(error) => panic!("a reason was expected: {error}"),
+        }
+    };
+    assert_eq!(reason.code, CloseCode::Policy);
+    assert!(reason.reason.contains("has read nothing for"), "{}", reason.reason);
 }

@@ -1,6 +1,6 @@
 //! Writes lines to standard output and standard error. Nothing here panics.
 //!
-//! | for | call | if the reader has closed the pipe | if the write fails otherwise |
+//! | for | call | if the reader has closed the pipe or the terminal | if the write fails otherwise |
 //! |---|---|---|---|
 //! | a message | [`stderr_line!`](crate::stderr_line) | lost | lost |
 //! | a line of a process that continues | [`stdout_line!`](crate::stdout_line) | lost | lost |
@@ -14,13 +14,18 @@
 use std::{
     borrow::Cow,
     fmt::Arguments,
+    fs::File,
     io::{self, ErrorKind, Write},
+    os::{fd::AsFd as _, unix::fs::FileTypeExt as _},
 };
 
 use crate::{
     text::{escaped_json, plain},
     units,
 };
+
+/// Error number of Linux for a terminal without the other end.
+const EIO: i32 = 5;
 
 /// Writes a formatted line to standard error. If the write fails, the line is lost.
 #[macro_export]
@@ -62,7 +67,8 @@ pub fn shown(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Writes a text for a person to standard output. A reader that closes the pipe early, such as `head`, is no error.
+/// Writes a text for a person to standard output. A reader that closes the pipe early, such as `head`, is no error, and
+/// neither is a terminal that has disappeared.
 ///
 /// # Errors
 /// The error of the operating system, for example a full disk.
@@ -76,7 +82,11 @@ pub fn answer(text: &str) -> io::Result<()> {
 /// See [`answer`].
 pub fn drawn(report: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
-    answered(out.write_all(report.as_bytes()).and_then(|()| out.flush()))
+    let written = answered(out.write_all(report.as_bytes()).and_then(|()| out.flush()));
+    if matches!(&written, Err(error) if error.raw_os_error() == Some(EIO)) && is_device() {
+        return Ok(());
+    }
+    written
 }
 
 /// Writes JSON to standard output. Its values do not change: a control character is written as an escape.
@@ -85,6 +95,12 @@ pub fn drawn(report: &str) -> io::Result<()> {
 /// See [`answer`].
 pub fn json(text: &str) -> io::Result<()> {
     drawn(&escaped_json(text))
+}
+
+/// True if standard output is a device, such as a terminal, and no file.
+fn is_device() -> bool {
+    let file = io::stdout().as_fd().try_clone_to_owned().map(File::from);
+    file.and_then(|file| file.metadata()).is_ok_and(|found| found.file_type().is_char_device())
 }
 
 /// Writes a line with one call of `write`, so that lines of several processes on one terminal do not mix.

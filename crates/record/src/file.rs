@@ -83,6 +83,27 @@ impl LogFile {
         &self.path
     }
 
+    /// Size of the file, bytes.
+    ///
+    /// # Errors
+    /// [`RecordError::Removed`] if it cannot be read.
+    pub(crate) fn length(&self) -> Result<u64, RecordError> {
+        let found = self.file.metadata();
+        found.map(|found| found.len()).map_err(|_| RecordError::Removed { path: self.path.clone() })
+    }
+
+    /// End this log, which stays open until its writer has finished, and begin a new one at its path. Returns the new
+    /// file, and the name that the ended one now has.
+    ///
+    /// # Errors
+    /// [`RecordError`] if the file cannot be renamed, or the new one cannot be made.
+    pub(crate) fn succeeded(&self) -> Result<(Self, PathBuf), RecordError> {
+        let name = free_name(&self.path, SystemTime::now());
+        let failed = |source| RecordError::Create { path: self.path.clone(), source };
+        fs::rename(&self.path, &name).map_err(failed)?;
+        Ok((Self::claim(&self.path)?, name))
+    }
+
     /// The file, empty: the log begins. An earlier log is renamed if it is to be kept.
     pub(crate) fn emptied(&mut self) -> Result<File, RecordError> {
         let failed = |path: &Path| {
@@ -143,6 +164,21 @@ fn free_name(path: &Path, ended: SystemTime) -> PathBuf {
     names.find(|name| fs::symlink_metadata(name).is_err()).unwrap_or_else(|| path.to_owned())
 }
 
+/// True if a path has a name that [`free_name`] gives to earlier logs of a log.
+pub fn is_earlier(log: &Path, path: &Path) -> bool {
+    let stem = log.file_stem().unwrap_or_default().to_string_lossy();
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let Some(rest) = name.strip_prefix(&format!("{stem}-")).and_then(|rest| rest.strip_suffix(".mcap"))
+    else {
+        return false;
+    };
+    let (time, number) = rest.split_at_checked("2026-11-27T214500Z".len()).unwrap_or((rest, ""));
+    let as_digit = |c: char| if c.is_ascii_digit() { '0' } else { c };
+    let is_number = |number: &str| !number.is_empty() && number.chars().all(|c| c.is_ascii_digit());
+    time.chars().map(as_digit).collect::<String>() == "0000-00-00T000000Z"
+        && (number.is_empty() || number.strip_prefix('-').is_some_and(is_number))
+}
+
 #[cfg(test)]
 mod tests {
     use std::time::Duration;
@@ -198,6 +234,19 @@ mod tests {
         names.sort();
         let first = "linkbar-1970-01-02T000000Z";
         assert_eq!(names, [format!("{first}-2.mcap").as_str(), &format!("{first}.mcap"), "linkbar.mcap"]);
+    }
+
+    #[test]
+    fn earlier_logs_are_known_by_their_names() {
+        let log = Path::new("runs/linkbar.mcap");
+        let is = |name: &str| is_earlier(log, Path::new(name));
+        assert!(is("runs/linkbar-2026-11-27T214500Z.mcap") && is("runs/linkbar-2026-11-27T214500Z-12.mcap"));
+        for other in
+            ["linkbar.mcap", "linkbar-2.mcap", "linkbar-2026-11-27T214500Z-x.mcap", "linkbar-new.mcap"]
+        {
+            assert!(!is(other), "{other}");
+        }
+        assert!(!is("clevis-2026-11-27T214500Z.mcap") && !is("linkbar-2026-11-27T214500Z.html"));
     }
 
     #[test]

@@ -23,12 +23,13 @@ use rcs_core::tick::Tick;
 use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::{
+    drain::{Drain, Rotation},
     error::RecordError,
     file::LogFile,
     input::{Attachment, CellFrame, End, Setup, Shown},
     operator::OperatorLine,
     proto::foxglove::Level,
-    remarks::Remark,
+    rotation::LogLimit,
     sink::Sink,
     tap::Tap,
     writer::{FULL_SET, LogWriter, TickRecord, Timing, Written},
@@ -41,8 +42,6 @@ const RING: usize = 1024;
 const STATE_RING: usize = 64;
 /// Capacity of the ring of notes.
 const NOTE_RING: usize = 1024;
-/// Sleep of the writer when there is nothing to write: an eighth of a tick.
-const IDLE: Duration = Duration::from_millis(5);
 /// Sleep of a run in fast clock when the ring is full.
 const FULL: Duration = Duration::from_micros(100);
 /// Capacity of the ring of files.
@@ -65,12 +64,12 @@ pub enum Pace {
 
 /// A line for `/log` on its way to the writer.
 #[derive(Clone, Copy)]
-struct Note {
-    tick: Tick,
-    level: Level,
-    source: [u8; 16],
-    code: &'static str,
-    text: [u8; NOTE],
+pub(crate) struct Note {
+    pub(crate) tick: Tick,
+    pub(crate) level: Level,
+    pub(crate) source: [u8; 16],
+    pub(crate) code: &'static str,
+    pub(crate) text: [u8; NOTE],
 }
 
 /// The first part of a text that fits, in whole characters.
@@ -82,10 +81,6 @@ fn clipped<const N: usize>(text: &str) -> [u8; N] {
     let mut bytes = [0; N];
     bytes.iter_mut().zip(text.bytes().take(end)).for_each(|(slot, byte)| *slot = byte);
     bytes
-}
-
-fn text_of(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned()
 }
 
 /// The run's end of the rings.
@@ -104,7 +99,7 @@ pub struct Recorder {
     lost: Lost,
     path: PathBuf,
     end: Arc<Mutex<(End, Lost)>>,
-    thread: JoinHandle<Result<Written, RecordError>>,
+    thread: JoinHandle<Result<(Written, usize), RecordError>>,
 }
 
 /// Number of entries that did not fit into the rings.
@@ -135,6 +130,8 @@ pub struct Summary {
     pub lost: Lost,
     /// Size of the file, bytes.
     pub bytes: u64,
+    /// Number of logs of this run that ended before because of their size.
+    pub earlier: usize,
 }
 
 impl Recorder {
@@ -143,10 +140,11 @@ impl Recorder {
     /// # Errors
     /// As [`LogFile::claim`] and [`Recorder::start_in`].
     pub fn start(path: &Path, pace: Pace, setup: Setup) -> Result<Self, RecordError> {
-        Self::start_in(LogFile::claim(path)?, pace, setup, None)
+        Self::start_in(LogFile::claim(path)?, pace, setup, None, None)
     }
 
-    /// Empty the file and start the writer. A tap gets the same messages as the file.
+    /// Empty the file and start the writer. A tap gets the same messages as the file. With a limit, the run writes
+    /// several logs one after the other.
     ///
     /// # Errors
     /// [`RecordError`] if the file cannot be emptied, or its header cannot be written.
@@ -155,13 +153,16 @@ impl Recorder {
         pace: Pace,
         setup: Setup,
         tap: Option<Box<dyn Tap>>,
+        limit: Option<LogLimit>,
     ) -> Result<Self, RecordError> {
         if let Some(cell) = &setup.cell {
             cell.check()?;
         }
         let path = file.path().to_owned();
         let emptied = file.emptied()?;
-        let log = LogWriter::create_with(Sink::new(emptied, pace == Pace::Drop), setup, tap)?;
+        let durable = pace == Pace::Drop;
+        let rotation = limit.map(|limit| Rotation { limit, setup: setup.clone(), durable, count: 0 });
+        let log = LogWriter::create_with(Sink::new(emptied, durable), setup, tap)?;
         let tick = Tick::BEFORE_START;
         let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
         let (ticks, tick_consumer) = ring(RING, TickRecord { tick, gap: 0, external, memory, timing: None });
@@ -176,6 +177,7 @@ impl Recorder {
         let drain = Drain {
             log,
             file,
+            rotation,
             ticks: tick_consumer,
             states: state_consumer,
             cells: cell_consumer,
@@ -309,8 +311,8 @@ impl Recorder {
         // The writer finishes when the producers are gone; the ticks are dropped last, because it waits for them.
         drop((states, cells, notes, files, operators, shown));
         drop(ticks);
-        let written = thread.join().map_err(|_| RecordError::Thread)??;
-        Ok(Summary { path, ticks: written.ticks, lost, bytes: written.bytes })
+        let (Written { ticks, bytes }, earlier) = thread.join().map_err(|_| RecordError::Thread)??;
+        Ok(Summary { path, ticks, lost, bytes, earlier })
     }
 }
 
@@ -331,91 +333,4 @@ fn has_room<T>(ring: &Producer<T>, pace: Pace) -> bool {
         }
     }
     !ring.is_abandoned()
-}
-
-/// The writer's end of the rings.
-struct Drain {
-    log: LogWriter<Sink>,
-    file: LogFile,
-    ticks: Consumer<TickRecord>,
-    states: Consumer<(Tick, LadderState)>,
-    cells: Consumer<CellFrame>,
-    notes: Consumer<Note>,
-    files: Consumer<(Tick, Attachment)>,
-    operators: Consumer<OperatorLine>,
-    shown: Consumer<(Tick, Shown)>,
-    end: Arc<Mutex<(End, Lost)>>,
-}
-
-impl Drain {
-    fn run(mut self) -> Result<Written, RecordError> {
-        loop {
-            // Read before the ring is emptied, so that entries pushed before the run has dropped the producer are still
-            // found.
-            let ended = self.ticks.is_abandoned();
-            while let Ok(record) = self.ticks.pop() {
-                if record.tick.0.is_multiple_of(FULL_SET) {
-                    self.file.look()?;
-                }
-                self.write(&record)?;
-            }
-            if ended {
-                break;
-            }
-            thread::sleep(IDLE);
-        }
-        self.write_notes(Tick(u64::MAX))?;
-        self.write_operators(Tick(u64::MAX))?;
-        let (end, lost) = self.end.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let written = self.log.finish(&end, lost)?;
-        self.file.look()?;
-        Ok(written)
-    }
-
-    fn write(&mut self, record: &TickRecord) -> Result<(), RecordError> {
-        self.write_notes(record.tick)?;
-        self.write_operators(record.tick)?;
-        while self.files.peek().is_ok_and(|(tick, _)| *tick <= record.tick) {
-            if let Ok((tick, attachment)) = self.files.pop() {
-                self.log.attach(tick, attachment)?;
-            }
-        }
-        while self.shown.peek().is_ok_and(|(tick, _)| *tick <= record.tick) {
-            if let Ok((tick, shown)) = self.shown.pop() {
-                self.log.show(tick, &shown)?;
-            }
-        }
-        let state = latest(&mut self.states, record.tick, |(tick, _)| *tick).map(|(_, state)| state);
-        let cell = latest(&mut self.cells, record.tick, |frame| frame.tick);
-        self.log.tick(record, state.as_ref(), cell.as_ref())?;
-        Ok(())
-    }
-
-    fn write_operators(&mut self, until: Tick) -> Result<(), RecordError> {
-        while self.operators.peek().is_ok_and(|line| line.tick <= until) {
-            if let Ok(line) = self.operators.pop() {
-                self.log.operator(&line)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn write_notes(&mut self, until: Tick) -> Result<(), RecordError> {
-        while self.notes.peek().is_ok_and(|note| note.tick <= until) {
-            if let Ok(Note { tick, level, source, code, text }) = self.notes.pop() {
-                let (source, text) = (text_of(&source), text_of(&text));
-                let remark = Remark { level, source, text, file: code, line: 0 };
-                self.log.remark(tick, &remark)?;
-            }
-        }
-        Ok(())
-    }
-}
-
-/// The entry of a tick in a ring; earlier entries are discarded.
-fn latest<T>(ring: &mut Consumer<T>, tick: Tick, tick_of: impl Fn(&T) -> Tick) -> Option<T> {
-    while ring.peek().is_ok_and(|entry| tick_of(entry) < tick) {
-        let _ = ring.pop();
-    }
-    ring.peek().is_ok_and(|entry| tick_of(entry) == tick).then(|| ring.pop().ok()).flatten()
 }

@@ -139,6 +139,8 @@ pub struct LogWriter<W: Write + Seek> {
     full_sets: u64,
     ticks: u64,
     gaps: u64,
+    /// Name of the log with the ticks before those of this one, until its first tick.
+    earlier: Option<String>,
 }
 
 /// Codecs for the deltas of the images.
@@ -222,7 +224,20 @@ impl<W: Write + Seek> LogWriter<W> {
             full_sets: 0,
             ticks: 0,
             gaps: 0,
+            earlier: None,
         })
+    }
+
+    /// Returns true if a tick has been written.
+    pub(crate) const fn has_ticks(&self) -> bool {
+        self.ticks > 0
+    }
+
+    /// Continue the run of another log, which has this name now. The tap follows; it has the channels already.
+    pub(crate) fn continue_run<E: Write + Seek>(&mut self, ended: &mut LogWriter<E>, name: String) {
+        self.output.tap = ended.output.tap.take();
+        self.before = ended.before;
+        self.earlier = Some(name);
     }
 
     /// Write a tick. `state` holds the states after it, and is best given with the first tick, once a second,
@@ -251,7 +266,13 @@ impl<W: Write + Seek> LogWriter<W> {
         record.external.encode(&mut Writer::new(&mut self.now.external));
         record.memory.encode(&mut Writer::new(&mut self.now.memory));
         self.note_replay(record, state, cell.and_then(|frame| frame.digest), full);
-        if record.gap > 0 {
+        if let Some(earlier) = self.earlier.take() {
+            let text = format!("the ticks before this one are in {earlier}");
+            self.remark(
+                tick,
+                &Remark { level: Level::Info, source: "log".into(), text, ..Remark::default() },
+            )?;
+        } else if record.gap > 0 {
             self.gaps += 1;
             let text = format!("{} ticks are missing before this one: the log could not keep up", record.gap);
             self.remark(

@@ -30,7 +30,7 @@ fn main() -> Result<(), StartError> {
         Ending::Finished => {
             println!("finished after {} ticks, digest {}", outcome.result.ticks, outcome.result.digest)
         }
-        Ending::Stopped => println!("stopped"),
+        Ending::Stopped | Ending::StoppedByUser => println!("stopped"),
         Ending::Failed(failure) => println!("failed at tick {}: {}", failure.tick, failure.text),
     }
     for part in &outcome.result.parts {

@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let inches = *path.lock().map_err(|_| "the run panicked")?;
     match outcome.ending {
         Ending::Finished => println!("finished after {} ticks and {inches:.0} in", outcome.result.ticks),
-        Ending::Stopped => println!("stopped after {inches:.0} in"),
+        Ending::Stopped | Ending::StoppedByUser => println!("stopped after {inches:.0} in"),
         Ending::Failed(failure) => println!("failed at tick {}: {}", failure.tick, failure.text),
     }
     Ok(())

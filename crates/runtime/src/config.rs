@@ -14,6 +14,7 @@ use executive::{
     serial::SerialSettings,
 };
 use neighbours::network::{Address, Role};
+use record::LogLimit;
 use serde::{Deserialize, Serialize};
 
 use crate::as_text;
@@ -58,6 +59,9 @@ pub struct RunConfig {
     /// Destination of the log.
     #[serde(with = "as_text")]
     pub log: LogTarget,
+    /// Size after which the run begins a new log, and number of those that are kept; `None` for one log.
+    #[serde(skip)]
+    pub log_limit: Option<LogLimit>,
     /// SQLite file of the Data System's items; without it they are in memory and lost at the end.
     #[serde(alias = "data-base")]
     pub database: Option<PathBuf>,
@@ -125,6 +129,7 @@ impl RunConfig {
             wait: 300,
             seed: 1,
             log: LogTarget::Default,
+            log_limit: None,
             database: None,
             network: None,
             outside: Vec::new(),

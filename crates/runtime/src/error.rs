@@ -3,7 +3,7 @@
 use std::{io, path::PathBuf};
 
 use diagnostics::UnknownFile;
-use executive::{boards::SplitError, serial::OpenError};
+use executive::{boards::SplitError, memory::SharedMemoryError, serial::OpenError};
 use neighbours::{
     data_system::{OutboxError, StoreError},
     network::{KeysError, address::AddressError, listener::ListenError},
@@ -148,9 +148,12 @@ pub enum StartError {
     /// The system provides no random numbers.
     #[error(transparent)]
     NoRandom(#[from] ::live::NoRandom),
-    /// A signal came before the first tick.
-    #[error("{0} failed at tick 0: interrupted")]
+    /// The user has stopped the run before the first tick.
+    #[error("{0} was stopped by the user before the first tick")]
     Interrupted(String),
+    /// A living run has the name that was chosen.
+    #[error(transparent)]
+    NameInUse(SharedMemoryError),
     /// Not all boards of a run have started.
     #[error("not all boards have started: {0}")]
     Boards(#[from] SplitError),

@@ -88,6 +88,10 @@ pub enum Event {
     BoardNotPunctual(Board),
     /// Slots of the 40 ms grid were skipped.
     Overrun(Overrun),
+    /// The live view has disconnected a viewer, for this reason.
+    ViewerDisconnected(String),
+    /// The user stops the run, by a signal or by leaving the console that the run has started.
+    UserStops,
     /// After skipped slots the robot is brought to rest, and the run ends.
     Stops,
     /// After skipped slots the robot holds.
@@ -128,6 +132,8 @@ impl Event {
             Self::RealTime { .. } => "time.granted",
             Self::BoardNotPunctual(_) => "time.board",
             Self::Overrun(_) => "time.overrun",
+            Self::ViewerDisconnected(_) => "live.disconnected",
+            Self::UserStops => "run.stopped",
             Self::Stops => "time.stops",
             Self::Holds => "time.holds",
             Self::Punctual => "time.punctual",
@@ -150,6 +156,7 @@ impl Event {
             Self::HandedOver | Self::TakenBack | Self::Loaded { .. } | Self::Changed(_) | Self::Punctual => {
                 Level::Info
             }
+            Self::UserStops => Level::Info,
             _ => Level::Warning,
         }
     }
@@ -166,6 +173,7 @@ impl Event {
             Self::Link(_) => "T3I",
             Self::RobotRefuses(_) => "robot",
             Self::Network(_) => "network",
+            Self::ViewerDisconnected(_) => "live",
             Self::DataBaseRefuses(_) | Self::DataSystem(_) => "Data System",
             Self::Pedestal(_) => "Active Pedestal",
             Self::Vision(_) => "vision",
@@ -181,6 +189,7 @@ impl Event {
             | Self::RealTime { .. }
             | Self::BoardNotPunctual(_)
             | Self::Overrun(_)
+            | Self::UserStops
             | Self::Stops
             | Self::Holds
             | Self::Punctual => "executive",
@@ -228,6 +237,10 @@ impl fmt::Display for Event {
                 write!(f, "{board}: not everything that real time needs was granted")
             }
             Self::Overrun(overrun) => overrun.fmt(f),
+            Self::ViewerDisconnected(why) => write!(f, "live view: {why}"),
+            Self::UserStops => {
+                f.write_str("the user stops the run: the robot ramps to rest, then the run ends")
+            }
             Self::Stops => f.write_str("the robot is brought to rest, and the run ends"),
             Self::Holds => write!(f, "the robot holds until {PUNCTUAL} ticks in a row were punctual"),
             Self::Punctual => f.write_str("punctual again: the robot goes on"),

@@ -1,6 +1,10 @@
 //! The live view of a run: the messages of its log, sent to viewers on this machine (`docs/live.md`).
 
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::BTreeMap,
+    path::Path,
+    sync::mpsc::{Receiver, channel},
+};
 
 use ::live::{
     Feed, NoRandom, Options, Port, Server,
@@ -22,6 +26,8 @@ pub struct Live {
     /// The port at which viewers wait until they are served.
     port: Option<Port>,
     server: Option<Server>,
+    /// Viewers that the server has disconnected.
+    notices: Option<Receiver<String>>,
 }
 
 impl Live {
@@ -35,7 +41,13 @@ impl Live {
             return Err(StartError::LiveWithoutLog);
         }
         let taken = Port::take(port).map_err(|source| StartError::Live { port, source })?;
-        Ok(Some(Self { feed: Feed::default(), knob: Knob::default(), port: Some(taken), server: None }))
+        Ok(Some(Self {
+            feed: Feed::default(),
+            knob: Knob::default(),
+            port: Some(taken),
+            server: None,
+            notices: None,
+        }))
     }
 
     /// The tap through which the log passes its messages to the view.
@@ -61,7 +73,16 @@ impl Live {
         let info =
             ServerInfo { name: format!("rcs-run {job}"), metadata: facts(config, job), ..ServerInfo::new()? };
         let origins = config.live_origins.clone();
-        let options = Options { origins, info, knob: Some(self.knob.clone()), access, ..Options::default() };
+        let (sender, notices) = channel();
+        self.notices = Some(notices);
+        let options = Options {
+            origins,
+            info,
+            knob: Some(self.knob.clone()),
+            access,
+            notices: Some(sender),
+            ..Options::default()
+        };
         let server = Server::start(port, options, self.feed.clone());
         let server =
             server.map_err(|source| StartError::Live { port: config.live.unwrap_or_default(), source })?;
@@ -75,6 +96,11 @@ impl Live {
         }
         self.server = Some(server);
         Ok(())
+    }
+
+    /// A viewer that the server has disconnected since the last call, and why, as a sentence.
+    pub fn disconnected(&self) -> Option<String> {
+        self.notices.as_ref()?.try_recv().ok()
     }
 
     /// Show the position of the velocity knob, per thousand, without blocking.

@@ -128,7 +128,7 @@ impl Log {
         };
         let run = metadata(config, setup, &attachments);
         let start = record::Setup { epoch, run, attachments, cell: Some(model) };
-        let recorder = Recorder::start_in(file, pace, start, tap)?;
+        let recorder = Recorder::start_in(file, pace, start, tap, config.log_limit)?;
         Ok(Self {
             recorder,
             links,

@@ -114,11 +114,17 @@ impl Neighbours {
 
     /// Wait for neighbours in other processes, until the time limit or an interruption, which the run handles. On the
     /// 40 ms grid the run waits only for the workstation controller: the others may connect later. In fast clock a run
-    /// ends when one disconnects, also before the first tick.
+    /// ends when one disconnects, also before the first tick. `say` takes the phrase for programs that look for the
+    /// run.
     ///
     /// # Errors
     /// [`StartError::NoWorkstation`].
-    pub fn gather(&self, config: &RunConfig, observer: &mut dyn Observer) -> Result<(), StartError> {
+    pub fn gather(
+        &self,
+        config: &RunConfig,
+        say: impl Fn(&str),
+        observer: &mut dyn Observer,
+    ) -> Result<(), StartError> {
         let Some(network) = &self.network else { return Ok(()) };
         let (limit, started) = (Duration::from_secs(config.wait.into()), Instant::now());
         let fast = config.clock == ClockKind::Fast;
@@ -129,8 +135,14 @@ impl Neighbours {
             Role::DataSystem | Role::Pedestal | Role::Vision => fast && !handle.is_connected(),
             Role::Operator => false,
         };
+        let mut said = String::new();
         loop {
             let missing: Vec<_> = network.handles.iter().filter(is_missing).collect();
+            let waits = waits_for(&missing, config);
+            if !missing.is_empty() && waits != said {
+                say(&waits);
+                said = waits;
+            }
             if missing.is_empty() || config.stop.load(Ordering::Relaxed) {
                 return Ok(());
             }
@@ -438,4 +450,11 @@ pub fn task_state(header: &Header, tick: Tick) -> TaskState {
     } else {
         TaskState::Runs
     }
+}
+
+/// The missing neighbours, as a phrase.
+fn waits_for(missing: &[&EndpointHandle], config: &RunConfig) -> String {
+    let roles: Vec<_> = missing.iter().map(|handle| handle.role().to_string()).collect();
+    let address = config.network.as_ref().map_or_else(String::new, |address| format!(" at {address}"));
+    format!("waits for {}{address}", roles.join(", "))
 }

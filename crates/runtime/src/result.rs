@@ -107,6 +107,8 @@ pub const SIMULATED: &str =
 pub struct RunResult {
     /// Name of the job.
     pub job: String,
+    /// How the run ended: `finished`, `stopped` or `failed`.
+    pub ending: &'static str,
     /// The task data and the cell description.
     pub data: DataResult,
     /// Commands that were sent to Task.

@@ -2,6 +2,7 @@
 //!
 //! Between two ticks the run logs the cell of the next tick and warms up the caches for it.
 
+mod end;
 mod operate;
 mod outcome;
 mod start;
@@ -15,17 +16,18 @@ use executive::{
     boards::Lost,
     failure::Failure,
     generations::Generations,
-    memory::{Mirror, RunName},
-    rest::{AT_LAST, RestWatch},
+    memory::{Announced, Mirror, RunName},
+    rest::RestWatch,
     runner::Runner,
     timing::Stage,
 };
 use geometry::{frame::Frame, pose::WireFrame};
 use interfaces::{CommonMemory, DeviceInputs, DeviceOutputs, ExternalInputs, device::LinkBytes};
 use levels::ladder::LadderState;
-use rcs_core::{digest::Digest, tick::Tick};
+use rcs_core::tick::Tick;
 use taskdata::load::Job;
 
+use self::end::Ramp;
 pub use self::outcome::RunOutcome;
 use crate::{
     boards::Controller,
@@ -113,14 +115,8 @@ pub struct Run {
     trouble: Option<&'static str>,
     /// What a person must do before the failed job can continue.
     remedy: Option<&'static str>,
-}
-
-/// The robot is brought to rest: the velocity knob is at zero, and no more commands are sent.
-struct Ramp {
-    ending: Ending,
-    ticks: u32,
-    /// Digest of the ticks before.
-    before: Digest,
+    /// The run for programs that look for it. It must be dropped after `runner`.
+    announced: Option<Announced>,
 }
 
 impl Run {
@@ -267,6 +263,7 @@ impl Run {
         self.load_for_workstation(tick);
         self.tell_operators(tick);
         self.note_neighbours(tick);
+        self.note_viewers(tick);
         self.publish_cell(tick);
         // Vision in another process has answered the last tick.
         self.inputs.vision = self.workstation.cell.inputs().vision;
@@ -292,10 +289,7 @@ impl Run {
         }
         self.runner.stage_times_mut().mark(Stage::Workstation);
         if self.config.stop.load(Ordering::Relaxed) {
-            // If another process commands, there is no job that ends by itself.
-            let failed = || Ending::Failed(outside(tick, "rcs-run", "interrupted".to_owned()));
-            let ending = if self.neighbours.are_commanding() { Ending::Stopped } else { failed() };
-            self.end_at_rest(ending);
+            self.stop_as_asked(tick);
         }
         if self.config.ticks.is_some_and(|ticks| tick.0 >= ticks) {
             if self.config.clock == ClockKind::Fast && !self.robot.is_elsewhere() {
@@ -313,27 +307,6 @@ impl Run {
         stage_times.mark(Stage::Inputs);
         stage_times.finish();
         None
-    }
-
-    /// End the run as soon as the robot is at rest. The first ending is kept.
-    fn end_at_rest(&mut self, ending: Ending) {
-        if self.ramp.is_none() {
-            self.neighbours.stop_commanding();
-            let before = self.runner.digest();
-            self.ramp = Some(Ramp { ending, ticks: 0, before });
-        }
-    }
-
-    /// After a tick: the ending, if the robot is at rest for it.
-    fn at_rest(&mut self, memory: &CommonMemory) -> Option<Ending> {
-        self.rest.observe(memory);
-        let ramp = self.ramp.as_mut()?;
-        if !self.rest.is_at_rest() && ramp.ticks < AT_LAST {
-            ramp.ticks += 1;
-            return None;
-        }
-        let ending = std::mem::replace(&mut ramp.ending, Ending::Stopped);
-        Some(if matches!(ending, Ending::Stopped) { self.left(ending) } else { ending })
     }
 
     /// The rest of a tick: advance the cell.

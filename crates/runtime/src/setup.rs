@@ -285,7 +285,7 @@ fn neighbours(
         Some(endpoint) => DataSystem::elsewhere(Agent::new(endpoint, outbox(config)?), pace),
         None => {
             let file = config.database.as_deref();
-            let items = file.map_or_else(data_system::Store::in_memory, data_system::Store::open)?;
+            let items = file.map_or_else(data_system::Store::in_memory, data_system::Store::open_alone)?;
             DataSystem::new(items, ANSWER_TICKS, pace)
         }
     };

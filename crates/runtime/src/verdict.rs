@@ -15,8 +15,10 @@ const EXPLAINS_TICKS: u64 = RESTART_TICKS;
 pub enum Ending {
     /// The job has finished.
     Finished,
-    /// The run has reached `--ticks`.
+    /// The run has ended as configured: at `--ticks`, or, without a job of its own, by a request to stop.
     Stopped,
+    /// The user has stopped the run before its job had finished.
+    StoppedByUser,
     /// An error has ended the run.
     Failed(Failure),
 }
@@ -28,7 +30,18 @@ impl Ending {
         match self {
             Self::Finished => "finished",
             Self::Stopped => "stopped as requested",
+            Self::StoppedByUser => "stopped by the user",
             Self::Failed(failure) => &failure.text,
+        }
+    }
+
+    /// As one word: `finished`, `stopped` or `failed`.
+    #[must_use]
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Self::Finished => "finished",
+            Self::Stopped | Self::StoppedByUser => "stopped",
+            Self::Failed(_) => "failed",
         }
     }
 
@@ -36,7 +49,7 @@ impl Ending {
     /// may have failed because of it.
     fn checked(self, verdict: Failure) -> Self {
         match self {
-            Self::Finished | Self::Stopped => Self::Failed(verdict),
+            Self::Finished | Self::Stopped | Self::StoppedByUser => Self::Failed(verdict),
             Self::Failed(failure) if failure.text == verdict.text => Self::Failed(failure),
             Self::Failed(failure) => {
                 let when = if verdict.tick <= failure.tick { "before" } else { "later" };

@@ -18,6 +18,8 @@ pub struct Waiting {
     pub cursor: usize,
     /// The boards of that run, with true for those that have joined, while it waits for boards (IV.2.1, IV.2.8).
     pub boards: Vec<(Board, bool)>,
+    /// What that run says about its state before its first tick, as a phrase after its name.
+    pub phase: Option<String>,
     /// The reason why the last run could not be shown.
     pub refused: Option<String>,
 }
@@ -61,6 +63,10 @@ impl Waiting {
             } else {
                 say("All are there: the first tick comes.");
             }
+        } else if let ([run], Some(phase)) = (&self.runs[..], &self.phase) {
+            say(&format!("{run} {phase}."));
+            say("");
+            say("It appears here with its first tick.");
         } else if self.runs.is_empty() {
             say("There is no run on this machine.");
             say("");

@@ -4,8 +4,8 @@ use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{plain::DecodeError, tick::Tick};
 
 use super::{
-    buffers::Readers, cell::CellView, error::SharedMemoryError, history::Headers, layout::Pulse,
-    name::RunName, place, publish::FIRST_EPOCH, runs,
+    announced::starting, buffers::Readers, cell::CellView, error::SharedMemoryError, history::Headers,
+    layout::Pulse, name::RunName, place, publish::FIRST_EPOCH, runs,
 };
 
 /// Number of attempts of a reader while the writer writes, which takes some microseconds of a tick.
@@ -39,9 +39,13 @@ impl Attached {
     ///
     /// # Errors
     /// [`SharedMemoryError::NoSuchRun`] if no living run has the name, [`SharedMemoryError::OtherLayout`] if its
-    /// program has another layout, otherwise the error of iceoryx2.
+    /// program has another layout, [`SharedMemoryError::Starting`] before its first tick, otherwise the error of
+    /// iceoryx2.
     pub fn open(name: &RunName) -> Result<Self, SharedMemoryError> {
         runs::find_living(name)?;
+        if let Some(phase) = starting(name) {
+            return Err(SharedMemoryError::Starting { run: name.clone(), phase });
+        }
         let member = runs::enter(name, "reader")?;
         let ports = Ports { readers: Readers::open(&member, FIRST_EPOCH)?, _member: member };
         Ok(Self { name: name.clone(), ports: Some(ports) })

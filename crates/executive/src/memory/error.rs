@@ -4,7 +4,10 @@ use std::{fmt::Debug, io, path::PathBuf, time::Duration};
 
 use diagnostics::alternatives;
 
-use super::name::{NameError, RunName};
+use super::{
+    name::{NameError, RunName},
+    place::other_users,
+};
 
 /// Errors of shared memory.
 #[derive(Debug, thiserror::Error)]
@@ -19,6 +22,27 @@ pub enum SharedMemoryError {
         run: Option<String>,
         /// The runs that are alive.
         alive: Vec<RunName>,
+    },
+    /// A run that has not published its buffers yet.
+    #[error(
+        "{run} {phase}: it can be watched and operated while its buffers are in shared memory, usually from its \
+         first tick on"
+    )]
+    Starting {
+        /// Its name.
+        run: RunName,
+        /// What it says about its state.
+        phase: String,
+    },
+    /// A living run has the name.
+    #[error(
+        "the name {run} is in use by a run of this user, which {phase}: choose another name with --run, or end that run"
+    )]
+    NameInUse {
+        /// The name.
+        run: RunName,
+        /// What that run says about its state.
+        phase: String,
     },
     /// A run whose program has another layout of buffers.
     #[error(
@@ -49,7 +73,9 @@ pub enum SharedMemoryError {
         what: String,
     },
     /// A directory, file or object of runs belongs to another user, or other users may write to it.
-    #[error("{path:?} must belong to this user only ({what}): remove it, or set TMPDIR to another directory")]
+    #[error(
+        "{path:?} must belong to this user only ({what}): remove it, or set RCS_RUNS to another directory"
+    )]
     NotOurs {
         /// Path of the object.
         path: PathBuf,
@@ -100,7 +126,12 @@ fn seconds(limit: Duration) -> String {
 
 fn alive_in_words(wanted: Option<&str>, alive: &[RunName]) -> String {
     match alive {
-        [] => "no run shows its buffers at the moment".to_owned(),
+        [] => match &other_users()[..] {
+            [] => "no run of this user is in progress".to_owned(),
+            [first, ..] => format!(
+                "no run of this user is in progress; user {first} has run some, try: sudo -u '#{first}' rcs-run status"
+            ),
+        },
         some => alternatives(wanted.unwrap_or_default(), some.iter().map(RunName::as_str), "there is"),
     }
 }

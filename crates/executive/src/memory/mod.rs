@@ -9,6 +9,7 @@
 //!
 //! * `slot`: one value in shared memory, also for the boards;
 //! * [`mod@layout`]: the list of services, [`buffers`]: writing and reading them;
+//! * [`Announced`]: a run before its first tick;
 //! * [`publish`]: the writer's side, for the run;
 //! * [`attach`]: the readers' side;
 //! * [`history`]: the headers of the last ten seconds, [`cell`]: the view of the simulated cell;
@@ -18,6 +19,7 @@
 //! * [`runs`]: entering, finding and removing runs;
 //! * [`limit`]: time limit of the set-up.
 
+mod announced;
 pub mod attach;
 pub mod buffers;
 pub mod cell;
@@ -34,6 +36,7 @@ pub mod runs;
 pub(crate) mod slot;
 mod text;
 
+pub use announced::{Announced, phase, starting};
 pub use attach::{Attached, ReadError};
 pub use error::SharedMemoryError;
 pub use limit::{OnStuck, SET_UP_LIMIT, within_limit};

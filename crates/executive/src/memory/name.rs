@@ -1,6 +1,6 @@
 //! Names of runs.
 
-use std::{fmt, str::FromStr};
+use std::{fmt, fs, str::FromStr};
 
 /// Greatest length of a run's name, characters. The path of an event's socket contains it, and Linux limits such a path
 /// to 107 bytes.
@@ -18,15 +18,26 @@ pub struct NameError(pub String);
 pub struct RunName(String);
 
 impl RunName {
-    /// A name that no other living run of this machine has: the job and this process id. Characters of the job that are
-    /// not valid in a name become hyphens.
+    /// A name that no other process of this machine gives: the job, this process id, and in a container the number of
+    /// its PID namespace. Characters of the job that are not valid in a name become hyphens.
     #[must_use]
     pub fn unique(job: &str) -> Self {
-        let suffix = format!("-{}", std::process::id());
-        let room = RUN_NAME_MAX - suffix.len();
-        let job: String =
-            job.chars().take(room).map(|c| if is_name_character(c) { c } else { '-' }).collect();
-        Self(job + &suffix)
+        let namespace = namespace().map_or_else(String::new, |number| format!(".{number}"));
+        let job: String = job.chars().map(|c| if is_name_character(c) { c } else { '-' }).collect();
+        Self::with_end(&job, &format!("-{}{namespace}", std::process::id()))
+    }
+
+    /// This name with a number, for another run of the same process.
+    #[must_use]
+    pub fn numbered(&self, number: u32) -> Self {
+        let (job, end) = self.0.rsplit_once('-').unwrap_or((&self.0, ""));
+        Self::with_end(job, &format!("-{end}.{number}"))
+    }
+
+    /// As much of the job as there is room for, and the end.
+    fn with_end(job: &str, end: &str) -> Self {
+        let room = RUN_NAME_MAX.saturating_sub(end.len());
+        Self(job.chars().take(room).collect::<String>() + end)
     }
 
     /// The name as text.
@@ -34,6 +45,16 @@ impl RunName {
     pub fn as_str(&self) -> &str {
         &self.0
     }
+}
+
+/// Inode of the PID namespace of the machine, `PROC_PID_INIT_INO` of Linux. Others have greater numbers.
+const OF_MACHINE: u32 = 0xEFFF_FFFC;
+
+/// Number of the PID namespace of this process; `None` for that of the machine, or without `/proc`.
+fn namespace() -> Option<u32> {
+    let link = fs::read_link("/proc/self/ns/pid").ok()?;
+    let number: u32 = link.to_str()?.strip_prefix("pid:[")?.strip_suffix(']')?.parse().ok()?;
+    Some(number.wrapping_sub(OF_MACHINE)).filter(|number| *number != 0)
 }
 
 fn is_name_character(c: char) -> bool {
@@ -69,5 +90,11 @@ mod tests {
         }
         let long = RunName::unique(&"job with blanks ".repeat(5));
         assert!(long.as_str().len() <= RUN_NAME_MAX && long.as_str().parse::<RunName>().is_ok(), "{long}");
+        let other = long.numbered(99);
+        assert!(other != long && other.as_str().parse::<RunName>().is_ok(), "{other}");
+        assert_eq!(
+            other.as_str().rsplit_once('-').unwrap().1,
+            format!("{}.99", long.as_str().rsplit_once('-').unwrap().1)
+        );
     }
 }

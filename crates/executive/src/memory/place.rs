@@ -1,11 +1,15 @@
 //! Paths of a run: the directory of all runs by name, the prefix for the names of objects in shared memory, the
 //! directory for the files of iceoryx2 among them, and the checks that only this user can access them.
 //!
-//! The files of iceoryx2 are not under `TMPDIR`: some are sockets, whose paths have 107 bytes at most, and iceoryx2
+//! The directory of runs is in shared memory, beside the objects of the runs. A directory for temporary files does not
+//! serve: it is cleaned while a run lives, and a service has one of its own. `RCS_RUNS` names another directory, for
+//! tests.
+//!
+//! The files of iceoryx2 are never under `RCS_RUNS`: some are sockets, whose paths have 107 bytes at most, and iceoryx2
 //! panics on paths of more than 255 bytes.
 //!
-//! The prefix is a hash of a random number in the directory of runs. So runs under different `TMPDIR`s never collide,
-//! even in containers that share `/dev/shm`, and another user cannot take a name before the run does.
+//! The prefix is a hash of a random number in the directory of runs. So runs in different directories never collide,
+//! and another user cannot take a name before the run does.
 
 use std::{
     fs::{self, DirBuilder, File, Metadata, OpenOptions, Permissions, TryLockError},
@@ -38,10 +42,26 @@ const AGAIN: Duration = Duration::from_millis(1);
 /// Permission bits of other users.
 const OTHERS: u32 = 0o077;
 
+/// Variable of the environment with another directory for the directory of runs.
+const ELSEWHERE: &str = "RCS_RUNS";
+/// Name of the directory of runs, before the number of the user.
+const ROOT: &str = "rcs-runs-";
+
 /// Directory of all runs of this user.
 #[must_use]
 pub fn root() -> PathBuf {
-    std::env::temp_dir().join(format!("rcs-runs-{}", geteuid().as_raw()))
+    let named = std::env::var_os(ELSEWHERE).filter(|named| !named.is_empty());
+    let parent = named.map_or_else(|| PathBuf::from(SHARED_MEMORY), PathBuf::from);
+    parent.join(format!("{ROOT}{}", geteuid().as_raw()))
+}
+
+/// Numbers of the other users of this machine that have a directory of runs.
+pub(super) fn other_users() -> Vec<u32> {
+    let own = geteuid().as_raw();
+    let user = |path: PathBuf| path.file_name()?.to_str()?.strip_prefix(ROOT)?.parse().ok();
+    let mut users: Vec<u32> = objects(ROOT).filter_map(user).filter(|user| *user != own).collect();
+    users.sort_unstable();
+    users
 }
 
 /// The layout version of this program as used in names.

@@ -96,7 +96,7 @@ pub(crate) fn enter(name: &RunName, role: &str) -> Result<RunNode, SharedMemoryE
     let directory = files(&prefix);
     let failed = |what: String| SharedMemoryError::Node { place: directory.clone(), what };
     let presence = Presence::enter(&prefix, role)?;
-    fs::create_dir_all(&place).map_err(|source| SharedMemoryError::Io { path: place, source })?;
+    own_directory(place)?;
     own_directory(directory.clone())?;
     have_nodes(&prefix)?;
     own_objects(&prefix)?;
@@ -168,7 +168,7 @@ pub(crate) fn has_living(name: &RunName, role: &str) -> bool {
     presence::is_held(&prefix(name, &layout()), role)
 }
 
-/// Remove the remains of killed runs; living runs are not affected, even those under another `TMPDIR`.
+/// Remove the remains of killed runs; living runs are not affected, even those in another directory.
 ///
 /// # Errors
 /// [`SharedMemoryError::Io`] if the directory of runs cannot be read. Failed removals are in the result.
@@ -184,8 +184,7 @@ pub fn clean() -> Result<Cleaned, SharedMemoryError> {
     Ok(cleaned)
 }
 
-/// Remove the objects of killed runs whose directory no longer exists or is under another `TMPDIR`; returns the number
-/// of these runs.
+/// Remove the objects of killed runs whose directory no longer exists or is elsewhere; returns the number of these runs.
 ///
 /// # Errors
 /// [`SharedMemoryError::Io`] with the first object that could not be removed.
@@ -198,8 +197,13 @@ pub fn clean_objects() -> Result<usize, SharedMemoryError> {
 
 /// Remove a run's directory and objects if no living program uses it; returns false if one does.
 pub(crate) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, SharedMemoryError> {
-    let (place, prefix) = (place(name, layout), prefix(name, layout));
     let _lock = lock()?;
+    remove_remains(name, layout)
+}
+
+/// The same, for a caller that holds the lock.
+pub(super) fn remove_remains(name: &RunName, layout: &str) -> Result<bool, SharedMemoryError> {
+    let (place, prefix) = (place(name, layout), prefix(name, layout));
     if presence::is_alive(&prefix) {
         return Ok(false);
     }

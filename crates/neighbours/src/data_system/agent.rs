@@ -176,7 +176,7 @@ impl Agent {
             kept.and_then(|bytes: &[u8; DML]| self.outbox.keep(bytes).map_err(|error| error.to_string()));
         match kept {
             Ok(_) => self.tell_all()?,
-            Err(why) => Some(refused(format!("the update cannot be kept: {why}"))),
+            Err(why) => Some(refused(why)),
         }
     }
 

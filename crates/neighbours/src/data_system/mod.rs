@@ -13,6 +13,7 @@
 //! and the steps of a connection in their order.
 
 mod agent;
+mod alone;
 pub mod command;
 mod connection;
 mod outbox;

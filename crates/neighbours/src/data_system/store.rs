@@ -11,9 +11,14 @@
 //!
 //! The file has a write-ahead journal: an answered report is not lost if the program is killed.
 
-use std::path::{Path, PathBuf};
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
 
 use rusqlite::{Connection, OptionalExtension as _, Row, TransactionBehavior, params};
+
+use super::alone::Alone;
 
 /// Application ID in the file of the data base: "RCS2".
 const APPLICATION_ID: i32 = 0x5243_5332;
@@ -132,6 +137,23 @@ pub enum StoreError {
         /// The file.
         file: PathBuf,
     },
+    /// Another program writes into the file.
+    #[error(
+        "{}: another run or Data System uses this database: end it, or name another database",
+        .file.display()
+    )]
+    InUse {
+        /// The file.
+        file: PathBuf,
+    },
+    /// The file that shows who uses the database cannot be locked.
+    #[error("{}: the file beside it that shows who uses it cannot be locked: {source}", .file.display())]
+    Lock {
+        /// The file of the database.
+        file: PathBuf,
+        /// Error of the system.
+        source: io::Error,
+    },
     /// The tables have another version.
     #[error("{}: tables of version {VERSION} were expected, found version {found}", .file.display())]
     Version {
@@ -146,6 +168,8 @@ pub enum StoreError {
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,
+    /// Held by a program that writes. Given back after the connection is closed.
+    _alone: Option<Alone>,
 }
 
 impl Store {
@@ -168,6 +192,19 @@ impl Store {
         let connection =
             Connection::open(file).map_err(|source| StoreError::Sqlite { file: file.to_owned(), source })?;
         Self::with_tables(connection, file)
+    }
+
+    /// Open the data base in a file for a program that writes into it; creates the file if it does not exist.
+    ///
+    /// # Errors
+    /// As [`Self::open`], and [`StoreError::InUse`] if another program writes into it.
+    pub fn open_alone(file: &Path) -> Result<Self, StoreError> {
+        let connection =
+            Connection::open(file).map_err(|source| StoreError::Sqlite { file: file.to_owned(), source })?;
+        let alone = Alone::take(file)
+            .map_err(|source| StoreError::Lock { file: file.to_owned(), source })?
+            .ok_or_else(|| StoreError::InUse { file: file.to_owned() })?;
+        Ok(Self { _alone: Some(alone), ..Self::with_tables(connection, file)? })
     }
 
     fn with_tables(mut connection: Connection, file: &Path) -> Result<Self, StoreError> {
@@ -212,7 +249,7 @@ impl Store {
         // With a write-ahead journal no reader delays a report; answered reports survive a power cut.
         connection.pragma_update(None, "journal_mode", "wal").map_err(failed)?;
         connection.pragma_update(None, "synchronous", "full").map_err(failed)?;
-        Ok(Self { connection })
+        Ok(Self { connection, _alone: None })
     }
 
     /// State of a client's connection; 0 if the client is not known.
@@ -441,6 +478,22 @@ mod tests {
         drop(store);
         let store = Store::open(&file).unwrap();
         assert_eq!((store.session("H_ROBOT").unwrap(), store.session("FOREMAN").unwrap()), (2, 0));
+    }
+
+    #[test]
+    fn a_second_writer_is_refused_and_a_reader_is_not() {
+        let place = tempfile::tempdir().unwrap();
+        let (file, link) = (place.path().join("items.db"), place.path().join("link.db"));
+        let first = Store::open_alone(&file).unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        for path in [&file, &link] {
+            let refused = Store::open_alone(path).unwrap_err();
+            assert!(matches!(refused, StoreError::InUse { .. }), "{refused}");
+        }
+        assert_eq!(Store::open(&file).unwrap().items().unwrap(), []);
+        drop(first);
+        drop(Store::open_alone(&link).unwrap());
+        assert!(!place.path().join("items.db.lock").exists());
     }
 
     #[test]

@@ -73,6 +73,7 @@ impl Run {
         });
         RunResult {
             job: self.job.name.clone(),
+            ending: ending.word(),
             data: self.data.clone(),
             commands: commands.collect(),
             retries: self.neighbours.retried().iter().map(Into::into).collect(),
@@ -114,7 +115,7 @@ impl Run {
                 Ending::Failed(failure) => {
                     Some(FailureResult::new(failure, self.neighbours.line_at(failure.tick), self.remedy))
                 }
-                Ending::Finished | Ending::Stopped => None,
+                Ending::Finished | Ending::Stopped | Ending::StoppedByUser => None,
             },
         }
     }
@@ -139,7 +140,11 @@ impl Run {
                     0 => String::new(),
                     lost => format!("; {lost} ticks found no room and are missing"),
                 };
-                format!("{file} ({size:.1} MB{lost})")
+                let earlier = match summary.earlier {
+                    0 => String::new(),
+                    earlier => format!("; {earlier} logs before, under the times of their ends"),
+                };
+                format!("{file} ({size:.1} MB{lost}{earlier})")
             }
             Err(error) => {
                 self.observer.message(&format!("the log ended before the run did: {error}"));

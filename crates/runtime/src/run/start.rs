@@ -4,7 +4,7 @@ use depc::host::{PATIENCE_TICKS, RESTART_TICKS};
 use diagnostics::FAULTS;
 use executive::{
     generations::Generations,
-    memory::{Mirror, Publisher, RunName, SET_UP_LIMIT, within_limit},
+    memory::{Announced, Mirror, Publisher, RunName, SET_UP_LIMIT, SharedMemoryError, within_limit},
     rest::RestWatch,
     runner::Runner,
 };
@@ -14,7 +14,7 @@ use neighbours::network::Role;
 use super::Run;
 use crate::{
     boards::Controller,
-    config::{ClockKind, OperatorAccess, RobotKind, RunConfig},
+    config::{Boards, ClockKind, OperatorAccess, RobotKind, RunConfig},
     contacts::ContactCheck,
     error::StartError,
     load::Loads,
@@ -38,6 +38,26 @@ fn first_patience(config: &RunConfig) -> Option<u16> {
     let wait = config.wait.saturating_mul(RESTART_TICKS.into());
     let patience = config.robot.patience().unwrap_or(PATIENCE_TICKS);
     Some(u16::try_from(wait).unwrap_or(u16::MAX).max(patience))
+}
+
+/// Announce a run that has a name, before it touches a file of its own.
+///
+/// # Errors
+/// [`StartError::NameInUse`].
+fn announced(config: &RunConfig) -> Result<Option<Announced>, StartError> {
+    let Some(name) = config.name.clone().filter(|_| config.shared_memory) else { return Ok(None) };
+    match Announced::named(name) {
+        Ok(announced) => Ok(Some(announced)),
+        Err(error @ SharedMemoryError::NameInUse { .. }) => Err(StartError::NameInUse(error)),
+        // Without shared memory the run has its name for itself; the publisher reports the error.
+        Err(_) => Ok(None),
+    }
+}
+
+/// Announce a run without a given name.
+fn announced_by_job(config: &RunConfig, job: &str) -> Option<Announced> {
+    let is_nameless = config.name.is_none() && config.shared_memory;
+    is_nameless.then(|| Announced::of_job(job).ok()).flatten()
 }
 
 /// Open shared memory, which is optional: if it is not available the run prints a message and continues.
@@ -88,11 +108,22 @@ impl Run {
         mut observer: Box<dyn Observer>,
     ) -> Result<Self, StartError> {
         config.faults = config.faults.map(|name| FAULTS.find(&name, &config.data)).transpose()?;
+        let announced = announced(&config)?;
         let mut setup = Setup::load(&config, own, &mut *observer)?;
-        setup.neighbours.gather(&config, &mut *observer)?;
+        let announced = announced.or_else(|| announced_by_job(&config, &setup.job.name));
+        let say = |phase: &str| announced.iter().for_each(|announced| announced.say(phase));
+        setup.neighbours.gather(&config, say, &mut *observer)?;
+        if setup.robot.is_elsewhere() {
+            say("waits for its robot");
+        }
         setup.robot.gather(&config, &mut *observer);
-        let name = config.name.clone().unwrap_or_else(|| RunName::unique(&setup.job.name));
+        let given = || config.name.clone().unwrap_or_else(|| RunName::unique(&setup.job.name));
+        let name = announced.as_ref().map_or_else(given, |announced| announced.name().clone());
+        if config.boards != Boards::One {
+            say("waits for its boards");
+        }
         let controller = Controller::start(&config, &name, &setup.store, &setup.job, &mut *observer)?;
+        say("starts");
         let file = setup.log.take();
         let log_path = file.as_ref().map(|file| file.path().to_owned());
         let log = file.map(|file| Log::start(file, &config, &setup)).transpose()?;
@@ -116,6 +147,11 @@ impl Run {
         let asks = config.outside.contains(&Role::Workstation) || asked.socket().is_some();
         let beside = asks && config.clock == ClockKind::Real && config.inputs.is_none();
         let loader = beside.then(Loader::start).transpose().map_err(StartError::Thread)?;
+        say(if runner.publisher().is_some() {
+            "runs"
+        } else {
+            "runs, but its buffers are not in shared memory"
+        });
         let mirror = runner.publisher().and_then(|publisher| mirror(publisher, &mut *observer));
         Ok(Self {
             runner,
@@ -154,6 +190,7 @@ impl Run {
             job,
             observer,
             config,
+            announced,
         })
     }
 }

@@ -5,7 +5,7 @@ use plant::CellEvent;
 use rcs_core::tick::Tick;
 
 use super::Run;
-use crate::{contacts::Commands, egm::EgmPort, event::Event, truth::Scene};
+use crate::{contacts::Commands, egm::EgmPort, event::Event, live::Live, truth::Scene};
 
 impl Run {
     /// Report an event outside the cell's ticks to the log and the observer.
@@ -99,6 +99,15 @@ impl Run {
             self.observer.event(tick, &event);
             self.events.push(tick, &event);
             self.fresh.push(event);
+        }
+    }
+
+    /// Report viewers that the live view has disconnected.
+    pub(super) fn note_viewers(&mut self, tick: Tick) {
+        while let Some(why) = self.live.as_ref().and_then(Live::disconnected) {
+            let event = Event::ViewerDisconnected(why);
+            self.observer.message(&format!("tick {tick}: {event}"));
+            self.log_event(tick.next(), &event);
         }
     }
 

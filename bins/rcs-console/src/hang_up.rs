@@ -1,0 +1,53 @@
+//! Ends the console when its terminal disappears: a closed window, a lost connection, `tmux kill-session`.
+//!
+//! Reading from such a terminal fails at once, and the library that reads keys tries again forever. So a thread waits
+//! for the hang-up.
+
+use std::{
+    fs::File,
+    io::{self, IsTerminal},
+    os::fd::AsFd,
+    process, thread,
+};
+
+use rustix::{
+    event::{PollFd, PollFlags, poll},
+    io::Errno,
+};
+
+/// Exit status of a console whose terminal has disappeared.
+const NO_TERMINAL: i32 = 1;
+
+/// End this program at once when the terminal that gives the keys disappears. A run sees the end of the session.
+///
+/// # Errors
+/// The error of the system if there is no terminal, or no thread.
+pub fn end_with_terminal() -> io::Result<()> {
+    // The same choice as that of the library that reads keys.
+    let keyboard =
+        if io::stdin().is_terminal() { None } else { Some(File::options().read(true).open("/dev/tty")?) };
+    let wait = move || {
+        let gone = match &keyboard {
+            Some(file) => wait_for_hang_up(file),
+            None => wait_for_hang_up(io::stdin()),
+        };
+        if gone.is_ok() {
+            // Nothing is left to restore, and no message can be read.
+            process::exit(NO_TERMINAL);
+        }
+    };
+    thread::Builder::new().name("hang-up".into()).spawn(wait).map(drop)
+}
+
+/// Wait until a terminal has no other end any more.
+fn wait_for_hang_up(terminal: impl AsFd) -> io::Result<()> {
+    loop {
+        // Without requested events, only hang-ups and errors are reported.
+        let mut polled = [PollFd::new(&terminal, PollFlags::empty())];
+        match poll(&mut polled, None) {
+            Ok(_) => return Ok(()),
+            Err(Errno::INTR) => {}
+            Err(error) => return Err(error.into()),
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Measures for how long a client has read nothing.
+
+use std::time::{Duration, Instant};
+
+/// Greatest time that counts between two looks. In a longer gap this program did not run: it was stopped, or the
+/// machine was busy. The client is not to blame for that.
+const GAP: Duration = Duration::from_millis(100);
+
+/// The time for which a client has read nothing while this program was running.
+#[derive(Debug)]
+pub struct Silence {
+    looked: Instant,
+    silent: Duration,
+}
+
+impl Silence {
+    /// Begins to measure.
+    pub const fn new(now: Instant) -> Self {
+        Self { looked: now, silent: Duration::ZERO }
+    }
+
+    /// Records that the client has read something.
+    pub const fn end(&mut self) {
+        self.silent = Duration::ZERO;
+    }
+
+    /// The time for which the client has read nothing. Call it often.
+    pub fn length(&mut self, now: Instant) -> Duration {
+        self.silent = self.silent.saturating_add(now.saturating_duration_since(self.looked).min(GAP));
+        self.looked = now;
+        self.silent
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_in_which_the_program_was_stopped_does_not_count() {
+        let begin = Instant::now();
+        let mut silence = Silence::new(begin);
+        let at = |milliseconds| begin + Duration::from_millis(milliseconds);
+        assert_eq!(silence.length(at(90)), Duration::from_millis(90));
+        assert_eq!(silence.length(at(60_090)), Duration::from_millis(190));
+        assert_eq!(silence.length(at(60_100)), Duration::from_millis(200));
+        silence.end();
+        assert_eq!(silence.length(at(60_130)), Duration::from_millis(30));
+    }
+}

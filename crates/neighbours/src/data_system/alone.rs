@@ -1,0 +1,55 @@
+//! The right of one program to write into a database. SQLite locks a database for a statement only, and two controllers
+//! in one database end each other's sessions.
+
+use std::{
+    fs::{self, File, OpenOptions, TryLockError},
+    io,
+    os::unix::fs::MetadataExt as _,
+    path::{Path, PathBuf},
+};
+
+/// Suffix of the file that is locked, after the name of the database.
+const SUFFIX: &str = "lock";
+
+/// The right, until it is dropped. The system takes it back from a program that ends in any way.
+#[derive(Debug)]
+pub struct Alone {
+    path: PathBuf,
+    _lock: File,
+}
+
+impl Alone {
+    /// Takes the right for an existing file; `None` if another program has it.
+    ///
+    /// # Errors
+    /// Errors of the file that is locked, beside the database.
+    pub fn take(database: &Path) -> io::Result<Option<Self>> {
+        // One file for all links to the database.
+        let path = fs::canonicalize(database)?.with_added_extension(SUFFIX);
+        loop {
+            let file = OpenOptions::new().create(true).append(true).open(&path)?;
+            match file.try_lock() {
+                // The program before may have removed the file in the meantime.
+                Ok(()) if is_at(&file, &path)? => return Ok(Some(Self { path, _lock: file })),
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => return Ok(None),
+                Err(TryLockError::Error(error)) => return Err(error),
+            }
+        }
+    }
+}
+
+impl Drop for Alone {
+    fn drop(&mut self) {
+        // A file that stays does no harm.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    match fs::metadata(path) {
+        Ok(found) => Ok(found.ino() == file.metadata()?.ino()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}

@@ -1,0 +1,43 @@
+//! Limits of a log: a run of months writes logs one after the other, and keeps the newest.
+//!
+//! Each of them has the head of the run, and begins with whole images and the states of all processes. So each can be
+//! read and replayed without those before it.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
+
+use crate::file::is_earlier;
+
+/// Limits of a log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LogLimit {
+    /// Size, bytes, after which the run begins a new log. A log is larger by the end that it needs, and by a second.
+    pub bytes: u64,
+    /// Greatest number of earlier logs with the name of this one that are kept; the oldest are removed. `None` keeps
+    /// all.
+    pub kept: Option<usize>,
+}
+
+impl LogLimit {
+    /// Remove the oldest earlier logs of a log.
+    ///
+    /// # Errors
+    /// Errors of the directory and of the removal.
+    pub(crate) fn remove_oldest(&self, log: &Path) -> io::Result<()> {
+        let Some(kept) = self.kept else { return Ok(()) };
+        let directory = log.parent().filter(|directory| !directory.as_os_str().is_empty());
+        let mut earlier: Vec<(SystemTime, PathBuf)> = Vec::new();
+        for entry in fs::read_dir(directory.unwrap_or(Path::new(".")))? {
+            let path = entry?.path();
+            if is_earlier(log, &path) {
+                earlier.push((fs::symlink_metadata(&path)?.modified()?, path));
+            }
+        }
+        earlier.sort();
+        let surplus = earlier.len().saturating_sub(kept);
+        earlier.iter().take(surplus).try_for_each(|(_, path)| fs::remove_file(path))
+    }
+}
