@@ -5,8 +5,9 @@ use core::mem;
 
 use interfaces::{
     CommonMemory,
-    emove::{EmoveCommand, EmoveVerb, GoneTo, Grasped, Holding, PlacedObject, RobotPlace},
+    emove::{EmoveCommand, EmoveVerb, GoneTo, Grasped, Holding, PlacedObject, RobotPlace, Seat},
     grip::Felt,
+    prim::PrimReport,
     process::Inputs,
     quick_change::RingPosition,
 };
@@ -16,7 +17,7 @@ use taskdata::files::{EndEffId, EndEffPara, TaskData};
 use super::{
     gripper::{Gripper, is_open},
     order::{FingerOrder, FingerVerb},
-    robot_place::present_frame,
+    robot_place::{is_led, present_frame},
     route::{Ahead, FULL_OPENING, near},
     state::State,
     tables::{Action, Fingers, Opening, Spread},
@@ -62,6 +63,7 @@ impl State {
             return;
         }
         self.sense_loss(inputs);
+        self.sense_seat(memory);
         if attached != mem::replace(&mut self.attached, attached) {
             // A ring that is open takes a gripper only in its holster, where none is left that may hold
             // something.
@@ -96,6 +98,15 @@ impl State {
             && let GoneTo::Brought(object) = place.gone_to
         {
             place.gone_to = GoneTo::Object(object);
+        }
+    }
+
+    /// Where along the fingers the object is: nothing measures it. With the robot it slides as soon as it meets
+    /// anything, while a person leads the robot or the arm has no pressure.
+    fn sense_seat(&mut self, memory: &CommonMemory) {
+        let is_moved = is_led(memory) || memory.prim.status.report == PrimReport::T3LinkOff;
+        if is_moved && !self.beliefs.empty {
+            self.beliefs.seat = Seat::NotKnown;
         }
     }
 

@@ -4,7 +4,7 @@ use geometry::pose::Pose;
 use interfaces::{
     ChangingPose, EmoveOutputs, Reason, StatusReport, Unconfirmed,
     device::Picture,
-    emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject, Offset},
+    emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject, Offset, Seat},
     pose_range,
     prim::{PrimCommand, PrimReport, PrimVerb},
     process::Inputs,
@@ -276,6 +276,9 @@ impl State {
                     // By hand: only what counts as held has a name, and it is not let go any more.
                     self.beliefs.grasping = self.beliefs.held;
                 }
+                if self.beliefs.empty {
+                    self.beliefs.seat = Seat::Kept;
+                }
                 // What was placed may be taken, and lost elsewhere.
                 (self.beliefs.placed, self.beliefs.empty) = (None, false);
             }
@@ -353,6 +356,7 @@ impl State {
             },
             reference_pose: inputs.memory.prim.status.sensor_pose,
             held: self.holding(inputs.memory),
+            seat: self.beliefs.seat,
             placed: self.beliefs.placed,
             located: self.beliefs.located.map(|Located { object, record, array, sector, .. }| {
                 LocatedObject { object, record, array, sector }
