@@ -4,7 +4,7 @@ use geometry::pose::Pose;
 use interfaces::{
     ChangingPose, EmoveOutputs, Reason, StatusReport, Unconfirmed,
     device::Picture,
-    emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject, Offset, Seat},
+    emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject, Offset},
     pose_range,
     prim::{PrimCommand, PrimReport, PrimVerb},
     process::Inputs,
@@ -276,9 +276,7 @@ impl State {
                     // By hand: only what counts as held has a name, and it is not let go any more.
                     self.beliefs.grasping = self.beliefs.held;
                 }
-                if self.beliefs.empty {
-                    self.beliefs.seat = Seat::Kept;
-                }
+                self.beliefs.seat = self.next_seat(command.object);
                 // What was placed may be taken, and lost elsewhere.
                 (self.beliefs.placed, self.beliefs.empty) = (None, false);
             }

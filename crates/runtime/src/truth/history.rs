@@ -41,9 +41,9 @@ pub struct History {
     /// Parts that are off their places for a reason that no sensor shows, by their numbers.
     displaced: BTreeMap<u32, NotSensed>,
     /// Last tick in which the arm had pressure and the robot controller executed the DEPC function.
-    up: Tick,
+    pub(super) up: Tick,
     /// They did so after the last tick.
-    is_up: bool,
+    pub(super) is_up: bool,
 }
 
 impl History {

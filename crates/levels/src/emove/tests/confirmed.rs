@@ -4,7 +4,7 @@ use geometry::frame::Vector;
 use interfaces::{
     Reason, Unconfirmed,
     emove::{
-        EmoveVerb::{GraspObj, MovObjTo, MovToLoc, Release, Withdraw},
+        EmoveVerb::{GraspObj, LocateObj, MovObjTo, MovToLoc, MovToObj, MovToVu, Release, Withdraw},
         Offset, Seat,
     },
 };
@@ -86,10 +86,29 @@ fn part_with_which_a_person_has_led_the_robot_has_no_confirmed_place_in_the_fing
         bench.world.object = Some(size);
         assert_eq!(bench.run(GraspObj, object, 1, "VISE", gripper), DONE);
         assert_eq!(
-            (bench.memory.emove.status.unconfirmed, bench.memory.emove.status.seat),
-            (sensed, Seat::Kept)
+            bench.memory.emove.status.unconfirmed,
+            Unconfirmed::PartInFingers,
+            "it lies as it was held"
         );
     }
+}
+
+#[test]
+fn picture_shows_where_a_part_is_that_was_let_go_with_an_unknown_place_in_the_fingers() {
+    let mut bench = Bench::ready("BENCH", 1);
+    bench.world.object = Some(75);
+    assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
+    bench.world.joystick = true;
+    bench.steps(5);
+    bench.world.joystick = false;
+    bench.pause();
+    for verb in [Release, MovToVu, LocateObj, MovToObj] {
+        assert_eq!(bench.run(verb, "BLOCK", 1, "BENCH", 1), DONE, "{verb}");
+        assert_eq!(bench.memory.emove.status.seat, Seat::NotKnown, "{verb}");
+    }
+    bench.world.object = Some(75);
+    assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
+    assert_eq!(bench.memory.emove.status.unconfirmed, Unconfirmed::None);
 }
 
 #[test]
