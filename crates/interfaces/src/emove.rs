@@ -188,6 +188,15 @@ pub enum Offset {
     NotSensed,
 }
 
+/// Where a part is along the fingers, which no sensor measures (extension; docs/design/recovery.md "Held").
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Seat {
+    /// Where it was grasped, or the fingers have not closed on anything.
+    Kept,
+    /// Not known: with the part between the fingers the robot was moved by a person, or the arm had no pressure.
+    NotKnown,
+}
+
 /// Status from E-move to Subtask.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EmoveStatus {
@@ -203,6 +212,8 @@ pub struct EmoveStatus {
     pub reference_pose: Option<u32>,
     /// `obj-held-status-out`: what is held (more than yes or no is an extension).
     pub held: Holding,
+    /// Where it is along the fingers, or was when it was let go (extension).
+    pub seat: Seat,
     /// The object that the last RELEASE has let go; none as soon as anything is grasped or held (extension).
     pub placed: Option<PlacedObject>,
     /// What vision has found and nothing has made invalid since (extension).
@@ -354,6 +365,8 @@ pub struct Beliefs {
     pub grasping: Option<Grasped>,
     /// The fingers were empty, and have not been told to close since.
     pub empty: bool,
+    /// Where along the fingers the object is that they have closed on last.
+    pub seat: Seat,
     /// The object that the gripper has let go, and where.
     pub placed: Option<PlacedObject>,
     /// What vision has located.

@@ -12,7 +12,7 @@ pub use super::location::LocationKind;
 use super::words::{location, name};
 use crate::{
     ChangingPose, Header, Reason, StatusReport, Unconfirmed,
-    emove::{EmoveCommand, Holding, Offset, PlacedObject, Standing},
+    emove::{EmoveCommand, Holding, Offset, PlacedObject, Seat, Standing},
     pedestal::PedestalCommand,
 };
 
@@ -102,6 +102,8 @@ pub struct SubtaskStatus {
     pub reference_pose: Option<u32>,
     /// `obj-held-status-out`: what is held, as E-move reports it (more than yes or no is an extension).
     pub held: Holding,
+    /// Where it is along the fingers, or was when it was let go, as E-move reports it (extension).
+    pub seat: Seat,
     /// The object that the last RELEASE has let go, as E-move reports it (extension).
     pub placed: Option<PlacedObject>,
     /// `pres-endeff-id#-out`, if a gripper is on.

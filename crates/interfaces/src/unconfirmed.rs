@@ -18,6 +18,8 @@ pub enum Unconfirmed {
     ToolInDrum,
     /// The robot's position (the resolvers give none).
     Position,
+    /// The part's place in the fingers (the robot was moved with it by hand or without pressure).
+    PartInFingers,
 }
 
 impl Unconfirmed {

@@ -10,7 +10,10 @@
 //!
 //! Preprocess compares the goal of the command with the sensors in every tick; the result is a [`Proof`].
 
-use interfaces::{Reason, Unconfirmed, emove::Offset};
+use interfaces::{
+    Reason, Unconfirmed,
+    emove::{Offset, Seat},
+};
 use rcs_core::{Actions, Plain, Variables, decision_table, table::Choice, table::Verdict};
 
 use crate::{
@@ -143,9 +146,10 @@ impl Proof {
     pub const fn unsensed(unconfirmed: Unconfirmed) -> Self {
         match unconfirmed {
             Unconfirmed::None => Self::HOLDS,
-            Unconfirmed::GraspForce | Unconfirmed::ToolInDrum | Unconfirmed::Position => {
-                Self { evidence: Evidence::Unsensed, unconfirmed }
-            }
+            Unconfirmed::GraspForce
+            | Unconfirmed::ToolInDrum
+            | Unconfirmed::Position
+            | Unconfirmed::PartInFingers => Self { evidence: Evidence::Unsensed, unconfirmed },
         }
     }
 
@@ -179,6 +183,15 @@ impl Proof {
     #[must_use]
     pub const fn and_unsensed(self, unconfirmed: Unconfirmed) -> Self {
         if self.is_done() { Self::unsensed(unconfirmed) } else { self }
+    }
+
+    /// The goal, of which a part in the fingers is part. A part whose seat is not known is named before all else.
+    #[must_use]
+    pub const fn with_part(self, seat: Seat) -> Self {
+        match seat {
+            Seat::Kept => self,
+            Seat::NotKnown => self.and_unsensed(Unconfirmed::PartInFingers),
+        }
     }
 
     /// Nothing contradicts the goal.

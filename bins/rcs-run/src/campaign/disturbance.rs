@@ -246,9 +246,10 @@ pub fn change(cell: &mut Cell, what: &What) -> Result<(Vec<u32>, Vec<Undo>), Str
             let raised = Frame { position: frame.position + up, ..frame };
             let new = cell.next_part_number();
             let put = |part: &str, frame: Frame| WorkstationAction::Put { part: part.to_owned(), frame };
-            if let Err(error) = cell.workstation(&put(kind, raised)) {
+            if cell.workstation(&put(kind, raised)).is_err() {
+                // It does not fit there. The part that is put back has another number.
                 cell.workstation(&put(&name, frame)).map_err(said)?;
-                return Err(error.to_string());
+                return Ok((vec![id, new], Vec::new()));
             }
             Ok((vec![id, new], vec![Undo::Remove(new), Undo::Put(name, frame)]))
         }

@@ -5,18 +5,19 @@ use core::mem;
 
 use interfaces::{
     CommonMemory,
-    emove::{EmoveCommand, EmoveVerb, GoneTo, Grasped, Holding, PlacedObject, RobotPlace},
+    emove::{Beliefs, EmoveCommand, EmoveVerb, GoneTo, Grasped, Holding, PlacedObject, RobotPlace, Seat},
     grip::Felt,
+    prim::PrimReport,
     process::Inputs,
     quick_change::RingPosition,
 };
-use rcs_core::handshake::Lower;
+use rcs_core::{handshake::Lower, name::Name16};
 use taskdata::files::{EndEffId, EndEffPara, TaskData};
 
 use super::{
     gripper::{Gripper, is_open},
     order::{FingerOrder, FingerVerb},
-    robot_place::present_frame,
+    robot_place::{is_led, present_frame},
     route::{Ahead, FULL_OPENING, near},
     state::State,
     tables::{Action, Fingers, Opening, Spread},
@@ -62,6 +63,7 @@ impl State {
             return;
         }
         self.sense_loss(inputs);
+        self.sense_seat(memory);
         if attached != mem::replace(&mut self.attached, attached) {
             // A ring that is open takes a gripper only in its holster, where none is left that may hold
             // something.
@@ -97,6 +99,26 @@ impl State {
         {
             place.gone_to = GoneTo::Object(object);
         }
+    }
+
+    /// Where along the fingers the object is: nothing measures it. With the robot it slides as soon as it meets
+    /// anything, while a person leads the robot or the arm has no pressure: then the resolvers give no position.
+    fn sense_seat(&mut self, memory: &CommonMemory) {
+        let is_off = memory.prim.status.report == PrimReport::T3LinkOff || present_frame(memory).is_none();
+        let Beliefs { held, grasping, empty, .. } = &self.beliefs;
+        let have_closed = !empty && (held.is_some() || grasping.is_some());
+        if have_closed && (is_led(memory) || is_off) {
+            self.beliefs.seat = Seat::NotKnown;
+        }
+    }
+
+    /// The seat of what the fingers are to close on. The object that was let go last lies as it was held, unless a
+    /// picture has shown since where it is.
+    pub(super) fn next_seat(&self, object: Option<Name16>) -> Seat {
+        let Beliefs { seat, empty, placed, located, .. } = self.beliefs;
+        let is_placed = placed.is_some_and(|placed| Some(placed.object) == object);
+        let is_new = empty && (located.is_some() || !is_placed);
+        if is_new { Seat::Kept } else { seat }
     }
 
     /// Do the id pins say that the gripper has gone, while the ring has been locked ever since it was there?

@@ -51,7 +51,7 @@ pub static BROUGHT: Goal = Goal {
     sensors: &[Sensor::Resolvers, Sensor::Fingers, Sensor::StrainGages],
     tolerance: AT_PLACE,
     age: 2,
-    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 /// GRASP-OBJ.
 pub static HELD: Goal = Goal {
@@ -59,7 +59,7 @@ pub static HELD: Goal = Goal {
     sensors: &[Sensor::Fingers, Sensor::StrainGages],
     tolerance: "parts gripper: 1 lb on each finger; jaws: 0.10 in",
     age: 1,
-    unconfirmed: &[Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 /// RELEASE.
 pub static RELEASED: Goal = Goal {
@@ -99,7 +99,7 @@ pub static INSERTED: Goal = Goal {
     sensors: &[Sensor::Resolvers, Sensor::Fingers],
     tolerance: AT_PLACE,
     age: 2,
-    unconfirmed: &[Unconfirmed::ToolInDrum],
+    unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
 /// RELEASE-TOOL.
 pub static TOOL_RELEASED: Goal = Goal {
@@ -107,7 +107,7 @@ pub static TOOL_RELEASED: Goal = Goal {
     sensors: &[Sensor::Fingers, Sensor::Resolvers],
     tolerance: AT_PLACE,
     age: 2,
-    unconfirmed: &[Unconfirmed::ToolInDrum],
+    unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
 /// REMOVE-TOOL.
 pub static REMOVED: Goal = Goal {
@@ -115,7 +115,7 @@ pub static REMOVED: Goal = Goal {
     sensors: &[Sensor::Resolvers, Sensor::Fingers],
     tolerance: AT_PLACE,
     age: 2,
-    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 
 impl State {
@@ -156,6 +156,7 @@ impl State {
             Holding::Something => Proof::of(Evidence::Unknown),
             Holding::NotKnown => Proof::of(Evidence::NotKnown),
         };
+        let seat = self.beliefs.seat;
         match command.command {
             EmoveVerb::None | EmoveVerb::Pause => {
                 let moves = matches!(situation.prim, Lower::Pending | Lower::Executing);
@@ -166,18 +167,23 @@ impl State {
             | EmoveVerb::MovToVu
             | EmoveVerb::MovToHol
             | EmoveVerb::LocateObj => at_goal(),
-            EmoveVerb::MovObjTo => is_held().and(at_goal()),
-            EmoveVerb::GraspObj => self.is_grasped(situation, memory).and(force),
-            EmoveVerb::AcquireTool => self.is_grasped(situation, memory).and(force),
+            EmoveVerb::MovObjTo => is_held().and(at_goal()).with_part(seat),
+            EmoveVerb::GraspObj | EmoveVerb::AcquireTool => {
+                self.is_grasped(situation, memory).and(force).with_part(seat)
+            }
             EmoveVerb::Release => is_free(),
             EmoveVerb::QcAttach => Proof::when(situation.mate == Mate::Right, Evidence::GripperOff)
                 .and(Proof::when(situation.lock == Lock::Locked, Evidence::Ring))
                 .and(Proof::when(situation.holster != Holster::Full, Evidence::GripperOff)),
             EmoveVerb::QcDetach => Proof::when(situation.mate == Mate::None, Evidence::GripperOn),
             EmoveVerb::Withdraw => at_command(),
-            EmoveVerb::InsertTool => is_held().and(at_command()).and_unsensed(Unconfirmed::ToolInDrum),
-            EmoveVerb::ReleaseTool => is_free().and(at_command()).and_unsensed(Unconfirmed::ToolInDrum),
-            EmoveVerb::RemoveTool => is_held().and(at_command()),
+            EmoveVerb::InsertTool => {
+                is_held().and(at_command()).and_unsensed(Unconfirmed::ToolInDrum).with_part(seat)
+            }
+            EmoveVerb::ReleaseTool => {
+                is_free().and(at_command()).and_unsensed(Unconfirmed::ToolInDrum).with_part(seat)
+            }
+            EmoveVerb::RemoveTool => is_held().and(at_command()).with_part(seat),
         }
     }
 

@@ -276,6 +276,7 @@ impl State {
                     // By hand: only what counts as held has a name, and it is not let go any more.
                     self.beliefs.grasping = self.beliefs.held;
                 }
+                self.beliefs.seat = self.next_seat(command.object);
                 // What was placed may be taken, and lost elsewhere.
                 (self.beliefs.placed, self.beliefs.empty) = (None, false);
             }
@@ -353,6 +354,7 @@ impl State {
             },
             reference_pose: inputs.memory.prim.status.sensor_pose,
             held: self.holding(inputs.memory),
+            seat: self.beliefs.seat,
             placed: self.beliefs.placed,
             located: self.beliefs.located.map(|Located { object, record, array, sector, .. }| {
                 LocatedObject { object, record, array, sector }

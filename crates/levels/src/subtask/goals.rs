@@ -44,7 +44,7 @@ pub static HELD: Goal = Goal {
     sensors: &[Sensor::Fingers, Sensor::StrainGages],
     tolerance: GRASP,
     age: 2,
-    unconfirmed: &[Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 /// FIX-GRIP.
 pub static REGRIPPED: Goal = Goal {
@@ -52,7 +52,7 @@ pub static REGRIPPED: Goal = Goal {
     sensors: &[Sensor::Fingers, Sensor::StrainGages, Sensor::Hand],
     tolerance: GRASP,
     age: 2,
-    unconfirmed: &[Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 /// PLACE-OBJ.
 pub static PLACED: Goal = Goal {
@@ -60,7 +60,7 @@ pub static PLACED: Goal = Goal {
     sensors: &[Sensor::Fingers, Sensor::StrainGages, Sensor::Resolvers],
     tolerance: AT_PLACE,
     age: 3,
-    unconfirmed: &[],
+    unconfirmed: &[Unconfirmed::PartInFingers],
 };
 /// MOVE-OBJ>D.
 pub static BROUGHT: Goal = Goal {
@@ -68,7 +68,7 @@ pub static BROUGHT: Goal = Goal {
     sensors: &[Sensor::Resolvers, Sensor::Fingers, Sensor::StrainGages],
     tolerance: AT_PLACE,
     age: 3,
-    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 /// GOTO-ENDPT, GOTO-DEST, >POSITION.
 pub static PLACE: Goal = Goal {
@@ -92,7 +92,7 @@ pub static INSERTED: Goal = Goal {
     sensors: &[Sensor::Fingers, Sensor::Resolvers],
     tolerance: AT_PLACE,
     age: 3,
-    unconfirmed: &[Unconfirmed::ToolInDrum],
+    unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
 /// RELEASE-TOOL.
 pub static TOOL_RELEASED: Goal = Goal {
@@ -100,7 +100,7 @@ pub static TOOL_RELEASED: Goal = Goal {
     sensors: &[Sensor::Fingers, Sensor::Resolvers],
     tolerance: AT_PLACE,
     age: 3,
-    unconfirmed: &[Unconfirmed::ToolInDrum],
+    unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
 /// ACQUIRE-TOOL.
 pub static ACQUIRED: Goal = Goal {
@@ -108,7 +108,7 @@ pub static ACQUIRED: Goal = Goal {
     sensors: &[Sensor::Fingers, Sensor::Resolvers],
     tolerance: GRASP,
     age: 3,
-    unconfirmed: &[Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 /// REMOVE-TOOL.
 pub static REMOVED: Goal = Goal {
@@ -116,7 +116,7 @@ pub static REMOVED: Goal = Goal {
     sensors: &[Sensor::Fingers, Sensor::Resolvers],
     tolerance: GRASP,
     age: 3,
-    unconfirmed: &[Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 
 /// The goal of a command, compared with the statuses from below.
@@ -139,23 +139,30 @@ pub(super) fn proof(
         SubtaskVerb::None | SubtaskVerb::Pause => Proof::HOLDS,
         SubtaskVerb::GetEndeff => Proof::when(situation.gripper == Gripper::Right, Evidence::GripperOff)
             .and(Proof::when(situation.exchange == Exchange::None, Evidence::InHolster)),
-        SubtaskVerb::GetObject => is_held(),
+        SubtaskVerb::GetObject => is_held().with_part(emove.seat),
         SubtaskVerb::FixGrip => {
             let free = pedestal_hand(pedestal) == PedestalHand::Free;
-            is_held().and(in_destination_grip()).and(Proof::when(free, Evidence::InPedestal))
+            is_held()
+                .and(in_destination_grip())
+                .and(Proof::when(free, Evidence::InPedestal))
+                .with_part(emove.seat)
         }
-        SubtaskVerb::PlaceObj => {
-            is_free(emove.held).and(Proof::when(situation.placed == Where::There, Evidence::NotPlaced))
+        SubtaskVerb::PlaceObj => is_free(emove.held)
+            .and(Proof::when(situation.placed == Where::There, Evidence::NotPlaced))
+            .with_part(emove.seat),
+        SubtaskVerb::MoveObjToDest => {
+            is_held().and(in_destination_grip()).and(at_place()).with_part(emove.seat)
         }
-        SubtaskVerb::MoveObjToDest => is_held().and(in_destination_grip()).and(at_place()),
         SubtaskVerb::GotoEndpt | SubtaskVerb::GotoDest | SubtaskVerb::Position => at_place(),
         SubtaskVerb::Release => is_free(emove.held),
-        SubtaskVerb::InsertTool => is_held().and(in_drum()).and_unsensed(Unconfirmed::ToolInDrum),
-        SubtaskVerb::ReleaseTool => {
-            is_free(emove.held).and(out_of_drum()).and_unsensed(Unconfirmed::ToolInDrum)
+        SubtaskVerb::InsertTool => {
+            is_held().and(in_drum()).and_unsensed(Unconfirmed::ToolInDrum).with_part(emove.seat)
         }
-        SubtaskVerb::AcquireTool => is_held().and(in_drum()),
-        SubtaskVerb::RemoveTool => is_held().and(out_of_drum()),
+        SubtaskVerb::ReleaseTool => {
+            is_free(emove.held).and(out_of_drum()).and_unsensed(Unconfirmed::ToolInDrum).with_part(emove.seat)
+        }
+        SubtaskVerb::AcquireTool => is_held().and(in_drum()).with_part(emove.seat),
+        SubtaskVerb::RemoveTool => is_held().and(out_of_drum()).with_part(emove.seat),
     }
 }
 

@@ -207,6 +207,7 @@ impl State {
             },
             reference_pose: below.reference_pose,
             held: below.held,
+            seat: below.seat,
             placed: below.placed,
             end_effector_id: below.end_effector_id,
             at: below.at,

@@ -112,6 +112,7 @@ impl State {
             work: Work::Busy,
             held,
             grip: grip_held(emove, command),
+            seat: emove.seat,
             vision: vision(emove, is_at(self.located_at), command, inputs.data),
             gripper: match emove.end_effector_id {
                 None => Gripper::None,

@@ -31,7 +31,7 @@ pub static TRANSFERRED: Goal = Goal {
     sensors: &[Sensor::Fingers, Sensor::StrainGages, Sensor::Resolvers],
     tolerance: AT_PLACE,
     age: 4,
-    unconfirmed: &[Unconfirmed::Position],
+    unconfirmed: &[Unconfirmed::Position, Unconfirmed::PartInFingers],
 };
 /// MOVE.
 pub static MOVED: Goal = Goal {
@@ -39,7 +39,7 @@ pub static MOVED: Goal = Goal {
     sensors: &[Sensor::Resolvers, Sensor::Fingers, Sensor::StrainGages],
     tolerance: AT_PLACE,
     age: 4,
-    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 /// POSITION.
 pub static POSITIONED: Goal = Goal {
@@ -55,7 +55,7 @@ pub static HELD: Goal = Goal {
     sensors: &[Sensor::Fingers, Sensor::StrainGages],
     tolerance: GRASP,
     age: 3,
-    unconfirmed: &[Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 /// REFIXTURE.
 pub static REFIXTURED: Goal = Goal {
@@ -63,7 +63,7 @@ pub static REFIXTURED: Goal = Goal {
     sensors: &[Sensor::Resolvers, Sensor::Fingers, Sensor::StrainGages],
     tolerance: AT_PLACE,
     age: 4,
-    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 /// INSERT-TOOL.
 pub static INSERTED: Goal = Goal {
@@ -71,7 +71,7 @@ pub static INSERTED: Goal = Goal {
     sensors: &[Sensor::IdPins, Sensor::Fingers, Sensor::Resolvers],
     tolerance: GRASP,
     age: 4,
-    unconfirmed: &[Unconfirmed::ToolInDrum],
+    unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
 /// RELEASE-TOOL.
 pub static TOOL_RELEASED: Goal = Goal {
@@ -80,7 +80,7 @@ pub static TOOL_RELEASED: Goal = Goal {
     sensors: &[Sensor::IdPins, Sensor::Fingers, Sensor::Resolvers],
     tolerance: AT_PLACE,
     age: 4,
-    unconfirmed: &[Unconfirmed::ToolInDrum],
+    unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
 /// ACQUIRE-TOOL.
 pub static ACQUIRED: Goal = Goal {
@@ -88,7 +88,7 @@ pub static ACQUIRED: Goal = Goal {
     sensors: &[Sensor::IdPins, Sensor::Fingers, Sensor::Resolvers],
     tolerance: GRASP,
     age: 4,
-    unconfirmed: &[Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 /// REMOVE-TOOL.
 pub static REMOVED: Goal = Goal {
@@ -96,7 +96,7 @@ pub static REMOVED: Goal = Goal {
     sensors: &[Sensor::IdPins, Sensor::Fingers, Sensor::Resolvers],
     tolerance: AT_PLACE,
     age: 4,
-    unconfirmed: &[Unconfirmed::GraspForce],
+    unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 /// STARTUP.
 pub static CONNECTED: Goal = Goal {
@@ -143,23 +143,29 @@ pub(super) fn proof(plan: &Plan, below: &SubtaskStatus, data_base: DataBase) -> 
         TaskVerb::Startup => Proof::when(data_base == DataBase::Done, Evidence::NoAnswer),
         TaskVerb::Transfer => is_free(below.held)
             .and(Proof::when(is_placed(plan, below), Evidence::NotPlaced))
-            .and(if plan.end_at.location.is_some() { end() } else { destination() }),
+            .and(if plan.end_at.location.is_some() { end() } else { destination() })
+            .with_part(below.seat),
         TaskVerb::Move if plan.handling() == Handling::NoObject => destination(),
-        TaskVerb::Move => is_held().and(destination()),
+        TaskVerb::Move => is_held().and(destination()).with_part(below.seat),
         TaskVerb::Position => {
             let site = if plan.source.location.is_some() { &plan.source } else { &plan.destination };
             is_free(below.held).and(at(site, below))
         }
-        TaskVerb::Acquire => is_held(),
-        TaskVerb::Refixture => is_held().and(in_grip(plan.destination.grip)).and(destination()),
-        TaskVerb::InsertTool => has_tool().and(in_drum()).and_unsensed(Unconfirmed::ToolInDrum),
+        TaskVerb::Acquire => is_held().with_part(below.seat),
+        TaskVerb::Refixture => {
+            is_held().and(in_grip(plan.destination.grip)).and(destination()).with_part(below.seat)
+        }
+        TaskVerb::InsertTool => {
+            has_tool().and(in_drum()).and_unsensed(Unconfirmed::ToolInDrum).with_part(below.seat)
+        }
         TaskVerb::ReleaseTool => has_tool_gripper()
             .and(is_free(below.held))
             .and(out_of_drum())
             .and(end())
-            .and_unsensed(Unconfirmed::ToolInDrum),
-        TaskVerb::AcquireTool => has_tool().and(in_drum()),
-        TaskVerb::RemoveTool => has_tool().and(out_of_drum()).and(end()),
+            .and_unsensed(Unconfirmed::ToolInDrum)
+            .with_part(below.seat),
+        TaskVerb::AcquireTool => has_tool().and(in_drum()).with_part(below.seat),
+        TaskVerb::RemoveTool => has_tool().and(out_of_drum()).and(end()).with_part(below.seat),
     }
 }
 

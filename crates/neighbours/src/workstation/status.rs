@@ -72,7 +72,7 @@ crate::layout! {
     "task-state"           (task)           Coded<2>,
         "CHOSEN: 0 Task runs, 1 its switch on the joystick box holds it (III.3.3), 2 it is lost";
     "unconfirmed"          (unconfirmed)    Coded<2>,
-        "CHOSEN: with finished, what no sensor confirms: 0 nothing, 1 the grasp force, 2 the tool in the drum, 3 the robot's position";
+        "CHOSEN: with finished, what no sensor confirms: 0 nothing, 1 the grasp force, 2 the tool in the drum, 3 the robot's position, 4 the part's place in the fingers";
     "reason"               (reason)         Text<REASON>,
         "CHOSEN: why the mailgram was refused, or else what is wrong with the command, or why it failed, with names \
          and distances, or what no sensor confirms";

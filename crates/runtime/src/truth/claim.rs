@@ -160,7 +160,25 @@ impl Claim {
             Unconfirmed::Position => {
                 matches!(self, Self::At { .. } | Self::AtPart { .. } | Self::Near { .. })
             }
+            Unconfirmed::PartInFingers => matches!(
+                self,
+                Self::Holds { .. }
+                    | Self::Placed { .. }
+                    | Self::LiesAt { .. }
+                    | Self::InDrum(_)
+                    | Self::OutOfDrum(_)
+            ),
         }
+    }
+
+    /// True if the claim is that a part is in its place in the fingers.
+    pub fn is_of_grasp(&self) -> bool {
+        matches!(self, Self::Holds { place, .. } if !place.is_empty())
+    }
+
+    /// True if the claim is about the place of a part that the robot holds or has released.
+    pub const fn is_of_part(&self) -> bool {
+        matches!(self, Self::Holds { .. } | Self::Placed { .. } | Self::LiesAt { .. } | Self::InDrum(_))
     }
 
     /// Compare the claim with the cell.

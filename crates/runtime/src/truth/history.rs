@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use geometry::frame::{Frame, Vector};
-use interfaces::{StatusReport, emove::EmoveVerb};
+use interfaces::{device::Picture, emove::EmoveVerb};
+use plant::{Cell, t3::Stage};
 use rcs_core::tick::Tick;
 
-use super::Scene;
+use super::{Level, NotSensed, Scene};
 
 /// A part that the robot has released.
 #[derive(Clone, Copy, Debug)]
@@ -35,8 +36,14 @@ pub struct History {
     taken: Tick,
     /// Tick in which the camera has looked last, and the part's name.
     pub(super) looked: Option<(Tick, String)>,
-    /// Number of the LOCATE-OBJ of that look.
+    /// Number of the picture of that look.
     look: u32,
+    /// Parts that are off their places for a reason that no sensor shows, by their numbers.
+    displaced: BTreeMap<u32, NotSensed>,
+    /// Last tick in which the arm had pressure and the robot controller executed the DEPC function.
+    pub(super) up: Tick,
+    /// They did so after the last tick.
+    pub(super) is_up: bool,
 }
 
 impl History {
@@ -61,13 +68,53 @@ impl History {
         }
         let frame = |id: u32| Some((id, cell.t3().arm().tool(), cell.part_frame(id)?));
         self.held = held.and_then(frame);
-        let (command, status) = (&scene.memory.subtask.emove, &scene.memory.emove.status);
-        let located = command.command == EmoveVerb::LocateObj
-            && (status.echo, status.report) == (command.number, StatusReport::Done);
-        if let (true, Some(object)) = (located && command.number != self.look, command.object) {
-            self.look = command.number;
+        let (command, picture) = (&scene.memory.subtask.emove, &scene.memory.emove.vision);
+        let is_asked = picture.picture == Picture::Precise && picture.number != self.look;
+        if let (true, EmoveVerb::LocateObj, Some(object)) = (is_asked, command.command, command.object) {
+            self.look = picture.number;
             self.looked = Some((scene.tick, object.to_string()));
+            let is_other = |id: &u32| cell.part_kind(*id).is_none_or(|kind| kind.name != object.as_str());
+            self.displaced.retain(|id, _| is_other(id));
         }
+        self.is_up = cell.t3().arm().has_pressure() && cell.t3().stage() == Stage::Depc;
+        if self.is_up {
+            self.up = scene.tick;
+        }
+    }
+
+    /// Note that the part that the robot holds, or has released last, is off its place for a reason that no sensor shows.
+    pub fn note_displaced(&mut self, cell: &Cell, why: NotSensed) {
+        if let Some(id) = cell.held().or_else(|| self.released().map(|released| released.id)) {
+            self.displaced.insert(id, why);
+        }
+    }
+
+    /// Note that the part that the robot holds is in its place in the fingers.
+    pub fn note_in_place(&mut self, cell: &Cell) {
+        if let Some(id) = cell.held() {
+            self.displaced.remove(&id);
+        }
+    }
+
+    /// The reason for which a part has been off its place since.
+    pub fn displaced(&self, id: u32) -> Option<NotSensed> {
+        self.displaced.get(&id).copied()
+    }
+
+    /// The reason for which no sensor shows what meets a part: a person has put another one in its way.
+    pub fn occupied(&self, cell: &Cell, id: u32) -> Option<NotSensed> {
+        let half_diagonal = |id: u32| Some(Vector::from(cell.part_kind(id)?.size).norm() / 2.0);
+        let middle = |id: u32| Some((cell.part_frame(id)?.position, half_diagonal(id)?));
+        let (position, radius) = middle(id)?;
+        let meets =
+            |other: &u32| middle(*other).is_some_and(|(at, reach)| apart(&at, &position) <= radius + reach);
+        self.changed.keys().filter(|other| **other != id).any(meets).then_some(NotSensed::Occupied)
+    }
+
+    /// True if the arm has lost its pressure, or the robot controller has failed, so few ticks ago that the process cannot
+    /// have read it yet.
+    pub const fn has_just_failed(&self, tick: Tick, level: Level) -> bool {
+        !self.is_up && tick.since(self.up) <= level.hops()
     }
 
     /// The last part that the robot has released, unless it holds it again.

@@ -55,6 +55,16 @@ pub enum Level {
 }
 
 impl Level {
+    /// Ticks that a reading of the resolvers takes to the process: the hops of the ladder, and one for the line.
+    const fn hops(self) -> u64 {
+        match self {
+            Self::Prim => 2,
+            Self::Emove => 3,
+            Self::Subtask => 4,
+            Self::Task => 5,
+        }
+    }
+
     /// All levels, from the top.
     pub const ALL: [Self; 4] = [Self::Task, Self::Subtask, Self::Emove, Self::Prim];
 }
@@ -79,11 +89,15 @@ pub enum NotSensed {
     /// or it looks the same. The fingers measure one width, the camera recognises an outline.
     EqualPart,
     /// A person has moved, added or taken away the part after the goal's last look at it: the picture of a part that is
-    /// fetched, the opening of the fingers for one that is put down.
+    /// fetched, the opening of the fingers for one that is put down. Or the arm has lost its pressure, or the robot
+    /// controller has failed, fewer ticks ago than a reading takes to the process.
     ChangedAfterLook,
     /// A person has moved the part in a place without pictures: a nest, the vise, the drum. The fingers centre it
     /// between them and measure its width; nothing measures where along the fingers it is.
     NoPicture,
+    /// A person has put a part where another one is put down, or in its way. No picture is taken of a destination: the
+    /// part in the fingers hides it from the camera, and a nest has no view.
+    Occupied,
     /// The status itself names this part of the goal as unconfirmed, because the machine has no sensor for it.
     Unconfirmed,
 }
@@ -96,6 +110,7 @@ impl NotSensed {
             Self::EqualPart => "a part of equal size and picture",
             Self::ChangedAfterLook => "changed after the last look",
             Self::NoPicture => "moved where no picture is taken",
+            Self::Occupied => "its place was occupied by a person",
             Self::Unconfirmed => "reported as unconfirmed",
         }
     }
@@ -231,11 +246,24 @@ impl TruthCheck {
                 continue;
             };
             self.result.judged += 1;
-            let found = order.claims.iter().find_map(|claim| {
-                Some((claim.check(scene, &self.history).err()?, claim.is_covered(unconfirmed(level, scene))))
-            });
-            let Some((Untruth { text, not_sensed }, covered)) = found else { continue };
-            let not_sensed = not_sensed.or_else(|| covered.then_some(NotSensed::Unconfirmed));
+            let mut found = order
+                .claims
+                .iter()
+                .filter_map(|claim| Some((claim, claim.check(scene, &self.history).err()?)));
+            let Some((claim, Untruth { text, not_sensed })) = found.next() else {
+                if order.claims.iter().any(Claim::is_of_grasp) {
+                    self.history.note_in_place(scene.cell);
+                }
+                continue;
+            };
+            let unconfirmed = unconfirmed(level, scene);
+            let covered = claim.is_covered(unconfirmed).then_some(NotSensed::Unconfirmed);
+            let failed = self.history.has_just_failed(scene.tick, level);
+            let lasting = not_sensed.or(covered.filter(|_| unconfirmed == Unconfirmed::PartInFingers));
+            if let (Some(why), true) = (lasting, claim.is_of_part()) {
+                self.history.note_displaced(scene.cell, why);
+            }
+            let not_sensed = not_sensed.or(covered).or(failed.then_some(NotSensed::ChangedAfterLook));
             let verdict = not_sensed.map_or(Verdict::False, Verdict::NotSensed);
             let command = order.text.clone();
             untrue.push(Confirmation { tick: scene.tick.0, level, command, verdict, truth: text });

@@ -63,7 +63,7 @@ pub fn is_held(
         // What a person has put into the way pushes the part along the fingers.
         Some(NotSensed::ChangedAfterLook)
     } else {
-        None
+        history.displaced(id).or_else(|| history.occupied(cell, id))
     };
     Err(Untruth { text, not_sensed })
 }
@@ -90,7 +90,10 @@ pub fn is_placed(cell: &Cell, history: &History, object: &Name16, goal: &Frame) 
     let Some(released) = history.released() else { return Ok(()) };
     let parts = cell.parts();
     let changed = history.is_changed_since(released.id, released.tick);
-    let not_sensed = changed.then_some(NotSensed::ChangedAfterLook);
+    let not_sensed = changed
+        .then_some(NotSensed::ChangedAfterLook)
+        .or_else(|| history.displaced(released.id))
+        .or_else(|| history.occupied(cell, released.id));
     let Some(part) = parts.iter().find(|part| part.id == released.id) else {
         return Err(Untruth { text: format!("{object} is not in the cell"), not_sensed });
     };
@@ -141,8 +144,15 @@ pub fn lies_at(
             && cell.description().part(object.as_str()).is_some_and(|asked| same_width(asked, kind))
     });
     let changed = released.is_some_and(|released| history.is_changed_since(released.id, released.tick));
-    let not_sensed =
-        if changed { Some(NotSensed::ChangedAfterLook) } else { other.then_some(NotSensed::EqualPart) };
+    let not_sensed = if changed {
+        Some(NotSensed::ChangedAfterLook)
+    } else if other {
+        Some(NotSensed::EqualPart)
+    } else {
+        released.and_then(|released| {
+            history.displaced(released.id).or_else(|| history.occupied(cell, released.id))
+        })
+    };
     Err(Untruth { text, not_sensed })
 }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use geometry::frame::{Frame, Vector, rotation_by};
 use interfaces::{
     CommonMemory, HwsCommand, StatusReport, Unconfirmed,
+    device::Picture,
     emove::EmoveVerb,
     hws::HwsReport,
     prim::{PrimReport, PrimVerb},
@@ -168,6 +169,82 @@ fn a_part_that_is_released_beside_its_goal_is_not_placed() {
     };
     assert_eq!(bench.check(&beside(0.2)), Ok(()));
     assert_eq!(bench.not_sensed(&beside(0.3)), None);
+}
+
+#[test]
+fn a_part_at_its_place_beside_another_that_a_person_has_put_there_is_not_sensed() {
+    let mut bench = Bench::new();
+    let id = bench.put("LINKBAR1_BH", "UNIT_1", 4);
+    bench.release(id);
+    let tool = bench.tool();
+    let goal = Frame { position: tool.position + Vector::new(0.3, 0.0, 0.0), ..tool };
+    let placed = Claim::Placed { object: name("LINKBAR1_BH"), goal };
+    assert_eq!(bench.not_sensed(&placed), None, "the robot was not at its goal");
+    // The part has moved since.
+    let placed = Claim::Placed { object: name("LINKBAR1_BH"), goal: tool };
+    bench.history.released.as_mut().expect("it was released").part.position.x += 1.0;
+    assert_eq!(bench.not_sensed(&placed), None, "nobody has put anything there");
+    let far = bench.put("LINKBAR1", "UNIT_1", 1);
+    bench.history.note_changed(Tick(1), [far]);
+    assert_eq!(bench.not_sensed(&placed), None, "the other part is out of reach");
+    let other = bench.cell.next_part_number();
+    let frame = bench.cell.part_frame(id).expect("it is in the cell");
+    let above = Frame { position: frame.position + Vector::new(0.0, 0.0, 3.0), ..frame };
+    let put = WorkstationAction::Put { part: "LINKBAR1".into(), frame: above };
+    bench.cell.workstation(&put).expect("nothing is in the way");
+    bench.history.note_changed(Tick(1), [other]);
+    assert_eq!(bench.not_sensed(&placed), Some(NotSensed::Occupied));
+}
+
+#[test]
+fn a_part_that_was_grasped_off_its_place_for_an_unsensed_reason_is_placed_so() {
+    let mut bench = Bench::new();
+    let id = bench.put("LINKBAR1_BH", "UNIT_1", 4);
+    bench.release(id);
+    bench.history.released.as_mut().expect("it was released").part.position.x += 1.0;
+    let placed = Claim::Placed { object: name("LINKBAR1_BH"), goal: bench.tool() };
+    assert_eq!(bench.not_sensed(&placed), None);
+    bench.history.note_displaced(&bench.cell, NotSensed::NoPicture);
+    assert_eq!(bench.not_sensed(&placed), Some(NotSensed::NoPicture));
+    // A picture shows where the part is.
+    bench.memory.subtask.emove.command = EmoveVerb::LocateObj;
+    bench.memory.subtask.emove.object = Some(name("LINKBAR1_BH"));
+    bench.memory.emove.vision.number = 1;
+    bench.memory.emove.vision.picture = Picture::Precise;
+    let mut history = bench.history.clone();
+    let data = &bench.store.view();
+    history.look(&Scene { tick: TICK, hws: &bench.hws, memory: &bench.memory, data, cell: &bench.cell });
+    assert_eq!(history.displaced(id), None);
+    assert_eq!(history.looked, Some((TICK, "LINKBAR1_BH".to_owned())));
+}
+
+#[test]
+fn what_has_failed_within_the_age_of_a_reading_is_not_sensed() {
+    let mut bench = Bench::new();
+    bench.history.is_up = true;
+    assert!(!bench.history.has_just_failed(Tick(1), Level::Prim), "nothing has failed");
+    (bench.history.up, bench.history.is_up) = (Tick(0), false);
+    let ages = [(Level::Prim, 2), (Level::Emove, 3), (Level::Subtask, 4), (Level::Task, 5)];
+    for (level, age) in ages {
+        assert!(bench.history.has_just_failed(Tick(age), level), "{level}");
+        assert!(!bench.history.has_just_failed(Tick(age + 1), level), "{level}");
+    }
+}
+
+#[test]
+fn a_place_in_the_fingers_that_is_reported_as_unconfirmed_covers_what_follows_from_it() {
+    let place = ("UNIT_1".into(), 4);
+    let claims = [
+        Claim::Holds { object: name("LINKBAR1"), place: Vec::new(), unseen: false },
+        Claim::LiesAt { object: name("LINKBAR1"), place },
+        Claim::InDrum(name("DRILL-2")),
+    ];
+    for claim in claims {
+        assert!(claim.is_covered(Unconfirmed::PartInFingers), "{claim:?}");
+    }
+    for claim in [Claim::HoldsNothing, Claim::Wears(1), Claim::HoldsAlone] {
+        assert!(!claim.is_covered(Unconfirmed::PartInFingers), "{claim:?}");
+    }
 }
 
 #[test]

@@ -4,8 +4,8 @@ use geometry::frame::Vector;
 use interfaces::{
     Reason, Unconfirmed,
     emove::{
-        EmoveVerb::{GraspObj, MovObjTo, MovToLoc, Release, Withdraw},
-        Offset,
+        EmoveVerb::{GraspObj, LocateObj, MovObjTo, MovToLoc, MovToObj, MovToVu, Release, Withdraw},
+        Offset, Seat,
     },
 };
 
@@ -59,4 +59,64 @@ fn only_the_parts_gripper_confirms_the_grasp_force() {
         assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
         assert_eq!(bench.memory.emove.status.unconfirmed, Unconfirmed::None, "{object}");
     }
+}
+
+/// The seat of an object on which the fingers have closed, when a person has led the robot since, and the robot grasps it
+/// again, brings it to the vise and fetches it anew.
+#[test]
+fn part_with_which_a_person_has_led_the_robot_has_no_confirmed_place_in_the_fingers() {
+    for (gripper, object, size, sensed) in
+        [(1, "BLOCK", 75, Unconfirmed::None), (2, "SHAFT", 204, Unconfirmed::GraspForce)]
+    {
+        let mut bench = Bench::ready("HOME", gripper);
+        bench.world.object = Some(size);
+        assert_eq!(bench.run(GraspObj, object, 1, "HOME", gripper), DONE);
+        assert_eq!(bench.memory.emove.status.unconfirmed, sensed, "{object}");
+        bench.world.joystick = true;
+        bench.steps(5);
+        bench.world.joystick = false;
+        bench.pause();
+        assert_eq!(bench.memory.emove.status.seat, Seat::NotKnown, "{object}");
+        for (verb, location) in [(GraspObj, "HOME"), (MovObjTo, "VISE")] {
+            assert_eq!(bench.run(verb, object, 1, location, gripper), DONE, "{object} {verb}");
+            assert_eq!(bench.memory.emove.status.unconfirmed, Unconfirmed::PartInFingers, "{object} {verb}");
+        }
+        assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
+        assert_eq!(bench.memory.emove.status.seat, Seat::NotKnown, "as it was placed");
+        bench.world.object = Some(size);
+        assert_eq!(bench.run(GraspObj, object, 1, "VISE", gripper), DONE);
+        assert_eq!(
+            bench.memory.emove.status.unconfirmed,
+            Unconfirmed::PartInFingers,
+            "it lies as it was held"
+        );
+    }
+}
+
+#[test]
+fn picture_shows_where_a_part_is_that_was_let_go_with_an_unknown_place_in_the_fingers() {
+    let mut bench = Bench::ready("BENCH", 1);
+    bench.world.object = Some(75);
+    assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
+    bench.world.joystick = true;
+    bench.steps(5);
+    bench.world.joystick = false;
+    bench.pause();
+    for verb in [Release, MovToVu, LocateObj, MovToObj] {
+        assert_eq!(bench.run(verb, "BLOCK", 1, "BENCH", 1), DONE, "{verb}");
+        assert_eq!(bench.memory.emove.status.seat, Seat::NotKnown, "{verb}");
+    }
+    bench.world.object = Some(75);
+    assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
+    assert_eq!(bench.memory.emove.status.unconfirmed, Unconfirmed::None);
+}
+
+#[test]
+fn empty_fingers_have_nothing_that_slides() {
+    let mut bench = Bench::ready("HOME", 1);
+    bench.world.joystick = true;
+    bench.steps(5);
+    bench.world.joystick = false;
+    bench.pause();
+    assert_eq!(bench.memory.emove.status.seat, Seat::Kept);
 }

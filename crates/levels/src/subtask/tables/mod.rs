@@ -20,7 +20,7 @@ pub mod remove_tool;
 pub mod s_pause;
 pub mod variables;
 
-use interfaces::{Reason, subtask::SubtaskVerb};
+use interfaces::{Reason, emove::Seat, subtask::SubtaskVerb};
 use rcs_core::{
     Actions, Variables, commands,
     handshake::{Arrival, Lower},
@@ -91,6 +91,8 @@ pub struct Situation {
     pub held: Held,
     /// With which grip?
     pub grip: GripHeld,
+    /// Where is it along the fingers?
+    pub seat: Seat,
     /// Is vision needed?
     pub vision: Vision,
     /// End effector state.

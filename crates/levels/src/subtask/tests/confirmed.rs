@@ -2,7 +2,7 @@
 
 use interfaces::{
     Reason, StatusReport, Unconfirmed,
-    emove::{EmoveVerb, Holding, ObjectGrip, Offset},
+    emove::{EmoveVerb, Holding, ObjectGrip, Offset, Seat},
     subtask::SubtaskVerb,
 };
 use rcs_core::name::Name16;
@@ -105,4 +105,21 @@ fn tool_that_is_not_in_the_drum_is_not_inserted() {
     assert_eq!(bench.memory.subtask.status.unconfirmed, Unconfirmed::ToolInDrum);
     assert_eq!(bench.run(SubtaskVerb::RemoveTool, "TOOL-1", (1, 1), ""), DONE);
     assert_eq!(bench.memory.subtask.status.unconfirmed, Unconfirmed::GraspForce);
+}
+
+#[test]
+fn part_that_may_have_slid_is_done_and_unconfirmed() {
+    let mut bench = Bench::grasped("PART", 1);
+    bench.emove.outputs.status.seat = Seat::NotKnown;
+    bench.step();
+    for (verb, location) in [
+        (SubtaskVerb::GetObject, "PFIXTURE"),
+        (SubtaskVerb::MoveObjToDest, "SAFE"),
+        (SubtaskVerb::PlaceObj, "SAFE"),
+    ] {
+        assert_eq!(bench.run(verb, "PART", (1, 1), location), DONE, "{verb}");
+        assert_eq!(bench.memory.subtask.status.unconfirmed, Unconfirmed::PartInFingers, "{verb}");
+    }
+    assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "HOME"), DONE);
+    assert_eq!(bench.memory.subtask.status.unconfirmed, Unconfirmed::None);
 }

@@ -3,8 +3,8 @@
 
 use geometry::pose::Pose;
 use interfaces::{
-    ChangingPose, Reason, StatusReport,
-    emove::{EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Standing},
+    ChangingPose, Reason, StatusReport, Unconfirmed,
+    emove::{EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Seat, Standing},
     grip::Felt,
     operator::HandOrder,
     pedestal::{PedestalReport, PedestalVerb},
@@ -457,6 +457,34 @@ fn what_vision_has_found_is_not_looked_for_again() {
     assert_eq!(bench.sent(), ["MOV-TO-OBJ", "GRASP-OBJ"]);
 }
 
+/// A robot at BAR, which lies where pictures are taken: a person has led the robot with BAR between the fingers.
+fn led_with_a_part(held: Holding) -> Bench<'static> {
+    let mut bench = Bench::default();
+    assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
+    bench.emove.received.clear();
+    let status = &mut bench.emove.outputs.status;
+    (status.held, status.seat) = (held, Seat::NotKnown);
+    bench.step();
+    bench
+}
+
+#[test]
+fn object_that_may_have_slid_is_released_and_located_again_where_pictures_are_taken() {
+    let object = Holding::Object(ObjectGrip { object: Name16::new("BAR").unwrap(), grip: 1 });
+    for held in [object, Holding::Something] {
+        let mut bench = led_with_a_part(held);
+        assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE, "{held:?}");
+        assert_eq!(bench.sent(), ["RELEASE", "MOV-TO-VU", "LOCATE-OBJ", "MOV-TO-OBJ", "GRASP-OBJ"]);
+    }
+    // Elsewhere it would fall.
+    let mut bench = led_with_a_part(object);
+    bench.emove.outputs.status.at = None;
+    bench.step();
+    assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
+    assert_eq!(bench.sent(), ["GRASP-OBJ"]);
+    assert_eq!(bench.memory.subtask.status.unconfirmed, Unconfirmed::PartInFingers);
+}
+
 /// GET-OBJECT whose pictures are lost on the way to the object.
 pub fn pictures_lost() -> Bench<'static> {
     let mut bench = Bench::default();
@@ -779,6 +807,9 @@ pub(super) fn all_rows(rows: &mut Coverage) {
     refused_orders(rows);
     manual_release(rows);
     rows.append(&mut without_task_after(10).rows);
+    let mut bench = led_with_a_part(Holding::Something);
+    bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1");
+    rows.append(&mut bench.rows);
     let mut bench = Bench::grasped("PART", 1);
     bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE");
     bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE");

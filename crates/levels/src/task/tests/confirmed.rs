@@ -2,7 +2,7 @@
 
 use interfaces::{
     Reason, StatusReport, Unconfirmed,
-    emove::{Holding, ObjectGrip, Offset},
+    emove::{Holding, ObjectGrip, Offset, Seat},
     hws::HwsReport,
     subtask::{SubtaskStatus, SubtaskVerb},
 };
@@ -95,5 +95,17 @@ fn tool_in_the_drum_is_finished_and_unconfirmed() {
     assert_eq!(bench.run("RELEASE-TOOL TOOL-1 +1 -- 0 0 -- 0 TOOL-SAFE 0"), FINISHED);
     assert_eq!(bench.memory.task.status.unconfirmed, Unconfirmed::ToolInDrum);
     assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+    assert_eq!(bench.memory.task.status.unconfirmed, Unconfirmed::None);
+}
+
+#[test]
+fn part_that_may_have_slid_is_finished_and_unconfirmed() {
+    let mut bench = Bench::default();
+    bench.set(1, "PART", "PFIXTURE");
+    bench.subtask.outputs.status.seat = Seat::NotKnown;
+    bench.step();
+    assert_eq!(bench.run("MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0"), FINISHED);
+    assert_eq!(bench.memory.task.status.unconfirmed, Unconfirmed::PartInFingers);
+    assert_eq!(bench.run("MOVE -- 0 -- 0 0 HOME 0 -- 0"), FINISHED);
     assert_eq!(bench.memory.task.status.unconfirmed, Unconfirmed::None);
 }
