@@ -12,7 +12,7 @@ use std::{
 use interfaces::HwsCommand;
 use neighbours::{
     data_system::{
-        Server, Store, command,
+        Records as _, Server, Store, command,
         status::{Refusal, ServerStatus, Status, Summary},
     },
     mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox},

@@ -8,7 +8,7 @@ use std::{
     time::Duration,
 };
 
-use neighbours::data_system::{Item, Store};
+use neighbours::data_system::{Item, Records as _, Store};
 use serde_json::Value;
 
 const CONNECT: &str = "== STARTUP -- +0 -- 0 +0 -- 0 -- 0\n";

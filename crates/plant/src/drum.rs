@@ -54,7 +54,7 @@ pub struct Pocketed {
 }
 
 /// The drum.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Drum {
     #[serde(with = "crate::image::frame")]
     frame: Frame,

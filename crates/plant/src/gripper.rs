@@ -157,7 +157,7 @@ impl Air {
 }
 
 /// The gripper's bodies, air and hold.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Gripper {
     description: Description,
     /// Opening and force.

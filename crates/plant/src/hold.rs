@@ -68,7 +68,7 @@ struct Limits {
 }
 
 /// A part between two pads.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Hold {
     joint: ImpulseJointHandle,
     pads: RigidBodyHandle,

@@ -75,6 +75,7 @@ pub mod squeeze;
 pub mod swept;
 pub mod t3;
 pub mod vise;
+mod world;
 
 pub use cell::{
     Cell, CellError, CellEvent, Droop, Holders, Link, Placement, RestoreError, RingState, SaveError,

@@ -18,7 +18,7 @@ const FRICTION: Real = 0.30;
 const ROLLING: Real = 2.0;
 
 /// A part in the cell.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Part {
     /// Its present kind.
     pub kind: PartType,

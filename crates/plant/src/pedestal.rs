@@ -167,7 +167,7 @@ impl RotaryTable {
 }
 
 /// Hand and table.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Pedestal {
     /// The hand; its tool frame has X up, Y across the fingers.
     pub hand: Gripper,

@@ -54,7 +54,7 @@ impl ViseProgram {
 }
 
 /// The vise.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Vise {
     description: Description,
     #[serde(with = "crate::image::frame")]

@@ -30,6 +30,7 @@ pub struct Emergency {
 }
 
 /// The cell, with its emergencies and failures.
+#[derive(Clone)]
 pub struct SimulatedWorkstation {
     /// The cell.
     pub cell: Cell,
@@ -56,15 +57,10 @@ pub struct WorkstationState {
 impl SimulatedWorkstation {
     /// A workstation with a cell.
     pub fn new(cell: Cell) -> Self {
-        Self::with_state(cell, WorkstationState::default())
+        Self { cell, state: WorkstationState::default() }
     }
 
-    /// A workstation with a restored cell and the state that was saved with it.
-    pub const fn with_state(cell: Cell, state: WorkstationState) -> Self {
-        Self { cell, state }
-    }
-
-    /// State to save with the cell.
+    /// Its state in addition to the cell.
     pub const fn state(&self) -> &WorkstationState {
         &self.state
     }

@@ -1,15 +1,13 @@
 //! A run that can be forked: controller, cell, line, mailboxes and Data System, without log, clock, network and shared
 //! memory.
 //!
-//!
 //! A tick of a [`Branch`] does what a tick of `rcs-run run` does with the fast clock and the simulated robot, in the
-//! same order, so that both have the same digest. A [`Fork`] is the state between two ticks. Any number of branches can
-//! continue from it, each in its own thread.
+//! same order, so that both have the same digest. Any number of copies can continue from a state, each in its own
+//! thread.
 
 use std::{
     convert::Infallible,
     fmt::{self, Write as _},
-    sync::Arc,
 };
 
 use depc::fault::{Direction, FaultKind, Injector, Plan, Rule};
@@ -20,12 +18,12 @@ use executive::{
     generations::is_busy,
 };
 use interfaces::{
-    CommonMemory, DataBaseCommand, DeviceInputs, DeviceOutputs, ExternalInputs, HwsCommand, OperatorInputs,
-    OutsidePedestal, device::LinkBytes,
+    CommonMemory, DeviceInputs, DeviceOutputs, ExternalInputs, HwsCommand, OperatorInputs, OutsidePedestal,
+    device::LinkBytes,
 };
 use levels::ladder::{Ladder, LadderState, ProcessId};
 use neighbours::{
-    data_system::{self, ANSWER_TICKS, DataSystem, Item, Pace},
+    data_system::{ANSWER_TICKS, DataSystem, InMemory, Item},
     mailbox::{HWSC_COMMAND, Mailbox},
     workstation::{
         Gate, Unchecked, command,
@@ -45,7 +43,7 @@ use runtime::{
     contacts::{ContactCheck, FREE},
     neighbours::task_state,
     truth::{Confirmation, Scene, TruthCheck},
-    workstation::{SimulatedWorkstation, WorkstationState},
+    workstation::SimulatedWorkstation,
 };
 
 use super::past;
@@ -166,15 +164,14 @@ struct Control {
     /// Generation of the task data, and the requested reloads that wait for the end of a command.
     generation: u32,
     asked: Vec<u32>,
-    /// Statements that Task has sent to the Data System, with their ticks.
-    told: Vec<(Tick, DataBaseCommand)>,
 }
 
-/// A run that continues from a tick.
+/// A run between two ticks. A copy continues from the same state.
+#[derive(Clone)]
 pub struct Branch<'f> {
     facility: &'f Facility,
     control: Control,
-    data_system: DataSystem,
+    data_system: DataSystem<InMemory>,
     /// The cell and the workstation's other equipment.
     pub workstation: SimulatedWorkstation,
     /// Events in the cell in the last tick.
@@ -183,18 +180,11 @@ pub struct Branch<'f> {
     pub untrue: Vec<Confirmation>,
 }
 
-/// The state of a branch between two ticks.
-pub struct Fork {
-    control: Control,
-    workstation: WorkstationState,
-    cell: Arc<[u8]>,
-}
-
 impl<'f> Branch<'f> {
     /// The run before its first tick.
     ///
     /// # Errors
-    /// [`Error`] if the cell or its data base cannot be built.
+    /// [`Error`] if the cell cannot be built.
     pub fn start(facility: &'f Facility) -> Result<Self, Error> {
         let cell = Cell::new(&facility.description, facility.seed).map_err(StartError::from)?;
         let control = Control {
@@ -208,56 +198,12 @@ impl<'f> Branch<'f> {
             line: RobotLine::default(),
             generation: 0,
             asked: Vec::new(),
-            told: Vec::new(),
         };
         Ok(Self {
             facility,
             control,
-            data_system: data_system()?,
+            data_system: DataSystem::in_memory(ANSWER_TICKS),
             workstation: SimulatedWorkstation::new(cell),
-            events: Vec::new(),
-            untrue: Vec::new(),
-        })
-    }
-
-    /// The state after the last tick.
-    ///
-    /// # Errors
-    /// [`Error::Fork`] if the cell cannot be saved.
-    pub fn fork(&self) -> Result<Fork, Error> {
-        let cell = self.workstation.cell.save().map_err(|error| Error::Fork(error.to_string()))?;
-        Ok(Fork {
-            control: self.control.clone(),
-            workstation: self.workstation.state().clone(),
-            cell: cell.into(),
-        })
-    }
-
-    /// A branch that continues from a state.
-    ///
-    /// # Errors
-    /// [`Error`] if the cell or its data base cannot be built.
-    pub fn resume(facility: &'f Facility, fork: &Fork) -> Result<Self, Error> {
-        let cell = Cell::restore(&facility.description, &fork.cell)
-            .map_err(|error| Error::Fork(error.to_string()))?;
-        let mut data_system = data_system()?;
-        for (place, (tick, command)) in fork.control.told.iter().enumerate() {
-            data_system.step(*tick, command);
-            let next = fork
-                .control
-                .told
-                .get(place + 1)
-                .map_or(fork.control.course.tick(), |(next, _)| next.previous());
-            let answered = Tick(tick.0.saturating_add(ANSWER_TICKS));
-            if answered <= next {
-                data_system.step(answered, command);
-            }
-        }
-        Ok(Self {
-            facility,
-            control: fork.control.clone(),
-            data_system,
-            workstation: SimulatedWorkstation::with_state(cell, fork.workstation.clone()),
             events: Vec::new(),
             untrue: Vec::new(),
         })
@@ -287,7 +233,8 @@ impl<'f> Branch<'f> {
         }
         control.inputs = control.line.advance(control.course.tick(), &mut self.workstation.cell, &outputs);
         self.observe();
-        self.tell_data_system();
+        let course = &self.control.course;
+        self.data_system.step(course.tick(), &course.memory().task.data_base);
         self.exchange(commander);
         self.control.inputs.vision = self.workstation.cell.inputs().vision;
         self.reload();
@@ -306,15 +253,6 @@ impl<'f> Branch<'f> {
         self.untrue = control.truth.look(&Scene { tick, hws, memory, data, cell });
         // What passes by without a touch is of no interest here.
         self.workstation.cell.watch_clearance(FREE);
-    }
-
-    fn tell_data_system(&mut self) {
-        let control = &mut self.control;
-        let (tick, command) = (control.course.tick(), control.course.memory().task.data_base);
-        if control.told.last().is_none_or(|(_, last)| last.number != command.number) {
-            control.told.push((tick, command));
-        }
-        self.data_system.step(tick, &command);
     }
 
     /// Pass Task's status to the commander, and its command to Task.
@@ -444,8 +382,7 @@ impl<'f> Branch<'f> {
     /// [`Error::Fork`] if the cell cannot be saved.
     pub fn state(&self, beside: &impl fmt::Debug) -> Result<Digest, Error> {
         let cell = self.workstation.cell.save().map_err(|error| Error::Fork(error.to_string()))?;
-        let Control { course, gate, command_box, check, inputs, line, generation, asked, told, .. } =
-            &self.control;
+        let Control { course, gate, command_box, check, inputs, line, generation, asked, .. } = &self.control;
         let (mut memory, mut ladder) = (*course.memory(), self.ladder());
         let command = gate.command();
         past::forget(&mut memory, &mut ladder, self.at());
@@ -458,12 +395,9 @@ impl<'f> Branch<'f> {
         digest.add_record(&memory, &mut scratch);
         digest.add_record(&ladder, &mut scratch);
         digest.add_record(inputs, &mut scratch);
-        // An older statement has been answered.
-        let age = told.last().map(|(tick, _)| self.at().since(*tick).min(ANSWER_TICKS + 1));
-        let statements: Vec<_> = told.iter().map(|(_, command)| command).collect();
         let command = HwsCommand { number: 0, ..*command };
         let mailboxes = (command, gate.refused(), gate.unread(command_box), line, &course.levels().processes);
-        let data = (generation, asked, statements, age, self.data_system.status());
+        let data = (generation, asked, self.data_system.state(self.at()));
         let all = (mailboxes, data, check.state(), self.workstation.state(), beside);
         // Writing into a digest cannot fail.
         let _ = write!(Text(&mut digest), "{all:?}");
@@ -509,9 +443,4 @@ impl fmt::Write for Text<'_> {
 fn data(facility: &Facility, generation: u32) -> TaskData<'_> {
     let reload = usize::try_from(generation).ok().and_then(|number| number.checked_sub(1));
     reload.and_then(|at| facility.job.reloads.get(at)).map_or(&facility.store, |reload| &reload.store).view()
-}
-
-fn data_system() -> Result<DataSystem, Error> {
-    let items = data_system::Store::in_memory().map_err(StartError::from)?;
-    Ok(DataSystem::new(items, ANSWER_TICKS, Pace::Wait))
 }

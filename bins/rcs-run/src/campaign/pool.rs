@@ -7,7 +7,7 @@ use std::{
 };
 
 use super::{
-    branch::{Branch, Facility, Fork},
+    branch::{Branch, Facility},
     coverage::Coverage,
     known::Known,
     parent::{Parent, emulator},
@@ -28,7 +28,7 @@ pub struct Plan {
 }
 
 /// A forked state, and the index of the plan that begins with it.
-type Work = (Arc<Fork>, usize);
+type Work<'f> = (Arc<Branch<'f>>, usize);
 
 /// Run a branch for each plan, up to a known state. Calls `done` with each new result and what the branch has met; what
 /// it returns is collected in the order of the plans, which does not depend on `threads`.
@@ -45,7 +45,7 @@ pub fn run<T: Send>(
 ) -> Result<Vec<T>, Error> {
     let collected = Mutex::new(Vec::with_capacity(plans.len()));
     // A branch takes longer than a fork, so the queue of forks is bounded.
-    let (send, receive) = mpsc::sync_channel::<Work>(2 * threads);
+    let (send, receive) = mpsc::sync_channel::<Work<'_>>(2 * threads);
     let receive = Mutex::new(receive);
     let outcome = thread::scope(|scope| {
         let workers: Vec<_> = (0..threads)
@@ -94,11 +94,15 @@ pub fn run<T: Send>(
 }
 
 /// The next fork; `None` if there are no more.
-fn next(receive: &Mutex<mpsc::Receiver<Work>>) -> Option<Work> {
+fn next<'f>(receive: &Mutex<mpsc::Receiver<Work<'f>>>) -> Option<Work<'f>> {
     receive.lock().ok()?.recv().ok()
 }
 
-fn fork_all(facility: &Facility, plans: &[Plan], send: mpsc::SyncSender<Work>) -> Result<(), Error> {
+fn fork_all<'f>(
+    facility: &'f Facility,
+    plans: &[Plan],
+    send: mpsc::SyncSender<Work<'f>>,
+) -> Result<(), Error> {
     let mut branch = Branch::start(facility)?;
     let mut hwsc = emulator(facility);
     let mut order: Vec<usize> = (0..plans.len()).collect();
@@ -107,7 +111,7 @@ fn fork_all(facility: &Facility, plans: &[Plan], send: mpsc::SyncSender<Work>) -
         while branch.at().0 < plans[same[0]].at {
             branch.tick(&mut hwsc);
         }
-        let fork = Arc::new(branch.fork()?);
+        let fork = Arc::new(branch.clone());
         for at in same {
             // The receiver lives longer than the workers.
             let _ = send.send((Arc::clone(&fork), *at));
@@ -120,11 +124,11 @@ fn fork_all(facility: &Facility, plans: &[Plan], send: mpsc::SyncSender<Work>) -
 ///
 /// # Errors
 /// [`Error`] if the run cannot be forked.
-pub fn fork_at(facility: &Facility, tick: u64) -> Result<Fork, Error> {
+pub fn fork_at(facility: &Facility, tick: u64) -> Result<Branch<'_>, Error> {
     let mut branch = Branch::start(facility)?;
     let mut hwsc = emulator(facility);
     while branch.at().0 < tick {
         branch.tick(&mut hwsc);
     }
-    branch.fork()
+    Ok(branch)
 }

@@ -10,7 +10,7 @@ use rcs_core::{digest::Digest, tick::Tick};
 use taskdata::load::{Job, Source};
 
 use super::{
-    branch::{Branch, Commander, Facility, Fork},
+    branch::{Branch, Commander, Facility},
     coverage::Coverage,
     interruption::Kind,
     journal::{self, Journal},
@@ -97,8 +97,8 @@ fn a_fork_goes_on_as_its_parent_bit_for_bit() {
         while branch.at() < Tick(fork_at) {
             branch.tick(&mut hwsc);
         }
-        let fork = branch.fork().expect("the cell can be saved");
-        let mut other = Branch::resume(&facility, &fork).expect("the cell can be restored");
+        let fork = branch.clone();
+        let mut other = fork.clone();
         assert_eq!(fingerprint(&other), fingerprint(&branch), "at tick {fork_at}");
         for _ in 0..35 {
             let mut tape = Tape { hwsc: &mut hwsc, sent: None };
@@ -112,22 +112,27 @@ fn a_fork_goes_on_as_its_parent_bit_for_bit() {
     }
 }
 
-/// An undisturbed move of the empty robot, and a state of it that a test can change.
-fn empty_move() -> (Facility, Parent, Fork) {
+/// An undisturbed move of the empty robot.
+fn empty_move() -> (Facility, Parent) {
     let facility = with_job("== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n");
     let parent = Parent::run(&facility).expect("the job finishes");
-    let fork = pool::fork_at(&facility, 120).expect("the run can be forked");
-    (facility, parent, fork)
+    (facility, parent)
 }
 
-fn judged(facility: &Facility, parent: &Parent, fork: &Fork, text: &str) -> BranchResult {
+/// A state of [`empty_move`] that a test can change.
+fn under_way(facility: &Facility) -> Branch<'_> {
+    pool::fork_at(facility, 120).expect("the run can be forked")
+}
+
+fn judged(facility: &Facility, parent: &Parent, fork: &Branch<'_>, text: &str) -> BranchResult {
     let series = series(facility, text);
     trial::run(facility, parent, fork, &series, PROCEDURE, None, &mut NoObserver).expect("the fork goes on")
 }
 
 #[test]
 fn an_undisturbed_branch_is_done() {
-    let (facility, parent, fork) = empty_move();
+    let (facility, parent) = empty_move();
+    let fork = under_way(&facility);
     let result = judged(&facility, &parent, &fork, "none");
     assert_eq!((result.verdict, result.detail.as_str()), (Verdict::Done, ""));
     assert_eq!((result.at, result.until), (120, parent.ticks));
@@ -136,11 +141,12 @@ fn an_undisturbed_branch_is_done() {
 
 #[test]
 fn a_command_that_finishes_while_it_is_replaced_or_the_box_is_on_is_not_sent_again() {
-    let (facility, parent, fork) = empty_move();
+    let (facility, parent) = empty_move();
+    let fork = under_way(&facility);
     let last =
         (1..parent.ticks).rfind(|tick| parent.line_at(Tick(*tick)).0 == 1).expect("it has a first line");
     let at_end = pool::fork_at(&facility, last).expect("the run can be forked");
-    let sent_again = |fork: &Fork, interruption: &str| {
+    let sent_again = |fork: &Branch<'_>, interruption: &str| {
         let result = judged(&facility, &parent, fork, interruption);
         assert_eq!((result.verdict, result.detail.as_str()), (Verdict::Done, ""));
         result.ended.iter().any(|ended| ended.contains("SAFE"))
@@ -166,18 +172,19 @@ fn a_shutdown_that_is_replaced_by_a_move_is_done() {
 /// A part in the path of the hand: the report names the contact, the tick and the command.
 #[test]
 fn the_monitor_finds_a_contact_that_was_planted() {
-    let (facility, parent, fork) = empty_move();
-    let mut branch = Branch::resume(&facility, &fork).expect("the cell can be restored");
+    let (facility, parent) = empty_move();
+    let fork = under_way(&facility);
+    let mut branch = fork.clone();
     let ahead = {
         let mut commander = Playback(None);
-        let mut scout = Branch::resume(&facility, &fork).expect("the cell can be restored");
+        let mut scout = fork.clone();
         (0..60).for_each(|_| scout.tick(&mut commander));
         scout.workstation.cell.tool().position
     };
     let frame = Frame { position: ahead, ..Frame::identity() };
     let put = WorkstationAction::Put { part: "LCLEVIS_BH".into(), frame };
     branch.workstation.cell.workstation(&put).expect("there is room for it");
-    let planted = branch.fork().expect("the cell can be saved");
+    let planted = branch.clone();
     let result = judged(&facility, &parent, &planted, "none");
     assert_eq!(result.verdict, Verdict::Hurt);
     assert!(result.detail.contains("LCLEVIS_BH") && result.detail.contains("MOV-TO-LOC"), "{result:?}");
@@ -187,8 +194,9 @@ fn the_monitor_finds_a_contact_that_was_planted() {
 /// A part at a place where no command has put it: every command finishes, and the world differs.
 #[test]
 fn the_monitor_finds_a_world_that_is_unlike_what_a_command_says() {
-    let (facility, parent, fork) = empty_move();
-    let mut branch = Branch::resume(&facility, &fork).expect("the cell can be restored");
+    let (facility, parent) = empty_move();
+    let fork = under_way(&facility);
+    let mut branch = fork.clone();
     let place = WorkstationAction::Place {
         part: "LINKBAR1_BH".into(),
         unit: "UNIT_1".into(),
@@ -196,7 +204,7 @@ fn the_monitor_finds_a_world_that_is_unlike_what_a_command_says() {
         placement: Placement::Random,
     };
     branch.workstation.cell.workstation(&place).expect("the tray is empty");
-    let planted = branch.fork().expect("the cell can be saved");
+    let planted = branch.clone();
     let result = judged(&facility, &parent, &planted, "none");
     assert_eq!(result.verdict, Verdict::Hurt);
     assert_eq!(result.reason, "MOVE is finished, but 1 parts in the cell, not 0");
@@ -227,7 +235,7 @@ fn plans(facility: &Facility, parent: &Parent, texts: &[&str], step: u64) -> Vec
 
 #[test]
 fn all_threads_give_the_same_judgements_in_the_same_order() {
-    let (facility, parent, _) = empty_move();
+    let (facility, parent) = empty_move();
     let plans = plans(&facility, &parent, &["pause", "refused", "hold+5:pause"], 60);
     let campaign = |threads: usize| {
         let run = pool::run(&facility, &parent, &plans, threads, None, &|result, met| Ok((result, met)));
@@ -250,7 +258,7 @@ fn all_threads_give_the_same_judgements_in_the_same_order() {
 
 #[test]
 fn a_branch_in_a_known_state_ends_as_if_it_went_on() {
-    let (facility, parent, _) = empty_move();
+    let (facility, parent) = empty_move();
     let quiet = ["fault:camera-blind", "fault:bytes-lost", "restart:tool_grip", "held:task"];
     let delayed = ["hold", "answer-lost", "restart:prim", "restart:table", "pause", "pause+9:hold"];
     let plans = plans(&facility, &parent, &[&quiet[..], &delayed].concat(), 30);
@@ -272,7 +280,7 @@ fn a_branch_in_a_known_state_ends_as_if_it_went_on() {
 /// A campaign that was killed while it wrote a line continues after the last complete line.
 #[test]
 fn a_campaign_goes_on_from_its_journal() {
-    let (facility, parent, _) = empty_move();
+    let (facility, parent) = empty_move();
     let plan = |at| Plan { at, series: series(&facility, "pause"), procedure: PROCEDURE };
     let plans = [60, 120].map(plan);
     let directory = tempfile::tempdir().expect("there is room");
@@ -338,7 +346,7 @@ const CALIBRATED: u64 = 150;
 
 #[test]
 fn every_stop_brings_the_robot_to_rest_from_every_state() {
-    let (facility, parent, _) = empty_move();
+    let (facility, parent) = empty_move();
     let procedure = Procedure { until: Until::Rest, ..PROCEDURE };
     let forks = parent.forks(&Ticks::States);
     assert!(forks.len() > 20, "{} states", forks.len());
@@ -358,7 +366,7 @@ fn every_stop_brings_the_robot_to_rest_from_every_state() {
 
 #[test]
 fn a_branch_that_is_judged_at_rest_ends_with_a_stop() {
-    let (facility, parent, _) = empty_move();
+    let (facility, parent) = empty_move();
     let named = |text| Kind::named(text, Path::new(DATA), &facility.description).expect("it is known");
     let kinds = [named("all"), named("cut"), named("lost")].concat();
     let procedure = Procedure { until: Until::Rest, ..PROCEDURE };
@@ -374,7 +382,7 @@ fn a_branch_that_is_judged_at_rest_ends_with_a_stop() {
 
 #[test]
 fn forks_are_where_something_changes() {
-    let (_, parent, _) = empty_move();
+    let (_, parent) = empty_move();
     let (every, changes) = (parent.forks(&Ticks::Every(50)), parent.forks(&Ticks::Changes));
     assert!(every.iter().all(|tick| tick % 50 == 0) && changes.len() > 10);
     let both = parent.forks(&Ticks::Both(50));
@@ -384,7 +392,8 @@ fn forks_are_where_something_changes() {
 
 #[test]
 fn a_second_interruption_comes_after_the_first() {
-    let (facility, parent, fork) = empty_move();
+    let (facility, parent) = empty_move();
+    let fork = under_way(&facility);
     let result = judged(&facility, &parent, &fork, "pause+20:refused+3:hold");
     assert_eq!((result.verdict, result.detail.as_str()), (Verdict::Done, ""));
     let refused = result.ended.iter().position(|ended| ended.contains("is not known"));
@@ -408,7 +417,7 @@ fn a_series_is_read_back_from_its_name() {
 
 #[test]
 fn a_draw_repeats_and_another_seed_draws_other_branches() {
-    let (facility, parent, _) = empty_move();
+    let (facility, parent) = empty_move();
     let kinds = Kind::named("all", Path::new(DATA), &facility.description).expect("there are some");
     // As if each branch had met its own tick, and nothing else.
     let draw = |seed, learns: bool| {

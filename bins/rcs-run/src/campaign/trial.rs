@@ -14,7 +14,7 @@ use rcs_core::{digest::Digest, name::Name16, tick::Tick};
 use runtime::truth::Confirmation;
 
 use super::{
-    branch::{Branch, Facility, Fork},
+    branch::{Branch, Facility},
     disturbance::{Follow, What},
     harm::HarmMonitor,
     interruption::Kind,
@@ -117,13 +117,13 @@ struct Trial<'f, 'p> {
 pub fn run(
     facility: &Facility,
     parent: &Parent,
-    fork: &Fork,
+    fork: &Branch<'_>,
     series: &Series,
     procedure: Procedure,
     known: Option<&Known>,
     observer: &mut impl Observer,
 ) -> Result<BranchResult, Error> {
-    let branch = Branch::resume(facility, fork)?;
+    let branch = fork.clone();
     let at = branch.at();
     let (line, began) = parent.line_at(at);
     let operator = Operator::new(&facility.job.steps, line, began, branch.command(), procedure.tries)
@@ -333,7 +333,7 @@ impl Trial<'_, '_> {
     }
 
     /// Ticks before the next interruption; `None` if there is none.
-    fn next(&self) -> Option<u64> {
+    fn next<'f>(&self) -> Option<u64> {
         self.series.interruptions().get(self.interruption + 1).map(|next| next.after)
     }
 

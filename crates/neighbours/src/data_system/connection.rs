@@ -1,14 +1,6 @@
-//! The Data System of a run: mailboxes at one end, a server on a separate thread at the other.
-//!
-//! The disk must not delay a tick. A run in fast clock waits for the server when an answer is due, so that its ticks
-//! are the same in every run; a run on the 40 ms grid takes the answer when it has come. A run that has ended does not
-//! wait for a server in another process, which may not answer for a long time.
+//! The controller's end of the Data System: mailboxes, the handshake with Task, and a [`Keeper`] that executes.
 
-use std::{
-    sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
-    thread::{self, JoinHandle},
-    time::{Duration, Instant},
-};
+use std::fmt::Debug;
 
 use interfaces::{DataBaseCommand, DataBaseStatus, data_base::DataBaseReport};
 use rcs_core::{
@@ -18,96 +10,72 @@ use rcs_core::{
 
 use super::{
     agent::{Agent, Remark},
+    books::Books,
     command,
-    server::{Answer, Server},
+    server::{Answer, Records as _, Server},
     status::{STATUS, Status, Summary},
     store::{Item, Store},
+    thread::{Pace, Threaded},
 };
-use crate::{
-    mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox, MailboxError},
-    network::StopHandle,
-};
+use crate::mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox, MailboxError};
 
 /// Default number of ticks for an answer: 1 s.
 pub const ANSWER_TICKS: u64 = 25;
-/// A run that waits for the server considers it dead after this time, which is long for a disk. An agent has its own
-/// time limit.
-const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Time between two checks for a server while no command is in progress.
-const IDLE: Duration = Duration::from_millis(500);
+/// Executes the commands of a Data System.
+pub trait Keeper {
+    /// Begin the command of this number; false if nobody executes it.
+    fn execute(&mut self, id: u16, bytes: &[u8]) -> bool;
 
-/// Whether a run waits for the server.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pace {
-    /// The tick waits for an answer that is due: for runs in fast clock.
-    Wait,
-    /// The answer takes effect in the tick in which it has come: for runs on the grid.
-    Poll,
+    /// The reply to the command of this number, which was begun last.
+    fn reply(&mut self, id: u16) -> Reply;
+
+    /// The reported items, sorted by name and number.
+    ///
+    /// # Errors
+    /// A text that says why they cannot be listed.
+    fn items(&mut self) -> Result<Vec<Item>, String>;
 }
 
-/// A request to the server's thread.
-enum Request {
-    /// The command of this number.
-    Execute(u16, Vec<u8>),
-    Items,
+/// Reply to a command.
+#[derive(Clone, Debug)]
+pub enum Reply {
+    /// It was executed or refused.
+    Answer(Answer),
+    /// It has no answer: Task counts the ticks and repeats the command.
+    Silent,
+    /// It is still being executed.
+    Pending,
+    /// The keeper has ended.
+    Dead,
 }
 
-/// A response of the server's thread.
-enum Response {
-    /// The answer to the command of this number.
-    Executed(u16, Answer),
-    /// The command of this number has no answer.
-    Silent(u16),
-    Items(rusqlite::Result<Vec<Item>>),
+/// A keeper in memory, which executes a command at once.
+#[derive(Clone, Debug, Default)]
+pub struct InMemory {
+    server: Server<Books>,
+    answer: Option<Answer>,
 }
 
-/// The server that keeps the items.
-enum Keeper {
-    /// In this process, on the thread.
-    Here(Box<Server>),
-    /// In another process.
-    Elsewhere(Box<Agent>),
-}
-
-impl Keeper {
-    fn respond(&mut self, request: Request) -> Response {
-        match (self, request) {
-            (Self::Here(server), Request::Execute(id, bytes)) => {
-                Response::Executed(id, server.execute(&bytes))
-            }
-            (Self::Here(server), Request::Items) => Response::Items(server.store().items()),
-            (Self::Elsewhere(agent), Request::Execute(id, bytes)) => {
-                agent.execute(&bytes).map_or(Response::Silent(id), |answer| Response::Executed(id, answer))
-            }
-            // The items are available only in the process that keeps them.
-            (Self::Elsewhere(_), Request::Items) => Response::Items(Ok(Vec::new())),
-        }
+impl Keeper for InMemory {
+    fn execute(&mut self, _: u16, bytes: &[u8]) -> bool {
+        self.answer = Some(self.server.execute(bytes));
+        true
     }
 
-    /// Work to do while there are no requests.
-    fn idle(&mut self) {
-        if let Self::Elsewhere(agent) = self {
-            agent.idle();
-        }
+    fn reply(&mut self, _: u16) -> Reply {
+        self.answer.take().map_or(Reply::Silent, Reply::Answer)
     }
 
-    /// The remarks since the last call.
-    fn remarks(&mut self) -> Vec<Remark> {
-        match self {
-            Self::Here(_) => Vec::new(),
-            Self::Elsewhere(agent) => agent.remarks(),
-        }
+    fn items(&mut self) -> Result<Vec<Item>, String> {
+        self.server.records().items().map_err(|never| match never {})
     }
 }
 
-/// The thread has ended and does not answer.
-struct Dead;
-
-/// The Data System's mailboxes, and the thread of its server.
-#[derive(Debug)]
-pub struct DataSystem {
-    pace: Pace,
+/// The Data System's mailboxes, and the keeper behind them. With [`InMemory`] it is a value: a copy continues from the same
+/// state.
+#[derive(Clone, Debug)]
+pub struct DataSystem<K = Threaded> {
     answer_ticks: u64,
     receiver: handshake::Receiver,
     /// First tick in which the answer to the command in progress may take effect; `None` if no command is in progress.
@@ -116,55 +84,47 @@ pub struct DataSystem {
     command_box: Mailbox,
     status_box: Mailbox,
     refusals: Vec<String>,
-    remarks: Receiver<Remark>,
-    /// Ends the wait for a server in another process; `None` if the server is in this process.
-    stop_handle: Option<StopHandle>,
-    requests: Option<Sender<Request>>,
-    responses: Receiver<Response>,
-    thread: Option<JoinHandle<()>>,
+    keeper: K,
 }
 
 impl DataSystem {
-    /// A Data System that answers a command after `answer_ticks` ticks, or later.
+    /// A Data System with a database in this process, which answers a command after `answer_ticks` ticks, or later.
     #[must_use]
     pub fn new(store: Store, answer_ticks: u64, pace: Pace) -> Self {
-        Self::with(Keeper::Here(Box::new(Server::new(store))), answer_ticks, pace)
+        Self::with(Threaded::here(store, pace), answer_ticks)
     }
 
     /// A Data System in another process. In a run that waits, its answers take effect after as many ticks as those of a
-    /// server in this process, so that both runs are the same; on the grid they take effect when they come.
+    /// server in this process, so that both runs are the same; on the grid they take effect when they arrive.
     #[must_use]
     pub fn elsewhere(agent: Agent, pace: Pace) -> Self {
         let ticks = if pace == Pace::Wait { ANSWER_TICKS } else { 0 };
-        let stop_handle = Some(agent.stop_handle());
-        let mut system = Self::with(Keeper::Elsewhere(Box::new(agent)), ticks, pace);
-        system.stop_handle = stop_handle;
-        system
+        Self::with(Threaded::elsewhere(agent, pace), ticks)
     }
 
-    fn with(mut keeper: Keeper, answer_ticks: u64, pace: Pace) -> Self {
-        let (requests, incoming) = channel::<Request>();
-        let (outgoing, responses) = channel();
-        let (tell, remarks) = channel();
-        let thread = thread::spawn(move || {
-            loop {
-                let response = match incoming.recv_timeout(IDLE) {
-                    Ok(request) => Some(keeper.respond(request)),
-                    Err(RecvTimeoutError::Timeout) => {
-                        keeper.idle();
-                        None
-                    }
-                    Err(RecvTimeoutError::Disconnected) => return,
-                };
-                // Before the answer, so that a tick that has waited for the answer has the remarks as well.
-                let told = keeper.remarks().into_iter().all(|remark| tell.send(remark).is_ok());
-                if !told || response.is_some_and(|response| outgoing.send(response).is_err()) {
-                    return;
-                }
-            }
-        });
+    /// Remarks about a server in another process since the last call.
+    pub fn remarks(&self) -> Vec<Remark> {
+        self.keeper.remarks()
+    }
+}
+
+impl DataSystem<InMemory> {
+    /// A Data System that keeps its items in memory and answers a command after `answer_ticks` ticks.
+    #[must_use]
+    pub fn in_memory(answer_ticks: u64) -> Self {
+        Self::with(InMemory::default(), answer_ticks)
+    }
+
+    /// Everything on which the answers after `tick` depend, for comparison: items, clients, the command in progress and
+    /// the ticks until its answer.
+    pub fn state(&self, tick: Tick) -> impl Debug {
+        (&self.keeper, self.status.report, self.due.map(|due| due.since(tick)))
+    }
+}
+
+impl<K: Keeper> DataSystem<K> {
+    fn with(keeper: K, answer_ticks: u64) -> Self {
         Self {
-            pace,
             answer_ticks,
             receiver: handshake::Receiver::default(),
             due: None,
@@ -172,11 +132,7 @@ impl DataSystem {
             command_box: Mailbox::initialized(DATA_SYSTEM_COMMAND),
             status_box: Mailbox::initialized(DATA_SYSTEM_STATUS),
             refusals: Vec::new(),
-            remarks,
-            stop_handle: None,
-            requests: Some(requests),
-            responses,
-            thread: Some(thread),
+            keeper,
         }
     }
 
@@ -203,11 +159,6 @@ impl DataSystem {
         std::mem::take(&mut self.refusals)
     }
 
-    /// Remarks about a server in another process since the last call.
-    pub fn remarks(&self) -> Vec<Remark> {
-        self.remarks.try_iter().collect()
-    }
-
     /// Call once per tick, after the controller: read the command that Task wrote in `tick`.
     pub fn step(&mut self, tick: Tick, command: &DataBaseCommand) {
         if self.receiver.observe(command.number) == Arrival::New {
@@ -230,51 +181,22 @@ impl DataSystem {
             self.refuse(why);
             return;
         }
-        let request = Request::Execute(self.asked(), self.command_box.data().to_vec());
-        if self.requests.as_ref().is_some_and(|requests| requests.send(request).is_ok()) {
+        if self.keeper.execute(self.asked(), self.command_box.data()) {
             self.due = Some(Tick(tick.0.saturating_add(self.answer_ticks)));
         } else {
             self.refuse("the Data System has ended".to_owned());
         }
     }
 
-    /// Take the answer to the command in progress, if it has come; an answer to an earlier command is too late and is
-    /// dropped.
+    /// Take the answer to the command in progress, if it has arrived.
     fn receive(&mut self) {
-        loop {
-            match self.response() {
-                Ok(Some(Response::Executed(id, answer))) if id == self.asked() => {
-                    self.due = None;
-                    self.take(&answer);
-                    return;
-                }
-                Ok(Some(Response::Silent(id))) if id == self.asked() => {
-                    // Task counts the ticks and repeats the command.
-                    self.due = None;
-                    return;
-                }
-                Ok(Some(_)) => {}
-                Ok(None) => return,
-                Err(Dead) => {
-                    self.due = None;
-                    self.refuse("the Data System does not answer".to_owned());
-                    return;
-                }
-            }
+        match self.keeper.reply(self.asked()) {
+            Reply::Pending => return,
+            Reply::Answer(answer) => self.take(&answer),
+            Reply::Silent => {}
+            Reply::Dead => self.refuse("the Data System does not answer".to_owned()),
         }
-    }
-
-    /// The next response of the thread; `None` if there is none yet.
-    fn response(&self) -> Result<Option<Response>, Dead> {
-        match self.pace {
-            Pace::Poll => match self.responses.try_recv() {
-                Ok(response) => Ok(Some(response)),
-                Err(TryRecvError::Empty) => Ok(None),
-                Err(TryRecvError::Disconnected) => Err(Dead),
-            },
-            Pace::Wait if self.stop_handle.is_some() => self.responses.recv().map(Some).map_err(|_| Dead),
-            Pace::Wait => self.responses.recv_timeout(PATIENCE).map(Some).map_err(|_| Dead),
-        }
+        self.due = None;
     }
 
     /// command-id# of the command in progress.
@@ -314,42 +236,9 @@ impl DataSystem {
     /// list them.
     ///
     /// # Errors
-    /// A text that says why the data base cannot list them.
+    /// A text that says why the database cannot list them.
     pub fn items(&mut self) -> Result<Vec<Item>, String> {
-        if self.stop_handle.is_some() {
-            // The thread may be waiting for that process.
-            return Ok(Vec::new());
-        }
-        let gone = || "the Data System has ended".to_owned();
-        self.requests.as_ref().ok_or_else(gone)?.send(Request::Items).map_err(|_| gone())?;
-        loop {
-            match self.responses.recv_timeout(PATIENCE) {
-                Ok(Response::Items(items)) => return items.map_err(|error| error.to_string()),
-                Ok(Response::Executed(..) | Response::Silent(_)) => {}
-                Err(_) => return Err("the Data System does not answer".to_owned()),
-            }
-        }
-    }
-}
-
-impl Drop for DataSystem {
-    fn drop(&mut self) {
-        if let Some(stop_handle) = &self.stop_handle {
-            // Updates that are not answered yet stay in the outbox.
-            stop_handle.stop();
-        }
-        // Closing the channel of requests ends the thread, which closes the data base, so that no journal is left.
-        self.requests = None;
-        let Some(thread) = self.thread.take() else { return };
-        let ended = Instant::now();
-        // A disk could block the thread for ever; the end of a run must not depend on it.
-        while !thread.is_finished() && ended.elapsed() < PATIENCE {
-            thread::sleep(Duration::from_millis(1));
-        }
-        if thread.is_finished() {
-            // The thread returns nothing, and a panic in it was reported.
-            let _ = thread.join();
-        }
+        self.keeper.items()
     }
 }
 
@@ -397,7 +286,7 @@ mod tests {
                 if status.report != DataBaseReport::Executing {
                     return status.report;
                 }
-                thread::yield_now();
+                std::thread::yield_now();
             }
         }
 
@@ -469,5 +358,31 @@ mod tests {
         client.step();
         assert_eq!(client.ask(DataBaseVerb::Abort), DataBaseReport::Done);
         assert_eq!(client.ask(DataBaseVerb::Initiate), DataBaseReport::Done);
+    }
+
+    #[test]
+    fn a_data_system_in_memory_answers_like_one_with_a_thread_and_so_does_its_copy() {
+        let mut threaded = DataSystem::new(Store::in_memory().unwrap(), 3, Pace::Wait);
+        let mut in_memory = DataSystem::in_memory(3);
+        let mut command = DataBaseCommand {
+            item: Name16::new("LINKBAR1").unwrap(),
+            position: Name10::new("UNIT_1").unwrap(),
+            sector: Some(4),
+            ..DataBaseCommand::default()
+        };
+        use DataBaseVerb::{Abort, Initiate, Startup, Update};
+        for (tick, verb) in (1..).zip([Update, Abort, Initiate, Startup, Update, Update]) {
+            command = DataBaseCommand { number: tick, command: verb, ..command };
+            for within in 0..5 {
+                let tick = Tick(u64::from(tick) * 5 + within);
+                threaded.step(tick, &command);
+                in_memory = in_memory.clone();
+                in_memory.step(tick, &command);
+                assert_eq!(in_memory.status(), threaded.status(), "{tick}, {verb}");
+            }
+        }
+        assert_eq!(in_memory.refusals(), threaded.refusals());
+        assert_eq!(in_memory.items(), threaded.items());
+        assert_eq!(in_memory.items().unwrap().len(), 1);
     }
 }

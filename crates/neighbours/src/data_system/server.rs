@@ -11,6 +11,8 @@
 //!     `------- ABORT -------+------- ABORT -----'  <---'
 //! ```
 
+use std::fmt::Display;
+
 use super::{
     command::{self, Transaction},
     statement::{self, Column, Update},
@@ -49,23 +51,56 @@ pub struct Answer {
     pub why: String,
 }
 
-/// The Data System's end of the mailboxes.
-#[derive(Debug)]
-pub struct Server {
-    store: Store,
+/// The records that a server keeps: in a file ([`Store`]) or in memory ([`Books`](super::Books)).
+pub trait Records {
+    /// Error of reading or writing the records.
+    type Error: Display;
+
+    /// State of a client's connection; 0 if the client is not known.
+    ///
+    /// # Errors
+    /// If the records cannot be read.
+    fn session(&self, client: &str) -> Result<u8, Self::Error>;
+
+    /// Set the state of a client's connection.
+    ///
+    /// # Errors
+    /// If the records cannot be written.
+    fn set_session(&mut self, client: &str, session: u8) -> Result<(), Self::Error>;
+
+    /// Store the position of an item that a client reports. Returns true if the position is new.
+    ///
+    /// A statement with a number other than 0 counts once: repeated with the same number it changes nothing, even after
+    /// reports of other clients.
+    ///
+    /// # Errors
+    /// If the records cannot be written; they are then unchanged.
+    fn report(&mut self, client: &str, said: Said<'_>, item: &Item) -> Result<bool, Self::Error>;
+
+    /// All items, sorted by name and number.
+    ///
+    /// # Errors
+    /// If the records cannot be read.
+    fn items(&self) -> Result<Vec<Item>, Self::Error>;
 }
 
-impl Server {
-    /// A server without any client.
+/// The Data System's end of the mailboxes.
+#[derive(Clone, Debug, Default)]
+pub struct Server<R = Store> {
+    records: R,
+}
+
+impl<R: Records> Server<R> {
+    /// A server with the clients in `records`.
     #[must_use]
-    pub const fn new(store: Store) -> Self {
-        Self { store }
+    pub const fn new(records: R) -> Self {
+        Self { records }
     }
 
-    /// The data base.
+    /// The records.
     #[must_use]
-    pub const fn store(&self) -> &Store {
-        &self.store
+    pub const fn records(&self) -> &R {
+        &self.records
     }
 
     /// Execute a command: `bytes` is the data of its mailbox.
@@ -82,8 +117,8 @@ impl Server {
     }
 
     fn carry_out(&mut self, received: &command::Received<'_>) -> Result<(), (Refusal, String)> {
-        let kept = |error: rusqlite::Error| (Refusal::Store, error.to_string());
-        let session = Session::from_code(self.store.session(received.client).map_err(kept)?);
+        let kept = |error: R::Error| (Refusal::Store, error.to_string());
+        let session = Session::from_code(self.records.session(received.client).map_err(kept)?);
         let session = match (received.transaction, session) {
             (Transaction::Abort, _) => Session::Closed,
             // A client that repeats a step has not received the answer.
@@ -94,7 +129,7 @@ impl Server {
                 return Err((Refusal::Sequence, format!("{asked:?} from a client that is {state:?}")));
             }
         };
-        self.store.set_session(received.client, session as u8).map_err(kept)
+        self.records.set_session(received.client, session as u8).map_err(kept)
     }
 
     fn update(&mut self, received: &command::Received<'_>) -> Result<(), (Refusal, String)> {
@@ -102,7 +137,7 @@ impl Server {
             statement::parse(received.statement).map_err(|error| (Refusal::Statement, error.to_string()))?;
         let item = item(&update).map_err(|why| (Refusal::Value, why))?;
         let said = Said { number: received.transaction_id, statement: received.statement };
-        self.store
+        self.records
             .report(received.client, said, &item)
             .map_err(|error| (Refusal::Store, error.to_string()))?;
         Ok(())
@@ -184,7 +219,7 @@ mod tests {
 
         fn items(&self) -> Vec<String> {
             let line = |i: Item| format!("{} {} {} {} {}", i.name, i.number, i.device, i.position, i.sector);
-            self.server.store().items().unwrap().into_iter().map(line).collect()
+            self.server.records().items().unwrap().into_iter().map(line).collect()
         }
     }
 

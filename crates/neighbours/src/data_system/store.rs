@@ -18,7 +18,7 @@ use std::{
 
 use rusqlite::{Connection, OptionalExtension as _, Row, TransactionBehavior, params};
 
-use super::alone::Alone;
+use super::{alone::Alone, server::Records};
 
 /// Application ID in the file of the data base: "RCS2".
 const APPLICATION_ID: i32 = 0x5243_5332;
@@ -252,20 +252,29 @@ impl Store {
         Ok(Self { connection, _alone: None })
     }
 
-    /// State of a client's connection; 0 if the client is not known.
+    /// The places where the item with a number has been, the oldest first.
     ///
     /// # Errors
     /// Errors of SQLite.
-    pub fn session(&self, client: &str) -> rusqlite::Result<u8> {
+    pub fn history(&self, number: &str) -> rusqlite::Result<Vec<Visit>> {
+        let read = |row: &Row<'_>| {
+            Ok(Visit { at: row.get(0)?, client: row.get(1)?, position: row.get(2)?, sector: row.get(3)? })
+        };
+        let mut rows =
+            self.connection.prepare("SELECT at, client, position, sector FROM history WHERE number = ?1")?;
+        rows.query_map(params![number], read)?.collect()
+    }
+}
+
+impl Records for Store {
+    type Error = rusqlite::Error;
+
+    fn session(&self, client: &str) -> rusqlite::Result<u8> {
         let mut rows = self.connection.prepare("SELECT session FROM client WHERE name = ?1")?;
         Ok(rows.query_row(params![client], |row| row.get(0)).optional()?.unwrap_or(0))
     }
 
-    /// Set the state of a client's connection.
-    ///
-    /// # Errors
-    /// Errors of SQLite.
-    pub fn set_session(&self, client: &str, session: u8) -> rusqlite::Result<()> {
+    fn set_session(&mut self, client: &str, session: u8) -> rusqlite::Result<()> {
         self.connection
             .execute(
                 "INSERT INTO client (name, session) VALUES (?1, ?2)
@@ -275,14 +284,7 @@ impl Store {
             .map(drop)
     }
 
-    /// Store the position of an item that a client reports. Returns true if the position is new.
-    ///
-    /// A statement with a number other than 0 counts once: repeated with the same number it changes nothing, even after
-    /// reports of other clients.
-    ///
-    /// # Errors
-    /// Errors of SQLite; the data base is then unchanged.
-    pub fn report(&mut self, client: &str, said: Said<'_>, item: &Item) -> rusqlite::Result<bool> {
+    fn report(&mut self, client: &str, said: Said<'_>, item: &Item) -> rusqlite::Result<bool> {
         let transaction = self.connection.transaction()?;
         if said.number != 0 {
             let fresh = transaction.execute(
@@ -345,24 +347,7 @@ impl Store {
         Ok(true)
     }
 
-    /// The places where the item with a number has been, the oldest first.
-    ///
-    /// # Errors
-    /// Errors of SQLite.
-    pub fn history(&self, number: &str) -> rusqlite::Result<Vec<Visit>> {
-        let read = |row: &Row<'_>| {
-            Ok(Visit { at: row.get(0)?, client: row.get(1)?, position: row.get(2)?, sector: row.get(3)? })
-        };
-        let mut rows =
-            self.connection.prepare("SELECT at, client, position, sector FROM history WHERE number = ?1")?;
-        rows.query_map(params![number], read)?.collect()
-    }
-
-    /// All items, sorted by name and number.
-    ///
-    /// # Errors
-    /// Errors of SQLite.
-    pub fn items(&self) -> rusqlite::Result<Vec<Item>> {
+    fn items(&self) -> rusqlite::Result<Vec<Item>> {
         let read = |row: &Row<'_>| {
             Ok(Item {
                 number: row.get(0)?,

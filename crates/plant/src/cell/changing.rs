@@ -33,7 +33,7 @@ pub(super) enum GripperPlace {
 }
 
 /// Quick change, holsters, and the places of the grippers.
-#[derive(Deserialize, Serialize)]
+#[derive(Clone, Deserialize, Serialize)]
 pub(super) struct Changer {
     description: QuickChange,
     ring: Ring,

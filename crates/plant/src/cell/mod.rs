@@ -56,13 +56,14 @@ use crate::{
     sensor::DeadTimes,
     t3::{DriveError, Key, Message, Refusal, StepInputs, StepOutputs, T3Controller},
     vise::Vise,
+    world::World,
 };
 
-/// The simulated cell: everything outside the controller.
-#[derive(Deserialize, Serialize)]
+/// The simulated cell: everything outside the controller. A copy continues bit for bit like the original.
+#[derive(Clone, Deserialize, Serialize)]
 pub struct Cell {
     description: CellDescription,
-    world: PhysicsWorld,
+    world: World,
     t3: T3Controller,
     /// The host's DTR.
     host_ready: bool,
@@ -149,7 +150,7 @@ impl Cell {
             obstacles: bodies::standing(description, &furniture),
             joystick: Joystick::default(),
             description: description.clone(),
-            world,
+            world: world.into(),
             grippers,
             changer,
             drum: Drum::new(place(&description.drum.pose), &description.drum),
