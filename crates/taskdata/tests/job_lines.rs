@@ -220,7 +220,7 @@ fn every_mistake_has_its_message() {
         ),
         (
             "**",
-            "column 1: tray, vise, machine, drum, joystick, estop, release, panel, table, wait, load, after, \
+            "column 1: tray, vise, machine, drum, joystick, estop, release, panel, table, resolvers, wait, load, after, \
              workstation was expected, the line ends",
             "",
         ),
