@@ -1,7 +1,6 @@
 //! `rcs-run --console`: starts the operator's console on the terminal of the run.
 
 use std::{
-    env, io,
     path::PathBuf,
     process::{Child, Command},
     sync::{

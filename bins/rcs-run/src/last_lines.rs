@@ -27,7 +27,7 @@ impl fmt::Display for LastLines<'_> {
         let Some(log) = result.log.as_deref().map(quoted) else { return Ok(()) };
         let tick = match ending {
             Ending::Failed(failure) => format!(" --tick {}", failure.tick),
-            Ending::Finished | Ending::Stopped => String::new(),
+            Ending::Finished | Ending::Stopped | Ending::StoppedByUser => String::new(),
         };
         writeln!(f)?;
         writeln!(f, "watch      {} --log {log}{tick}", start_of("rcs-console"))?;
