@@ -39,7 +39,7 @@ fn a_part_in_another_sector_than_the_command_said_has_not_arrived() {
         &outcome,
         &[
             PUT_BACK,
-            "LINKBAR1 at UNIT_1 sector 3, 5.15 in from the sector's centre",
+            "LINKBAR1 is at UNIT_1 sector 3, 5.15 in from the sector's centre",
             "was to leave it at UNIT_1 sector 1, within 0.25 in",
         ],
     );
@@ -55,7 +55,7 @@ fn a_part_that_slid_in_the_fingers_lies_beside_its_place() {
         let weak = "-obj-  LINKBAR1         2     0300   0060   2 ";
         scratch.data_with("objects/linkbar.blk", "-obj-  LINKBAR1         2     0300   0060   30", weak);
     });
-    assert_fails(&outcome, &[PUT_BACK, "LINKBAR1 at UNIT_1 sector 1, 0.8", "within 0.25 in"]);
+    assert_fails(&outcome, &[PUT_BACK, "LINKBAR1 is at UNIT_1 sector 1, 0.8", "within 0.25 in"]);
 }
 
 #[test]
@@ -83,14 +83,14 @@ fn a_part_that_was_pushed_out_of_the_fingers_is_named_with_where_it_lies() {
         });
         assert_fails(
             &outcome,
-            &["LINKBAR1_BH at ", " from PFIXTURE was to leave it at PFIXTURE, within 0.25 in"],
+            &["LINKBAR1_BH is at ", " from PFIXTURE was to leave it at PFIXTURE, within 0.25 in"],
         );
         // Earlier faults come first: the part moved in the fingers, or met a jaw, before it fell.
         let (first, later) = outcome.last_words.rsplit_once("; later, ").unwrap_or_default();
         let causes = ["a confirmation is false: E-move reports MOV-OBJ-TO", "the robot ran into movable_jaw"];
         assert!(causes.iter().any(|cause| first.contains(cause)), "{}", outcome.last_words);
-        assert!(later.starts_with("LINKBAR1_BH at "), "{later}");
-        assert!(!later.starts_with("LINKBAR1_BH at PFIXTURE"), "{later}");
+        assert!(later.starts_with("LINKBAR1_BH is at "), "{later}");
+        assert!(!later.starts_with("LINKBAR1_BH is at PFIXTURE"), "{later}");
     }
 }
 

@@ -373,7 +373,7 @@ fn another_job_is_played_in_the_place_of_the_rest() {
     wait_for(&mut client, "the job waits");
     for (request, why) in [
         ("run ../../etc/passwd", "the name of a job"),
-        ("run nowhere", "nowhere.job"),
+        ("run nowhere", "there is no job nowhere"),
         ("run loads", "load blocks with `load OFFSET BLOCK`"),
         ("run wrong", "the job wrong has errors"),
         ("run vise", "line 1 of the job vise"),

@@ -108,6 +108,7 @@ fn every_json_output_has_each_key_once() {
     let of_run: &[&[&str]] = &[
         &["run", "linkbar", "--ticks", "100", "--log", "none", "--shared-memory", "off", "--json"],
         &["check", "--json"],
+        &["jobs", "--json"],
         &["check", "--json", "--where", "HOME-POS"],
         &[
             "check",
@@ -165,6 +166,7 @@ fn the_list_of_json_outputs_is_complete() {
         "rcs-run",
         "rcs-run campaign",
         "rcs-run check",
+        "rcs-run jobs",
         "rcs-run latency",
         "rcs-run link-test",
         "rcs-run pose",

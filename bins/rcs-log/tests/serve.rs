@@ -57,7 +57,12 @@ fn a_viewer_gets_the_log_with_its_times() {
     let stream = TcpStream::connect(address).unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
     let (mut socket, _) = tungstenite::client(request, stream).unwrap();
-    let mut text = || serde_json::from_str::<Value>(socket.read().unwrap().to_text().unwrap()).unwrap();
+    let mut text = || loop {
+        // The server asks with pings whether the viewer reads.
+        if let Message::Text(text) = socket.read().unwrap() {
+            return serde_json::from_str::<Value>(&text).unwrap();
+        }
+    };
     let (info, channels) = (text(), text());
     assert_eq!((&info["name"], &info["capabilities"]), (&json!("log.mcap"), &json!(["time"])));
     let id = |topic: &str| {

@@ -1,11 +1,8 @@
 //! The command line.
 
-use std::{
-    path::{Path, PathBuf},
-    str::FromStr,
-};
+use std::path::{Path, PathBuf};
 
-use crate::{campaign::CampaignArguments, new::NewArguments};
+use crate::{campaign::CampaignArguments, clock::Clock, new::NewArguments};
 use clap::{
     Args, Parser, Subcommand, ValueEnum,
     builder::{ArgPredicate, StringValueParser, TypedValueParser},
@@ -17,7 +14,7 @@ use live::Origin;
 use neighbours::network::{Address, Role};
 use rcs_core::name::Name10;
 use record::LogLimit;
-use runtime::{Boards, ClockKind, LogTarget, OperatorAccess, RobotConfig, RunConfig, setup::MOST_SPEED};
+use runtime::{Boards, LogTarget, OperatorAccess, RobotConfig, RunConfig};
 
 /// Bytes of a megabyte.
 const MEGABYTE: u64 = 1_000_000;
@@ -413,7 +410,7 @@ pub struct SendArguments {
 #[command(allow_negative_numbers = true)]
 pub struct PoseArguments {
     /// The tool point, in the units of --units [default: the pose of --of, or the pose that was recorded in a run]
-    #[arg(value_names = ["X", "Y", "Z"], num_args = 3, value_parser = cli_pages::length)]
+    #[arg(value_names = ["X", "Y", "Z"], num_args = 3, allow_hyphen_values = true, value_parser = cli_pages::length)]
     pub point: Vec<f64>,
     /// Direction in which the tool leans, degrees from the X axis of the world; the finger point is horizontal, 90
     /// degrees further
@@ -542,33 +539,6 @@ pub struct JobsArguments {
     pub json: bool,
 }
 
-/// When ticks are run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Clock {
-    /// Whether there is a grid.
-    pub kind: ClockKind,
-    /// Ticks in 40 ms.
-    pub speed: u8,
-}
-
-impl FromStr for Clock {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let speed = || text.strip_suffix('x')?.parse().ok().filter(|speed| (1..=MOST_SPEED).contains(speed));
-        let (kind, speed) = match text {
-            "fast" => (ClockKind::Fast, 1),
-            "real" => (ClockKind::Real, 1),
-            _ => (
-                ClockKind::Real,
-                speed()
-                    .ok_or_else(|| format!("fast, real or 1x to {MOST_SPEED}x was expected; found {text}"))?,
-            ),
-        };
-        Ok(Self { kind, speed })
-    }
-}
-
 /// A robot. Completions offer the simulated ones, and the emulated ones with the frames of each robot of the data.
 fn robot() -> impl TypedValueParser<Value = RobotConfig> {
     let parser = StringValueParser::new().try_map(|text| text.parse());
@@ -595,6 +565,8 @@ pub enum Switch {
 
 #[cfg(test)]
 mod tests {
+    use runtime::ClockKind;
+
     use super::*;
     use clap::CommandFactory;
 
@@ -622,6 +594,7 @@ mod tests {
 
     #[test]
     fn a_board_is_one_that_has_processes() {
+        shipped::carry();
         let board = |number| {
             let command = Cli::try_parse_from(["rcs-run", "board", number, "--run", "x", "linkbar"])?.command;
             let Some(Command::Board(arguments)) = command else { panic!("board was asked for") };

@@ -11,6 +11,7 @@ mod campaign;
 mod check;
 mod clean;
 mod cli;
+mod clock;
 mod console;
 mod error;
 mod explain;

@@ -13,7 +13,7 @@ use clap::{
 };
 use clap_complete::{Generator, Shell};
 use diagnostics::nearest;
-use os_io::units::Units;
+use os_io::{text::plain, units::Units};
 
 pub use markdown::markdown;
 pub use values::{data_directory, default_data, fault_file, job, names, robot, with_names};
@@ -41,7 +41,7 @@ pub fn parse<P: Parser>() -> P {
     // Lengths in the other arguments have these units, so they are set first. A wrong value is refused below.
     match units(&arguments, env::var_os(UNITS_VARIABLE)) {
         Ok(units) => units.show(),
-        Err(wrong) => command.error(ErrorKind::InvalidValue, wrong).exit(),
+        Err(wrong) => refuse(&command.error(ErrorKind::InvalidValue, wrong)),
     }
     if let [_, option, directory] = arguments.as_slice()
         && option.to_str() == Some("--generate")
@@ -59,9 +59,21 @@ pub fn parse<P: Parser>() -> P {
             let tip = format!("a similar subcommand exists: '{near}'");
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }
-        error.exit()
+        refuse(&error)
     });
-    P::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| error.format(&mut command).exit())
+    P::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| refuse(&error.format(&mut command)))
+}
+
+/// Print an error of the command line and end the process. If an argument has control characters, they and the colours
+/// do not reach the terminal.
+fn refuse(error: &clap::Error) -> ! {
+    let is_plain = |text: &str| plain(text) == text;
+    let mut given = env::args_os().chain(env::var_os(UNITS_VARIABLE));
+    if given.all(|text| text.to_str().is_some_and(is_plain)) {
+        error.exit();
+    }
+    os_io::stderr_line!("{}", error.render().to_string().trim_end());
+    process::exit(error.exit_code())
 }
 
 /// The units of a command line: those of the option, else those of the variable, else inches. A wrong value of the

@@ -80,11 +80,12 @@ pub fn check_output<'a>(
     keep_others(path, format)
 }
 
-/// Checks that an output is none of the inputs, by device and inode.
+/// Checks that an output is none of the inputs, by device and inode; of files that do not exist, by their places.
 fn keep_inputs<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> io::Result<()> {
-    let Ok(found) = fs::metadata(output) else { return Ok(()) };
-    let is_output = |input: &&Path| {
-        fs::metadata(input).is_ok_and(|input| (input.dev(), input.ino()) == (found.dev(), found.ino()))
+    let identity = |path: &Path| fs::metadata(path).ok().map(|found| (found.dev(), found.ino()));
+    let is_output = |input: &&Path| match (identity(output), identity(input)) {
+        (None, None) => place_of(output).is_some_and(|place| place_of(input) == Some(place)),
+        (found, other) => found == other,
     };
     match inputs.into_iter().find(is_output) {
         Some(input) => Err(io::Error::new(
@@ -93,6 +94,12 @@ fn keep_inputs<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>) ->
         )),
         None => Ok(()),
     }
+}
+
+/// The place of a file that does not exist: its directory without links, and its name. `None` without the directory.
+fn place_of(path: &Path) -> Option<PathBuf> {
+    let directory = path.parent().filter(|directory| !directory.as_os_str().is_empty());
+    Some(fs::canonicalize(directory.unwrap_or(Path::new("."))).ok()?.join(path.file_name()?))
 }
 
 /// Checks that an output does not replace a file of another format. An empty file is of every format.
@@ -280,6 +287,18 @@ mod tests {
             replace_text(&file, "x\ny\n").unwrap();
             assert_eq!(fs::read_to_string(&file).unwrap(), after);
         }
+    }
+
+    #[test]
+    fn an_output_is_no_input_that_does_not_exist_yet() {
+        let place = tempfile::tempdir().unwrap();
+        let (file, other) = (place.path().join("a"), place.path().join("d/../a"));
+        fs::create_dir(place.path().join("d")).unwrap();
+        for input in [&file, &other] {
+            let error = check_output(&file, Format::Mcap, [input.as_path()]).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::InvalidInput);
+        }
+        assert!(check_output(&file, Format::Mcap, [place.path().join("b").as_path()]).is_ok());
     }
 
     #[test]

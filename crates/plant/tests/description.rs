@@ -125,7 +125,11 @@ fn a_name_that_is_given_twice_is_told_where_it_stands_again() {
 fn a_part_that_fits_no_tray_is_told() {
     let told = said("size = [1.73, 2.56, 4.00]", "size = [1.73, 2.56, 24.00]");
     assert_eq!(told[0], "[1.73, 2.56, 24.00]");
-    assert!(told[1].contains("expected a part that has a nest, or lies in a tray 21 in wide"), "{}", told[1]);
+    assert!(
+        told[1].contains("expected a part that has a nest, or lies in a tray 21.00 in wide"),
+        "{}",
+        told[1]
+    );
 }
 
 #[test]
@@ -179,7 +183,7 @@ fn all_faults_are_told_at_once_in_the_order_of_the_text() {
             "part[2].colour",
         ]
     );
-    assert!(faults[2].message().ends_with("the tool length of the arm, 12 in, found 13"), "{}", faults[2]);
+    assert!(faults[2].message().ends_with("the tool length of the arm, 12.00 in, found 13"), "{}", faults[2]);
 }
 
 #[test]

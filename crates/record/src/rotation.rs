@@ -22,6 +22,17 @@ pub struct LogLimit {
 }
 
 impl LogLimit {
+    /// True if `path` is an earlier log of `log`, which may be removed as one of the oldest.
+    #[must_use]
+    pub fn may_remove(&self, log: &Path, path: &Path) -> bool {
+        let directory = |path: &Path| {
+            let directory = path.parent().filter(|directory| !directory.as_os_str().is_empty());
+            fs::canonicalize(directory.unwrap_or(Path::new("."))).ok()
+        };
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        self.kept.is_some() && is_earlier(log, &path) && directory(log) == directory(&path)
+    }
+
     /// Remove the oldest earlier logs of a log.
     ///
     /// # Errors

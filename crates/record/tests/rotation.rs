@@ -111,4 +111,11 @@ fn only_the_newest_logs_are_kept() {
     let first = Log::open(&logs[0]).unwrap().ticks().next().unwrap().unwrap().tick;
     assert!(first > Tick(1), "the oldest logs are gone");
     logs.iter().for_each(|log| assert!(replay(log).unwrap().first_difference.is_none()));
+    let limit = |kept| LogLimit { bytes: SIZE, kept };
+    let link = place.path().join("link");
+    std::os::unix::fs::symlink(&logs[0], &link).unwrap();
+    for path in [&logs[0], &link] {
+        assert!(limit(Some(2)).may_remove(&logs[2], path) && !limit(None).may_remove(&logs[2], path));
+    }
+    assert!(!limit(Some(2)).may_remove(&logs[2], &logs[2]), "the log itself is not an earlier one");
 }

@@ -131,6 +131,17 @@ pub enum StartError {
     /// The log cannot be written.
     #[error("the log cannot be written: {0}; --log names another file, --log none runs without")]
     Log(#[from] RecordError),
+    /// The log that the run repeats could be removed by it.
+    #[error(
+        "{} is an earlier log of {}, which --log-keep may remove: name another file with --log",
+        .inputs.display(), .log.display()
+    )]
+    InputsOfLog {
+        /// The log with the inputs.
+        inputs: PathBuf,
+        /// The log of the run.
+        log: PathBuf,
+    },
     /// The live view needs a log.
     #[error("the live view shows what is written to the log: leave --log none out, or name a log file")]
     LiveWithoutLog,

@@ -118,13 +118,18 @@ impl Setup {
         let log = match &config.log {
             LogTarget::None => None,
             LogTarget::File(path) => {
-                let inputs = config.inputs.as_deref();
-                check_output(path, Format::Mcap, inputs)
+                let others = [&config.inputs, &config.database].into_iter().flatten().map(PathBuf::as_path);
+                check_output(path, Format::Mcap, others.chain([config.outbox.as_path()]))
                     .map_err(|source| RecordError::Create { path: path.clone(), source })?;
                 Some(LogFile::claim(path)?)
             }
             LogTarget::Default => Some(LogFile::claim_free(Path::new("runs"), &job.name)?),
         };
+        if let (Some(log), Some(inputs)) = (&log, &config.inputs)
+            && config.log_limit.is_some_and(|limit| limit.may_remove(log.path(), inputs))
+        {
+            return Err(StartError::InputsOfLog { inputs: inputs.clone(), log: log.path().to_owned() });
+        }
         let neighbours = neighbours(config, &job, &description, observer)?;
         // Last of all, so that no byte is sent to the robot if the run cannot begin.
         let robot = match &config.robot.kind {

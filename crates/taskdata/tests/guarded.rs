@@ -150,7 +150,7 @@ fn a_guarded_move_is_slow_enough_to_stop() {
     assert_eq!(
         warned("  -rel- INS-IN lpt TOOL-TRNS 4 2 8 0 IN INS-FX"),
         [
-            "INS-IN at 0.2 in/s against something hard ends at 140 lb; INS-FX overloads at 128",
+            "INS-IN at 0.2 in/s against something hard ends at 140 lb; INS-FX overloads at 128 lb",
             "the robot stands 0.2 s after 60 lb: vel-max 1 at most",
         ]
     );
@@ -158,7 +158,7 @@ fn a_guarded_move_is_slow_enough_to_stop() {
     assert_eq!(
         warned("  -sen- STIFF my 0 -500\n  -rel- INS-IN lpt TOOL-TRNS 4 1 8 0 IN STIFF"),
         [
-            "INS-IN at 0.1 in/s against something hard ends at 820 in lb; STIFF overloads at 512",
+            "INS-IN at 0.1 in/s against something hard ends at 820 in lb; STIFF overloads at 512 in lb",
             "the robot stands 0.2 s after 500 in lb: take a smaller threshold",
         ]
     );

@@ -62,10 +62,10 @@ fn every_kind_is_read() {
         ("the hydraulics are lost", window(9, u64::MAX)),
         ("the camera is blind", When::ALWAYS),
         ("what is delivered does not come", When::ALWAYS),
-        ("LINKBAR1_BH lies 1.5 in, 0 in beside its place", When::ALWAYS),
+        ("LINKBAR1_BH lies 1.50 in, 0.00 in beside its place", When::ALWAYS),
         ("what is delivered is turned by 30 degrees", When { rate: Some(0.5), ..When::ALWAYS }),
         ("LCLEVIS_BH comes instead of LINKBAR1_BH", When::ALWAYS),
-        ("the pedestal stands 0.5 in, -0.25 in, 2 degrees beside its mark", When::ALWAYS),
+        ("the pedestal stands 0.50 in, -0.25 in, 2 degrees beside its mark", When::ALWAYS),
     ];
     for (read, (text, when)) in read.iter().zip(expected) {
         assert_eq!(*read, (text.to_owned(), when));
