@@ -410,7 +410,7 @@ pub struct SendArguments {
 #[command(allow_negative_numbers = true)]
 pub struct PoseArguments {
     /// The tool point, in the units of --units [default: the pose of --of, or the pose that was recorded in a run]
-    #[arg(value_names = ["X", "Y", "Z"], num_args = 3, allow_hyphen_values = true, value_parser = cli_pages::length)]
+    #[arg(value_names = ["X", "Y", "Z"], num_args = 3, value_parser = cli_pages::length)]
     pub point: Vec<f64>,
     /// Direction in which the tool leans, degrees from the X axis of the world; the finger point is horizontal, 90
     /// degrees further
