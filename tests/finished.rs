@@ -83,13 +83,13 @@ fn a_part_that_was_pushed_out_of_the_fingers_is_named_with_where_it_lies() {
         });
         assert_fails(
             &outcome,
-            &["LINKBAR1_BH is at ", " from PFIXTURE was to leave it at PFIXTURE, within 0.25 in"],
+            &["LINKBAR1_BH is ", " from PFIXTURE was to leave it at PFIXTURE, within 0.25 in"],
         );
         // Earlier faults come first: the part moved in the fingers, or met a jaw, before it fell.
         let (first, later) = outcome.last_words.rsplit_once("; later, ").unwrap_or_default();
         let causes = ["a confirmation is false: E-move reports MOV-OBJ-TO", "the robot ran into movable_jaw"];
         assert!(causes.iter().any(|cause| first.contains(cause)), "{}", outcome.last_words);
-        assert!(later.starts_with("LINKBAR1_BH is at "), "{later}");
+        assert!(later.starts_with("LINKBAR1_BH is "), "{later}");
         assert!(!later.starts_with("LINKBAR1_BH is at PFIXTURE"), "{later}");
     }
 }

@@ -74,6 +74,7 @@ impl Drop for Running {
 }
 
 /// True if this user may make namespaces.
+#[expect(clippy::print_stderr, reason = "a test that is left out says so")]
 fn may_unshare(what: &[&str]) -> bool {
     let may = geteuid().is_root()
         && Command::new("unshare").args(what).arg("true").status().is_ok_and(|status| status.success());

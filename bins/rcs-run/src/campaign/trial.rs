@@ -333,7 +333,7 @@ impl Trial<'_, '_> {
     }
 
     /// Ticks before the next interruption; `None` if there is none.
-    fn next<'f>(&self) -> Option<u64> {
+    fn next(&self) -> Option<u64> {
         self.series.interruptions().get(self.interruption + 1).map(|next| next.after)
     }
 
