@@ -42,7 +42,7 @@ fn watch(stop: Arc<AtomicBool>) -> io::Result<()> {
             stop.store(true, Ordering::Relaxed);
             if is_second(&mut first, Instant::now()) {
                 stderr_line!("rcs-run: a second signal ends the program at once");
-                // Without destructors: whatever blocks the orderly end must not block this one.
+                // Without destructors: one of them may be what blocks the orderly end.
                 low_level::exit(128 + signal);
             }
         }

@@ -19,7 +19,7 @@ impl fmt::Display for LastLines<'_> {
         if result.parts.is_empty() {
             writeln!(f, "No part is in the cell.")?;
         }
-        // What the gripper holds is the first thing that a person must know.
+        // A held part first: a person must know of it before anything else.
         let (held, others): (Vec<_>, Vec<_>) = result.parts.iter().partition(|part| part.held);
         for part in held.into_iter().chain(others) {
             writeln!(f, "{part}")?;

@@ -40,7 +40,7 @@ pub struct ProcessStatus {
 pub struct Status {
     /// Name of the run.
     pub run: String,
-    /// What the run says about its state, as a phrase after its name; `None` if it runs, or if that is not known.
+    /// The announced state of the run, as a phrase after its name; `None` if it runs, or if its state is unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub phase: Option<String>,
     /// The tick that was run last.

@@ -38,7 +38,7 @@ const PING_OPERATOR: Duration = ALIVE;
 const REQUEST_AGE: Duration = Duration::from_secs(2);
 /// Time limit for closing a connection.
 const CLOSING_LIMIT: Duration = Duration::from_millis(500);
-/// Time for which a client that has stopped reading can still read the reason of its end, while the feed goes on.
+/// Time after a disconnection during which the client can still read its reason. The feed continues meanwhile.
 const LATE_READER: Duration = Duration::from_secs(30);
 /// Interval between reports of the number of dropped messages.
 const COUNT: Duration = Duration::from_secs(5);

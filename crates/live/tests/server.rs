@@ -270,7 +270,7 @@ fn clients_that_take_nothing_are_disconnected_and_others_stay() {
     assert!(longest < sent / 2, "a message took {longest:?} to be handed over");
 }
 
-/// A connection that reads 100 kB/s, whatever the program asks for.
+/// A connection that reads at most 100 kB/s.
 struct Slow(TcpStream);
 
 impl Read for Slow {

@@ -30,7 +30,7 @@ fn text_of(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned()
 }
 
-/// What the next log of the same run needs.
+/// The data with which the next log of the same run starts.
 pub(crate) struct Rotation {
     pub(crate) limit: LogLimit,
     /// Head of each log, with the files of the run that have been added.

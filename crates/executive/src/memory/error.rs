@@ -31,7 +31,7 @@ pub enum SharedMemoryError {
     Starting {
         /// Its name.
         run: RunName,
-        /// What it says about its state.
+        /// Its announced state, as a phrase.
         phase: String,
     },
     /// A living run has the name.

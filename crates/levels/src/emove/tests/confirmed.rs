@@ -62,7 +62,7 @@ fn only_the_parts_gripper_confirms_the_grasp_force() {
 }
 
 /// The seat of an object on which the fingers have closed, when a person has led the robot since, and the robot grasps it
-/// again, brings it to the vise and fetches it anew.
+/// again, brings it to the vise and fetches it again.
 #[test]
 fn part_with_which_a_person_has_led_the_robot_has_no_confirmed_place_in_the_fingers() {
     for (gripper, object, size, sensed) in
