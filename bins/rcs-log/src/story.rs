@@ -6,7 +6,7 @@ use executive::failure::{Failure, Watch};
 use interfaces::{CommonMemory, ExternalInputs, hws::HwsReport};
 use levels::ladder::Ladder;
 use rcs_core::{plain::from_bytes, tick::Tick};
-use record::{Log, ReadError, Timing, reader::LoggedTick, remarks::hws_text};
+use record::{Log, ReadError, Timing, reader::LoggedTick};
 use serde::Serialize;
 
 use crate::Error;
@@ -127,7 +127,7 @@ impl Chronicle {
             self.number = status.echo;
             self.last = None;
             self.commands.push(CommandStory {
-                text: hws_text(&moment.external.hws),
+                text: moment.external.hws.in_words().to_string(),
                 first_tick: moment.tick.0,
                 last_tick: moment.tick.0,
                 status: String::new(),

@@ -11,6 +11,7 @@ use std::{
 };
 
 use executive::{
+    course::Course,
     memory::{
         Attached, Publisher, RunName,
         layout::{Pulse, SERVICES},
@@ -88,16 +89,16 @@ fn bare() {
 /// A tick of a ladder without a command: the controller's part and the bookkeeping.
 fn ticks() {
     let (external, data) = (ExternalInputs::default(), TaskData::default());
-    let mut alone = Runner::new(Ladder::default(), None);
+    let (mut course, mut alone) = (Course::new(Ladder::default()), Runner::new(None));
     measure("tick, not published", 1, || {
-        let Ok(_) = alone.step(&external, &data, 0);
+        let Ok(()) = alone.step(&mut course, &external, &data, 0);
     });
-    measure("warm-up of a tick, not published", 1, || alone.warm_up(&external, &data));
+    measure("warm-up of a tick, not published", 1, || alone.warm_up(&mut course, &external, &data));
     let name = RunName::unique("bench-tick");
     let publisher = Publisher::create(&name).expect("this machine has shared memory");
-    let mut published = Runner::new(Ladder::default(), Some(publisher));
+    let mut published = Runner::new(Some(publisher));
     let mut tick = || {
-        let Ok(_) = published.step(&external, &data, 0);
+        let Ok(()) = published.step(&mut course, &external, &data, 0);
     };
     measure("tick, published", 1, &mut tick);
     let stop = AtomicBool::new(false);

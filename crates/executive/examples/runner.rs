@@ -2,7 +2,7 @@
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 
-use executive::{alloc::Counting, runner::Runner};
+use executive::{alloc::Counting, course::Course, runner::Runner};
 use interfaces::ExternalInputs;
 use levels::ladder::Ladder;
 use taskdata::files::TaskData;
@@ -11,11 +11,11 @@ use taskdata::files::TaskData;
 static ALLOCATOR: Counting = Counting;
 
 fn main() {
-    let mut runner = Runner::new(Ladder::default(), None);
+    let (mut course, mut runner) = (Course::new(Ladder::default()), Runner::new(None));
     for _ in 0..100 {
-        let Ok(_) = runner.step(&ExternalInputs::default(), &TaskData::default(), 0);
+        let Ok(()) = runner.step(&mut course, &ExternalInputs::default(), &TaskData::default(), 0);
     }
     let times = runner.times().summary();
-    println!("tick {}, {:.1} us in the middle, {:.1} us at most", runner.tick(), times.p50, times.max);
-    println!("digest {}, heap allocations {:?}", runner.digest(), runner.allocations());
+    println!("tick {}, {:.1} us in the middle, {:.1} us at most", course.tick(), times.p50, times.max);
+    println!("digest {}, heap allocations {:?}", course.digest(), runner.allocations());
 }

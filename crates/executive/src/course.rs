@@ -128,6 +128,19 @@ impl<L> Course<L> {
         Ok(())
     }
 
+    /// Run the next tick, and sum it up.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn advance<Data: ?Sized>(&mut self, external: &ExternalInputs, data: &Data) -> Result<(), L::Error>
+    where
+        L: Levels<Data>,
+    {
+        self.step(external, data, &mut |_| {})?;
+        self.sum_up(external);
+        Ok(())
+    }
+
     /// Add the buffers of the last tick to the digest, and check its statuses.
     pub fn sum_up(&mut self, external: &ExternalInputs) {
         let (before, after) = of_tick(&mut self.halves, self.tick);

@@ -14,7 +14,6 @@ pub mod boards;
 pub mod clock;
 pub mod course;
 pub mod failure;
-pub mod generations;
 pub mod histogram;
 pub mod machine;
 pub mod memory;

@@ -1,27 +1,22 @@
-//! Steps the ladder, one tick after the other, with times and publication.
-//!
-//! The ticks themselves are a [`Course`]. A runner times them and can publish their buffers in shared memory.
+//! Times the ticks of a [`Course`], and can publish their buffers in shared memory.
 //!
 //! A tick takes some microseconds if its code and its data are in the caches, and ten times as long if they are not;
 //! within the 40 ms between two ticks they are evicted. The processes are pure state machines, so a tick can be *warmed
 //! up* ([`Runner::warm_up`]): a copy of the ladder runs it on the present buffers, and the result is discarded. Caches,
 //! translation buffers and branch predictor are then warm.
 
-use interfaces::{CommonMemory, ExternalInputs};
-use rcs_core::{digest::Digest, tick::Tick};
+use interfaces::ExternalInputs;
 
 use crate::{
     alloc::{self, Section},
     course::{Course, Levels},
-    failure::Watch,
     histogram::Histogram,
     memory::{Publisher, cell::CellView, layout::Pulse},
     timing::{Stage, StageTimes},
 };
 
-/// Runs a ladder.
+/// Runs a course.
 pub struct Runner<L> {
-    course: Course<L>,
     times: Box<Histogram>,
     stage_times: StageTimes,
     /// The copy of the ladder for warm-ups; the first warm-up creates it.
@@ -38,9 +33,8 @@ pub struct Runner<L> {
 impl<L> Runner<L> {
     /// A runner before its first tick. With a publisher, it writes every tick to shared memory.
     #[must_use]
-    pub fn new(levels: L, publisher: Option<Publisher>) -> Self {
+    pub fn new(publisher: Option<Publisher>) -> Self {
         Self {
-            course: Course::new(levels),
             times: Box::default(),
             stage_times: StageTimes::default(),
             shadow: None,
@@ -52,7 +46,7 @@ impl<L> Runner<L> {
         }
     }
 
-    /// Run the next tick on its external inputs. `skipped` is the number of slots of the grid that were skipped so far;
+    /// Run the next tick of a course on its external inputs. `skipped` is the number of slots of the grid that were skipped so far;
     /// it is published, and has no other effect.
     ///
     /// Allocations are counted from here to the end of the call. The controller's time includes the processes and
@@ -63,10 +57,11 @@ impl<L> Runner<L> {
     /// Errors of the levels. The tick does not count then, and common memory stays as after the previous tick.
     pub fn step<Data: ?Sized>(
         &mut self,
+        course: &mut Course<L>,
         external: &ExternalInputs,
         data: &Data,
         skipped: u64,
-    ) -> Result<&CommonMemory, L::Error>
+    ) -> Result<(), L::Error>
     where
         L: Levels<Data>,
     {
@@ -74,55 +69,50 @@ impl<L> Runner<L> {
         let stage_times = &mut self.stage_times;
         stage_times.mark(Stage::Inputs);
         let mut controller_ns = 0;
-        self.course.step(external, data, &mut |process| {
+        course.step(external, data, &mut |process| {
             controller_ns += stage_times.mark(process.map_or(Stage::Buffers, Stage::Process));
         })?;
-        self.elsewhere = self.course.levels().allocations();
+        self.elsewhere = course.levels().allocations();
         if let Some(publisher) = &mut self.publisher {
             let pulse = Pulse {
-                tick: self.course.tick(),
+                tick: course.tick(),
                 generation: external.generation,
                 skipped,
                 allocations: alloc::allocations() - self.allocations_at_start + self.elsewhere,
                 controller_ns: self.last_ns,
                 over: false,
             };
-            publisher.publish(external, self.course.memory(), pulse);
+            publisher.publish(external, course.memory(), pulse);
         }
         self.last_ns = controller_ns + self.stage_times.mark(Stage::Buffers);
         self.times.add(self.last_ns);
-        self.course.sum_up(external);
+        course.sum_up(external);
         if let Some(publisher) = &self.publisher {
-            publisher.show(external, self.course.memory());
+            publisher.show(external, course.memory());
             if self.shadow.is_some() {
                 *self.published = *external;
             }
         }
         self.stage_times.mark(Stage::Bookkeeping);
-        Ok(self.course.memory())
+        Ok(())
     }
 
-    /// The ladder, between two ticks.
-    pub const fn levels_mut(&mut self) -> &mut L {
-        self.course.levels_mut()
-    }
-
-    /// Run the next tick on a copy and discard the result: see the head of this module. It changes nothing that another
+    /// Run the next tick of a course on a copy of its levels and discard the result: see the head of this module. It changes nothing that another
     /// process can see; it publishes the last buffers once more. Call it between two ticks, when there is time.
     ///
     /// The first warm-up creates the copy, which allocates; later ones do not allocate.
-    pub fn warm_up<Data: ?Sized>(&mut self, external: &ExternalInputs, data: &Data)
+    pub fn warm_up<Data: ?Sized>(&mut self, course: &mut Course<L>, external: &ExternalInputs, data: &Data)
     where
         L: Levels<Data>,
     {
         let Some(shadow) = &mut self.shadow else {
-            self.shadow = self.course.levels().shadow();
+            self.shadow = course.levels().shadow();
             return;
         };
         let _section = Section::enter();
-        self.course.warm_up(shadow, external, data);
+        course.warm_up(shadow, external, data);
         if let Some(publisher) = &mut self.publisher {
-            publisher.publish_again(&self.published, self.course.memory());
+            publisher.publish_again(&self.published, course.memory());
         }
     }
 
@@ -135,36 +125,6 @@ impl<L> Runner<L> {
     #[must_use]
     pub const fn stage_times(&self) -> &StageTimes {
         &self.stage_times
-    }
-
-    /// The ladder.
-    #[must_use]
-    pub const fn levels(&self) -> &L {
-        self.course.levels()
-    }
-
-    /// The tick that was run last.
-    #[must_use]
-    pub const fn tick(&self) -> Tick {
-        self.course.tick()
-    }
-
-    /// Common memory after the last tick.
-    #[must_use]
-    pub const fn memory(&self) -> &CommonMemory {
-        self.course.memory()
-    }
-
-    /// Fingerprint of all output buffers of all ticks so far.
-    #[must_use]
-    pub const fn digest(&self) -> Digest {
-        self.course.digest()
-    }
-
-    /// The record of the first failure.
-    #[must_use]
-    pub const fn watch(&self) -> &Watch {
-        self.course.watch()
     }
 
     /// Times of the controller part of all ticks.
@@ -204,8 +164,9 @@ impl<L> Runner<L> {
 mod tests {
     use std::convert::Infallible;
 
+    use interfaces::CommonMemory;
     use levels::ladder::ProcessId;
-    use rcs_core::Plain as _;
+    use rcs_core::{Plain as _, digest::Digest, tick::Tick};
 
     use super::*;
 
@@ -247,42 +208,44 @@ mod tests {
 
     #[test]
     fn each_hop_takes_a_tick() {
-        let mut runner = Runner::new(Chain::default(), None);
+        let (mut course, mut runner) = (Course::new(Chain::default()), Runner::new(None));
         let external = ExternalInputs::default();
         for tick in 1..=10_u32 {
-            let Ok(memory) = runner.step(&external, &3, 0).copied();
-            assert_eq!(memory, *runner.memory());
+            let Ok(()) = runner.step(&mut course, &external, &3, 0);
+            let memory = course.memory();
             let echoes = (memory.task.status.echo, memory.subtask.status.echo, memory.emove.status.echo);
             assert_eq!(echoes, (3 * tick, 3 * (tick - 1), 3 * tick.saturating_sub(2)));
         }
-        assert_eq!((runner.tick(), runner.times().count()), (Tick(10), 10));
+        assert_eq!((course.tick(), runner.times().count()), (Tick(10), 10));
     }
 
     #[test]
     fn a_warm_up_changes_nothing() {
-        let (mut one, mut other) = (Runner::new(Chain::default(), None), Runner::new(Chain::default(), None));
+        let (mut one, mut other) = (Course::new(Chain::default()), Course::new(Chain::default()));
+        let (mut runner, mut warmed) = (Runner::new(None), Runner::new(None));
         let external = ExternalInputs::default();
         for data in 1..=10 {
-            let Ok(expected) = one.step(&external, &data, 0).copied();
+            let Ok(()) = runner.step(&mut one, &external, &data, 0);
             // Even if the tick itself gets other data.
-            (0..3).for_each(|_| other.warm_up(&external, &77));
-            let Ok(memory) = other.step(&external, &data, 0);
-            assert_eq!(*memory, expected);
+            (0..3).for_each(|_| warmed.warm_up(&mut other, &external, &77));
+            let Ok(()) = warmed.step(&mut other, &external, &data, 0);
+            assert_eq!(other.memory(), one.memory());
         }
         assert_eq!((other.digest(), other.tick(), other.levels().steps), (one.digest(), one.tick(), 10));
-        assert_eq!(other.times().count(), 10);
+        assert_eq!(warmed.times().count(), 10);
     }
 
     #[test]
     fn the_digest_is_that_of_all_buffers_of_all_ticks() {
-        let (mut one, mut other) = (Runner::new(Chain::default(), None), Runner::new(Chain::default(), None));
+        let (mut one, mut other) = (Course::new(Chain::default()), Course::new(Chain::default()));
+        let mut runner = Runner::new(None);
         let external = ExternalInputs::default();
         let mut expected = Digest::new();
         let mut scratch = vec![0; CommonMemory::SIZE];
         for _ in 0..5 {
-            let Ok(memory) = one.step(&external, &1, 0);
-            expected.add_record(memory, &mut scratch);
-            let Ok(_) = other.step(&external, &2, 0);
+            let Ok(()) = runner.step(&mut one, &external, &1, 0);
+            expected.add_record(one.memory(), &mut scratch);
+            let Ok(()) = runner.step(&mut other, &external, &2, 0);
         }
         assert_eq!(one.digest(), expected);
         assert_ne!(one.digest(), other.digest());

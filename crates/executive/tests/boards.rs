@@ -21,7 +21,7 @@ use executive::{
         Board, BoardData, Checked, Coordinator, Fingerprint, Lost, Member, MemberError,
         coordinator::BoardEvent, lost::How, member::MemberEnd, pulse::RunCard,
     },
-    course::Levels,
+    course::{Course, Levels},
     memory::{self, RunName},
     runner::Runner,
 };
@@ -72,27 +72,28 @@ fn external(tick: Tick) -> ExternalInputs {
     external
 }
 
-/// Run a number of ticks, or until the levels fail; returns the runner, and the error of the levels.
-fn play<L, E>(levels: L, ticks: u64) -> (Runner<L>, Option<E>)
-where
-    L: for<'a> Levels<TaskData<'a>, Error = E>,
-{
-    play_watched(levels, ticks, |_| ())
+/// The outcome of some ticks.
+struct Played<L, E> {
+    course: Course<L>,
+    runner: Runner<L>,
+    /// Error of the levels, which has ended it.
+    error: Option<E>,
 }
 
-fn play_watched<L, E>(levels: L, ticks: u64, mut before: impl FnMut(Tick)) -> (Runner<L>, Option<E>)
+/// Run a number of ticks, or until the levels fail; call `before` ahead of each.
+fn play<L, E>(levels: L, ticks: u64, mut before: impl FnMut(Tick)) -> Played<L, E>
 where
     L: for<'a> Levels<TaskData<'a>, Error = E>,
 {
-    let mut runner = Runner::new(levels, None);
+    let (mut course, mut runner) = (Course::new(levels), Runner::new(None));
     let data = store().view();
     for tick in 1..=ticks {
         before(Tick(tick));
-        if let Err(error) = runner.step(&external(Tick(tick)), &data, 0) {
-            return (runner, Some(error));
+        if let Err(error) = runner.step(&mut course, &external(Tick(tick)), &data, 0) {
+            return Played { course, runner, error: Some(error) };
         }
     }
-    (runner, None)
+    Played { course, runner, error: None }
 }
 
 /// Two equal generations; nothing is loaded.
@@ -126,7 +127,7 @@ fn board<'s>(
 fn four_boards_compute_the_bits_of_one_and_allocate_nothing() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     const TICKS: u64 = 1500;
-    let (one, _) = play(Ladder::default(), TICKS);
+    let Played { course: one, .. } = play(Ladder::default(), TICKS, |_| ());
     let name = RunName::unique("bits");
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
@@ -135,18 +136,18 @@ fn four_boards_compute_the_bits_of_one_and_allocate_nothing() {
         let mut arrivals = 0;
         coordinator.gather(PATIENCE, &stop, |_, _| arrivals += 1).expect("all come");
         assert_eq!(arrivals, 4);
-        let (split, lost) = play(coordinator, TICKS);
-        assert_eq!(lost, None);
+        let Played { course: split, runner, error } = play(coordinator, TICKS, |_| ());
+        assert_eq!(error, None);
         assert_eq!(split.digest(), one.digest());
         assert_ne!(one.digest(), Digest::new());
         assert_eq!(*split.levels().states(), one.levels().state());
         // All threads of this process are counted together, so each figure is that of all boards.
-        assert_eq!(split.allocations(), Some(0));
+        assert_eq!(runner.allocations(), Some(0));
         for figures in split.levels().figures() {
             assert_eq!((figures.times.count(), figures.allocations), (TICKS, 0), "{}", figures.board);
         }
         let (tick, board) =
-            (split.times().summary(), split.levels().figures().next().unwrap().times.summary());
+            (runner.times().summary(), split.levels().figures().next().unwrap().times.summary());
         println!(
             "tick p50 {} us, p99 {} us; board 2 p50 {} us, p99 {} us",
             tick.p50, tick.p99, board.p50, board.p99
@@ -170,14 +171,14 @@ fn a_board_that_leaves_stops_the_pulse_and_is_named() {
             board(scope, &name, b, if b == Board::Eight { &leave } else { &stop });
         }
         coordinator.gather(PATIENCE, &stop, |_, _| ()).expect("all come");
-        let (runner, lost) =
-            play_watched(coordinator, 500, |tick| leave.store(tick == Tick(400), Ordering::Relaxed));
+        let Played { course, error: lost, .. } =
+            play(coordinator, 500, |tick| leave.store(tick == Tick(400), Ordering::Relaxed));
         let lost: Lost = lost.expect("a board left");
         assert_eq!((lost.board, lost.how), (Board::Eight, How::Left));
         // The flag is set while the board may still answer the previous tick.
         assert!((400..=401).contains(&lost.tick.0), "{lost}");
-        assert_eq!(runner.tick(), lost.tick.previous(), "the tick does not count");
-        let text = lost.explain(&external(lost.tick).hws, runner.memory());
+        assert_eq!(course.tick(), lost.tick.previous(), "the tick does not count");
+        let text = lost.explain(&external(lost.tick).hws, course.memory());
         assert!(text.contains("board 8 (Quick Change, Grip,") && text.contains("left the run"), "{text}");
     });
     assert_eq!(memory::traces(&name), Vec::<PathBuf>::new());
@@ -252,31 +253,31 @@ fn a_board_that_is_replaced_goes_on_as_one_whose_processes_were_restarted() {
             board(scope, &name, b, if b == Board::Two { &leave } else { &stop });
         }
         coordinator.gather(PATIENCE, &stop, |_, _| ()).expect("all come");
-        let mut runner = Runner::new(coordinator, None);
+        let mut course = Course::new(coordinator);
         let data = store().view();
         let mut restarted = None;
         for tick in (1..=TICKS).map(Tick) {
             leave.store(tick == Tick(433), Ordering::Relaxed);
-            while let Err(lost) = runner.step(&external(tick), &data, 0) {
+            while let Err(lost) = course.advance(&external(tick), &data) {
                 assert_eq!((lost.board, lost.tick, restarted), (Board::Two, tick, None), "{lost}");
                 restarted = Some(tick);
                 board(scope, &name, Board::Two, &stop);
-                runner.levels_mut().await_successor(&lost, PATIENCE, &stop, |_, _| ()).expect("one comes");
+                course.levels_mut().await_successor(&lost, PATIENCE, &stop, |_, _| ()).expect("one comes");
             }
         }
         let restarted = restarted.expect("a board left");
         assert!((433..=434).contains(&restarted.0));
 
-        let mut one = Runner::new(Ladder::default(), None);
+        let mut one = Course::new(Ladder::default());
         for tick in (1..=TICKS).map(Tick) {
             if tick == restarted {
                 Board::Two.processes().for_each(|process| one.levels_mut().restart(process));
             }
-            let Ok(_) = one.step(&external(tick), &data, 0);
+            let Ok(()) = one.advance(&external(tick), &data);
         }
-        assert_eq!(runner.digest(), one.digest());
-        assert_eq!(runner.memory(), one.memory());
-        assert_eq!(runner.levels().epochs(), &[2, 1, 1, 1]);
+        assert_eq!(course.digest(), one.digest());
+        assert_eq!(course.memory(), one.memory());
+        assert_eq!(course.levels().epochs(), &[2, 1, 1, 1]);
     });
     assert_eq!(memory::traces(&name), Vec::<PathBuf>::new());
 }

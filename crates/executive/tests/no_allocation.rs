@@ -11,7 +11,7 @@ use std::convert::Infallible;
 
 use executive::{
     alloc::{self, Counting, Section},
-    course::Levels,
+    course::{Course, Levels},
     memory::{Attached, Publisher, RunName},
     runner::Runner,
 };
@@ -96,13 +96,13 @@ fn a_tick_does_not_allocate_and_one_that_does_is_noticed() {
 
     let name = RunName::unique("allocation");
     let publisher = Publisher::create(&name).expect("this machine has shared memory");
-    let mut runner = Runner::new(Failing, Some(publisher));
+    let (mut course, mut runner) = (Course::new(Failing), Runner::new(Some(publisher)));
     let external = ExternalInputs::default();
     // The first warm-up creates the copy for warm-ups.
-    runner.warm_up(&external, &());
+    runner.warm_up(&mut course, &external, &());
     for _ in 0..10_000 {
-        runner.warm_up(&external, &());
-        let Ok(_) = runner.step(&external, &(), 0);
+        runner.warm_up(&mut course, &external, &());
+        let Ok(()) = runner.step(&mut course, &external, &(), 0);
     }
     assert_eq!(runner.allocations(), Some(0));
     let reader = Attached::open(&name).expect("the run lives");
@@ -118,9 +118,9 @@ fn a_tick_does_not_allocate_and_one_that_does_is_noticed() {
         times.p50, times.p99, times.max
     );
 
-    let mut careless = Runner::new(Careless, None);
+    let (mut course, mut careless) = (Course::new(Careless), Runner::new(None));
     for _ in 0..1_000 {
-        let Ok(_) = careless.step(&external, &(), 0);
+        let Ok(()) = careless.step(&mut course, &external, &(), 0);
     }
     assert_eq!(careless.allocations(), Some(10));
 }

@@ -132,6 +132,29 @@ pub struct TaskOutputs {
     pub poses: [ChangingPose; TASK_POSES],
 }
 
+impl HwsCommand {
+    /// The command without its empty fields: `TRANSFER LINKBAR1 from TRAY:3 to PFIXTURE end at HOME`.
+    pub fn in_words(&self) -> impl fmt::Display {
+        fmt::from_fn(|f| {
+            f.write_str(self.command.as_str())?;
+            name(f, self.object.as_ref())?;
+            let places = [
+                ("from", self.source, self.source_sector),
+                ("to", self.destination, self.destination_sector),
+                ("end at", self.end_at, self.end_at_sector),
+            ];
+            for (word, name, sector) in places {
+                let Some(name) = name else { continue };
+                write!(f, " {word} {name}")?;
+                if let Some(sector) = sector {
+                    write!(f, ":{sector}")?;
+                }
+            }
+            Ok(())
+        })
+    }
+}
+
 /// `TRANSFER LINKBAR1 at TRAY sector 3 to PFIXTURE`.
 impl fmt::Display for HwsCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

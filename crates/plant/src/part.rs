@@ -1,5 +1,7 @@
 //! Parts: movable boxes and cylinders, and their reports.
 
+use std::fmt;
+
 use geometry::frame::{Frame, Vector as Inches, rotation_from_x_y};
 use rapier3d_f64::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -110,10 +112,11 @@ fn collider(kind: &PartType) -> ColliderBuilder {
     Solid::of(kind).collider().mass(mass(kind)).friction(FRICTION).collision_groups(groups(PART, Group::ALL))
 }
 
-/// Report of a part.
-#[derive(Clone, Debug, PartialEq)]
+/// Report of a part. The names of the fields are those of the JSON object.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartState {
     /// Its number in this cell, from 1.
+    #[serde(skip)]
     pub id: u32,
     /// Its name at present.
     pub name: String,
@@ -126,9 +129,33 @@ pub struct PartState {
     /// The vise holds it.
     pub clamped: bool,
     /// Its middle in world coordinates, in.
+    #[serde(rename = "position_in")]
     pub position: [f64; 3],
     /// Distance of its middle from the centre of its sector (x and y) or from its seat in the vise, in.
+    #[serde(rename = "error_in")]
     pub error: Option<f64>,
+}
+
+impl fmt::Display for PartState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = match self.location.as_str() {
+            "gripper" => "in the gripper".to_owned(),
+            "floor" => "on the floor".to_owned(),
+            "elsewhere" => "at no place of the cell".to_owned(),
+            vise if self.clamped => format!("clamped in {vise}"),
+            location => format!("at {location}"),
+        };
+        write!(f, "{} is {place}", self.name)?;
+        if self.sector > 0 {
+            write!(f, " sector {}", self.sector)?;
+        }
+        if let Some(error) = self.error {
+            let from = if self.sector > 0 { "the sector's centre" } else { "its seat" };
+            write!(f, ", {error:.2} in from {from}")?;
+        }
+        let [x, y, z] = self.position;
+        write!(f, " ({x:.2} {y:.2} {z:.2} in)")
+    }
 }
 
 /// True if the segment from `from` to `to` meets the box around a part at `pose`, metres.

@@ -14,7 +14,6 @@ use interfaces::{
 };
 use rcs_core::{
     handshake::Lower,
-    name::Name16,
     table::{Row, Table},
 };
 
@@ -64,7 +63,7 @@ fn commands(
     };
     let (was, is) = (&before.task.status, &after.task.status);
     if was.echo != is.echo {
-        say(Level::Info, "task", format!("command {}: {}", is.echo, hws_text(hws)));
+        say(Level::Info, "task", format!("command {}: {}", is.echo, hws.in_words()));
     }
     if was.echo != is.echo && after.task.connection == Connection::Interrupted {
         let text = "STARTUP was interrupted: the Data System is told nothing until it is sent again";
@@ -226,23 +225,6 @@ fn name_of(headers: &[HeaderPlace], field: &str) -> String {
     headers.iter().find(|place| place.field == field).map_or(field, |place| place.process.name).to_owned()
 }
 
-/// A command of the workstation as text, without its empty fields.
-#[must_use]
-pub fn hws_text(command: &HwsCommand) -> String {
-    let mut words = vec![command.command.to_string()];
-    words.extend(command.object.map(|object| object.to_string()));
-    let mut place = |word: &str, name: Option<Name16>, sector: Option<i32>| {
-        words.extend(name.map(|name| match sector {
-            None => format!("{word} {name}"),
-            Some(sector) => format!("{word} {name}:{sector}"),
-        }));
-    };
-    place("from", command.source, command.source_sector);
-    place("to", command.destination, command.destination_sector);
-    place("end at", command.end_at, command.end_at_sector);
-    words.join(" ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -255,6 +237,7 @@ mod tests {
         pedestal::{PedestalReport, PedestalVerb, TableVerb},
     };
     use rcs_core::name::Name10;
+    use rcs_core::name::Name16;
 
     #[test]
     fn a_command_is_told_once() {

@@ -50,30 +50,19 @@ impl Run {
     /// # Errors
     /// [`ChangeError::Data`], [`ChangeError::Reload`]; then nothing has changed.
     pub fn change_data(&mut self, source: Source) -> Result<(), ChangeError> {
-        let done = self.generations_done();
-        let reloads = insert(self.generations.current(), &self.job.reloads, done, &source)?;
+        let generations = self.closed.generations();
+        let reloads = insert(generations.current(), generations.reloads(), generations.done(), &source)?;
         if self.use_reloads(reloads) { Ok(()) } else { Err(ChangeError::Reload) }
-    }
-
-    /// Number of reloads in effect: those of lines of the job, of changes and of operators.
-    pub(crate) fn generations_done(&self) -> usize {
-        usize::try_from(self.generations.number()).unwrap_or(usize::MAX)
     }
 
     /// Add reloads from the next tick on. Returns false, and changes nothing, if a reload of the job waits for the end
     /// of a command.
     pub(crate) fn use_reloads(&mut self, reloads: Vec<Reload>) -> bool {
-        let Some(next) = reloads.get(self.generations_done()) else { return false };
-        if !self.generations.supersede(next.store.clone()) {
-            return false;
+        let inserted = self.closed.generations_mut().insert(reloads);
+        if inserted {
+            self.log_reload();
         }
-        self.changed += 1;
-        let (tick, number) = (self.last_tick().next(), self.generations.number());
-        if let Some(log) = &mut self.log {
-            log.reload(tick, number, &next.source);
-        }
-        self.job.reloads = reloads;
-        true
+        inserted
     }
 
     /// Enable the faults of a file from the next tick on, those of the cell and those of the line.
@@ -86,18 +75,18 @@ impl Run {
             return Err(ChangeError::Displaced(fault.number));
         }
         if let Some(plan) = &faults.line
-            && !self.robot.suffer(plan)
+            && (self.robot.is_elsewhere() || !self.closed.line_mut().suffer(plan))
         {
             return Err(ChangeError::Line);
         }
-        self.workstation.cell.add_faults(&faults.cell, seed);
+        self.closed.workstation.cell.add_faults(&faults.cell, seed);
         self.note_change("faults of another file can begin");
         Ok(())
     }
 
     /// Use another seed for sensor noise and for the positions of delivered parts from the next tick on.
     pub fn change_seed(&mut self, seed: u64) {
-        self.workstation.cell.reseed(seed);
+        self.closed.workstation.cell.reseed(seed);
         self.note_change(&format!("the seed is {seed}"));
     }
 

@@ -11,6 +11,7 @@
 //! The numbers of the commands form one sequence. While an operator commands, the workstation controller reads an
 //! initialized status mailbox, like one that has connected too early, and its commands are not executed.
 
+use closed_loop::workstation::SimulatedWorkstation;
 use interfaces::{CommonMemory, TaskOutputs, hws::HwsReport};
 use neighbours::{
     network::{Endpoint, EndpointHandle, Role},
@@ -28,7 +29,6 @@ use crate::{
     neighbours::{Emulator, Neighbours, WorkstationSource},
     outside::OutsideWorkstation,
     switched::obstacle,
-    workstation::SimulatedWorkstation,
 };
 
 /// A workstation controller in another process, which an operator can replace temporarily.
@@ -196,11 +196,15 @@ impl Neighbours {
     ///
     /// # Errors
     /// A sentence with the reason if that is not possible.
-    pub fn take_command(&mut self, tick: Tick, memory: &CommonMemory, now: bool) -> Result<String, String> {
+    pub fn take_command(
+        &mut self,
+        tick: Tick,
+        memory: &CommonMemory,
+        gate: &mut Gate,
+        now: bool,
+    ) -> Result<String, String> {
         match &mut self.workstation {
-            WorkstationSource::Outside(commanded) => {
-                commanded.take_command(tick, &memory.task, &mut self.gate, now)
-            }
+            WorkstationSource::Outside(commanded) => commanded.take_command(tick, &memory.task, gate, now),
             WorkstationSource::Emulator(_) => Err("no workstation controller commands this run".to_owned()),
             WorkstationSource::Switched(_) => {
                 Err("the job commands when the workstation controller disconnects (IV.4.1)".to_owned())
@@ -212,7 +216,12 @@ impl Neighbours {
     ///
     /// # Errors
     /// A sentence with the reason if that is not possible.
-    pub fn give_command(&mut self, tick: Tick, memory: &CommonMemory) -> Result<String, String> {
+    pub fn give_command(
+        &mut self,
+        tick: Tick,
+        memory: &CommonMemory,
+        gate: &mut Gate,
+    ) -> Result<String, String> {
         let mut data_system = self.network.iter().flat_map(|network| &network.handles);
         let has_data_system = data_system
             .by_ref()
@@ -220,7 +229,7 @@ impl Neighbours {
             .all(EndpointHandle::is_connected);
         match &mut self.workstation {
             WorkstationSource::Outside(commanded) => {
-                commanded.give_command(tick, memory, has_data_system, &mut self.gate)
+                commanded.give_command(tick, memory, has_data_system, gate)
             }
             WorkstationSource::Emulator(_) => {
                 Err("no workstation controller can connect to this run: --outside workstation".to_owned())

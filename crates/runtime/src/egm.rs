@@ -7,6 +7,7 @@ use std::{
 };
 
 use ::egm::{LinkState, Pose, Sample, host::Counters};
+use closed_loop::RobotInputs;
 use depc::{Limits, Plate, link::LinkBytes};
 use egm_robot::{Bridge, BridgeOutputs, EgmOptions, Line, Peer, Refusals, udp::UdpLine};
 use executive::{
@@ -14,7 +15,7 @@ use executive::{
     realtime,
 };
 use geometry::{frame::Frame, kinematics::T3, pose::WireFrame};
-use interfaces::device::{DeviceInputs, RESOLVER_COUNTS, Resolvers};
+use interfaces::device::{RESOLVER_COUNTS, Resolvers};
 
 use crate::{
     config::{ClockKind, RunConfig},
@@ -123,16 +124,18 @@ impl EgmPort {
     }
 
     /// Before the controller's tick: read the answers of the DEPC function, and the position of the robot.
-    pub fn receive(&mut self, inputs: &mut DeviceInputs) {
+    pub fn receive(&mut self) -> RobotInputs {
         self.read();
-        inputs.link_rx = self.outputs.tx;
-        inputs.link_ready = self.outputs.dtr;
-        inputs.link_unsent = false;
         let sample = self.line.sample();
         if sample.link != LinkState::Waiting {
             self.resolvers = self.resolvers_at(&sample);
         }
-        inputs.resolvers = self.resolvers;
+        RobotInputs {
+            rx: self.outputs.tx,
+            ready: self.outputs.dtr,
+            unsent: false,
+            resolvers: Some(self.resolvers),
+        }
     }
 
     /// After the controller's tick: pass the host's bytes to the DEPC function, or hold the robot where it is. `exact`

@@ -20,18 +20,16 @@ use neighbours::{
 use plant::{CellEvent, t3::explained};
 use record::Level;
 
-use crate::{contacts::Collision, truth::Confirmation};
+use closed_loop::{contacts::ContactEvent, truth::Confirmation};
 
 /// An event of a run.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Event {
-    /// In the cell. Only contacts that are not permitted are events: [`Event::Collides`].
+    /// In the cell. Only contacts that are not permitted are events: [`Event::Contact`].
     Cell(CellEvent),
-    /// Two objects touch that must not.
-    Collides(Collision),
-    /// The objects have separated.
-    CameFree(Collision),
+    /// Two objects touch that must not, or have separated.
+    Contact(ContactEvent),
     /// Faults of these kinds have occurred on the line to the robot.
     LineFaults(Vec<&'static str>),
     /// The state of the line to the robot has changed.
@@ -106,8 +104,8 @@ impl Event {
     pub const fn code(&self) -> &'static str {
         match self {
             Self::Cell(event) => event.code(),
-            Self::Collides(_) => "contact.begins",
-            Self::CameFree(_) => "contact.ends",
+            Self::Contact(ContactEvent::Begins(_)) => "contact.begins",
+            Self::Contact(ContactEvent::Ends(_)) => "contact.ends",
             Self::LineFaults(_) => "fault.line",
             Self::Link(_) => "link.trouble",
             Self::RobotRefuses(_) => "robot.refuses",
@@ -147,7 +145,7 @@ impl Event {
             Self::Cell(CellEvent::Warning(_) | CellEvent::ViseStuck) | Self::RobotRefuses(_) => Level::Error,
             Self::Cell(event) if event.is_harm() => Level::Error,
             Self::Untrue(confirmation) if confirmation.is_false() => Level::Error,
-            Self::Collides(_) | Self::CameFree(_) | Self::CellStatusUnsent(_) | Self::Stops => Level::Error,
+            Self::Contact(_) | Self::CellStatusUnsent(_) | Self::Stops => Level::Error,
             Self::RealTime { complete: true, .. } => Level::Info,
             // The connection of a neighbour and the departure of an operator are no warnings.
             Self::Network(
@@ -168,7 +166,7 @@ impl Event {
             Self::Cell(CellEvent::FaultBegins { .. } | CellEvent::FaultEnds { .. }) | Self::LineFaults(_) => {
                 "fault"
             }
-            Self::Cell(_) | Self::Collides(_) | Self::CameFree(_) => "cell",
+            Self::Cell(_) | Self::Contact(_) => "cell",
             Self::CellLineRefused(_) | Self::CellStatusUnsent(_) | Self::Untrue(_) => "cell",
             Self::Link(_) => "T3I",
             Self::RobotRefuses(_) => "robot",
@@ -201,13 +199,7 @@ impl fmt::Display for Event {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Cell(event) => event.fmt(f),
-            Self::Collides(collision) => collision.fmt(f),
-            Self::CameFree(Collision { mover, obstacle, ticks, depth_in, .. }) => {
-                write!(
-                    f,
-                    "{mover} comes free of {obstacle} after {ticks} ticks; it was {depth_in:.3} in deep"
-                )
-            }
+            Self::Contact(event) => event.fmt(f),
             Self::LineFaults(kinds) => write!(f, "on the line: {}", kinds.join(", ")),
             Self::Link(trouble) => f.write_str(trouble),
             Self::RobotRefuses(warning) => {

@@ -4,8 +4,8 @@
 //! A command passes if the task data have what it needs ([`Verdict`]), and if `check` has found no error in the records
 //! that it uses. With `--unchecked` the second condition does not count. PAUSE always passes.
 
+use closed_loop::generations::Generations;
 use diagnostics::{Blame, Group, grouped};
-use executive::generations::Generations;
 use interfaces::{CommonMemory, HwsCommand, emove::Holding};
 use neighbours::{
     mailbox::Mailbox,
@@ -24,31 +24,11 @@ use taskdata::load::{
 
 use crate::{error::StartError, event::Event};
 
-/// The task data of the next tick, with which Task reads a command that is sent now.
-#[derive(Clone, Copy)]
-pub struct NextData<'a> {
-    /// The task data in use, and the queued ones.
-    pub generations: &'a Generations,
-    /// The job, with the task data that its lines load.
-    pub job: &'a Job,
-    /// Number of generations that no line of the job has made.
-    pub changed: u32,
-}
-
-impl<'a> NextData<'a> {
-    /// The task data after a tick whose buffers are `memory`; `load` is the first reload that the job has requested in
-    /// that tick.
-    fn store(&self, memory: &CommonMemory, load: Option<u32>) -> &'a Store {
-        let proposed = load.and_then(|number| self.job.reload(number + self.changed));
-        self.generations.next(memory, proposed.map(|reload| &reload.store))
-    }
-}
-
 /// Judges the commands of a tick.
 #[derive(Clone, Copy)]
 pub struct CommandJudge<'a> {
-    /// Task data of the next tick.
-    pub data: NextData<'a>,
+    /// The task data.
+    pub generations: &'a Generations,
     /// Number of the first reload that the job has requested in this tick.
     pub load: Option<u32>,
     /// Common memory after the tick.
@@ -81,7 +61,7 @@ impl<'a> CommandJudge<'a> {
     /// Task data with which Task reads a command that is sent now.
     #[must_use]
     pub fn store(&self) -> &'a Store {
-        self.data.store(self.memory, self.load)
+        self.generations.next(self.memory, self.load)
     }
 }
 

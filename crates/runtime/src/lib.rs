@@ -24,7 +24,6 @@ mod cell_view;
 pub mod change;
 mod commanded;
 pub mod config;
-pub mod contacts;
 mod egm;
 pub mod error;
 pub mod event;
@@ -46,9 +45,7 @@ mod robot;
 mod run;
 pub mod setup;
 mod switched;
-pub mod truth;
 mod verdict;
-pub mod workstation;
 
 pub use self::{
     change::ChangeError,

@@ -12,9 +12,9 @@ use std::{
     time::{Duration, Instant},
 };
 
+use closed_loop::generations;
 use executive::{
     boards::{Board, Coordinator},
-    generations,
     memory::load_file,
 };
 use rcs_core::tick::{TICK_MS, Tick};
@@ -187,7 +187,7 @@ impl Run {
         if self.loads.loading.is_some() {
             return Err(LoadError::Loading);
         }
-        if generations::is_busy(self.runner.memory()) { Err(LoadError::Busy) } else { Ok(()) }
+        if generations::is_busy(self.closed.memory()) { Err(LoadError::Busy) } else { Ok(()) }
     }
 
     /// Load a block. In parallel to the ticks it only begins, and [`Run::follow_load`] returns the answer later.
@@ -239,7 +239,7 @@ impl Run {
 
     /// Load a block before the next tick; in a repetition from the log.
     fn load_at_once(&mut self, number: BlockNumber, inside: bool) -> Result<String, LoadError> {
-        let recorded = self.asked.recorded_block(self.generations.number().saturating_add(1));
+        let recorded = self.asked.recorded_block(self.closed.generations().number().saturating_add(1));
         let source = recorded.map(|block| block.ok_or(LoadError::NotRecorded)).transpose()?;
         let loaded = self.order(number, source, inside).carry_out()?;
         if let Some(load) = self.announce() {
@@ -258,21 +258,22 @@ impl Run {
     }
 
     fn order(&self, number: BlockNumber, source: Option<Source>, inside: bool) -> Order {
-        let is_split = matches!(self.runner.levels(), Controller::Split(_));
+        let is_split = matches!(self.closed.course().levels(), Controller::Split(_));
+        let generations = self.closed.generations();
         Order {
             number,
             source,
             directory: self.config.data.clone(),
-            base: self.generations.current().clone(),
-            reloads: self.job.reloads.clone(),
-            done: self.generations_done(),
+            base: generations.current().clone(),
+            reloads: generations.reloads().to_vec(),
+            done: generations.done(),
             file: is_split.then(|| load_file(&self.name, self.loads.last.saturating_add(1))),
             inside,
         }
     }
 
     fn coordinator(&mut self) -> Option<&mut Coordinator> {
-        match self.runner.levels_mut() {
+        match self.closed.course_mut().levels_mut() {
             Controller::Split(coordinator) => Some(coordinator),
             Controller::One(_) => None,
         }
@@ -301,9 +302,9 @@ impl Run {
     /// Add the block to the task data from the next tick on.
     fn take_up(&mut self, number: BlockNumber, loaded: Loaded) -> Result<String, LoadError> {
         let Loaded { reloads, done, .. } = loaded;
-        let refused = if generations::is_busy(self.runner.memory()) {
+        let refused = if generations::is_busy(self.closed.memory()) {
             Some(LoadError::Busy)
-        } else if done != self.generations_done() || !self.use_reloads(reloads) {
+        } else if done != self.closed.generations().done() || !self.use_reloads(reloads) {
             Some(LoadError::Reload)
         } else {
             None
@@ -315,7 +316,7 @@ impl Run {
         if let Some(coordinator) = self.coordinator() {
             coordinator.commit(load);
         }
-        let generation = self.generations.number();
+        let generation = self.closed.generations().number();
         let name = self.job.reload(generation).map_or("", |reload| &reload.source.name);
         Ok(format!("{number} of {name} is loaded; the data have generation {generation}"))
     }

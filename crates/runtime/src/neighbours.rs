@@ -10,15 +10,16 @@ use std::{
     time::{Duration, Instant},
 };
 
-use interfaces::{CommonMemory, DataBaseStatus, DeviceInputs, Header, HwsCommand, OutsidePedestal};
+use closed_loop::{Desk, workstation::SimulatedWorkstation};
+use interfaces::{CommonMemory, DataBaseStatus, DeviceInputs, OutsidePedestal};
 use neighbours::{
-    data_system::{DataSystem, Item},
+    data_system::DataSystem,
     mailbox::{HWSC_COMMAND, Mailbox},
     network::{Endpoint, EndpointHandle, Role},
     pedestal,
     vision::{self, picture::Part},
     workstation::{
-        Gate, TaskState,
+        Gate,
         player::{BegunStep, Hwsc, JobFailure, Outcome, Progress, Retry, WaitReason},
         status,
     },
@@ -29,13 +30,12 @@ use rcs_core::{Plain as _, tick::Tick};
 use super::{
     commanded::Commanded,
     switched::{Around, Switched},
-    workstation::SimulatedWorkstation,
 };
 use crate::{
     config::{ClockKind, RunConfig},
     error::StartError,
     event::Event,
-    judge::{CommandJudge, NextData, read_command},
+    judge::{CommandJudge, read_command},
     network::Network,
     observer::Observer,
 };
@@ -67,9 +67,9 @@ impl WorkstationSource {
 
 /// The neighbours of a run.
 pub struct Neighbours {
-    pub(crate) gate: Gate,
     pub(crate) workstation: WorkstationSource,
-    data_system: DataSystem,
+    /// `None` if the run keeps the books itself.
+    data_system: Option<DataSystem>,
     /// `None` if the controller contains the processes of the pedestal.
     pedestal: Option<Box<pedestal::Agent>>,
     /// The port of vision; without it the cell analyses its pictures itself.
@@ -88,13 +88,12 @@ impl Neighbours {
     #[must_use]
     pub fn new(
         workstation: WorkstationSource,
-        data_system: DataSystem,
+        data_system: Option<DataSystem>,
         pedestal: Option<Box<pedestal::Agent>>,
         vision: Option<vision::Port>,
         network: Option<Network>,
     ) -> Self {
         Self {
-            gate: Gate::default(),
             workstation,
             data_system,
             pedestal,
@@ -223,16 +222,10 @@ impl Neighbours {
         matches!(self.workstation, WorkstationSource::Switched(_))
     }
 
-    /// Task's command buffer.
+    /// The status of a Data System that the run does not keep itself.
     #[must_use]
-    pub const fn hws(&self) -> &HwsCommand {
-        self.gate.command()
-    }
-
-    /// The Data System's input to Task.
-    #[must_use]
-    pub const fn data_base(&self) -> DataBaseStatus {
-        self.data_system.status()
+    pub fn data_base(&self) -> DataBaseStatus {
+        self.data_system.as_ref().map(DataSystem::status).unwrap_or_default()
     }
 
     /// The last statuses of a pedestal in another process.
@@ -316,37 +309,31 @@ impl Neighbours {
         self.begun_steps().iter().rev().find(is_meant).map(|step| step.text.as_str())
     }
 
-    /// Called once per tick, after controller and cell: all neighbours read the outputs of the tick. `inputs` are the
-    /// device words of the next tick.
-    pub fn step(
-        &mut self,
-        tick: Tick,
-        memory: &CommonMemory,
-        inputs: &DeviceInputs,
-        workstation: &mut SimulatedWorkstation,
-        data: NextData<'_>,
-    ) -> Progress {
-        self.data_system.step(tick, &memory.task.data_base);
-        self.events.extend(self.data_system.refusals().into_iter().map(Event::DataBaseRefuses));
-        self.events.extend(self.data_system.remarks().into_iter().map(Event::from));
+    /// Called once per tick, after controller and cell: all neighbours read the outputs of the tick.
+    pub fn step(&mut self, desk: Desk<'_>) -> Progress {
+        let Desk { tick, memory, inputs, gate, workstation, generations } = desk;
+        if let Some(data_system) = &mut self.data_system {
+            data_system.step(tick, &memory.task.data_base);
+            self.events.extend(data_system.refusals().into_iter().map(Event::DataBaseRefuses));
+            self.events.extend(data_system.remarks().into_iter().map(Event::from));
+        }
         self.events.extend(self.network.iter().flat_map(Network::events).map(Event::Network));
         self.step_vision(tick, memory, workstation);
-        self.gate.write(memory, task_state(&memory.task.header, tick));
-        let judge = CommandJudge { data, load: None, memory, unchecked: self.unchecked };
+        let judge = CommandJudge { generations, load: None, memory, unchecked: self.unchecked };
         let progress = match &mut self.workstation {
             _ if self.is_ending => Progress::Running,
             WorkstationSource::Emulator(emulator) => {
-                emulator.step(tick, &mut self.gate, workstation, &judge, &mut self.events)
+                emulator.step(tick, gate, workstation, &judge, &mut self.events)
             }
             WorkstationSource::Outside(commanded) => {
-                commanded.step(tick, &mut self.gate, workstation, &judge, &mut self.events)
+                commanded.step(tick, gate, workstation, &judge, &mut self.events)
             }
             WorkstationSource::Switched(switched) => {
                 let data_system = self.network.iter().flat_map(|network| &network.handles);
                 let mut data_system = data_system.filter(|handle| handle.role() == Role::DataSystem);
                 let around =
                     Around { tick, judge, has_data_system: data_system.all(EndpointHandle::is_connected) };
-                switched.step(&around, &mut self.gate, workstation, &mut self.events)
+                switched.step(&around, gate, workstation, &mut self.events)
             }
         };
         self.step_pedestal(tick, memory, inputs);
@@ -358,12 +345,9 @@ impl Neighbours {
         std::mem::take(&mut self.events)
     }
 
-    /// The items in the Data System.
-    ///
-    /// # Errors
-    /// The reason why the list is not available.
-    pub fn items(&mut self) -> Result<Vec<Item>, String> {
-        self.data_system.items()
+    /// A Data System that the run does not keep itself.
+    pub const fn data_system(&mut self) -> Option<&mut DataSystem> {
+        self.data_system.as_mut()
     }
 }
 
@@ -437,18 +421,6 @@ fn pictured(subject: &Subject) -> Part {
         edges: face.edges.map(|(direction, length)| (direction.into(), length)),
         reflectance: subject.reflectance(),
         seen: subject.raster(),
-    }
-}
-
-/// True if Task has run in a tick.
-#[must_use]
-pub fn task_state(header: &Header, tick: Tick) -> TaskState {
-    if header.stamp != tick {
-        TaskState::Lost
-    } else if header.republished {
-        TaskState::Held
-    } else {
-        TaskState::Runs
     }
 }
 

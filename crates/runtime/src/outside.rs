@@ -4,6 +4,7 @@
 //! fast clock ends when its workstation controller disconnects, and has failed if that was in the middle of a command;
 //! on the 40 ms grid the robot waits until it connects again.
 
+use closed_loop::workstation::SimulatedWorkstation;
 use interfaces::{HwsCommand, TaskOutputs, Unconfirmed, hws::HwsReport};
 use neighbours::{
     mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS},
@@ -24,7 +25,6 @@ use crate::{
     event::Event,
     judge::{CommandJudge, read_command},
     load,
-    workstation::SimulatedWorkstation,
 };
 
 /// Number of commands that a run remembers, so that a run of a year does not fill the memory.

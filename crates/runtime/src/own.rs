@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use closed_loop::RobotInputs;
 use depc::{
     Limits, Plate,
     controller::{Controller, ControllerInputs, ControllerOutputs, ControllerState, Robot},
@@ -9,7 +10,6 @@ use depc::{
     track::{LAG_MS, MOST_LAG_MS},
     warning::Warning,
 };
-use interfaces::device::DeviceInputs;
 use plant::t3::explained;
 
 /// A robot instead of the T3, for [`Run::with_robot`](crate::Run::with_robot).
@@ -54,10 +54,8 @@ impl OwnPort {
     }
 
     /// Before the controller's tick: pass on the answers of the function.
-    pub const fn receive(&self, inputs: &mut DeviceInputs) {
-        inputs.link_rx = self.outputs.tx;
-        inputs.link_ready = self.outputs.dtr;
-        inputs.link_unsent = false;
+    pub const fn receive(&self) -> RobotInputs {
+        RobotInputs { rx: self.outputs.tx, ready: self.outputs.dtr, unsent: false, resolvers: None }
     }
 
     /// After the controller's tick: pass the host's bytes to the function, or stop the robot where it is. The function

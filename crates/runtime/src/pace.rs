@@ -10,7 +10,7 @@ use executive::{
     realtime::{self, RealTime},
     timing::{Stage, StageTimes},
 };
-use interfaces::{CommonMemory, DeviceInputs};
+use interfaces::CommonMemory;
 
 use crate::{event::Event, result::TickTimes};
 
@@ -79,11 +79,10 @@ impl Pace {
         events
     }
 
-    /// The controller's inputs: while the robot holds, its velocity knob is at zero.
+    /// The velocity knob for the controller: at zero while the robot holds.
     #[must_use]
-    pub const fn inputs(&self, mut inputs: DeviceInputs) -> DeviceInputs {
-        inputs.joystick.velocity = self.overruns.knob(inputs.joystick.velocity);
-        inputs
+    pub const fn knob(&self, knob: u16) -> u16 {
+        self.overruns.knob(knob)
     }
 
     /// After a tick: the overrun that ends the run now, if any.

@@ -7,21 +7,22 @@ mod timing;
 
 use std::{collections::BTreeMap, path::PathBuf};
 
+use closed_loop::{
+    contacts::{Collision, NearMiss},
+    truth::TruthResult,
+};
 use executive::failure::Failure;
 use neighbours::workstation::player::Retry;
+use plant::PartState;
 use serde::Serialize;
 
 pub use self::{
-    cell::{CellFaultResult, ContactResult, EmergencyResult, EventResult, Events, ItemResult, PartResult},
+    cell::{CellFaultResult, ContactResult, EmergencyResult, EventResult, Events, ItemResult},
     data::DataResult,
     robot::{EgmResult, FaultsResult, LinkResult, PortResult},
     timing::{BoardResult, TickTimes},
 };
-use crate::{
-    contacts::{Collision, NearMiss},
-    operator::Requests,
-    truth::TruthResult,
-};
+use crate::operator::Requests;
 
 /// A command for Task.
 #[derive(Clone, Debug, Serialize)]
@@ -173,7 +174,7 @@ pub struct RunResult {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulated: Option<&'static str>,
     /// Positions of the parts.
-    pub parts: Vec<PartResult>,
+    pub parts: Vec<PartState>,
     /// Items of the MBD in the Data System.
     pub data_base: Vec<ItemResult>,
     /// The judge of confirmations: how many commands of all levels were reported as finished, and which are not.

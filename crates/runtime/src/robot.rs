@@ -13,21 +13,16 @@ use std::{
     time::{Duration, Instant},
 };
 
-use depc::{
-    Plate,
-    fault::{Counts, Injector, Plan},
-    warning::Warning,
-    wire::FRAME_BYTES,
-};
+use closed_loop::RobotInputs;
+use depc::{Plate, warning::Warning, wire::FRAME_BYTES};
 use executive::{
     alloc::Section,
     histogram::{Histogram, Summary},
     serial::{SerialCounts, SerialLine},
 };
 use geometry::{frame::Frame, pose::WireFrame};
-use interfaces::device::{DeviceInputs, DeviceOutputs, LinkBytes};
-use plant::Cell;
-use rcs_core::tick::{TICK_MS, Tick};
+use interfaces::device::{DeviceOutputs, LinkBytes};
+use rcs_core::tick::TICK_MS;
 
 use crate::{config::RunConfig, egm::EgmPort, observer::Observer, own::OwnPort};
 
@@ -36,8 +31,8 @@ const PERIOD: Duration = Duration::from_millis(TICK_MS);
 
 /// The other end of the line.
 pub enum Robot {
-    /// The simulated T3 controller, behind a line that may have faults.
-    Simulated(Option<Box<Injector>>),
+    /// The simulated T3 controller: the cell has it.
+    Simulated,
     /// A robot controller at a serial port.
     Serial(Port),
     /// A robot with EGM.
@@ -99,7 +94,7 @@ impl Robot {
     /// DTR the run begins, and fails with a reason that names DTR.
     pub fn gather(&mut self, config: &RunConfig, observer: &mut dyn Observer) {
         let port = match self {
-            Self::Simulated(_) | Self::Own(_) => return,
+            Self::Simulated | Self::Own(_) => return,
             Self::Serial(port) => port,
             Self::Egm(egm) => return egm.gather(config, observer),
         };
@@ -124,18 +119,18 @@ impl Robot {
         }
     }
 
-    /// Before the controller's tick: receive from the line. Its time counts as part of the tick.
-    pub fn receive(&mut self, inputs: &mut DeviceInputs) {
+    /// Before the controller's tick: receive from a robot elsewhere. Its time counts as part of the tick.
+    pub fn receive(&mut self) -> Option<RobotInputs> {
         let _section = Section::enter();
         match self {
-            Self::Simulated(_) => {}
+            Self::Simulated => None,
             Self::Serial(port) => {
-                inputs.link_rx = LinkBytes::default();
-                inputs.link_ready = port.line.receive(&mut inputs.link_rx);
-                inputs.link_unsent = port.line.has_unsent();
+                let mut rx = LinkBytes::default();
+                let ready = port.line.receive(&mut rx);
+                Some(RobotInputs { rx, ready, unsent: port.line.has_unsent(), resolvers: None })
             }
-            Self::Egm(egm) => egm.receive(inputs),
-            Self::Own(own) => own.receive(inputs),
+            Self::Egm(egm) => Some(egm.receive()),
+            Self::Own(own) => Some(own.receive()),
         }
     }
 
@@ -144,31 +139,25 @@ impl Robot {
     pub fn send(&mut self, outputs: &DeviceOutputs, exact: impl FnOnce() -> Option<(WireFrame, Frame)>) {
         let _section = Section::enter();
         match self {
-            Self::Simulated(_) => {}
+            Self::Simulated => {}
             Self::Serial(port) => port.send(&outputs.link_tx),
             Self::Egm(egm) => egm.send(&outputs.link_tx, outputs.robot_stop, exact()),
             Self::Own(own) => own.send(&outputs.link_tx, outputs.robot_stop),
         }
     }
 
-    /// The rest of the tick: advance the cell. `acknowledged` gives the position that the robot has last acknowledged
-    /// or reported, if known; it is called for a robot at a port only.
-    pub fn advance(
-        &mut self,
-        tick: Tick,
-        cell: &mut Cell,
-        outputs: &DeviceOutputs,
-        acknowledged: impl FnOnce() -> Option<Plate>,
-    ) -> DeviceInputs {
+    /// After the controller's tick: the position of a robot elsewhere, which the cell follows, if it is known.
+    /// `acknowledged` gives the position that the robot has last acknowledged or reported; it is called for a robot at a
+    /// port only.
+    pub fn moved(&mut self, acknowledged: impl FnOnce() -> Option<Plate>) -> Option<Plate> {
         match self {
-            Self::Serial(_) => cell.step_following(acknowledged().as_ref(), outputs),
+            Self::Simulated => None,
+            Self::Serial(_) => acknowledged(),
             Self::Egm(egm) => {
                 egm.advance(PERIOD);
-                cell.step_following(egm.feedback().as_ref(), outputs)
+                egm.feedback()
             }
-            Self::Own(own) => cell.step_following(own.position().as_ref(), outputs),
-            Self::Simulated(None) => cell.step(outputs),
-            Self::Simulated(Some(injector)) => cell.step_behind(injector, tick, outputs),
+            Self::Own(own) => own.position(),
         }
     }
 
@@ -176,7 +165,7 @@ impl Robot {
     #[must_use]
     pub fn lag_ms(&self) -> Option<u16> {
         match self {
-            Self::Simulated(_) | Self::Serial(_) => None,
+            Self::Simulated | Self::Serial(_) => None,
             Self::Egm(egm) => Some(egm.lag_ms()),
             Self::Own(own) => Some(own.lag_ms()),
         }
@@ -188,19 +177,10 @@ impl Robot {
         if let Self::Own(own) = self { own.news() } else { None }
     }
 
-    /// Number of injected faults, both directions together.
-    #[must_use]
-    pub fn faults(&self) -> Option<Counts> {
-        match self {
-            Self::Simulated(Some(injector)) => Some(injector.total()),
-            _ => None,
-        }
-    }
-
     /// True if the robot is not the simulated one.
     #[must_use]
     pub const fn is_elsewhere(&self) -> bool {
-        !matches!(self, Self::Simulated(_))
+        !matches!(self, Self::Simulated)
     }
 
     /// True if the caller of the library provides the robot.
@@ -213,19 +193,11 @@ impl Robot {
     #[must_use]
     pub fn trouble(&self) -> Option<String> {
         match self {
-            Self::Simulated(_) => None,
+            Self::Simulated => None,
             Self::Serial(port) => port.trouble(),
             Self::Egm(egm) => egm.trouble(),
             Self::Own(own) => own.trouble(),
         }
-    }
-
-    /// Give the line to the simulated robot the faults of a plan from now on. Returns false, and changes nothing, if it
-    /// has a plan already, or the robot is not the simulated one.
-    pub fn suffer(&mut self, plan: &Plan) -> bool {
-        let Self::Simulated(injector @ None) = self else { return false };
-        *injector = Some(Box::new(Injector::new(plan)));
-        true
     }
 
     /// The serial port, if there is one.

@@ -11,18 +11,18 @@ mod tell;
 use std::{path::PathBuf, sync::atomic::Ordering, time::Instant};
 
 use ::neighbours::workstation::player;
+use closed_loop::{ClosedLoop, Given, RobotInputs};
 use depc::Plate;
 use executive::{
     boards::Lost,
     failure::Failure,
-    generations::Generations,
     memory::{Announced, Mirror, RunName},
     rest::RestWatch,
     runner::Runner,
     timing::Stage,
 };
 use geometry::{frame::Frame, pose::WireFrame};
-use interfaces::{CommonMemory, DeviceInputs, DeviceOutputs, ExternalInputs, device::LinkBytes};
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::LadderState;
 use rcs_core::tick::Tick;
 use taskdata::load::Job;
@@ -33,9 +33,7 @@ use crate::{
     boards::Controller,
     cell_view::View,
     config::{ClockKind, RunConfig},
-    contacts::ContactCheck,
     event::Event,
-    judge::NextData,
     live::Live,
     load::Loads,
     log::Log,
@@ -45,9 +43,7 @@ use crate::{
     pace::Pace,
     result::{DataResult, Events},
     robot::Robot,
-    truth::{TruthCheck, placement::PlacementCheck},
     verdict::{Ending, outside},
-    workstation::SimulatedWorkstation,
 };
 
 /// Ticks for which the cell is simulated after the controller has stopped: two seconds, in which the arm comes to rest
@@ -59,17 +55,12 @@ pub struct Run {
     pub(crate) config: RunConfig,
     observer: Box<dyn Observer>,
     pub(crate) job: Job,
-    /// Task data, with the blocks that are loaded during the run.
-    pub(crate) generations: Generations,
-    /// Number of generations made by a change instead of a line of the job.
-    pub(crate) changed: u32,
-    /// External inputs of the last tick.
-    external: ExternalInputs,
+    /// Control processes and cell.
+    pub(crate) closed: ClosedLoop<Controller>,
     /// Mirrors the status; it must be dropped before the publisher of `runner`.
     mirror: Option<Mirror>,
     pub(crate) runner: Runner<Controller>,
     pub(crate) neighbours: Neighbours,
-    pub(crate) workstation: SimulatedWorkstation,
     /// Source of operators' requests.
     pub(crate) asked: Inputs,
     operator: Operator,
@@ -77,7 +68,6 @@ pub struct Run {
     pub(crate) loads: Loads,
     /// Name of the run.
     pub(crate) name: RunName,
-    inputs: DeviceInputs,
     pub(crate) robot: Robot,
     pub(crate) log: Option<Log>,
     log_path: Option<PathBuf>,
@@ -90,12 +80,6 @@ pub struct Run {
     started: Option<Instant>,
     /// Ending of the run.
     ending: Option<Ending>,
-    /// Check of the robot's contacts.
-    pub(crate) check: ContactCheck,
-    /// Check of the parts' places.
-    pub(crate) placement: PlacementCheck,
-    /// Judge of the confirmations of the control processes.
-    pub(crate) truth: TruthCheck,
     /// The last warning on the screen of the T3 controller, and its tick.
     pub(crate) warning: Option<(Tick, String)>,
     /// The state of the cell for other programs.
@@ -141,25 +125,25 @@ impl Run {
     /// The last tick.
     #[must_use]
     pub const fn last_tick(&self) -> Tick {
-        self.runner.tick()
+        self.closed.tick()
     }
 
     /// All buffers after the last tick.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
-        self.runner.memory()
+        self.closed.memory()
     }
 
     /// The external inputs of the last tick.
     #[must_use]
     pub const fn external_inputs(&self) -> &ExternalInputs {
-        &self.external
+        self.closed.external()
     }
 
     /// Digest of the present state of the simulated cell; the log has it for every tick.
     #[must_use]
     pub fn cell_digest(&self) -> u64 {
-        self.workstation.cell.digest()
+        self.closed.workstation.cell.digest()
     }
 
     /// Start the clock and prepare the first tick. The 40 ms grid begins with the clock, so the preparation counts.
@@ -169,15 +153,15 @@ impl Run {
             self.ask_for_real_time(self.config.cpu);
         }
         self.show_cell();
-        self.neighbours.begin(self.runner.memory(), &self.inputs);
-        self.note_neighbours(self.runner.tick().next());
+        self.neighbours.begin(self.closed.memory(), self.closed.inputs());
+        self.note_neighbours(self.closed.tick().next());
     }
 
     /// Request real-time settings. The thread of the log runs already, so it keeps its ordinary priority.
     fn ask_for_real_time(&mut self, core: Option<usize>) {
         let granted = self.pace.ask_for_real_time(core, self.config.speed);
         self.observer.message(&granted.to_string());
-        let boards = self.runner.levels().unpunctual().into_iter().map(Event::BoardNotPunctual);
+        let boards = self.closed.course().levels().unpunctual().into_iter().map(Event::BoardNotPunctual);
         for event in std::iter::once(granted).chain(boards) {
             self.log_event(Tick::BEFORE_START.next(), &event);
         }
@@ -186,10 +170,11 @@ impl Run {
     /// Warm up the next tick, if there is time, and wait until it is due.
     fn wait(&mut self) {
         if self.pace.wake_early() {
-            let external = self.external();
-            self.runner.warm_up(&external, &self.generations.current().view());
+            let external = self.closed.external_with(&self.given(None));
+            let Self { closed, runner, .. } = self;
+            closed.with_data(|course, data| runner.warm_up(course, &external, data));
         }
-        let tick = self.runner.tick().next();
+        let tick = self.closed.tick().next();
         for event in self.pace.wait(self.runner.stage_times()) {
             self.observer.message(&format!("tick {tick}: {event}"));
             self.log_event(tick, &event);
@@ -197,80 +182,66 @@ impl Run {
         self.runner.stage_times_mut().begin();
     }
 
-    /// The external inputs of the next tick.
-    fn external(&self) -> ExternalInputs {
-        let mut devices = self.pace.inputs(self.inputs);
-        devices.link_patience = self.first_patience.or(self.patience);
-        devices.robot_lag = self.config.robot.lag.or_else(|| self.robot.lag_ms());
-        devices.joystick = self.operator.at_the_box(devices.joystick);
+    /// What comes from outside before the next tick.
+    fn given(&self, robot: Option<RobotInputs>) -> Given {
+        let mut joystick = self.operator.at_the_box();
+        joystick.velocity = self.pace.knob(joystick.velocity);
         if self.ramp.is_some() {
-            devices.joystick.velocity = 0;
+            joystick.velocity = 0;
         }
-        ExternalInputs {
-            hws: *self.neighbours.hws(),
-            devices,
+        Given {
+            robot,
+            patience: self.first_patience.or(self.patience),
+            lag: self.config.robot.lag.or_else(|| self.robot.lag_ms()),
+            joystick,
+            terminals: *self.operator.at_the_terminals(),
             data_base: self.neighbours.data_base(),
-            generation: self.generations.number(),
             pedestal: *self.neighbours.pedestal(),
-            operator: *self.operator.at_the_terminals(),
         }
     }
 
     /// Run one tick. Returns the ending if the run ends with it.
     fn tick(&mut self) -> Option<Ending> {
         self.wait();
-        self.robot.receive(&mut self.inputs);
-        let external = self.external();
-        self.external = external;
+        let robot = self.robot.receive();
+        let given = self.given(robot);
+        if let Some(ending) = self.decide(&given) {
+            return Some(ending);
+        }
+        let tick = self.closed.tick();
+        let (memory, external) = (*self.closed.memory(), *self.closed.external());
         if let Some(live) = &self.live {
             live.knob(external.devices.joystick.velocity);
         }
-        let tick = self.runner.tick().next();
-        let data = self.generations.current().view();
-        let memory = loop {
-            match self.runner.step(&external, &data, self.pace.skipped()).copied() {
-                Ok(memory) => break memory,
-                // If a board replaces the lost one, the boards run the same tick again.
-                Err(lost) if self.runner.levels_mut().replace(&lost, &self.config, &mut *self.observer) => {}
-                Err(lost) => return Some(Ending::Failed(self.lost(&lost, &external))),
-            }
-        };
-        let outputs = memory.device_outputs();
-        let runner = &self.runner;
-        self.robot.send(&outputs, || commanded(&runner.levels().state(), runner.memory()));
+        let levels = self.closed.course().levels();
+        self.robot.send(&memory.device_outputs(), || commanded(&levels.state(), &memory));
         self.runner.stage_times_mut().mark(Stage::Line);
         if let Some(log) = &mut self.log {
             if self.pace.is_real() {
                 log.timing(self.runner.last_ns(), self.pace.skipped());
             }
-            log.tick(tick, &external, &memory, || self.runner.levels().state());
+            log.tick(tick, &external, &memory, || self.closed.course().levels().state());
         }
         self.runner.stage_times_mut().mark(Stage::Log);
-        self.advance(tick, &outputs);
-        let commands = self.check.commands(&memory);
-        self.observe(tick, commands);
-        let cell = &self.workstation.cell;
-        let task = &memory.task.status;
-        self.placement.look(tick, &external.hws, task, cell.description(), &cell.parts());
-        self.judge(tick, &memory);
+        let moved = self.moved();
+        let settled = self.closed.settle(moved.as_ref());
+        self.observe(tick, settled);
         self.runner.stage_times_mut().mark(Stage::Cell);
         let steps = self.neighbours.begun_steps();
         let ((line, lines), hws) = (self.neighbours.place(), &external.hws);
         self.observer.tick(&TickReport { tick, line, lines, steps, hws, memory: &memory });
         self.operate(tick);
-        let data = NextData { generations: &self.generations, job: &self.job, changed: self.changed };
-        let progress = self.neighbours.step(tick, &memory, &self.inputs, &mut self.workstation, data);
+        let (closed, neighbours) = (&mut self.closed, &mut self.neighbours);
+        let progress = closed.exchange(|desk| neighbours.step(desk));
         self.load_for_workstation(tick);
         self.tell_operators(tick);
         self.note_neighbours(tick);
         self.note_viewers(tick);
         self.publish_cell(tick);
-        // Vision in another process has answered the last tick.
-        self.inputs.vision = self.workstation.cell.inputs().vision;
         match progress {
             player::Progress::Over => return Some(self.left(Ending::Finished)),
             // Contacts of the sinking arm belong to the run.
-            player::Progress::Failed(_) if self.workstation.is_settling(tick) => {}
+            player::Progress::Failed(_) if self.closed.workstation.is_settling(tick) => {}
             player::Progress::Failed(failure) => {
                 self.remedy = self.remedy.or(failure.remedy());
                 let ending = Ending::Failed(self.explain(&failure, &external));
@@ -279,8 +250,8 @@ impl Run {
             player::Progress::Running => {}
         }
         // An obstacle stops an arm that sinks without pressure; the verdict is the emergency.
-        let stuck = self.check.is_stuck() && !self.workstation.is_settling(tick);
-        if let Some(failure) = self.check.verdict().filter(|_| stuck) {
+        let stuck = self.closed.contacts().is_stuck() && !self.closed.workstation.is_settling(tick);
+        if let Some(failure) = self.closed.contacts().verdict().filter(|_| stuck) {
             return Some(Ending::Failed(failure));
         }
         if let Some(overrun) = self.pace.ends(&memory) {
@@ -309,45 +280,52 @@ impl Run {
         None
     }
 
-    /// The rest of a tick: advance the cell.
-    fn advance(&mut self, tick: Tick, outputs: &DeviceOutputs) {
-        let controller = self.runner.levels();
-        self.inputs = self
-            .robot
-            .advance(tick, &mut self.workstation.cell, outputs, || acknowledged(&controller.state()));
+    /// Run the processes. If a board that was lost is replaced, the boards run the same tick again; if not, the run
+    /// ends.
+    fn decide(&mut self, given: &Given) -> Option<Ending> {
+        loop {
+            let (runner, skipped) = (&mut self.runner, self.pace.skipped());
+            let decided = self
+                .closed
+                .decide_with(given, |course, external, data| runner.step(course, external, data, skipped));
+            let Err(lost) = decided else { return None };
+            let levels = self.closed.course_mut().levels_mut();
+            if !levels.replace(&lost, &self.config, &mut *self.observer) {
+                return Some(Ending::Failed(self.lost(&lost)));
+            }
+        }
+    }
+
+    /// The position of a robot elsewhere; `None` for the simulated one.
+    fn moved(&mut self) -> Option<Plate> {
+        let levels = self.closed.course().levels();
+        self.robot.moved(|| acknowledged(&levels.state()))
     }
 
     /// Handle the loss of a board: the robot gets no more frames and the valves keep their state, while the simulation
     /// of the cell continues.
-    fn lost(&mut self, lost: &Lost, external: &ExternalInputs) -> Failure {
-        let memory = *self.runner.memory();
-        let silent = DeviceOutputs { link_tx: LinkBytes::default(), ..memory.device_outputs() };
+    fn lost(&mut self, lost: &Lost) -> Failure {
         for tick in (lost.tick.0..).take(SETTLING).map(Tick) {
-            self.advance(tick, &silent);
-            let commands = self.check.commands(&memory);
-            self.observe(tick, commands);
+            let moved = self.moved();
+            let settled = self.closed.coast(tick, moved.as_ref());
+            self.observe(tick, settled);
         }
-        Failure {
-            stopped: true,
-            ..outside(lost.tick, &lost.board.to_string(), lost.explain(&external.hws, &memory))
+        let text = lost.explain(&self.closed.external().hws, self.closed.memory());
+        Failure { stopped: true, ..outside(lost.tick, &lost.board.to_string(), text) }
+    }
+
+    /// Put the task data into effect that the job has loaded, if no command is in progress.
+    fn reload(&mut self) {
+        if self.closed.reload() {
+            self.log_reload();
         }
     }
 
-    /// Accept the reloads that the job has requested; they take effect in the next tick if no command is in progress.
-    fn reload(&mut self) {
-        let reloads = &self.job.reloads;
-        let reload =
-            |number: u32| usize::try_from(number).ok()?.checked_sub(1).and_then(|at| reloads.get(at));
-        let coming = self.workstation.loads().into_iter().map(|number| number + self.changed);
-        for reload in coming.filter_map(reload) {
-            self.generations.propose(reload.store.clone());
-        }
-        if !self.generations.advance(self.runner.memory()) {
-            return;
-        }
-        // Reloads are proposed in order, so that the number of a generation is that of its reload.
-        let (tick, number) = (self.runner.tick().next(), self.generations.number());
-        if let (Some(log), Some(reload)) = (&mut self.log, reload(number)) {
+    /// Log the reload that counts from the next tick on.
+    pub(crate) fn log_reload(&mut self) {
+        let (tick, generations) = (self.closed.tick().next(), self.closed.generations());
+        let number = generations.number();
+        if let (Some(log), Some(reload)) = (&mut self.log, generations.reload(number)) {
             log.reload(tick, number, &reload.source);
         }
     }

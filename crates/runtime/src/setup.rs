@@ -6,7 +6,7 @@ use std::{
     sync::Arc,
 };
 
-use depc::fault::Injector;
+use depc::fault::Plan;
 use diagnostics::JOBS;
 use executive::serial::SerialLine;
 use neighbours::{
@@ -68,6 +68,8 @@ pub struct Setup {
     pub cell: Cell,
     /// Text of the fault file; empty without one.
     pub faults_text: String,
+    /// Faults of the line to the simulated robot.
+    pub line_faults: Option<Plan>,
     /// The other end of the DEPC line.
     pub robot: Robot,
     /// The source of commands, and the Data System.
@@ -133,7 +135,7 @@ impl Setup {
         let neighbours = neighbours(config, &job, &description, observer)?;
         // Last of all, so that no byte is sent to the robot if the run cannot begin.
         let robot = match &config.robot.kind {
-            RobotKind::Sim => Robot::Simulated(faults.line.map(|plan| Box::new(Injector::new(&plan)))),
+            RobotKind::Sim => Robot::Simulated,
             RobotKind::Serial(settings) => Robot::Serial(Port::new(SerialLine::open(settings.clone())?)),
             RobotKind::Egm(options) => Robot::Egm(Box::new(EgmPort::open(options, config, observer)?)),
             RobotKind::Own => Robot::Own(OwnPort::new(own.ok_or(StartError::NoOwnRobot)?)),
@@ -148,6 +150,7 @@ impl Setup {
             description,
             cell,
             faults_text,
+            line_faults: faults.line,
             robot,
             neighbours,
             log,
@@ -287,11 +290,11 @@ fn neighbours(
     let endpoints: Vec<_> = commands.iter().chain(&items).chain(&regrips).chain(&sees).collect();
     let network = Network::start(config, &endpoints, observer)?;
     let data_system = match items {
-        Some(endpoint) => DataSystem::elsewhere(Agent::new(endpoint, outbox(config)?), pace),
+        Some(endpoint) => Some(DataSystem::elsewhere(Agent::new(endpoint, outbox(config)?), pace)),
+        // Without a file the run keeps the books itself.
         None => {
-            let file = config.database.as_deref();
-            let items = file.map_or_else(data_system::Store::in_memory, data_system::Store::open_alone)?;
-            DataSystem::new(items, ANSWER_TICKS, pace)
+            let items = config.database.as_deref().map(data_system::Store::open_alone).transpose()?;
+            items.map(|items| DataSystem::new(items, ANSWER_TICKS, pace))
         }
     };
     let mut hwsc = Hwsc::new(job.steps.clone(), TIME_LIMIT).with_retries(config.retry);

@@ -14,6 +14,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use closed_loop::workstation::SimulatedWorkstation;
 use interfaces::{CommonMemory, HwsCommand, hws::HwsReport};
 use neighbours::{
     network::{ClockKind, Endpoint},
@@ -24,10 +25,7 @@ use neighbours::{
 };
 use rcs_core::tick::{TICK_MS, Tick};
 
-use crate::{
-    event::Event, judge::CommandJudge, neighbours::Emulator, outside::OutsideWorkstation,
-    workstation::SimulatedWorkstation,
-};
+use crate::{event::Event, judge::CommandJudge, neighbours::Emulator, outside::OutsideWorkstation};
 
 /// Location of the robot when the workstation controller takes over (IV.4.1).
 const HOME: &str = "HOME";

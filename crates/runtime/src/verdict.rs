@@ -64,10 +64,15 @@ impl Run {
     /// The ending with the verdicts on the cell: collisions of the robot, parts that are not at their
     /// places, and false confirmations.
     pub(super) fn checked(&self, ending: Ending) -> Ending {
-        let parts = self.workstation.cell.parts();
-        let mut verdicts: Vec<Failure> =
-            self.check.verdict().into_iter().chain(self.placement.verdict(&parts)).collect();
-        verdicts.extend(self.truth.verdict());
+        let parts = self.closed.workstation.cell.parts();
+        let mut verdicts: Vec<Failure> = self
+            .closed
+            .contacts()
+            .verdict()
+            .into_iter()
+            .chain(self.closed.placement().verdict(&parts))
+            .collect();
+        verdicts.extend(self.closed.truth().verdict());
         verdicts.sort_by_key(|verdict| verdict.tick);
         let simulated = |verdict: Failure| match self.robot.is_elsewhere() {
             true => Failure { text: format!("in the simulated cell, {}", verdict.text), ..verdict },
@@ -84,17 +89,17 @@ impl Run {
 
     /// The emergency or lost link that prevents the robot from moving at the end.
     fn standing(&self) -> Option<Failure> {
-        if let Some(what) = self.workstation.emergency() {
+        if let Some(what) = self.closed.workstation.emergency() {
             return self.stopped(&what);
         }
-        let status = &self.runner.memory().t3i.status;
+        let status = &self.closed.memory().t3i.status;
         let lost = status.fault != LinkFault::None && !status.link_running;
         lost.then(|| {
             let text = match self.robot.trouble() {
                 Some(trouble) => format!("T3I: {}; {trouble}", status.fault.text()),
                 None => format!("T3I: the link to the robot is lost: {}", status.fault.text()),
             };
-            Failure { stopped: true, ..outside(self.runner.tick(), "T3I", text) }
+            Failure { stopped: true, ..outside(self.closed.tick(), "T3I", text) }
         })
     }
 
@@ -113,7 +118,7 @@ impl Run {
 
     /// The emergency that has stopped the robot, and the state of the arm.
     fn stopped(&self, what: &str) -> Option<Failure> {
-        let emergency = self.workstation.last_emergency()?;
+        let emergency = self.closed.workstation.last_emergency()?;
         let text = format!("{what}; the arm {}", emergency.droop.end());
         Some(Failure { stopped: true, ..outside(emergency.tick, "T3", text) })
     }
@@ -136,7 +141,7 @@ impl Run {
         }
         let processes = Ladder::processes();
         let known = match failure {
-            JobFailure::Command(_) => self.runner.watch().failure(processes),
+            JobFailure::Command(_) => self.closed.course().watch().failure(processes),
             _ => None,
         };
         let trouble = self.robot.trouble();
@@ -147,11 +152,11 @@ impl Run {
         known.unwrap_or_else(|| {
             let tick = match failure {
                 JobFailure::Unfinished { tick, .. } => *tick,
-                _ => self.runner.tick(),
+                _ => self.closed.tick(),
             };
             let text = match failure {
                 JobFailure::TimeLimit(_) => {
-                    let doing = failure::present_commands(processes, &external.hws, self.runner.memory());
+                    let doing = failure::present_commands(processes, &external.hws, self.closed.memory());
                     format!("HWSC: {failure}; {doing}")
                 }
                 _ => format!("HWSC: {failure}"),

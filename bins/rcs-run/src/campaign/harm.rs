@@ -5,7 +5,7 @@ use plant::{CellEvent, t3::Stage};
 use rcs_core::tick::Tick;
 
 use super::branch::Branch;
-use runtime::contacts::{Collision, Commands};
+use closed_loop::contacts::{Collision, Commands};
 
 /// Greatest distance of a part from its position in the undisturbed run, in.
 const PART: f64 = 0.5;
@@ -15,7 +15,7 @@ const HAND: f64 = 0.5;
 /// True if the DEPC function controls the robot, so that it follows commanded points.
 #[must_use]
 pub fn is_commanded(branch: &Branch<'_>) -> bool {
-    let t3 = branch.workstation.cell.t3();
+    let t3 = branch.closed.workstation.cell.t3();
     t3.stage() == Stage::Depc && t3.cut().is_none()
 }
 
@@ -48,7 +48,7 @@ impl World {
     #[must_use]
     pub fn of(branch: &mut Branch<'_>) -> Self {
         let items = branch.items();
-        let cell = &branch.workstation.cell;
+        let cell = &branch.closed.workstation.cell;
         let parts = cell.parts().into_iter().map(|part| PartAt {
             name: part.name,
             location: part.location,
@@ -153,7 +153,12 @@ impl HarmMonitor {
     /// Watch from now on.
     #[must_use]
     pub fn from_now(branch: &Branch<'_>) -> Self {
-        Self { seen: branch.check().collisions().len(), harms: Vec::new(), slide: None, moved: Vec::new() }
+        Self {
+            seen: branch.closed.contacts().collisions().len(),
+            harms: Vec::new(),
+            slide: None,
+            moved: Vec::new(),
+        }
     }
 
     /// True if nothing has happened yet that could be harm.
@@ -190,7 +195,7 @@ impl HarmMonitor {
     pub fn look(&mut self, branch: &Branch<'_>, person: bool) {
         let tick = branch.at();
         let commanded = is_commanded(branch) && !person;
-        let contacts = branch.check().collisions();
+        let contacts = branch.closed.contacts().collisions();
         for (at, contact) in contacts.iter().enumerate().skip(self.seen) {
             let Collision { mover, obstacle, commands, .. } = contact;
             let kind = format!("{mover} runs into {obstacle} during {commands}");
@@ -198,7 +203,7 @@ impl HarmMonitor {
             let commanded = commanded && !harmless;
             self.harms.push(Harm { tick, what: contact.to_string(), kind, commanded, contact: Some(at) });
             if !commanded {
-                let parts = branch.workstation.cell.parts().into_iter().map(|part| part.name);
+                let parts = branch.closed.workstation.cell.parts().into_iter().map(|part| part.name);
                 self.moved.extend(parts.filter(|part| part == mover || part == obstacle));
             }
         }

@@ -96,19 +96,18 @@ fn steps_too_far(last: &mut Option<WireFrame>, sent: &T3iCommand) -> bool {
 fn unstamped(branch: &Branch<'_>) -> Option<String> {
     let (tick, memory) = (branch.at(), branch.memory());
     let names = Ladder::processes().iter().map(|process| process.name);
-    let mut late = ProcessId::ALL
-        .iter()
-        .zip(names)
-        .filter(|(id, _)| branch.processes().contains(id) && memory.header(**id).stamp != tick);
+    let mut late = ProcessId::ALL.iter().zip(names).filter(|(id, _)| {
+        branch.closed.course().levels().processes().contains(id) && memory.header(**id).stamp != tick
+    });
     late.next().map(|(_, name)| format!("{name} has not stamped its outputs"))
 }
 
 /// E-move's status of the gripper, if it is untrue.
 fn misled(branch: &Branch<'_>) -> Option<String> {
-    if !branch.processes().contains(&ProcessId::Emove) {
+    if !branch.closed.course().levels().processes().contains(&ProcessId::Emove) {
         return None;
     }
-    let held = branch.workstation.cell.parts().into_iter().find(|part| part.held);
+    let held = branch.closed.workstation.cell.parts().into_iter().find(|part| part.held);
     untrue(&branch.memory().emove.status.held, held.map(|part| part.name).as_deref())
 }
 

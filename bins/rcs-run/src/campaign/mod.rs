@@ -202,7 +202,7 @@ fn facility(arguments: &CampaignArguments, job: &str) -> Result<Facility, Error>
     let CellFile { description, .. } = CellFile::load(data, &mut files, false)?;
     let TaskFiles { store, job, .. } = files;
     check_job(&job, &store, None)?;
-    Ok(Facility { store, job, description, seed: arguments.seed })
+    Ok(Facility::new(store, job, description, arguments.seed))
 }
 
 fn ticks(arguments: &CampaignArguments) -> Ticks {

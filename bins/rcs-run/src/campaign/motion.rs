@@ -28,7 +28,7 @@ struct Posture {
 
 impl Posture {
     fn of(branch: &Branch<'_>) -> Self {
-        let cell = &branch.workstation.cell;
+        let cell = &branch.closed.workstation.cell;
         let (fingers, hand) = (cell.fingers(), cell.pedestal_fingers());
         Self {
             joints: (!cell.t3().arm().has_sagged()).then(|| cell.joints()),

@@ -20,7 +20,7 @@ use rcs_core::tick::Tick;
 use taskdata::load::job::{JobLine, Step, Workstation as Action};
 
 use super::branch::Commander;
-use runtime::workstation::SimulatedWorkstation;
+use closed_loop::workstation::SimulatedWorkstation;
 
 /// Ticks within which the robot must come to rest after the joystick box is off.
 const REST_LIMIT: u64 = 25;

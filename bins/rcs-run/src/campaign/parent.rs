@@ -90,7 +90,7 @@ impl Parent {
         let mut before = steps(branch.memory(), 0);
         let mut known = HashSet::new();
         loop {
-            branch.tick(&mut hwsc);
+            branch.step(&mut hwsc);
             let tick = branch.at();
             while parent.begun.len() < hwsc.begun_steps().len() {
                 if !parent.begun.is_empty() {
@@ -98,7 +98,7 @@ impl Parent {
                 }
                 parent.begun.push(tick);
             }
-            let now = steps(branch.memory(), branch.external().hws.number);
+            let now = steps(branch.memory(), branch.closed.external().hws.number);
             if now != before {
                 parent.changes.push(tick.0);
                 before = now;
@@ -110,7 +110,7 @@ impl Parent {
                 Progress::Running => {}
                 Progress::Over => {
                     parent.worlds.push(World::of(&mut branch));
-                    (parent.ticks, parent.digest) = (tick.0, branch.digest().to_string());
+                    (parent.ticks, parent.digest) = (tick.0, branch.closed.digest().to_string());
                     return Ok(parent);
                 }
                 Progress::Failed(failure) => return Err(failed(facility, tick, failure)),

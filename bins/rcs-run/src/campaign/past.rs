@@ -194,7 +194,7 @@ mod tests {
         let mut branch = Branch::start(&facility).expect("the cell is sound");
         let mut hwsc = emulator(&facility);
         while branch.at() < Tick(1401) {
-            branch.tick(&mut hwsc);
+            branch.step(&mut hwsc);
         }
         (*branch.memory(), branch.ladder(), branch.at())
     }

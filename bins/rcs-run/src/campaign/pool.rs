@@ -109,7 +109,7 @@ fn fork_all<'f>(
     order.sort_by_key(|at| plans[*at].at);
     for same in order.chunk_by(|a, b| plans[*a].at == plans[*b].at) {
         while branch.at().0 < plans[same[0]].at {
-            branch.tick(&mut hwsc);
+            branch.step(&mut hwsc);
         }
         let fork = Arc::new(branch.clone());
         for at in same {
@@ -128,7 +128,7 @@ pub fn fork_at(facility: &Facility, tick: u64) -> Result<Branch<'_>, Error> {
     let mut branch = Branch::start(facility)?;
     let mut hwsc = emulator(facility);
     while branch.at().0 < tick {
-        branch.tick(&mut hwsc);
+        branch.step(&mut hwsc);
     }
     Ok(branch)
 }

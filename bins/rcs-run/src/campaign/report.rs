@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fmt::Write as _, io};
 
 use serde::Serialize;
 
-use runtime::truth::Verdict as TruthVerdict;
+use closed_loop::truth::Verdict as TruthVerdict;
 
 use super::{
     coverage::Coverage,

@@ -165,14 +165,14 @@ impl Script {
                 ScriptStep::Key(key) => {
                     let now = branch.at();
                     let until = *self.until.get_or_insert(Tick(now.0 + PATIENCE));
-                    let busy = branch.workstation.cell.t3().busy();
-                    if now < until && (busy || branch.workstation.cell.press(key).is_err()) {
+                    let busy = branch.closed.workstation.cell.t3().busy();
+                    if now < until && (busy || branch.closed.workstation.cell.press(key).is_err()) {
                         return refused;
                     }
                     self.until = None;
                 }
                 ScriptStep::Rise | ScriptStep::Sink => {
-                    let (now, height) = (branch.at(), branch.workstation.cell.tool().position.z);
+                    let (now, height) = (branch.at(), branch.closed.workstation.cell.tool().position.z);
                     if self.until.is_none() && matches!(step, ScriptStep::Rise) {
                         self.height = height;
                     }
@@ -183,54 +183,61 @@ impl Script {
                     };
                     if now < until && !there {
                         let press = WorkstationAction::Joystick(BoxAction::Press(button, 1));
-                        return branch
-                            .workstation
-                            .cell
-                            .workstation(&press)
-                            .err()
-                            .map(|error| error.to_string());
+                        let result = branch.closed.workstation.cell.workstation(&press);
+                        return result.err().map(|error| error.to_string());
                     }
                     self.until = None;
                 }
                 ScriptStep::Lead(begun) => {
                     let lead = self.lead.get_or_insert(begun);
-                    if let Some(control) = lead.step(&branch.workstation.cell) {
+                    if let Some(control) = lead.step(&branch.closed.workstation.cell) {
                         let action = WorkstationAction::Joystick(control);
-                        let result = branch.workstation.cell.workstation(&action);
+                        let result = branch.closed.workstation.cell.workstation(&action);
                         return result.err().map(|error| error.to_string());
                     }
                     self.lead = None;
                 }
-                ScriptStep::Change(what) => match disturbance::change(&mut branch.workstation.cell, &what) {
-                    Ok((parts, undo)) => {
-                        branch.note_changed(parts);
-                        self.undo.extend(undo);
+                ScriptStep::Change(what) => {
+                    match disturbance::change(&mut branch.closed.workstation.cell, &what) {
+                        Ok((parts, undo)) => {
+                            branch.closed.note_changed(parts);
+                            self.undo.extend(undo);
+                        }
+                        Err(why) => refused = Some(why),
                     }
-                    Err(why) => refused = Some(why),
-                },
-                ScriptStep::Undo(undo) => match disturbance::undo(&mut branch.workstation.cell, &undo) {
-                    Ok(part) => branch.note_changed(vec![part]),
+                }
+                ScriptStep::Undo(undo) => match disturbance::undo(&mut branch.closed.workstation.cell, &undo)
+                {
+                    Ok(part) => branch.closed.note_changed(vec![part]),
                     Err(why) => refused = Some(why),
                 },
                 ScriptStep::Workstation(action) => {
-                    refused =
-                        branch.workstation.cell.workstation(&action).err().map(|error| error.to_string());
+                    refused = branch
+                        .closed
+                        .workstation
+                        .cell
+                        .workstation(&action)
+                        .err()
+                        .map(|error| error.to_string());
                 }
-                ScriptStep::Restart(process) => branch.restart(process),
-                ScriptStep::Lose(process) => branch.lose(process),
-                ScriptStep::Cut => branch.cut(),
-                ScriptStep::Answer(kind) => branch.spoil_answer(kind),
+                ScriptStep::Restart(process) => branch.closed.course_mut().levels_mut().restart(process),
+                ScriptStep::Lose(process) => branch.closed.course_mut().levels_mut().lose(process),
+                ScriptStep::Cut => {
+                    let now = branch.at();
+                    branch.closed.line_mut().cut(now);
+                }
+                ScriptStep::Answer(kind) => branch.closed.line_mut().spoil_answer(kind),
                 ScriptStep::Faults(file) => {
                     let from = branch.at().0 + 1;
                     let seed = branch.facility().seed;
-                    branch.workstation.cell.add_faults(&cell_faults(&file.cell, from), seed);
+                    branch.closed.workstation.cell.add_faults(&cell_faults(&file.cell, from), seed);
                     if let Some(plan) = &file.line {
-                        branch.spoil_line(&line_faults(plan, from));
+                        branch.closed.line_mut().replace_plan(&line_faults(plan, from));
                     }
                 }
                 ScriptStep::Enter => {
                     // Only a warning accepts the key.
-                    let _ = branch.workstation.cell.press(Key::Enter);
+                    let _ = branch.closed.workstation.cell.press(Key::Enter);
                 }
                 ScriptStep::StartUp => self.start_up(branch),
             }
@@ -240,7 +247,7 @@ impl Script {
     }
 
     fn start_up(&mut self, branch: &Branch<'_>) {
-        if branch.workstation.cell.t3().stage() == Stage::Depc {
+        if branch.closed.workstation.cell.t3().stage() == Stage::Depc {
             return;
         }
         for key in START_UP {

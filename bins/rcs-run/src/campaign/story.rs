@@ -57,7 +57,7 @@ impl Story {
     }
 
     fn said(branch: &Branch<'_>) -> Vec<Said> {
-        let (hws, memory) = (&branch.external().hws, branch.memory());
+        let (hws, memory) = (&branch.closed.external().hws, branch.memory());
         let said = |process: &ProcessId| {
             let (header, said) = (memory.header(*process), memory.said(*process));
             Said {

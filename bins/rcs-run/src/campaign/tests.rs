@@ -22,10 +22,8 @@ use super::{
     series::Series,
     trial::{self, BranchResult, NoObserver, Procedure, Until, Verdict},
 };
-use runtime::{
-    setup::{CellFile, TaskFiles},
-    workstation::SimulatedWorkstation,
-};
+use closed_loop::workstation::SimulatedWorkstation;
+use runtime::setup::{CellFile, TaskFiles};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
 const PROCEDURE: Procedure = Procedure { recovery: Recovery::Pause, tries: 3, until: Until::Next };
@@ -35,7 +33,7 @@ pub(super) fn facility(job: &str) -> Facility {
     let mut files = TaskFiles::load(data, Some(job), false).expect("the job is shipped");
     let CellFile { description, .. } = CellFile::load(data, &mut files, false).expect("the cell is shipped");
     let TaskFiles { store, job, .. } = files;
-    Facility { store, job, description, seed: 1 }
+    Facility::new(store, job, description, 1)
 }
 
 /// Campaign data with another job.
@@ -80,7 +78,7 @@ impl Commander for Playback {
 
 /// Digest of all ticks so far, and digest of the cell's state.
 fn fingerprint(branch: &Branch<'_>) -> (Digest, u64) {
-    (branch.digest(), branch.workstation.cell.digest())
+    (branch.closed.digest(), branch.closed.workstation.cell.digest())
 }
 
 #[test]
@@ -95,18 +93,22 @@ fn a_fork_goes_on_as_its_parent_bit_for_bit() {
     let mut hwsc = emulator(&facility);
     for fork_at in [1, 72, 107, 160, 700, 1600] {
         while branch.at() < Tick(fork_at) {
-            branch.tick(&mut hwsc);
+            branch.step(&mut hwsc);
         }
         let fork = branch.clone();
         let mut other = fork.clone();
         assert_eq!(fingerprint(&other), fingerprint(&branch), "at tick {fork_at}");
         for _ in 0..35 {
             let mut tape = Tape { hwsc: &mut hwsc, sent: None };
-            branch.tick(&mut tape);
+            branch.step(&mut tape);
             let sent = tape.sent;
-            other.tick(&mut Playback(sent));
+            other.step(&mut Playback(sent));
             let tick = branch.at().0;
-            assert_eq!(other.external(), branch.external(), "in tick {tick} of the fork of {fork_at}");
+            assert_eq!(
+                other.closed.external(),
+                branch.closed.external(),
+                "in tick {tick} of the fork of {fork_at}"
+            );
             assert_eq!(fingerprint(&other), fingerprint(&branch), "after tick {tick}");
         }
     }
@@ -178,12 +180,12 @@ fn the_monitor_finds_a_contact_that_was_planted() {
     let ahead = {
         let mut commander = Playback(None);
         let mut scout = fork.clone();
-        (0..60).for_each(|_| scout.tick(&mut commander));
-        scout.workstation.cell.tool().position
+        (0..60).for_each(|_| scout.step(&mut commander));
+        scout.closed.workstation.cell.tool().position
     };
     let frame = Frame { position: ahead, ..Frame::identity() };
     let put = WorkstationAction::Put { part: "LCLEVIS_BH".into(), frame };
-    branch.workstation.cell.workstation(&put).expect("there is room for it");
+    branch.closed.workstation.cell.workstation(&put).expect("there is room for it");
     let planted = branch.clone();
     let result = judged(&facility, &parent, &planted, "none");
     assert_eq!(result.verdict, Verdict::Hurt);
@@ -203,7 +205,7 @@ fn the_monitor_finds_a_world_that_is_unlike_what_a_command_says() {
         sector: 4,
         placement: Placement::Random,
     };
-    branch.workstation.cell.workstation(&place).expect("the tray is empty");
+    branch.closed.workstation.cell.workstation(&place).expect("the tray is empty");
     let planted = branch.clone();
     let result = judged(&facility, &parent, &planted, "none");
     assert_eq!(result.verdict, Verdict::Hurt);

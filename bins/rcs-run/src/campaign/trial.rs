@@ -6,12 +6,12 @@ mod judgement;
 
 use std::sync::Arc;
 
+use closed_loop::truth::Confirmation;
 use executive::failure;
 use interfaces::HwsCommand;
 use levels::ladder::{Ladder, ProcessId};
 use neighbours::workstation::player::pause;
 use rcs_core::{digest::Digest, name::Name16, tick::Tick};
-use runtime::truth::Confirmation;
 
 use super::{
     branch::{Branch, Facility},
@@ -126,7 +126,7 @@ pub fn run(
     let branch = fork.clone();
     let at = branch.at();
     let (line, began) = parent.line_at(at);
-    let operator = Operator::new(&facility.job.steps, line, began, branch.command(), procedure.tries)
+    let operator = Operator::new(&facility.job.steps, line, began, branch.closed.command(), procedure.tries)
         .with_recovery(procedure.recovery);
     let (monitor, invariants) = (HarmMonitor::from_now(&branch), Invariants::from_now(&branch));
     let (doing, judged_before) = (present(&branch), branch.judged());
@@ -159,7 +159,7 @@ pub fn run(
 
 /// The present command of each process.
 fn present(branch: &Branch<'_>) -> Vec<String> {
-    let (hws, memory) = (&branch.external().hws, branch.memory());
+    let (hws, memory) = (&branch.closed.external().hws, branch.memory());
     let lines = ProcessId::ALL.iter().zip(Ladder::processes()).filter_map(|(id, process)| {
         let command = failure::command(*id, hws, memory);
         let header = memory.header(*id);
@@ -196,9 +196,9 @@ impl Trial<'_, '_> {
                 self.follow(observer);
             }
             if self.following {
-                self.branch.tick(&mut self.operator);
+                self.branch.step(&mut self.operator);
             } else {
-                self.branch.tick(&mut Watching(&mut self.operator));
+                self.branch.step(&mut Watching(&mut self.operator));
             }
             for confirmation in &self.branch.untrue {
                 observer.say(self.branch.at(), &confirmation.to_string());
@@ -299,7 +299,7 @@ impl Trial<'_, '_> {
     /// Digest of the state, with that of the operator and the line at whose end the branch is judged.
     fn state(&mut self) -> Result<Digest, Error> {
         self.branch.forget_past_faults();
-        let operator = self.operator.state(self.branch.at(), self.branch.command().number);
+        let operator = self.operator.state(self.branch.at(), self.branch.closed.command().number);
         self.branch.state(&(operator, self.goal))
     }
 
@@ -369,7 +369,7 @@ impl Trial<'_, '_> {
     /// part to the controller.
     fn takes_from_vise(&self) -> bool {
         self.operator.has_replaced()
-            && self.branch.workstation.cell.parts().iter().any(|part| part.held && part.clamped)
+            && self.branch.closed.workstation.cell.parts().iter().any(|part| part.held && part.clamped)
     }
 
     /// Send the command of an interruption.

@@ -1,5 +1,5 @@
 //! Branches of a campaign of confirmations: a person disturbs the cell at a drawn tick, and the judge of
-//! [`runtime::truth`] watches what is reported as finished from then on.
+//! [`closed_loop::truth`] watches what is reported as finished from then on.
 //!
 //! A draw depends on its seed, the job and the cell alone. Half of the branches lead the robot aside, by 0.05 to 6 in in
 //! any direction; the others move, exchange, add or take away a part. One in [`WHOLE`] runs to the end of the job: if a

@@ -17,7 +17,7 @@ use rcs_core::{
 use crate::{
     channels::{HeaderPlace, headers},
     proto::foxglove::Level,
-    remarks::{hws_text, remarks},
+    remarks::remarks,
 };
 
 /// Warnings and errors that are written out; the others are counted.
@@ -91,7 +91,7 @@ impl Summary {
     ) {
         let (was, is) = (&before.task.status, &after.task.status);
         if was.echo != is.echo {
-            let text = hws_text(&external.hws);
+            let text = external.hws.in_words().to_string();
             let unconfirmed = is.unconfirmed;
             self.commands.push(Command { text, first: tick, last: tick, report: is.report, unconfirmed });
         }

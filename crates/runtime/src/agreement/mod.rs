@@ -23,7 +23,7 @@ use taskdata::{
     },
 };
 
-use crate::workstation::orders;
+use closed_loop::workstation::orders;
 
 /// The names in the `**` lines of a job that the cell does not have. `source` is the text of the description, `path`
 /// its file.

@@ -26,11 +26,15 @@ mod written;
 use std::path::{self, Path};
 
 use ::operator::Event;
+use closed_loop::workstation::SimulatedWorkstation;
 use interfaces::{
     CommonMemory, OperatorInputs,
     device::{JoystickBox, KNOB_FULL},
 };
-use neighbours::workstation::player::{Hwsc, Progress};
+use neighbours::workstation::{
+    Gate,
+    player::{Hwsc, Progress},
+};
 use plant::Joystick;
 use rcs_core::tick::Tick;
 use serde::Serialize;
@@ -41,7 +45,7 @@ use taskdata::load::{
 
 pub use self::source::{Input, Inputs, WORKSTATION};
 use self::{hold::Ended, request::Request, terminals::Terminals};
-use crate::{judge, neighbours::Neighbours, workstation::SimulatedWorkstation};
+use crate::{judge, neighbours::Neighbours};
 
 /// Largest number of requests carried out in a tick; others wait for the next one.
 pub const A_TICK: usize = 16;
@@ -101,6 +105,8 @@ pub struct Around<'a> {
     pub unchecked: bool,
     /// Directory of the task data.
     pub data: &'a Path,
+    /// Task's end of the mailboxes.
+    pub gate: &'a mut Gate,
     /// The source of Task's commands.
     pub neighbours: &'a mut Neighbours,
     /// The cell.
@@ -127,28 +133,11 @@ impl Operator {
         }
     }
 
-    /// The joystick box of the next tick, combined from that of the job's lines and that of the operators. The lower
-    /// velocity counts; a moved stick and an enabled frame take precedence; switches and buttons are combined by OR.
+    /// The operators' joystick box of the next tick.
     #[must_use]
-    pub fn at_the_box(&self, job: JoystickBox) -> JoystickBox {
-        let own = &self.shown;
-        let stick = if (own.x, own.y) == (0, 0) { (job.x, job.y) } else { (own.x, own.y) };
-        JoystickBox {
-            velocity: if self.is_stopped { 0 } else { own.velocity.min(job.velocity) },
-            x: stick.0,
-            y: stick.1,
-            up: own.up || job.up,
-            down: own.down || job.down,
-            roll_plus: own.roll_plus || job.roll_plus,
-            roll_minus: own.roll_minus || job.roll_minus,
-            open: own.open || job.open,
-            close: own.close || job.close,
-            frame: if own.frame == 0 { job.frame } else { own.frame },
-            record: own.record || job.record,
-            resume: own.resume || job.resume,
-            hold: own.hold | job.hold,
-            single_step: own.single_step | job.single_step,
-        }
+    pub fn at_the_box(&self) -> JoystickBox {
+        let velocity = if self.is_stopped { 0 } else { self.shown.velocity };
+        JoystickBox { velocity, ..self.shown }
     }
 
     /// Input of the controller from the terminals in the next tick.
@@ -315,8 +304,10 @@ impl Operator {
                 self.later = Some(Later::Play(job));
                 Ok(done)
             }
-            Request::StandAlone { now } => around.neighbours.take_command(tick, around.memory, now),
-            Request::Workstation => around.neighbours.give_command(tick, around.memory),
+            Request::StandAlone { now } => {
+                around.neighbours.take_command(tick, around.memory, around.gate, now)
+            }
+            Request::Workstation => around.neighbours.give_command(tick, around.memory, around.gate),
             Request::Terminal(entry) => {
                 self.terminals.enter(entry, tick, around.memory, &around.store.view())
             }
@@ -394,25 +385,6 @@ mod tests {
     use super::terminals::Entry;
 
     #[test]
-    fn the_lower_knob_holds_and_switches_add_up() {
-        let mut operator = Operator::new(false);
-        let job =
-            JoystickBox { velocity: 700, hold: 1, frame: joystick_frame::WORLD, x: 5, ..Default::default() };
-        assert_eq!(operator.at_the_box(job), job, "nobody has done anything");
-        operator.hand.act(BoxAction::Velocity(800));
-        operator.hand.act(BoxAction::Hold(2));
-        operator.hand.act(BoxAction::Stick { x: 0, y: -30, ticks: 1 });
-        operator.end_tick(false);
-        let both = operator.at_the_box(job);
-        assert_eq!((both.velocity, both.hold, both.x, both.y), (700, 3, 0, -30));
-        operator.hand.act(BoxAction::Velocity(100));
-        operator.end_tick(false);
-        assert_eq!((operator.at_the_box(job).velocity, operator.at_the_box(job).x), (100, 5));
-        operator.is_stopped = true;
-        assert_eq!(operator.at_the_box(job).velocity, 0);
-    }
-
-    #[test]
     fn one_commands_until_it_leaves() {
         let mut operator = Operator::new(false);
         assert_eq!(operator.take_command("a"), Ok(()));
@@ -450,7 +422,7 @@ mod tests {
             let ended = operator.release("a");
             assert_eq!(ended, Ended { joystick: true, passes: true, turns_table: false, knob: elsewhere });
             operator.end_tick(false);
-            let shown = operator.at_the_box(JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() });
+            let shown = operator.at_the_box();
             let velocity = if elsewhere { 0 } else { 400 };
             assert_eq!(shown, JoystickBox { velocity, hold: 1, ..JoystickBox::default() });
             let inputs = operator.at_the_terminals();

@@ -5,7 +5,7 @@ use neighbours::workstation::player::Workstation as _;
 use plant::EStop;
 
 use super::Around;
-use crate::workstation::SimulatedWorkstation;
+use closed_loop::workstation::SimulatedWorkstation;
 
 /// Start-up of the robot after an emergency, in requests.
 const START_UP: &str = "`panel fault-reset`, then start the robot up at its panel (IV.3.3)";

@@ -8,7 +8,9 @@ use taskdata::load::{
 };
 
 use super::terminals::Entry;
-use crate::{load, workstation::at_the_box};
+use closed_loop::workstation::at_the_box;
+
+use crate::load;
 
 /// A request.
 #[derive(Clone, Debug, PartialEq)]

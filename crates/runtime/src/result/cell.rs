@@ -2,12 +2,13 @@
 
 use std::fmt;
 
+use closed_loop::workstation::Emergency;
 use neighbours::data_system::Item;
-use plant::{PartState, fault::Struck};
+use plant::fault::Struck;
 use rcs_core::tick::Tick;
 use serde::Serialize;
 
-use crate::{event::Event, workstation::Emergency};
+use crate::event::Event;
 
 /// A fault of the cell that has occurred.
 #[derive(Clone, Debug, Serialize)]
@@ -84,61 +85,6 @@ impl From<&Emergency> for EmergencyResult {
             on_shot_pin: droop.on_shot_pin,
             touched: touched.collect(),
         }
-    }
-}
-
-/// A part at the end of the run.
-#[derive(Clone, Debug, Serialize)]
-pub struct PartResult {
-    /// Its name at the end.
-    pub name: String,
-    /// A unit, the vise's location, `gripper`, `floor` or `elsewhere`.
-    pub location: String,
-    /// Sector of the unit, 0 elsewhere.
-    pub sector: u16,
-    /// True if the gripper holds it.
-    pub held: bool,
-    /// True if the vise clamps it.
-    pub clamped: bool,
-    /// Position of its middle, world coordinates, in.
-    pub position_in: [f64; 3],
-    /// Distance from the centre of its sector, or from its seat in the vise, in.
-    pub error_in: Option<f64>,
-}
-
-impl From<PartState> for PartResult {
-    fn from(part: PartState) -> Self {
-        Self {
-            name: part.name,
-            location: part.location,
-            sector: part.sector,
-            held: part.held,
-            clamped: part.clamped,
-            position_in: part.position,
-            error_in: part.error,
-        }
-    }
-}
-
-impl fmt::Display for PartResult {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let place = match self.location.as_str() {
-            "gripper" => "in the gripper".to_owned(),
-            "floor" => "on the floor".to_owned(),
-            "elsewhere" => "at no place of the cell".to_owned(),
-            vise if self.clamped => format!("clamped in {vise}"),
-            location => format!("at {location}"),
-        };
-        write!(f, "{} is {place}", self.name)?;
-        if self.sector > 0 {
-            write!(f, " sector {}", self.sector)?;
-        }
-        if let Some(error) = self.error_in {
-            let from = if self.sector > 0 { "the sector's centre" } else { "its seat" };
-            write!(f, ", {error:.2} in from {from}")?;
-        }
-        let [x, y, z] = self.position_in;
-        write!(f, " ({x:.2} {y:.2} {z:.2} in)")
     }
 }
 

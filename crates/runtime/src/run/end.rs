@@ -35,7 +35,7 @@ impl Run {
             if let Some(announced) = &self.announced {
                 announced.say("ends: the robot ramps to rest");
             }
-            let before = self.runner.digest();
+            let before = self.closed.digest();
             self.ramp = Some(Ramp { ending, ticks: 0, before });
         }
     }

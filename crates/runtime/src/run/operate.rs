@@ -3,6 +3,7 @@
 use std::path::{Component, Path};
 
 use ::operator::Event;
+use closed_loop::workstation::orders;
 use diagnostics::JOBS;
 use os_io::files;
 use rcs_core::tick::Tick;
@@ -17,7 +18,6 @@ use crate::{
     judge::check_job,
     load::{Answer, Asker, LoadError},
     operator::{A_TICK, Around, Input, Later, WORKSTATION},
-    workstation::orders,
 };
 
 impl Run {
@@ -45,14 +45,16 @@ impl Run {
         }
         for _ in 0..A_TICK {
             let Some(input) = self.asked.next(first) else { break };
+            let desk = self.closed.desk();
             let mut around = Around {
                 tick,
-                memory: self.runner.memory(),
-                store: self.generations.next(self.runner.memory(), None),
+                memory: desk.memory,
+                store: desk.generations.next(desk.memory, None),
+                gate: desk.gate,
                 unchecked: self.config.unchecked,
                 data: &self.config.data,
                 neighbours: &mut self.neighbours,
-                workstation: &mut self.workstation,
+                workstation: desk.workstation,
                 loading: self.loads.is_loading(),
             };
             let verdict = self.operator.carry_out(&input, &mut around);
@@ -74,7 +76,7 @@ impl Run {
             };
             self.settle(first, input, verdict);
         }
-        self.operator.end_tick(self.workstation.cell.is_table_led_by_hand());
+        self.operator.end_tick(self.closed.workstation.cell.is_table_led_by_hand());
     }
 
     /// Carry out the load that the workstation controller has requested. The next tick is the first to see it.
@@ -132,13 +134,13 @@ impl Run {
             Some(recorded) => recorded.ok_or("the log has no text of the job")?,
             None => job_named(name, &self.config.data)?,
         };
-        let (job, _) = Job::from_source(source, self.generations.current()).map_err(|report| {
+        let (job, _) = Job::from_source(source, self.closed.generations().current()).map_err(|report| {
             let errors: Vec<_> = report.errors().map(|error| error.to_string()).collect();
             format!("the job {name} has errors: {}", errors.join("; "))
         })?;
         self.can_be_played(&job)?;
         if !self.config.unchecked {
-            check_job(&job, self.generations.current(), None)
+            check_job(&job, self.closed.generations().current(), None)
                 .map_err(|error| format!("{error}: {}", error.details().trim_end().replace('\n', "; ")))?;
         }
         self.neighbours.job_under_way()?.play(tick, job.steps.clone()).map_err(|error| error.to_string())?;
@@ -157,7 +159,7 @@ impl Run {
         if job.steps.is_empty() {
             return Err(format!("the job {} has no line", job.name));
         }
-        let cell = self.workstation.cell.description();
+        let cell = self.closed.workstation.cell.description();
         job.steps.iter().try_for_each(|JobLine { step, line, .. }| {
             let (Step::Workstation(action) | Step::After { action, .. }) = step else { return Ok(()) };
             let cannot = |why: String| Err(format!("line {line} of the job {}: {why}", job.name));

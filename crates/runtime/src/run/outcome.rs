@@ -61,7 +61,7 @@ impl Run {
     }
 
     fn result(&mut self, ending: &Ending, wall_s: f64) -> RunResult {
-        let ticks = self.runner.tick().0;
+        let ticks = self.closed.tick().0;
         let simulated_s = ticks as f64 * TICK_S;
         let ramp_ticks = self.ramp.as_ref().map_or(0, |ramp| ramp.ticks);
         let steps = self.neighbours.all_steps();
@@ -89,26 +89,26 @@ impl Run {
             part_us: pace::times(self.runner.stage_times()),
             late_us: self.pace.late(),
             realtime: self.pace.verdict(),
-            boards: self.runner.levels().results(),
-            link: (&self.runner.memory().t3i.status.counters).into(),
+            boards: self.closed.course().levels().results(),
+            link: (&self.closed.memory().t3i.status.counters).into(),
             operator: self.operator.requests(),
-            faults: self.robot.faults().map(FaultsResult::from),
-            cell_faults: self.workstation.cell.faults().into_iter().map(Into::into).collect(),
+            faults: self.closed.line().faults().map(FaultsResult::from),
+            cell_faults: self.closed.workstation.cell.faults().into_iter().map(Into::into).collect(),
             port: self.robot.port().map(PortResult::from),
             egm: self.robot.egm().map(EgmResult::from),
-            emergency_stop: self.workstation.last_emergency().map(EmergencyResult::from),
-            digest: self.runner.digest().to_string(),
+            emergency_stop: self.closed.workstation.last_emergency().map(EmergencyResult::from),
+            digest: self.closed.digest().to_string(),
             simulated: self.robot.is_elsewhere().then_some(SIMULATED),
             digest_before_ramp: self
                 .ramp
                 .as_ref()
-                .map_or_else(|| self.runner.digest(), |ramp| ramp.before)
+                .map_or_else(|| self.closed.digest(), |ramp| ramp.before)
                 .to_string(),
-            parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),
+            parts: self.closed.workstation.cell.parts(),
             data_base: self.items(),
-            truth: (!self.robot.is_elsewhere()).then(|| self.truth.result().clone()),
-            contacts: self.check.collisions().to_vec(),
-            clearance: self.check.nearest().cloned(),
+            truth: (!self.robot.is_elsewhere()).then(|| self.closed.truth().result().clone()),
+            contacts: self.closed.contacts().collisions().to_vec(),
+            clearance: self.closed.contacts().nearest().cloned(),
             events: std::mem::take(&mut self.events),
             log: None,
             failure: match ending {
@@ -122,7 +122,12 @@ impl Run {
 
     /// Items in the data base at the end.
     fn items(&mut self) -> Vec<ItemResult> {
-        let items = self.neighbours.items().inspect_err(|why| {
+        let items = match (self.closed.books_mut(), self.neighbours.data_system()) {
+            (Some(books), _) => books.items(),
+            (None, Some(elsewhere)) => elsewhere.items(),
+            (None, None) => Ok(Vec::new()),
+        };
+        let items = items.inspect_err(|why| {
             self.observer.message(&format!("the items cannot be listed: {why}"));
         });
         items.unwrap_or_default().into_iter().map(Into::into).collect()
@@ -133,7 +138,7 @@ impl Run {
         let Some(log) = self.log.take() else { return "none".to_owned() };
         let outcome = ending.text().to_owned();
         result.log = self.log_path.take();
-        match log.finish(self.runner.digest(), outcome, result.facts()) {
+        match log.finish(self.closed.digest(), outcome, result.facts()) {
             Ok(summary) => {
                 let (file, size) = (summary.path.display(), summary.bytes as f64 / 1e6);
                 let lost = match summary.lost.ticks {

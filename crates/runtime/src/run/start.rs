@@ -1,21 +1,21 @@
 //! The start of a run, before the first tick.
 
+use std::sync::Arc;
+
+use closed_loop::ClosedLoop;
 use depc::host::{PATIENCE_TICKS, RESTART_TICKS};
 use diagnostics::FAULTS;
 use executive::{
-    generations::Generations,
     memory::{Announced, Mirror, Publisher, RunName, SET_UP_LIMIT, SharedMemoryError, within_limit},
     rest::RestWatch,
     runner::Runner,
 };
-use interfaces::ExternalInputs;
 use neighbours::network::Role;
 
 use super::Run;
 use crate::{
     boards::Controller,
     config::{Boards, ClockKind, OperatorAccess, RobotKind, RunConfig},
-    contacts::ContactCheck,
     error::StartError,
     load::Loads,
     loads::Loader,
@@ -26,8 +26,6 @@ use crate::{
     pace::Pace,
     result::Events,
     setup::Setup,
-    truth::{TruthCheck, placement::PlacementCheck},
-    workstation::SimulatedWorkstation,
 };
 
 /// Ticks to wait for the first answer of a robot controller at a port, which may be powered up after the run has begun.
@@ -128,12 +126,22 @@ impl Run {
         let log_path = file.as_ref().map(|file| file.path().to_owned());
         let log = file.map(|file| Log::start(file, &config, &setup)).transpose()?;
         let publisher = publisher(&config, &name, &mut *observer);
-        let Setup { store, data, job, description, cell, robot, neighbours, mut live, .. } = setup;
-        let workstation = SimulatedWorkstation::new(cell);
-        let workstation = if robot.is_elsewhere() { workstation.with_robot_elsewhere() } else { workstation };
-        let workstation = if neighbours.can_switch() { workstation.with_hand_over() } else { workstation };
+        let Setup { store, data, mut job, cell, line_faults, robot, mut neighbours, mut live, .. } = setup;
+        let reloads = std::mem::take(&mut job.reloads);
+        let mut closed = ClosedLoop::new(controller, Arc::new(store), Arc::new(reloads), cell);
+        if robot.is_elsewhere() {
+            closed.workstation.note_robot_elsewhere();
+        }
+        if neighbours.can_switch() {
+            closed.workstation.note_hand_over();
+        }
+        if let Some(plan) = &line_faults {
+            closed.line_mut().suffer(plan);
+        }
+        let keeps_books = neighbours.data_system().is_none();
+        let closed = if keeps_books { closed } else { closed.with_data_system_elsewhere() };
         let operator = Operator::new(robot.is_elsewhere());
-        let runner = Runner::new(controller, publisher);
+        let runner = Runner::new(publisher);
         let asked = Inputs::of(&config, &name, &mut *observer)?;
         let network = neighbours.network.as_ref();
         if let Some((network, entrance)) = network.zip(asked.entrance()) {
@@ -154,12 +162,11 @@ impl Run {
         });
         let mirror = runner.publisher().and_then(|publisher| mirror(publisher, &mut *observer));
         Ok(Self {
+            closed,
             runner,
             mirror,
             neighbours,
-            inputs: workstation.cell.inputs(),
             robot,
-            workstation,
             asked,
             operator,
             loads: Loads::with(loader),
@@ -171,10 +178,7 @@ impl Run {
             pace: Pace::fast(config.overrun),
             started: None,
             ending: None,
-            placement: PlacementCheck::new(&description),
-            truth: TruthCheck::default(),
             warning: None,
-            check: ContactCheck::new(description.contact),
             view: Box::default(),
             fresh: Vec::new(),
             events: Events::default(),
@@ -184,9 +188,6 @@ impl Run {
             first_patience: first_patience(&config),
             trouble: None,
             remedy: None,
-            generations: Generations::new(store),
-            changed: 0,
-            external: ExternalInputs::default(),
             job,
             observer,
             config,

@@ -1,11 +1,13 @@
 //! Sends information to the log, the viewers and the operators of a run.
 
+use closed_loop::Settled;
 use interfaces::CommonMemory;
+use neighbours::data_system::DataSystem;
 use plant::CellEvent;
 use rcs_core::tick::Tick;
 
 use super::Run;
-use crate::{contacts::Commands, egm::EgmPort, event::Event, live::Live, truth::Scene};
+use crate::{egm::EgmPort, event::Event, live::Live};
 
 impl Run {
     /// Report an event outside the cell's ticks to the log and the observer.
@@ -18,16 +20,17 @@ impl Run {
 
     /// Log the cell of the next tick, and its events.
     pub(super) fn show_cell(&mut self) {
-        let tick = self.runner.tick().next();
+        let tick = self.closed.tick().next();
         let Some(log) = &mut self.log else { return self.fresh.clear() };
         for event in self.fresh.drain(..) {
             log.event(tick, &event);
         }
-        if let Some(counts) = self.robot.faults() {
+        if let Some(counts) = self.closed.line().faults() {
             log.faults(tick, counts);
         }
-        log.contacts(tick, self.workstation.cell.contacts(), |contact| self.check.is_collision(contact));
-        log.cell(tick, &self.workstation.cell, self.robot.egm().map(EgmPort::frames));
+        let (cell, check) = (&self.closed.workstation.cell, self.closed.contacts());
+        log.contacts(tick, cell.contacts(), |contact| check.is_collision(contact));
+        log.cell(tick, cell, self.robot.egm().map(EgmPort::frames));
     }
 
     /// Publish the cell after a tick to other programs. A run with a robot at a port publishes none.
@@ -36,7 +39,7 @@ impl Run {
             return;
         }
         let job = (self.neighbours.place(), self.neighbours.begun_steps());
-        let (cell, warning) = (&self.workstation.cell, self.warning.as_ref());
+        let (cell, warning) = (&self.closed.workstation.cell, self.warning.as_ref());
         self.runner.show_cell(|| self.view.look(tick, cell, warning, job, &self.pace));
     }
 
@@ -62,12 +65,9 @@ impl Run {
         self.events.push(tick, &event);
     }
 
-    /// Collect the events of the cell in a tick, for log, result and verdict.
-    pub(super) fn observe(&mut self, tick: Tick, commands: Commands) {
-        // The contact check selects the contacts that are events.
-        let events = self.workstation.events(tick).into_iter();
-        let events = events.filter(|event| !matches!(event, CellEvent::Contact(_)));
-        let events: Vec<_> = events.collect();
+    /// Collect what has happened in the cell in a tick, for log, result and verdict.
+    pub(super) fn observe(&mut self, tick: Tick, settled: Settled) {
+        let Settled { events, contacts, untrue } = settled;
         let shown = |event: &CellEvent| matches!(event, CellEvent::Warning(_)).then(|| event.to_string());
         if let Some(warning) = events.iter().find_map(shown) {
             self.warning = Some((tick, warning));
@@ -77,28 +77,14 @@ impl Run {
             self.warning = Some((tick, event.to_string()));
             self.fresh.push(event);
         }
-        self.fresh.extend(self.check.look(tick, self.workstation.cell.contacts(), commands));
-        self.workstation.cell.watch_clearance(self.check.margin());
+        self.fresh.extend(contacts.into_iter().map(Event::Contact));
+        for event in untrue.into_iter().map(Event::Untrue) {
+            self.observer.message(&format!("tick {tick}: {event}"));
+            self.fresh.push(event);
+        }
         for event in &self.fresh {
             self.observer.event(tick, event);
             self.events.push(tick, event);
-        }
-    }
-
-    /// Judge the confirmations of a tick. The cell is only a model of a robot at a port, and is not judged there.
-    pub(super) fn judge(&mut self, tick: Tick, memory: &CommonMemory) {
-        if self.robot.is_elsewhere() {
-            return;
-        }
-        self.truth.note_delivered(tick, self.workstation.delivered());
-        let (data, cell) = (&self.generations.current().view(), &self.workstation.cell);
-        let scene = Scene { tick, hws: &self.external.hws, memory, data, cell };
-        for confirmation in self.truth.look(&scene) {
-            let event = Event::Untrue(confirmation);
-            self.observer.message(&format!("tick {tick}: {event}"));
-            self.observer.event(tick, &event);
-            self.events.push(tick, &event);
-            self.fresh.push(event);
         }
     }
 
@@ -113,7 +99,9 @@ impl Run {
 
     /// Report remarks of neighbours outside their mailboxes as events; Task reads only their statuses.
     pub(super) fn note_neighbours(&mut self, tick: Tick) {
-        for event in self.neighbours.events() {
+        let refusals = self.closed.books_mut().map(DataSystem::refusals).unwrap_or_default();
+        let refusals = refusals.into_iter().map(Event::DataBaseRefuses);
+        for event in refusals.chain(self.neighbours.events()) {
             self.log_event(tick, &event);
             self.events.push(tick, &event);
         }

@@ -8,9 +8,9 @@
 //!   the command behind the interrupted one has finished              done
 //! ```
 
+use closed_loop::truth::Confirmation;
 use levels::ladder::Ladder;
 use neighbours::workstation::player::Workstation as _;
-use runtime::truth::Confirmation;
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -121,7 +121,7 @@ impl Trial<'_, '_> {
             // Continue for a while, to learn the full extent of the damage.
             return (self.branch.at().since(tick) >= AFTERMATH).then_some(Verdict::Hurt);
         }
-        let stranded = self.operator.stranded().is_some() || self.branch.check().is_stuck();
+        let stranded = self.operator.stranded().is_some() || self.branch.closed.contacts().is_stuck();
         let apart = worst.is_some() || (stranded && self.monitor.attribute_to_slide(""));
         match (stranded, apart) {
             (true, false) => Some(Verdict::Stranded),
@@ -160,7 +160,7 @@ impl Trial<'_, '_> {
     pub(super) fn result(self, verdict: Verdict, end: &End, doing: Vec<String>) -> BranchResult {
         let (reason, detail) = self.why(verdict);
         let judged = self.judged();
-        let digest = (*self.kind() == Kind::None).then(|| self.branch.digest().to_string());
+        let digest = (*self.kind() == Kind::None).then(|| self.branch.closed.digest().to_string());
         let line = match self.line.checked_sub(1) {
             None => "PAUSE".to_owned(),
             Some(at) => self
@@ -225,8 +225,8 @@ impl Trial<'_, '_> {
                     Some(reason) => reason.to_owned(),
                     None => "the robot stands in something".to_owned(),
                 };
-                let known = self.branch.watch().failure(Ladder::processes());
-                let emergency = self.branch.workstation.emergency();
+                let known = self.branch.closed.course().watch().failure(Ladder::processes());
+                let emergency = self.branch.closed.workstation.emergency();
                 let detail = known.map(|known| format!("tick {}: {}", known.tick.0, known.text));
                 let detail = detail.or(emergency).unwrap_or_else(|| reason.clone());
                 (reason, detail)

@@ -18,7 +18,6 @@ use super::{
     Claim, Confirmation, Level, NotSensed, Scene, TruthCheck, Untruth, Verdict,
     history::{History, Released},
 };
-use crate::setup::{CellFile, TaskFiles};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
 const TICK: Tick = Tick(100);
@@ -35,10 +34,8 @@ struct Bench {
 impl Bench {
     fn new() -> Self {
         let data = Path::new(DATA);
-        let mut files = TaskFiles::load(data, Some("linkbar"), false).expect("the job is shipped");
-        let CellFile { description, .. } =
-            CellFile::load(data, &mut files, false).expect("the cell is shipped");
-        let TaskFiles { store, .. } = files;
+        let Ok((store, _)) = Store::load(data) else { panic!("the shipped data do not load") };
+        let description = CellDescription::load(&data.join("cell.toml")).expect("the cell is shipped");
         let cell = Cell::new(&description, 1).expect("the cell is sound");
         Self {
             store,

@@ -19,9 +19,6 @@ use interfaces::{
 };
 use plant::{CellDescription, PartState, description::Nest};
 use rcs_core::{name::Name16, tick::Tick};
-use record::remarks::hws_text;
-
-use crate::result::PartResult;
 
 /// A location and its sector, 0 for none.
 type Place = (String, u16);
@@ -150,7 +147,7 @@ impl PlacementCheck {
     /// The command has finished: set the required places of the parts that it has moved.
     fn conclude(&mut self, tick: Tick, cell: &CellDescription, parts: &[PartState]) {
         let attempt = std::mem::take(&mut self.attempt);
-        let command = hws_text(&attempt.command);
+        let command = attempt.command.in_words().to_string();
         let destination = place(attempt.command.destination, attempt.command.destination_sector);
         if attempt.moved.is_empty()
             && takes_object(&attempt.command)
@@ -201,8 +198,7 @@ impl PlacementCheck {
                 }
                 Goal::At(None) => format!("within {} of where the fingers opened", Length(self.tolerance)),
             };
-            let text =
-                format!("{}; {} was to leave it {place}", PartResult::from(part.clone()), moved.command);
+            let text = format!("{}; {} was to leave it {place}", part, moved.command);
             Some((tick, text))
         });
         let empty = self.empty.iter().map(|(tick, command)| {

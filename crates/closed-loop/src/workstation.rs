@@ -66,17 +66,19 @@ impl SimulatedWorkstation {
     }
 
     /// Note that the cell follows a robot elsewhere, whose controller no line of a job can reach.
-    #[must_use]
-    pub fn with_robot_elsewhere(mut self) -> Self {
+    pub const fn note_robot_elsewhere(&mut self) {
         self.state.robot_elsewhere = true;
-        self
     }
 
     /// Note that the job can hand over to a workstation controller in another process.
-    #[must_use]
-    pub fn with_hand_over(mut self) -> Self {
+    pub const fn note_hand_over(&mut self) {
         self.state.hands_over = true;
-        self
+    }
+
+    /// True if the robot is not the simulated one.
+    #[must_use]
+    pub const fn is_robot_elsewhere(&self) -> bool {
+        self.state.robot_elsewhere
     }
 
     /// Events of the cell in `tick`, which has ended. A failed simulation or a failed vise is a fault of the

@@ -17,14 +17,12 @@ use plant::{clearance::Contact, description::Permits};
 use rcs_core::tick::Tick;
 use serde::Serialize;
 
-use crate::event::Event;
-
 /// Depth of arm, gripper or fingers in something that ends the run, in.
 pub const DEEPEST: f64 = 1.0;
-/// Distances greater than this are no near miss, in.
+/// Distances greater than this are no near miss in an ordinary run, in.
 const MARGIN: f64 = 2.0;
 /// A permitted contact has ended at this distance, in.
-pub const FREE: f64 = 0.05;
+const FREE: f64 = 0.05;
 /// Least increase of depth that counts as deeper, in.
 const DEEPER: f64 = 0.001;
 
@@ -107,6 +105,29 @@ impl fmt::Display for Collision {
     }
 }
 
+/// The beginning or the end of a collision.
+#[derive(Clone, Debug)]
+pub enum ContactEvent {
+    /// Two objects touch that must not.
+    Begins(Collision),
+    /// The objects have separated.
+    Ends(Collision),
+}
+
+impl fmt::Display for ContactEvent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Begins(collision) => collision.fmt(f),
+            Self::Ends(Collision { mover, obstacle, ticks, depth_in, .. }) => {
+                write!(
+                    f,
+                    "{mover} comes free of {obstacle} after {ticks} ticks; it was {depth_in:.3} in deep"
+                )
+            }
+        }
+    }
+}
+
 /// The least distance to an object that must not be touched.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NearMiss {
@@ -150,6 +171,8 @@ pub struct ContactCheck {
     open: BTreeMap<(String, String), usize>,
     collisions: Vec<Collision>,
     nearest: Option<NearMiss>,
+    /// Distances greater than this are no near miss, in.
+    farthest: f64,
     /// The commands that move the robot, or have moved it last.
     commands: Commands,
 }
@@ -164,8 +187,15 @@ impl ContactCheck {
             open: BTreeMap::new(),
             collisions: Vec::new(),
             nearest: None,
+            farthest: MARGIN,
             commands: Commands::default(),
         }
+    }
+
+    /// Ignore near misses.
+    #[must_use]
+    pub fn without_near_misses(self) -> Self {
+        Self { farthest: 0.0, ..self }
     }
 
     /// The commands to which a tick's contacts are attributed, from common memory after the tick.
@@ -188,15 +218,15 @@ impl ContactCheck {
 
     /// A distance below this is the new nearest miss, in.
     fn least(&self) -> f64 {
-        self.nearest.as_ref().map_or(MARGIN, |nearest| nearest.distance_in)
+        self.nearest.as_ref().map_or(self.farthest, |nearest| nearest.distance_in)
     }
 
     /// Check the contacts and distances after a tick. Returns the collisions that have begun or ended.
-    pub fn look(&mut self, tick: Tick, contacts: &[Contact], commands: Commands) -> Vec<Event> {
+    pub fn look(&mut self, tick: Tick, contacts: &[Contact], commands: Commands) -> Vec<ContactEvent> {
         let mut events = Vec::new();
         for contact in contacts {
             if contact.touches() {
-                events.extend(self.touch(tick, contact, commands).map(Event::Collides));
+                events.extend(self.touch(tick, contact, commands).map(ContactEvent::Begins));
             } else {
                 self.near(tick, contact, commands);
             }
@@ -211,7 +241,7 @@ impl ContactCheck {
             let Some(collision) = self.open.remove(&pair).and_then(|at| self.collisions.get(at)) else {
                 continue;
             };
-            events.push(Event::CameFree(collision.clone()));
+            events.push(ContactEvent::Ends(collision.clone()));
         }
         events
     }

@@ -1,0 +1,92 @@
+//! What comes from outside before a tick.
+
+use interfaces::{
+    DataBaseStatus, OperatorInputs, OutsidePedestal,
+    device::{JoystickBox, KNOB_FULL, LinkBytes, Resolvers},
+};
+
+/// What comes from outside before a tick. The default is a run without operators, robot and neighbours elsewhere.
+#[derive(Clone, Copy, Debug)]
+pub struct Given {
+    /// What a robot elsewhere has sent; `None` for the simulated one.
+    pub robot: Option<RobotInputs>,
+    /// Ticks for which the host waits for an answer; `None` for the manual's.
+    pub patience: Option<u16>,
+    /// Expected lag of the robot behind the positions sent, ms; `None` for that of the T3.
+    pub lag: Option<u16>,
+    /// The operators' joystick box. It is combined with that of the cell.
+    pub joystick: JoystickBox,
+    /// Entries at the terminals of the boards.
+    pub terminals: OperatorInputs,
+    /// Status of a Data System elsewhere; it counts only for a loop that keeps no books itself.
+    pub data_base: DataBaseStatus,
+    /// Statuses of a pedestal in another process.
+    pub pedestal: OutsidePedestal,
+}
+
+impl Default for Given {
+    fn default() -> Self {
+        Self {
+            robot: None,
+            patience: None,
+            lag: None,
+            joystick: JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() },
+            terminals: OperatorInputs::default(),
+            data_base: DataBaseStatus::default(),
+            pedestal: OutsidePedestal::default(),
+        }
+    }
+}
+
+/// What a robot elsewhere has sent before a tick.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RobotInputs {
+    /// The bytes that have arrived.
+    pub rx: LinkBytes,
+    /// DTR of the robot controller.
+    pub ready: bool,
+    /// True if bytes of an earlier tick have not left.
+    pub unsent: bool,
+    /// Readings of its resolvers, if it reports its position; otherwise they are those of the cell, which follows it.
+    pub resolvers: Option<Resolvers>,
+}
+
+/// Two joystick boxes, combined. The lower velocity counts; a moved stick and an enabled frame of `own` take
+/// precedence; switches and buttons are combined by OR.
+pub(crate) fn combined(own: &JoystickBox, other: JoystickBox) -> JoystickBox {
+    let stick = if (own.x, own.y) == (0, 0) { (other.x, other.y) } else { (own.x, own.y) };
+    JoystickBox {
+        velocity: own.velocity.min(other.velocity),
+        x: stick.0,
+        y: stick.1,
+        up: own.up || other.up,
+        down: own.down || other.down,
+        roll_plus: own.roll_plus || other.roll_plus,
+        roll_minus: own.roll_minus || other.roll_minus,
+        open: own.open || other.open,
+        close: own.close || other.close,
+        frame: if own.frame == 0 { other.frame } else { own.frame },
+        record: own.record || other.record,
+        resume: own.resume || other.resume,
+        hold: own.hold | other.hold,
+        single_step: own.single_step | other.single_step,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::device::joystick_frame;
+
+    #[test]
+    fn the_lower_knob_counts_a_moved_stick_takes_precedence_and_switches_add_up() {
+        let job =
+            JoystickBox { velocity: 700, hold: 1, frame: joystick_frame::WORLD, x: 5, ..Default::default() };
+        assert_eq!(combined(&Given::default().joystick, job), job, "nobody has done anything");
+        let own = JoystickBox { velocity: 800, hold: 2, y: -30, ..Default::default() };
+        let both = JoystickBox { hold: 3, x: 0, y: -30, ..job };
+        assert_eq!(combined(&own, job), both);
+        let slow = JoystickBox { velocity: 100, ..Default::default() };
+        assert_eq!(combined(&slow, job), JoystickBox { velocity: 100, ..job });
+    }
+}

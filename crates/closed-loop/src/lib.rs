@@ -1,0 +1,391 @@
+//! A run as a value: control processes, cell, line, mailboxes and Data System, without clock, thread, file and network.
+//!
+//! A [`ClosedLoop`] can be cloned; both copies continue bit for bit alike, each in its own thread if need be. A program
+//! around it waits for the next tick, brings what comes from outside ([`Given`]), and takes away what goes outside. The
+//! order within a tick is the loop's:
+//!
+//! ```text
+//!   decide(given) ──► the processes run on the inputs       bytes leave for the robot when it returns
+//!   settle(moved) ──► the cell moves on, and is judged       contacts, places of parts, confirmations
+//!        operators act here, between cell and mailboxes
+//!   exchange(..)  ──► Data System and source of commands     they read the outputs of the tick
+//!   reload()      ──► task data that the job has loaded      unless a command is executed
+//! ```
+//!
+//! `rcs-run run` puts clock, log, boards, robots and neighbours around it; `rcs-run campaign` forks it.
+
+pub mod contacts;
+pub mod generations;
+mod given;
+mod line;
+mod present;
+pub mod truth;
+pub mod workstation;
+
+use std::sync::Arc;
+
+use depc::Plate;
+use executive::{
+    alloc::Section,
+    course::{Course, Levels},
+};
+use interfaces::{
+    CommonMemory, DeviceInputs, DeviceOutputs, ExternalInputs, Header, HwsCommand, device::LinkBytes,
+};
+use neighbours::{
+    data_system::{ANSWER_TICKS, DataSystem, InMemory},
+    workstation::{Gate, TaskState},
+};
+use plant::{Cell, CellEvent};
+use rcs_core::{digest::Digest, tick::Tick};
+use taskdata::{
+    files::TaskData,
+    load::{Store, job::Reload},
+};
+
+use self::{
+    contacts::{ContactCheck, ContactEvent},
+    generations::Generations,
+    given::combined,
+    truth::{Confirmation, Scene, TruthCheck, placement::PlacementCheck},
+    workstation::SimulatedWorkstation,
+};
+pub use self::{
+    given::{Given, RobotInputs},
+    line::RobotLine,
+    present::Present,
+};
+
+/// A run between two ticks. A copy continues from the same state.
+#[derive(Clone)]
+pub struct ClosedLoop<L = Present> {
+    course: Course<L>,
+    generations: Generations,
+    /// External inputs of the last tick.
+    external: ExternalInputs,
+    /// Device words of the next tick.
+    inputs: DeviceInputs,
+    line: RobotLine,
+    gate: Gate,
+    /// The Data System; `None` if it is elsewhere.
+    books: Option<DataSystem<InMemory>>,
+    contacts: ContactCheck,
+    placement: PlacementCheck,
+    truth: TruthCheck,
+    /// The cell and the other equipment of the workstation.
+    pub workstation: SimulatedWorkstation,
+}
+
+/// What has happened in the cell in a tick.
+#[derive(Debug, Default)]
+pub struct Settled {
+    /// Events of the cell. Its contacts are in `contacts`, if they must not be.
+    pub events: Vec<CellEvent>,
+    /// Collisions that have begun or ended.
+    pub contacts: Vec<ContactEvent>,
+    /// Confirmations that are not true.
+    pub untrue: Vec<Confirmation>,
+}
+
+/// What a source of commands, or an operator, sees and changes after a tick.
+pub struct Desk<'a> {
+    /// The tick.
+    pub tick: Tick,
+    /// Common memory after the tick.
+    pub memory: &'a CommonMemory,
+    /// Device words of the next tick.
+    pub inputs: &'a DeviceInputs,
+    /// Task's end of the mailboxes; its status box has the status of this tick.
+    pub gate: &'a mut Gate,
+    /// The cell and the other equipment of the workstation.
+    pub workstation: &'a mut SimulatedWorkstation,
+    /// The task data.
+    pub generations: &'a Generations,
+}
+
+impl<L> ClosedLoop<L> {
+    /// A run before its first tick: control processes, task data with the reloads of the job, and the cell.
+    #[must_use]
+    pub fn new(levels: L, store: Arc<Store>, reloads: Arc<Vec<Reload>>, cell: Cell) -> Self {
+        Self {
+            course: Course::new(levels),
+            generations: Generations::new(store, reloads),
+            external: ExternalInputs::default(),
+            inputs: cell.inputs(),
+            line: RobotLine::default(),
+            gate: Gate::default(),
+            books: Some(DataSystem::in_memory(ANSWER_TICKS)),
+            contacts: ContactCheck::new(cell.description().contact.clone()),
+            placement: PlacementCheck::new(cell.description()),
+            truth: TruthCheck::default(),
+            workstation: SimulatedWorkstation::new(cell),
+        }
+    }
+
+    /// Keep no books: the Data System is elsewhere, and its status is given.
+    #[must_use]
+    pub fn with_data_system_elsewhere(self) -> Self {
+        Self { books: None, ..self }
+    }
+
+    /// Ignore distances of the robot to things that it does not touch, which saves time.
+    #[must_use]
+    pub fn without_near_misses(self) -> Self {
+        Self { contacts: self.contacts.without_near_misses(), ..self }
+    }
+
+    /// The external inputs of the next tick.
+    #[must_use]
+    pub fn external_with(&self, given: &Given) -> ExternalInputs {
+        let mut devices = self.inputs;
+        if let Some(robot) = &given.robot {
+            (devices.link_rx, devices.link_ready, devices.link_unsent) =
+                (robot.rx, robot.ready, robot.unsent);
+            devices.resolvers = robot.resolvers.unwrap_or(devices.resolvers);
+        }
+        (devices.link_patience, devices.robot_lag) = (given.patience, given.lag);
+        devices.joystick = combined(&given.joystick, devices.joystick);
+        ExternalInputs {
+            hws: *self.gate.command(),
+            devices,
+            data_base: self.books.as_ref().map_or(given.data_base, DataSystem::status),
+            generation: self.generations.number(),
+            pedestal: given.pedestal,
+            operator: given.terminals,
+        }
+    }
+
+    /// The first part of a tick: run the control processes. Does not allocate.
+    ///
+    /// # Errors
+    /// Errors of the levels. The tick does not count then.
+    pub fn decide<E>(&mut self, given: &Given) -> Result<(), E>
+    where
+        L: for<'a> Levels<TaskData<'a>, Error = E>,
+    {
+        self.decide_with(given, |course, external, data| {
+            let _section = Section::enter();
+            course.advance(external, data)
+        })
+    }
+
+    /// Like [`decide`](Self::decide), with a function that runs the course by a tick and sums it up.
+    ///
+    /// # Errors
+    /// Errors of that function. The tick does not count then, and can be decided again.
+    pub fn decide_with<E>(
+        &mut self,
+        given: &Given,
+        run: impl FnOnce(&mut Course<L>, &ExternalInputs, &TaskData<'_>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.external = self.external_with(given);
+        run(&mut self.course, &self.external, &self.generations.current().view())
+    }
+
+    /// Call a function with the course and the task data of the next tick, as to warm it up.
+    pub fn with_data<T>(&mut self, act: impl FnOnce(&mut Course<L>, &TaskData<'_>) -> T) -> T {
+        act(&mut self.course, &self.generations.current().view())
+    }
+
+    /// The device outputs of the last tick. The last frame of a lost T3 Interface goes out only once.
+    #[must_use]
+    pub fn outputs(&self) -> DeviceOutputs {
+        let memory = self.course.memory();
+        let outputs = memory.device_outputs();
+        let runs = memory.t3i.header.stamp == self.course.tick();
+        if runs { outputs } else { DeviceOutputs { link_tx: LinkBytes::default(), ..outputs } }
+    }
+
+    /// The second part of a tick: advance the cell, and judge what has happened in it. With a robot elsewhere the cell
+    /// follows its position `moved`, as far as that is known, and confirmations are not judged: the cell is only a
+    /// model of what is there.
+    pub fn settle(&mut self, moved: Option<&Plate>) -> Settled {
+        let tick = self.course.tick();
+        let mut settled = self.advance(tick, &self.outputs(), moved);
+        let Self { course, external, generations, workstation, truth, .. } = self;
+        let (memory, cell) = (course.memory(), &workstation.cell);
+        self.placement.look(tick, &external.hws, &memory.task.status, cell.description(), &cell.parts());
+        if !workstation.is_robot_elsewhere() {
+            truth.note_delivered(tick, workstation.delivered());
+            let (hws, data) = (&external.hws, &generations.current().view());
+            settled.untrue = truth.look(&Scene { tick, hws, memory, data, cell: &workstation.cell });
+        }
+        settled
+    }
+
+    /// Advance the cell in `tick` without the controller: the robot gets no frame, and the valves keep their state.
+    pub fn coast(&mut self, tick: Tick, moved: Option<&Plate>) -> Settled {
+        let outputs = self.course.memory().device_outputs();
+        self.advance(tick, &DeviceOutputs { link_tx: LinkBytes::default(), ..outputs }, moved)
+    }
+
+    fn advance(&mut self, tick: Tick, outputs: &DeviceOutputs, moved: Option<&Plate>) -> Settled {
+        let Self { workstation, line, contacts, .. } = self;
+        self.inputs = match workstation.is_robot_elsewhere() {
+            true => workstation.cell.step_following(moved, outputs),
+            false => line.advance(tick, &mut workstation.cell, outputs),
+        };
+        let mut events = workstation.events(tick);
+        // The check selects the contacts that are events.
+        events.retain(|event| !matches!(event, CellEvent::Contact(_)));
+        let commands = contacts.commands(self.course.memory());
+        let contacts = contacts.look(tick, workstation.cell.contacts(), commands);
+        workstation.cell.watch_clearance(self.contacts.margin());
+        Settled { events, contacts, untrue: Vec::new() }
+    }
+
+    /// The third part of a tick: the Data System and the source of commands read the outputs of the tick. `command` is
+    /// the source: it reads its status from the gate, and has the gate read its command. The next tick sees the result.
+    pub fn exchange<T>(&mut self, command: impl FnOnce(Desk<'_>) -> T) -> T {
+        let (tick, memory) = (self.course.tick(), self.course.memory());
+        if let Some(books) = &mut self.books {
+            books.step(tick, &memory.task.data_base);
+        }
+        self.gate.write(memory, task_state(&memory.task.header, tick));
+        let result = command(self.desk());
+        // Vision elsewhere has answered meanwhile.
+        self.inputs.vision = self.workstation.cell.inputs().vision;
+        result
+    }
+
+    /// What a source of commands, or an operator, sees and changes between two ticks.
+    pub const fn desk(&mut self) -> Desk<'_> {
+        Desk {
+            tick: self.course.tick(),
+            memory: self.course.memory(),
+            inputs: &self.inputs,
+            gate: &mut self.gate,
+            workstation: &mut self.workstation,
+            generations: &self.generations,
+        }
+    }
+
+    /// The end of a tick: put the task data into effect that the job has loaded, if no command is executed. Returns
+    /// true if the generation has changed.
+    pub fn reload(&mut self) -> bool {
+        for number in self.workstation.loads() {
+            self.generations.propose(number);
+        }
+        self.generations.advance(self.course.memory())
+    }
+
+    /// Note that a person has changed these parts after the last tick.
+    pub fn note_changed(&mut self, parts: Vec<u32>) {
+        self.truth.note_changed(self.course.tick().next(), parts);
+    }
+
+    /// The last tick.
+    #[must_use]
+    pub const fn tick(&self) -> Tick {
+        self.course.tick()
+    }
+
+    /// Common memory after the last tick.
+    #[must_use]
+    pub const fn memory(&self) -> &CommonMemory {
+        self.course.memory()
+    }
+
+    /// The control processes with the results of their ticks.
+    #[must_use]
+    pub const fn course(&self) -> &Course<L> {
+        &self.course
+    }
+
+    /// The same, to change the control processes between two ticks or to warm up the next tick.
+    pub const fn course_mut(&mut self) -> &mut Course<L> {
+        &mut self.course
+    }
+
+    /// Fingerprint of all buffers of all ticks so far.
+    #[must_use]
+    pub const fn digest(&self) -> Digest {
+        self.course.digest()
+    }
+
+    /// The external inputs of the last tick.
+    #[must_use]
+    pub const fn external(&self) -> &ExternalInputs {
+        &self.external
+    }
+
+    /// The device words of the next tick.
+    #[must_use]
+    pub const fn inputs(&self) -> &DeviceInputs {
+        &self.inputs
+    }
+
+    /// The command that Task reads in the next tick.
+    #[must_use]
+    pub const fn command(&self) -> &HwsCommand {
+        self.gate.command()
+    }
+
+    /// Task's end of the mailboxes.
+    #[must_use]
+    pub const fn gate(&self) -> &Gate {
+        &self.gate
+    }
+
+    /// The task data.
+    #[must_use]
+    pub const fn generations(&self) -> &Generations {
+        &self.generations
+    }
+
+    /// The same, to insert a reload.
+    pub const fn generations_mut(&mut self) -> &mut Generations {
+        &mut self.generations
+    }
+
+    /// The Data System, unless it is elsewhere.
+    #[must_use]
+    pub const fn books(&self) -> Option<&DataSystem<InMemory>> {
+        self.books.as_ref()
+    }
+
+    /// The same, to take its refusals or to list its items.
+    pub const fn books_mut(&mut self) -> Option<&mut DataSystem<InMemory>> {
+        self.books.as_mut()
+    }
+
+    /// The line to the simulated robot controller.
+    #[must_use]
+    pub const fn line(&self) -> &RobotLine {
+        &self.line
+    }
+
+    /// The same, to give it faults.
+    pub const fn line_mut(&mut self) -> &mut RobotLine {
+        &mut self.line
+    }
+
+    /// The check of the robot's contacts.
+    #[must_use]
+    pub const fn contacts(&self) -> &ContactCheck {
+        &self.contacts
+    }
+
+    /// The check of the parts' places.
+    #[must_use]
+    pub const fn placement(&self) -> &PlacementCheck {
+        &self.placement
+    }
+
+    /// The judge of the confirmations of the control processes.
+    #[must_use]
+    pub const fn truth(&self) -> &TruthCheck {
+        &self.truth
+    }
+}
+
+/// Whether Task has run in a tick.
+const fn task_state(header: &Header, tick: Tick) -> TaskState {
+    if header.stamp.0 != tick.0 {
+        TaskState::Lost
+    } else if header.republished {
+        TaskState::Held
+    } else {
+        TaskState::Runs
+    }
+}

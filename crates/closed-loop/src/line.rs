@@ -1,0 +1,90 @@
+//! The line to the simulated robot controller, and its faults.
+
+use depc::fault::{Counts, Direction, FaultKind, Injector, Plan, Rule};
+use interfaces::{DeviceInputs, DeviceOutputs};
+use plant::Cell;
+use rcs_core::tick::Tick;
+
+/// Delay of a late answer, ticks: more than the three ticks for which the host waits.
+const LATE: u16 = 5;
+
+/// The line to the simulated robot controller.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RobotLine {
+    /// The faults of a plan.
+    plan: Option<Injector>,
+    /// Fault of the next answer.
+    armed: Option<FaultKind>,
+    /// Carries out the fault of the last answer that was hit.
+    answer: Option<Injector>,
+}
+
+impl RobotLine {
+    /// Give the line the faults of a plan from now on. Returns false, and changes nothing, if it has a plan already.
+    pub fn suffer(&mut self, plan: &Plan) -> bool {
+        let free = self.plan.is_none();
+        if free {
+            self.replace_plan(plan);
+        }
+        free
+    }
+
+    /// Give the line the faults of a plan from now on, instead of those that it has.
+    pub fn replace_plan(&mut self, plan: &Plan) {
+        self.plan = Some(Injector::new(plan));
+    }
+
+    /// Give the next answer of the robot controller a fault.
+    pub const fn spoil_answer(&mut self, kind: FaultKind) {
+        self.armed = Some(kind);
+    }
+
+    /// Cut the cable after tick `now`: no byte arrives any more, and the DTR of the other end is off.
+    pub fn cut(&mut self, now: Tick) {
+        let mut plan = Plan::new(0);
+        for kind in [FaultKind::Drop, FaultKind::CtsLow] {
+            // Two rules of different kinds never conflict.
+            let _ = plan.add(Rule::new(kind).window(now.0.saturating_add(1), u64::MAX));
+        }
+        self.replace_plan(&plan);
+    }
+
+    /// Forget the faults that are over after tick `now`. Call it only if no others follow.
+    pub fn forget_past(&mut self, now: Tick) {
+        self.plan.take_if(|injector| injector.is_over(now));
+        self.answer.take_if(|injector| injector.is_over(now));
+    }
+
+    /// Number of faults of the plan so far, both directions together; `None` without a plan.
+    #[must_use]
+    pub fn faults(&self) -> Option<Counts> {
+        self.plan.as_ref().map(Injector::total)
+    }
+
+    /// Advance the cell by a tick, with the bytes of the line. Returns the device words of the next tick.
+    pub(crate) fn advance(&mut self, tick: Tick, cell: &mut Cell, outputs: &DeviceOutputs) -> DeviceInputs {
+        let mut inputs = match &mut self.plan {
+            None => cell.step(outputs),
+            Some(injector) => cell.step_behind(injector, tick, outputs),
+        };
+        self.strike(tick, &inputs);
+        if let Some(injector) = &mut self.answer {
+            (inputs.link_rx, inputs.link_ready) =
+                injector.carry(Direction::ToHost, tick, &inputs.link_rx, inputs.link_ready);
+        }
+        inputs
+    }
+
+    /// If a fault is armed and bytes have come, the line has this fault in this tick.
+    fn strike(&mut self, tick: Tick, inputs: &DeviceInputs) {
+        let Some(kind) = self.armed.filter(|_| inputs.link_rx.length > 0) else { return };
+        self.armed = None;
+        let rule = Rule::new(kind).at(tick.0).only(Direction::ToHost);
+        let rule = if kind == FaultKind::Delay { rule.ticks(LATE) } else { rule };
+        let mut plan = Plan::new(tick.0);
+        // A plan with one rule accepts every rule for a single tick.
+        if plan.add(rule).is_ok() {
+            self.answer = Some(Injector::new(&plan));
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! A ladder of which processes can be lost.
+
+use std::convert::Infallible;
+
+use executive::course::Levels;
+use interfaces::{CommonMemory, ExternalInputs};
+use levels::ladder::{Ladder, ProcessId};
+use rcs_core::tick::Tick;
+use taskdata::files::TaskData;
+
+/// The control processes on one board. A lost process does not run: it writes nothing, so that its stamp stands still.
+#[derive(Clone)]
+pub struct Present {
+    ladder: Ladder,
+    processes: Vec<ProcessId>,
+}
+
+impl Default for Present {
+    fn default() -> Self {
+        Self { ladder: Ladder::default(), processes: ProcessId::ALL.to_vec() }
+    }
+}
+
+impl Present {
+    /// The ladder.
+    #[must_use]
+    pub const fn ladder(&self) -> &Ladder {
+        &self.ladder
+    }
+
+    /// The processes that are not lost.
+    #[must_use]
+    pub fn processes(&self) -> &[ProcessId] {
+        &self.processes
+    }
+
+    /// Restart a process: it loses its state.
+    pub fn restart(&mut self, process: ProcessId) {
+        self.ladder.restart(process);
+    }
+
+    /// Lose a process: it writes nothing from now on.
+    pub fn lose(&mut self, process: ProcessId) {
+        self.processes.retain(|present| *present != process);
+    }
+}
+
+impl Levels<TaskData<'_>> for Present {
+    type Error = Infallible;
+
+    fn step(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &TaskData<'_>,
+        after: &mut CommonMemory,
+        observe: &mut dyn FnMut(Option<ProcessId>),
+    ) -> Result<(), Infallible> {
+        self.ladder.step_observed(&self.processes, tick, before, external, data, after, observe);
+        Ok(())
+    }
+}
