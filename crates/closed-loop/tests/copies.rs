@@ -1,0 +1,102 @@
+//! A copy of a closed loop continues bit for bit like the original, and neither disturbs the other.
+
+use std::{path::Path, sync::Arc};
+
+use closed_loop::{ClosedLoop, Given, Present};
+use depc::fault::{FaultKind, Plan, Rule};
+use neighbours::{
+    mailbox::{HWSC_COMMAND, Mailbox},
+    workstation::{
+        Unchecked, command,
+        player::{Hwsc, TIME_LIMIT},
+        status,
+    },
+};
+use plant::{Cell, CellDescription};
+use rcs_core::tick::Tick;
+use taskdata::load::{Job, Store};
+
+/// A closed loop, and the emulator of the workstation controller that plays a job.
+#[derive(Clone)]
+struct Run {
+    closed: ClosedLoop,
+    hwsc: Hwsc,
+    mailbox: Mailbox,
+}
+
+impl Run {
+    /// The job `linkbar` before its first tick.
+    fn start() -> Self {
+        let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"));
+        let Ok((store, _)) = Store::load(data) else { panic!("the shipped data load") };
+        let Ok((job, _)) = Job::load(&data.join("jobs/linkbar.job"), &store) else {
+            panic!("the shipped job loads")
+        };
+        let description = CellDescription::load(&data.join("cell.toml")).expect("the cell is shipped");
+        let cell = Cell::new(&description, 1).expect("the cell is sound");
+        Self {
+            closed: ClosedLoop::new(Present::default(), Arc::new(store), Arc::new(job.reloads), cell),
+            hwsc: Hwsc::new(job.steps, TIME_LIMIT),
+            mailbox: Mailbox::initialized(HWSC_COMMAND),
+        }
+    }
+
+    fn step(&mut self) {
+        let Self { closed, hwsc, mailbox } = self;
+        let Ok(()) = closed.decide(&Given::default());
+        closed.settle(None);
+        closed.exchange(|desk| {
+            if let Ok(status) = status::decode(desk.gate.status_box().data()) {
+                hwsc.step(desk.tick, &status, desk.workstation);
+            }
+            if let Some(bytes) = hwsc.mailgram().and_then(|command| command::encode(command).ok()) {
+                mailbox.write(&bytes).expect("a command fits into its mailbox");
+            }
+            desk.gate.read(mailbox, &Unchecked);
+        });
+        closed.reload();
+    }
+
+    fn run_to(&mut self, tick: u64) {
+        while self.closed.tick() < Tick(tick) {
+            self.step();
+        }
+    }
+
+    /// Everything that the ticks have computed: digest of the buffers, and of the bodies in the cell.
+    fn bits(&self) -> (String, u64) {
+        (self.closed.digest().to_string(), self.closed.workstation.cell.digest())
+    }
+}
+
+#[test]
+fn a_copy_continues_like_the_original_from_every_stage_of_a_job() {
+    let mut original = Run::start();
+    for fork in (100..2000).step_by(317) {
+        original.run_to(fork);
+        let mut copy = original.clone();
+        let end = fork + 150;
+        copy.run_to(end);
+        original.run_to(end);
+        assert_eq!(copy.bits(), original.bits(), "from tick {fork}");
+    }
+}
+
+#[test]
+fn faults_on_the_line_of_a_copy_do_not_reach_the_original() {
+    let mut original = Run::start();
+    original.run_to(400);
+    let (mut undisturbed, mut cut) = (original.clone(), original.clone());
+    let now = cut.closed.tick();
+    cut.closed.line_mut().cut(now);
+    let mut plan = Plan::new(1);
+    plan.add(Rule::new(FaultKind::Drop).window(401, 402)).expect("one rule fits");
+    assert!(!cut.closed.line_mut().suffer(&plan), "it has a plan already");
+    for run in [&mut original, &mut undisturbed, &mut cut] {
+        run.run_to(500);
+    }
+    assert_eq!(undisturbed.bits(), original.bits());
+    assert_ne!(cut.bits(), original.bits());
+    assert!(!cut.closed.memory().t3i.status.link_running);
+    assert!(original.closed.memory().t3i.status.link_running);
+}
