@@ -154,6 +154,25 @@ fn drawn_disturbances_repeat_and_each_branch_is_repeated_alone() {
     assert_eq!(alone["branches"][0]["state"], first["state"], "{kind} at {at}");
 }
 
+/// The pressure fails while a part is grasped or has just been released, and while a gripper is attached: each of these
+/// ticks had a false confirmation.
+#[test]
+fn false_confirmations_under_lost_pressure_stay_away() {
+    for (job, at) in [
+        ("clevis", "1190,1270,9080,9118,9130"),
+        ("turned-part", "1570,1572,4800,5920"),
+        ("tool-change", "1470,1490,3500,4940"),
+    ] {
+        for kind in ["estop", "fault:hydraulics-lost"] {
+            let campaign = json(&["campaign", job, "--at", at, "--interrupt", kind, "--json"]);
+            for branch in campaign["branches"].as_array().expect("branches are listed") {
+                assert!(branch["judged"].as_u64().expect("it is counted") > 0, "{job} {kind}: {branch}");
+                assert!(!branch["untrue"].to_string().contains("\"false\""), "{job} {kind}: {branch}");
+            }
+        }
+    }
+}
+
 /// A part is taken away before its picture. The command fails, which is true, and continues when the part is back.
 #[test]
 fn a_true_error_goes_on_after_its_remedy() {

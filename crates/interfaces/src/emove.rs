@@ -197,6 +197,16 @@ pub enum Seat {
     NotKnown,
 }
 
+/// The id pins of the quick change, compared with the gripper that the robot had when the ring was locked (extension;
+/// docs/design/recovery.md "Held").
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Pins {
+    /// They name it, or the ring has been open since.
+    Agree,
+    /// They name another one, or none: a bad contact, or the gripper has been torn off.
+    Differ,
+}
+
 /// Status from E-move to Subtask.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EmoveStatus {
@@ -218,8 +228,10 @@ pub struct EmoveStatus {
     pub placed: Option<PlacedObject>,
     /// What vision has found and nothing has made invalid since (extension).
     pub located: Option<LocatedObject>,
-    /// `pres-endeff-id#-out`, if a gripper is on.
+    /// `pres-endeff-id#-out`, if a gripper is on; while the pins differ, the gripper that was on.
     pub end_effector_id: Option<u8>,
+    /// Do the id pins confirm it (extension)?
+    pub pins: Pins,
     /// Where the robot stands, if that is known (extension).
     pub at: Option<Standing>,
     /// How far the robot is from there (extension).

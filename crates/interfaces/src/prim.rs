@@ -124,6 +124,8 @@ pub struct PrimStatus {
     pub restarting: bool,
     /// The DEPC link runs and Prim commands the robot (extension).
     pub link_running: bool,
+    /// The controller's DTR is off, as T3I reports it: the arm may have no pressure (extension).
+    pub controller_off: bool,
     /// `pres-pose-^-out`: the position commanded to T3I, if Prim commands the robot.
     pub present_pose: Option<u32>,
     /// `sensor-pose-^-out`: where the resolvers say that the robot is, if they can be believed; the command

@@ -12,7 +12,7 @@ pub use super::location::LocationKind;
 use super::words::{location, name};
 use crate::{
     ChangingPose, Header, Reason, StatusReport, Unconfirmed,
-    emove::{EmoveCommand, Holding, Offset, PlacedObject, Seat, Standing},
+    emove::{EmoveCommand, Holding, Offset, Pins, PlacedObject, Seat, Standing},
     pedestal::PedestalCommand,
 };
 
@@ -108,6 +108,8 @@ pub struct SubtaskStatus {
     pub placed: Option<PlacedObject>,
     /// `pres-endeff-id#-out`, if a gripper is on.
     pub end_effector_id: Option<u8>,
+    /// Do the id pins confirm it, as E-move reports it (extension)?
+    pub pins: Pins,
     /// Where the robot stands, if E-move knows it (extension).
     pub at: Option<Standing>,
     /// How far the robot is from there, as E-move reports it (extension).

@@ -48,6 +48,8 @@ pub enum Evidence {
     GripperOff,
     /// A gripper is still on the robot.
     GripperOn,
+    /// The id pins do not name the gripper that was on the robot when the ring was locked.
+    PinsDiffer,
     /// The locking ring is not where the command has turned it.
     Ring,
     /// The robot is still in a holster.
@@ -119,6 +121,7 @@ decision_table! {
         18: evidence: HandNarrow                => Fail(HandTimeout);
         19: evidence: TableElsewhere            => Fail(TableStuck);
         20: evidence: NoAnswer                  => Fail(DataBaseSilent);
+        21: evidence: PinsDiffer                => Fail(PinsFail);
     }
 }
 
@@ -311,6 +314,7 @@ mod tests {
             (Evidence::HandNarrow, 18, Reason::HandTimeout),
             (Evidence::TableElsewhere, 19, Reason::TableStuck),
             (Evidence::NoAnswer, 20, Reason::DataBaseSilent),
+            (Evidence::PinsDiffer, 21, Reason::PinsFail),
         ] {
             let mut execution = Execution::default();
             assert_eq!(execution.course(Arrival::New), Course::Begin);

@@ -27,6 +27,23 @@ pub fn nearest(cell: &Cell, object: &str, near: &Vector) -> Option<PartState> {
     (beside(&nearest) <= SECTOR_INCHES).then_some(nearest)
 }
 
+/// The part of a name that a command means: the nearest one within half a sector, or the one that the camera has found
+/// where E-move reports it, as a part that an arm without pressure has pushed out of its sector.
+fn meant(scene: &Scene<'_>, object: &str, near: &Vector, reported: Option<&Frame>) -> Option<PartState> {
+    let is_reported = |part: &PartState| {
+        reported.is_some_and(|reported| {
+            seen(scene.cell, part).iter().any(|frame| frame.distance(reported).inches <= SEEN_INCHES)
+        })
+    };
+    let there = |part: &PartState| part.name == object && !part.held && is_reported(part);
+    nearest(scene.cell, object, near).or_else(|| scene.cell.parts().into_iter().find(there))
+}
+
+/// Where E-move reports a part that the camera has found.
+fn report(scene: &Scene<'_>) -> Option<Frame> {
+    scene.memory.emove.beliefs.located.and_then(|located| located.pose.to_frame().ok())
+}
+
 /// The frames that the camera may find for a part that lies in a tray: the part may be turned by half a turn.
 pub fn seen(cell: &Cell, part: &PartState) -> Vec<Frame> {
     let (Some(frame), Some(kind)) = (cell.part_frame(part.id), cell.part_kind(part.id)) else {
@@ -46,7 +63,7 @@ pub fn at_part(
     Movement(movetable): Movement,
 ) -> Result<(), Untruth> {
     let changed = history.is_any_changed_since_look(object).then_some(NotSensed::ChangedAfterLook);
-    let found = nearest(scene.cell, object, &near.position);
+    let found = meant(scene, object, &near.position, report(scene).as_ref());
     let checked = match &found {
         None => {
             let other = looks_like(scene, object, near, SECTOR_INCHES);
@@ -69,11 +86,10 @@ pub fn is_located(
     object: &Name16,
     near: &Frame,
 ) -> Result<(), Untruth> {
-    let reported = scene.memory.emove.beliefs.located.and_then(|located| located.pose.to_frame().ok());
-    let Some(reported) = reported else {
+    let Some(reported) = report(scene) else {
         return Err(Untruth::is_false(format!("E-move reports no place of {object}")));
     };
-    let Some(part) = nearest(scene.cell, object.as_str(), &near.position) else {
+    let Some(part) = meant(scene, object.as_str(), &near.position, Some(&reported)) else {
         let looks_like = looks_like(scene, object.as_str(), &reported, SEEN_INCHES);
         let text = match &looks_like {
             Some(other) => format!("{other} lies there, no {object}"),

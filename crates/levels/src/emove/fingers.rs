@@ -17,10 +17,11 @@ use taskdata::files::{EndEffId, EndEffPara, TaskData};
 use super::{
     gripper::{Gripper, is_open},
     order::{FingerOrder, FingerVerb},
+    preprocess::holster,
     robot_place::{is_led, present_frame},
     route::{Ahead, FULL_OPENING, near},
     state::State,
-    tables::{Action, Fingers, Opening, Spread},
+    tables::{Action, Fingers, Holster, Opening, Spread},
     whereabouts::{LOST_INCHES, LOST_RADIANS},
 };
 use crate::execution::Outcome;
@@ -102,14 +103,27 @@ impl State {
     }
 
     /// Where along the fingers the object is: nothing measures it. With the robot it slides as soon as it meets
-    /// anything, while a person leads the robot or the arm has no pressure: then the resolvers give no position.
+    /// anything, while a person leads the robot or the arm has no pressure: then the robot controller is off, whatever
+    /// Prim has made of its last command, or the resolvers give no position. An arm that moves away from an object
+    /// which it has just released pushes it in the same way.
     fn sense_seat(&mut self, memory: &CommonMemory) {
-        let is_off = memory.prim.status.report == PrimReport::T3LinkOff || present_frame(memory).is_none();
+        let prim = &memory.prim.status;
+        let is_off = prim.controller_off || prim.report == PrimReport::T3LinkOff;
+        let is_off = is_off || present_frame(memory).is_none();
         let Beliefs { held, grasping, empty, .. } = &self.beliefs;
         let have_closed = !empty && (held.is_some() || grasping.is_some());
-        if have_closed && (is_led(memory) || is_off) {
+        if (have_closed || self.is_around_placed()) && (is_led(memory) || is_off) {
             self.beliefs.seat = Seat::NotKnown;
         }
+    }
+
+    /// Is the robot still where it has released an object, or on its way from there to its next place?
+    fn is_around_placed(&self) -> bool {
+        let Beliefs { placed, way, .. } = &self.beliefs;
+        let from = self.place().or_else(|| way.map(|way| way.from));
+        placed.zip(from).is_some_and(|(placed, at)| {
+            (placed.record, placed.array, placed.sector) == (at.record, at.array, at.sector)
+        })
     }
 
     /// The seat of what the fingers are to close on. The object that was let go last lies as it was held, unless a
@@ -123,10 +137,12 @@ impl State {
 
     /// Do the id pins say that the gripper has gone, while the ring has been locked ever since it was there?
     /// Then it is on, and its pins have a bad contact. What it holds is not known until they read as before.
+    /// A gripper that its own holster feels, while the robot is in no holster, has been torn off the ring.
     pub(super) fn is_misread(&self, memory: &CommonMemory) -> bool {
         let read = Gripper::attached(memory);
         let locked = memory.quick_change.status.ring == RingPosition::Locked;
-        locked && self.attached != Gripper::None && read != self.attached
+        let rests = self.beliefs.exchange.is_none() && holster(self.attached.id(), memory) == Holster::Full;
+        locked && self.attached != Gripper::None && read != self.attached && !rests
     }
 
     /// May something that is felt count as grasped? Not while the fingers move or do not press it, nor before the

@@ -4,7 +4,7 @@ use geometry::pose::Pose;
 use interfaces::{
     ChangingPose, EmoveOutputs, Reason, StatusReport, Unconfirmed,
     device::Picture,
-    emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject, Offset},
+    emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject, Offset, Pins},
     pose_range,
     prim::{PrimCommand, PrimReport, PrimVerb},
     process::Inputs,
@@ -365,6 +365,7 @@ impl State {
             } else {
                 inputs.memory.quick_change.status.end_effector_id
             },
+            pins: if self.is_misread(inputs.memory) { Pins::Differ } else { Pins::Agree },
             at: self.place().as_ref().map(standing),
             offset: self.place().map_or(Offset::None, |place| self.offset_of_place(&place, inputs)),
             exchange: self.changing(inputs.memory),

@@ -53,7 +53,7 @@ const HOLSTER_SENSORS: u8 = 0x0F;
 
 /// What the sensors of a gripper's own holster see: parts gripper right, v-gripper left, tool gripper centre
 /// (ASSUMED).
-fn holster(gripper: Option<u8>, memory: &CommonMemory) -> Holster {
+pub(super) fn holster(gripper: Option<u8>, memory: &CommonMemory) -> Holster {
     let status = &memory.prim.status;
     let bits = match Gripper::of(gripper) {
         Gripper::None => return Holster::Empty,

@@ -202,6 +202,7 @@ impl State {
                 && self.motion.is_none()
                 && outputs.t3i.command == T3iVerb::Restart,
             link_running: self.motion.is_some() && inputs.memory.t3i.status.link_running,
+            controller_off: !inputs.memory.t3i.status.controller_ready,
             present_pose: present.number,
             sensor_pose: sensor.number,
             detected_pose: detected.number,

@@ -2,7 +2,7 @@
 
 use interfaces::{
     Unconfirmed,
-    emove::{EmoveStatus, Holding},
+    emove::{EmoveStatus, Holding, Pins},
     pedestal::PedestalStatus,
     subtask::{SubtaskCommand, SubtaskVerb},
 };
@@ -32,7 +32,7 @@ pub static REST: Goal = Goal {
 };
 /// GET-ENDEFF.
 pub static ATTACHED: Goal = Goal {
-    holds: "the gripper is on the robot, which is clear of the holsters",
+    holds: "the id pins name the gripper, and the robot is clear of the holsters",
     sensors: &[Sensor::IdPins, Sensor::RingSensors, Sensor::Resolvers],
     tolerance: "",
     age: 3,
@@ -138,6 +138,7 @@ pub(super) fn proof(
     match command.command {
         SubtaskVerb::None | SubtaskVerb::Pause => Proof::HOLDS,
         SubtaskVerb::GetEndeff => Proof::when(situation.gripper == Gripper::Right, Evidence::GripperOff)
+            .and(Proof::when(emove.pins == Pins::Agree, Evidence::PinsDiffer))
             .and(Proof::when(situation.exchange == Exchange::None, Evidence::InHolster)),
         SubtaskVerb::GetObject => is_held().with_part(emove.seat),
         SubtaskVerb::FixGrip => {

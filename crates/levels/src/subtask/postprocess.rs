@@ -210,6 +210,7 @@ impl State {
             seat: below.seat,
             placed: below.placed,
             end_effector_id: below.end_effector_id,
+            pins: below.pins,
             at: below.at,
             offset: below.offset,
             drum: below.drum,

@@ -1,6 +1,10 @@
 //! The goals of Task's commands, and how the statuses of Subtask and of the Data System compare with them.
 
-use interfaces::{Unconfirmed, emove::Holding, subtask::SubtaskStatus};
+use interfaces::{
+    Unconfirmed,
+    emove::{Holding, Pins},
+    subtask::SubtaskStatus,
+};
 
 use super::{
     plan::{Handling, Plan, Site, TOOL_GRIPPER, TaskVerb},
@@ -133,7 +137,10 @@ pub(super) fn proof(plan: &Plan, below: &SubtaskStatus, data_base: DataBase) -> 
         Holding::NotKnown => Proof::of(Evidence::NotKnown),
         Holding::Object(_) | Holding::Nothing | Holding::Something => Proof::of(Evidence::NotHeld),
     };
-    let has_tool_gripper = || Proof::when(below.end_effector_id == Some(TOOL_GRIPPER), Evidence::GripperOff);
+    let has_tool_gripper = || {
+        Proof::when(below.end_effector_id == Some(TOOL_GRIPPER), Evidence::GripperOff)
+            .and(Proof::when(below.pins == Pins::Agree, Evidence::PinsDiffer))
+    };
     let in_drum = || Proof::when(below.drum, Evidence::OutsideDrum);
     let out_of_drum = || Proof::when(!below.drum, Evidence::InsideDrum);
     let destination = || at(&plan.destination, below);

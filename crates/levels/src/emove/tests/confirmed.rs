@@ -111,6 +111,41 @@ fn picture_shows_where_a_part_is_that_was_let_go_with_an_unknown_place_in_the_fi
     assert_eq!(bench.memory.emove.status.unconfirmed, Unconfirmed::None);
 }
 
+/// Prim keeps `done` of its last command while the arm sinks: nothing was commanded since.
+#[test]
+fn part_in_the_fingers_of_an_arm_without_pressure_has_no_confirmed_place() {
+    for is_closing in [false, true] {
+        let mut bench = Bench::ready("BENCH", 1);
+        bench.world.object = Some(75);
+        if !is_closing {
+            assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
+        }
+        bench.prim.controller_off = true;
+        bench.steps(3);
+        assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
+        assert_eq!(
+            bench.memory.emove.status.unconfirmed,
+            Unconfirmed::PartInFingers,
+            "closing: {is_closing}"
+        );
+    }
+}
+
+#[test]
+fn part_that_was_just_released_may_be_pushed_by_an_arm_without_pressure() {
+    let mut bench = Bench::ready("VISE", 1);
+    bench.hold("BLOCK", 75, 1);
+    assert_eq!(bench.run(Release, "BLOCK", 1, "VISE", 1), DONE);
+    assert_eq!(bench.memory.emove.status.seat, Seat::Kept);
+    let mut clear = bench.clone();
+    assert_eq!(clear.run(MovToLoc, "", 0, "HOME", 0), DONE);
+    for (bench, seat) in [(&mut bench, Seat::NotKnown), (&mut clear, Seat::Kept)] {
+        bench.prim.controller_off = true;
+        bench.steps(3);
+        assert_eq!(bench.memory.emove.status.seat, seat);
+    }
+}
+
 #[test]
 fn empty_fingers_have_nothing_that_slides() {
     let mut bench = Bench::ready("HOME", 1);

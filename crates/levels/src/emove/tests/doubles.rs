@@ -191,6 +191,8 @@ pub struct Prim {
     /// The force sensor has been calibrated, and has had power ever since.
     pub calibrated: bool,
     link: bool,
+    /// The robot controller is off, after the last command was done.
+    pub controller_off: bool,
     poses: u32,
 }
 
@@ -303,7 +305,7 @@ impl Prim {
         status.restarting = self.restarts;
         status.echo = self.receiving.receiver.echo;
         (status.report, status.reason) = (self.report, self.reason);
-        status.link_running = self.link;
+        (status.link_running, status.controller_off) = (self.link, self.controller_off);
         (status.present_pose, status.sensor_pose) = (outputs.poses[0].number, outputs.poses[1].number);
         [status.holster_right, status.holster_left, status.holster_centre] = world.holsters;
         status.joystick_grip = world.button;

@@ -9,7 +9,7 @@ use interfaces::{
             self, AcquireTool, GraspObj, InsertTool, LocateObj, MovObjTo, MovToHol, MovToLoc, MovToObj,
             MovToVu, Pause, QcAttach, QcDetach, Release, ReleaseTool, RemoveTool, Withdraw,
         },
-        Holding,
+        Holding, Pins,
     },
     jaws::JawsReport,
     prim::JoystickGrip,
@@ -704,7 +704,17 @@ fn a_gripper_that_has_come_off_a_locked_ring_is_taken_again() {
         bench.world.mated = 0;
         bench.steps(4);
         assert_eq!(send(&mut bench, fetch), error(Reason::PinsFail));
-        // A person opens the ring and puts the gripper into its holster …
+        assert_eq!(bench.memory.emove.status.pins, Pins::Differ);
+        // Its own holster feels the gripper: the robot is bare, although the ring is locked …
+        let mut locked = bench.clone();
+        locked.world.resident[usize::from(gripper) - 1] = gripper;
+        locked.steps(10);
+        let status = locked.memory.emove.status;
+        assert_eq!((status.end_effector_id, status.pins), (None, Pins::Agree));
+        assert_eq!(send(&mut locked, fetch), DONE);
+        assert_eq!(send(&mut locked, (QcAttach, object, 2, holster, gripper)), DONE);
+        assert_eq!((locked.world.mated, locked.world.locked), (gripper, true));
+        // … a person opens the ring and puts the gripper into its holster …
         let mut opened = bench.clone();
         opened.real.as_mut().unwrap().open_ring();
         opened.world.resident[usize::from(gripper) - 1] = gripper;

@@ -173,7 +173,21 @@ fn a_controller_whose_dtr_is_off_is_a_link_that_is_off() {
             rig.t3i.dtr_off = true;
         }
         assert_eq!(rig.until_over(), PrimReport::T3LinkOff);
+        assert!(rig.memory.prim.status.controller_off);
     }
+}
+
+/// A command that is done stays done; that the arm may sink is reported beside it.
+#[test]
+fn controller_that_goes_off_after_the_end_of_a_motion_is_reported_beside_done() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    assert_eq!(rig.until_over(), PrimReport::Done);
+    assert!(!rig.memory.prim.status.controller_off);
+    rig.t3i.dtr_off = true;
+    rig.steps(3);
+    let status = rig.memory.prim.status;
+    assert_eq!((status.report, status.controller_off), (PrimReport::Done, true));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use interfaces::{
     Reason, StatusReport, Unconfirmed,
-    emove::{EmoveVerb, Holding, ObjectGrip, Offset, Seat},
+    emove::{EmoveVerb, Holding, ObjectGrip, Offset, Pins, Seat},
     subtask::SubtaskVerb,
 };
 use rcs_core::name::Name16;
@@ -122,4 +122,16 @@ fn part_that_may_have_slid_is_done_and_unconfirmed() {
     }
     assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "HOME"), DONE);
     assert_eq!(bench.memory.subtask.status.unconfirmed, Unconfirmed::None);
+}
+
+/// An arm without pressure has torn the gripper off the locked ring: its id pins name none.
+#[test]
+fn gripper_that_the_id_pins_do_not_name_is_not_attached() {
+    let mut bench = Bench::default();
+    bench.emove.outputs.status.end_effector_id = Some(1);
+    assert_eq!(bench.run(SubtaskVerb::GetEndeff, "PART", (1, 1), "PFIXTURE"), DONE);
+    bench.emove.outputs.status.pins = Pins::Differ;
+    bench.step();
+    let error = (StatusReport::Error, Reason::PinsFail);
+    assert_eq!(bench.run(SubtaskVerb::GetEndeff, "PART", (1, 1), "PFIXTURE"), error);
 }
