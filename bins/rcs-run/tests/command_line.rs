@@ -304,6 +304,67 @@ fn run_refuses_a_job_that_uses_a_wrong_datum_and_names_it() {
     assert_eq!(run(&[&other]).status.code(), Some(0), "{}", last_line(&run(&[&other])));
 }
 
+/// Mistyped records of the holster of the v-gripper, in a file, with what is missing then.
+const HOLSTER: [(&str, &str, &str, &str); 7] = [
+    ("locations.blk", "-pt-  HOLSTER-L ", "...  HOLSTER-L ", "GRIPPER-2 is assigned to no location point"),
+    ("locations.blk", "-pt-  HOLSTER-L ", "-pt-  HOLSTER-X ", "GRIPPER-2 is assigned to no location point"),
+    (
+        "locations.blk",
+        "lpt        HOLSTER-L",
+        "lpt        HOLSTER-C",
+        "no relative move QCA-FAST at HOLSTER-L",
+    ),
+    (
+        "objects/grippers.blk",
+        "-o-loc- GRIPPER-2 ",
+        "-o-loc- GRIPPER-3 ",
+        "GRIPPER-2 is assigned to no location point",
+    ),
+    (
+        "objects/grippers.blk",
+        "GRIPPER-2        2     lpt",
+        "GRIPPER-3        2     lpt",
+        "has no movetable at HOLSTER-L",
+    ),
+    ("objects/grippers.blk", "GRIPPER-2    2   lpt", "GRIPPER-3    2   lpt", "has no approach at HOLSTER-L"),
+    ("guarded.blk", "QCA-BACK own HOLSTER", "QCA-BACK own UNIT   ", "no relative move QCA-BACK at HOLSTER-L"),
+];
+
+#[test]
+fn run_refuses_a_job_whose_gripper_has_a_mistyped_holster() {
+    for (file, from, to, missing) in HOLSTER {
+        let place = Place::new();
+        let data = data_with(&place, file, from, to);
+        let run = |job: &str| rcs_run(&[job, "--log", "none", "--ticks", "1", "--data", &data]);
+        let refused = run("turned-part");
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert_eq!(refused.status.code(), Some(2), "{file} {to}: {said}");
+        assert!(
+            said.contains("line 6, `== TRANSFER SHAFT_BH") && said.contains(missing),
+            "{file} {to}: {said}"
+        );
+        assert!(said.contains("objects/grippers.blk, block 703"), "{file} {to}: {said}");
+        // A job that keeps its gripper does not need the holster. An error of a location form concerns all its names.
+        if file != "locations.blk" {
+            assert_eq!(run("linkbar").status.code(), Some(0), "{file} {to}: {}", last_line(&run("linkbar")));
+        }
+    }
+}
+
+#[test]
+fn check_finds_the_line_of_a_job_whose_gripper_has_no_holster() {
+    let place = Place::new();
+    let entry = "-o-loc- GRIPPER-2         lpt          HOLSTER-L";
+    let data = data_with(&place, "objects/grippers.blk", entry, "( no holster )");
+    let found = stdout(&rcs_run(&["check", "--all", &data]));
+    assert!(
+        found.contains("shift.job: line 31, column 1: GET-ENDEFF needs the holster of GRIPPER-2"),
+        "{found}"
+    );
+    assert!(found.contains("turned-part.job line 6"), "{found}");
+    assert!(found.contains("add `-o-loc- GRIPPER-2 lpt` with its holster"), "{found}");
+}
+
 #[test]
 fn run_starts_in_spite_of_an_unrelated_datum() {
     let place = Place::new();

@@ -10,7 +10,7 @@ use crate::{
 /// A problem of a path.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
-    /// `path.joint`, `path.contact`, `path.link`, `path.grip`, `path.place` or `path.margin`.
+    /// `path.joint`, `path.contact`, `path.link`, `path.grip`, `path.place`, `path.gripper` or `path.margin`.
     pub code: &'static str,
     /// True for an error: the motion fails or collides. False for a warning: the motion comes close to that.
     pub error: bool,

@@ -20,10 +20,11 @@ use taskdata::{
 use crate::{
     finding::{Finding, Walked},
     flight::Robot,
+    holster::{finding, lacking, wanted},
     known::Known,
-    plan::Phase,
+    plan::{Datum, Phase},
     state::State,
-    steps::{exchange, steps},
+    steps::{Step, exchange, steps},
     survey::Passing,
     walk::Walk,
 };
@@ -265,16 +266,18 @@ impl JobLine {
 /// Walks a command; returns its phases and their findings.
 fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding>) {
     let data = *state.walk.data();
-    let grips = command.object.and_then(|object| data.obj_grips(&object));
-    let wanted = grips.and_then(|grips| u8::try_from(grips.endeff_id).ok()).filter(|id| *id != 0);
     let worn = state.layout.gripper;
-    let before = match wanted.filter(|_| wanted != worn) {
-        Some(wanted) => exchange(worn, wanted, &data),
-        None => Ok(Vec::new()),
-    };
-    let all = before.and_then(|before| Ok((before, steps(command, state.held, &data)?)));
-    let (change, own) = match all {
-        Ok(all) => all,
+    let wanted = wanted(command, worn, &data);
+    if let Some(lacking) = wanted.and_then(|wanted| lacking(worn, wanted, &data)) {
+        let finding = lacking.finding(command, state.walk.store());
+        let used = finding.data.iter().map(|datum| datum.at).collect();
+        let missing = Some(lacking.to_string());
+        let phase = Phase { missing, used, ..Phase::standing(command.command.to_string()) };
+        return (vec![Walked::of(phase)], vec![finding]);
+    }
+    let change = wanted.map_or(Ok(Vec::new()), |wanted| exchange(worn, wanted, &data)).unwrap_or_default();
+    let own = match steps(command, state.held, &data) {
+        Ok(own) => own,
         Err(error) => {
             let missing =
                 Phase { missing: Some(error.to_string()), ..Phase::standing(command.command.to_string()) };
@@ -284,15 +287,28 @@ fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding
     let task = command.command.as_str();
     let mut phases = Vec::new();
     let mut findings = Vec::new();
-    for step in change.iter().chain(&own) {
+    for (number, step) in change.iter().chain(&own).enumerate() {
         let (walked, more) = state.step(step, task);
-        phases.push(walked);
+        // The verdict on the command covers its own steps.
+        let missing = walked.plan.missing.as_ref().filter(|_| number < change.len());
+        findings.extend(missing.map(|missing| no_way(missing, step, &walked.plan)));
         findings.extend(more);
+        phases.push(walked);
         if state.stranded {
             break;
         }
     }
     (phases, findings)
+}
+
+/// The finding of a motion to or from a holster that cannot be planned.
+fn no_way(missing: &str, step: &Step, phase: &Phase) -> Finding {
+    let name = match step {
+        Step::Go { location, .. } | Step::Relative { location, .. } => location.name.to_string(),
+        _ => phase.what.clone(),
+    };
+    let datum = phase.used.first().map(|&at| Datum { name, at });
+    finding(&format!("{}: {missing}", phase.what), None, datum)
 }
 
 /// Applies an action of the workstation. Returns false if the position of the robot is then unknown.

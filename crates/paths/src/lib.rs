@@ -8,6 +8,7 @@
 //!   survey    contacts and clearances of arm, gripper and held part on the way: the bodies and permits of a run
 //!   known     cache of the flights that were checked
 //!   state     the state of the cell, and how steps change it
+//!   holster   what a change of the gripper needs of the task data
 //!   presence  what must be true in the cell before a step
 //!   judge     a phase checked forward and back: its findings, and a via point that helps
 //!   job       the lines of a job in order, with the positions of the parts and the held part
@@ -23,6 +24,7 @@
 mod entries;
 pub mod finding;
 pub mod flight;
+pub mod holster;
 pub mod job;
 pub mod judge;
 pub mod known;

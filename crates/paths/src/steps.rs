@@ -5,7 +5,9 @@
 
 use interfaces::{HwsCommand, emove::EmoveVerb};
 use rcs_core::name::Name16;
-use taskdata::files::{Location, LocptId, LookupError, RefType, TaskData};
+use taskdata::files::{Location, LookupError, RefType, TaskData};
+
+use crate::holster::{Lacking, PUT, TAKE, TAKEN, WORN, holster, object_of};
 
 /// Location at which the Active Pedestal holds an object (V.3.1 FIX-GRIP).
 const PEDESTAL: &str = "PEDESTAL";
@@ -261,30 +263,23 @@ impl Maker<'_> {
 /// Grippers are given by end effector id; `own` is `None` for a bare robot.
 ///
 /// # Errors
-/// [`LookupError`] if the task data do not have a holster.
-pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<Step>, LookupError> {
+/// [`Lacking`] if the task data do not have a holster.
+pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<Step>, Lacking> {
     let mut steps = Vec::new();
     if let Some(own) = own {
-        let (go, location) = to_holster(own, 1, data)?;
-        let [down, seat, up] =
-            ["QCD-DOWN", "QCD-SEAT", "QCD-UP"].map(|name| Step::Relative { name, location });
+        let (go, location) = to_holster(own, WORN, data)?;
+        let [down, seat, up] = PUT.map(|name| Step::Relative { name, location });
         steps.extend([go, down, seat, Step::Leave(own), up]);
     }
-    let (go, location) = to_holster(wanted, 2, data)?;
-    let [fast, slow, back, lift, up] = ["QCA-FAST", "QCA-SLOW", "QCA-BACK", "QCA-LIFT", "QCA-UP"]
-        .map(|name| Step::Relative { name, location });
+    let (go, location) = to_holster(wanted, TAKEN, data)?;
+    let [fast, slow, back, lift, up] = TAKE.map(|name| Step::Relative { name, location });
     steps.extend([go, fast, Step::Engage(wanted), slow, Step::Take(wanted), back, lift, up]);
     Ok(steps)
 }
 
-/// The motion to the holster of a gripper and its location (VII.7.3); grip 1 is for an attached gripper, grip 2 for a
-/// bare robot.
-fn to_holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<(Step, Location), LookupError> {
-    let object = Name16::clipped(&format!("GRIPPER-{id}"));
-    let unknown = LookupError::UnknownObject { name: object };
-    let record = data.object_named(&object).ok_or(unknown)?;
-    let mut assigned = data.object_locations(record).filter(|one| one.kind == RefType::LocationPoint);
-    let point = assigned.next().and_then(|one| data.locpt(LocptId::new(one.number))).ok_or(unknown)?;
-    let location = data.resolve_location::<10, 16>(&point.name, None, None)?;
-    Ok((Step::Go { verb: EmoveVerb::MovToHol, object: Some(object), grip, location }, location))
+/// The motion to the holster of a gripper, and its location.
+fn to_holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<(Step, Location), Lacking> {
+    let location = holster(id, grip, data)?;
+    let object = Some(object_of(id));
+    Ok((Step::Go { verb: EmoveVerb::MovToHol, object, grip, location }, location))
 }

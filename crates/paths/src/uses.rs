@@ -5,6 +5,7 @@ use rcs_core::name::Name16;
 use taskdata::load::{At, Store};
 
 use crate::{
+    holster::wanted,
     steps::{Step, exchange, steps},
     walk::Walk,
 };
@@ -25,14 +26,11 @@ pub struct Present {
 #[must_use]
 pub fn used(command: &HwsCommand, store: &Store, present: &Present) -> Vec<At> {
     let data = store.view();
-    let grips = command.object.and_then(|object| data.obj_grips(&object));
-    let wanted = grips.and_then(|grips| u8::try_from(grips.endeff_id).ok()).filter(|id| *id != 0);
-    let change = match wanted.filter(|_| wanted != present.gripper) {
-        Some(wanted) => exchange(present.gripper, wanted, &data),
-        None => Ok(Vec::new()),
+    let change = match wanted(command, present.gripper, &data) {
+        Some(wanted) => exchange(present.gripper, wanted, &data).unwrap_or_default(),
+        None => Vec::new(),
     };
-    let all = change.and_then(|change| Ok((change, steps(command, present.held, &data)?)));
-    let Ok((change, own)) = all else { return Vec::new() };
+    let Ok(own) = steps(command, present.held, &data) else { return Vec::new() };
     let mut walk = Walk::at(store, present.place);
     let regrips = own.iter().any(|step| matches!(step, Step::Pedestal(_)));
     let mut used: Vec<At> = change.iter().chain(&own).flat_map(|step| walk.step(step).used).collect();

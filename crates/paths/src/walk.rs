@@ -80,6 +80,12 @@ impl<'a> Walk<'a> {
         &self.place
     }
 
+    /// The store of the task data.
+    #[must_use]
+    pub const fn store(&self) -> &'a Store {
+        self.store
+    }
+
     /// The task data.
     #[must_use]
     pub const fn data(&self) -> &TaskData<'a> {

@@ -13,6 +13,7 @@ use neighbours::{
 };
 use paths::{
     finding::Finding,
+    holster::{lacking, wanted},
     job::{WalkedJob, walk_job_once},
     uses::{Present, used},
 };
@@ -51,10 +52,17 @@ pub fn verdict(command: &HwsCommand, store: &Store, present: &Present, unchecked
     if !verdict.passes() {
         return Some(in_words(&verdict.findings));
     }
-    if unchecked || store.faults().next().is_none() {
+    if unchecked {
         return None;
     }
-    of_faults(&store.faults_of(command, &used(command, store, present)))
+    let data = store.view();
+    let wanted = wanted(command, present.gripper, &data);
+    let lacking = wanted.and_then(|wanted| lacking(present.gripper, wanted, &data));
+    let of_data = || match store.faults().next() {
+        None => None,
+        Some(_) => of_faults(&store.faults_of(command, &used(command, store, present))),
+    };
+    lacking.map(|lacking| lacking.to_string()).or_else(of_data)
 }
 
 impl<'a> CommandJudge<'a> {
