@@ -151,11 +151,13 @@ fn in_grip(object: &Name16, grip: i32, scene: &Scene<'_>) -> Vec<Frame> {
 }
 
 impl Claim {
-    /// True if a status that names this part of its goal as unconfirmed leaves the claim open.
-    pub const fn is_covered(&self, by: Unconfirmed) -> bool {
+    /// True if a status that names this part of its goal as unconfirmed leaves the claim open. `holds` is true if the
+    /// robot holds something: jaws without a force sensor do not show whether they press, but without their word the
+    /// part is in its place between them.
+    pub const fn is_covered(&self, by: Unconfirmed, holds: bool) -> bool {
         match by {
             Unconfirmed::None => false,
-            Unconfirmed::GraspForce => matches!(self, Self::Holds { .. }),
+            Unconfirmed::GraspForce => matches!(self, Self::Holds { .. }) && !holds,
             Unconfirmed::ToolInDrum => matches!(self, Self::InDrum(_)),
             Unconfirmed::Position => {
                 matches!(self, Self::At { .. } | Self::AtPart { .. } | Self::Near { .. })

@@ -257,7 +257,8 @@ impl TruthCheck {
                 continue;
             };
             let unconfirmed = unconfirmed(level, scene);
-            let covered = claim.is_covered(unconfirmed).then_some(NotSensed::Unconfirmed);
+            let holds = scene.cell.held().is_some();
+            let covered = claim.is_covered(unconfirmed, holds).then_some(NotSensed::Unconfirmed);
             let failed = self.history.has_just_failed(scene.tick, level);
             let lasting = not_sensed.or(covered.filter(|_| unconfirmed == Unconfirmed::PartInFingers));
             if let (Some(why), true) = (lasting, claim.is_of_part()) {

@@ -237,11 +237,41 @@ fn a_place_in_the_fingers_that_is_reported_as_unconfirmed_covers_what_follows_fr
         Claim::InDrum(name("DRILL-2")),
     ];
     for claim in claims {
-        assert!(claim.is_covered(Unconfirmed::PartInFingers), "{claim:?}");
+        assert!(claim.is_covered(Unconfirmed::PartInFingers, true), "{claim:?}");
     }
     for claim in [Claim::HoldsNothing, Claim::Wears(1), Claim::HoldsAlone] {
-        assert!(!claim.is_covered(Unconfirmed::PartInFingers), "{claim:?}");
+        assert!(!claim.is_covered(Unconfirmed::PartInFingers, true), "{claim:?}");
     }
+}
+
+/// Jaws without a force sensor do not show whether they press. Where the part is between them they do not excuse.
+#[test]
+fn unconfirmed_grasp_force_covers_a_lost_part_and_no_misplaced_one() {
+    let held = Claim::Holds { object: name("SHAFT"), place: Vec::new(), unseen: true };
+    assert!(held.is_covered(Unconfirmed::GraspForce, false), "nothing is held");
+    assert!(!held.is_covered(Unconfirmed::GraspForce, true), "it is held elsewhere");
+    assert!(!Claim::HoldsNothing.is_covered(Unconfirmed::GraspForce, false));
+}
+
+/// An arm without pressure has pushed the part, and the camera finds it outside its sector.
+#[test]
+fn a_part_that_the_camera_has_found_outside_its_sector_is_located() {
+    let mut bench = Bench::new();
+    bench.put("LINKBAR1_BH", "UNIT_1", 4);
+    let sector = bench.description().tray("UNIT_1").and_then(|tray| tray.sector(4)).expect("it is a sector");
+    let near = Frame { position: sector.position + geometry::frame::Vector::new(8.0, 0.0, 0.0), ..sector };
+    let located = |frame: &Frame| {
+        Some(interfaces::emove::Located {
+            object: name("LINKBAR1_BH"),
+            pose: geometry::pose::Pose::from_frame(frame),
+            ..interfaces::emove::Located::default()
+        })
+    };
+    let claim = Claim::Located { object: name("LINKBAR1_BH"), near };
+    bench.memory.emove.beliefs.located = located(&sector);
+    assert_eq!(bench.check(&claim), Ok(()));
+    bench.memory.emove.beliefs.located = located(&near);
+    assert!(bench.check(&claim).is_err(), "nothing lies where it is reported");
 }
 
 #[test]
@@ -282,8 +312,8 @@ fn a_tool_in_the_drum_is_seen() {
     assert_eq!(bench.not_sensed(&Claim::InDrum(mill)), None);
     assert!(bench.check(&Claim::OutOfDrum(drill)).is_err());
     assert_eq!(bench.check(&Claim::OutOfDrum(mill)), Ok(()));
-    assert!(Claim::InDrum(mill).is_covered(Unconfirmed::ToolInDrum));
-    assert!(!Claim::HoldsNothing.is_covered(Unconfirmed::ToolInDrum));
+    assert!(Claim::InDrum(mill).is_covered(Unconfirmed::ToolInDrum, true));
+    assert!(!Claim::HoldsNothing.is_covered(Unconfirmed::ToolInDrum, true));
 }
 
 /// A bench whose E-move executes MOV-TO-LOC to a location of the task data.
