@@ -50,7 +50,7 @@ impl Operated {
             faults: (!faults.is_empty()).then_some(plan),
             ..RunConfig::new(root().join("data"), path.to_string_lossy())
         };
-        let mut run = Run::new(change(config), Box::new(())).unwrap();
+        let mut run = Run::new(change(config), Box::new(())).unwrap_or_else(|error| panic!("{error:?}"));
         run.ask(WHO, Event::Connected).unwrap();
         Self { run: Some(run), _directory: directory }
     }
@@ -581,6 +581,31 @@ fn wrong_command_is_replaced_by_the_right_one() {
     it.finishes();
 }
 
+/// The remedy "send the command that releases the object again": the air fails while the fingers are to open.
+#[test]
+fn release_without_air_is_completed_by_the_command_sent_again() {
+    let job = fs::read_to_string(root().join("data/jobs/linkbar.job")).unwrap();
+    let faults = "[[fault]]\nkind = \"air-lost\"\nfrom = 1500\nuntil = 3500\n";
+    let mut it = Operated::with_faults(&job, faults);
+    it.until_it_waits();
+    assert_eq!(it.memory().task.status.report, HwsReport::Error);
+    assert_eq!(it.send(HOME), (HwsReport::Error, Reason::ReleaseNotEnded));
+    let ticks = 3520_u64.saturating_sub(it.tick());
+    it.wait(u32::try_from(ticks).unwrap()).go();
+    it.finishes();
+}
+
+/// The remedy "check where the robot is and what holds it, then send PAUSE, which adopts its position".
+#[test]
+fn robot_off_its_path_continues_after_a_pause_that_adopts_its_position() {
+    let faults = "[[fault]]\nkind = \"stuck\"\nsensor = \"resolver.elbow\"\nfrom = 200\nuntil = 400\n";
+    let mut it = Operated::with_faults(TO_SAFE, faults);
+    it.fails(Reason::OffPath);
+    let ticks = 420_u64.saturating_sub(it.tick());
+    it.wait(u32::try_from(ticks).unwrap()).go();
+    it.finishes();
+}
+
 /// Reasons with the scenario that follows their remedy; other reasons share the text.
 const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::JoystickOn, "joystick_that_is_on_is_switched_off"),
@@ -601,6 +626,8 @@ const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::ForwardOnly, "seat_motion_continues_with_the_same_command"),
     (Reason::NotDetected, "gripper_change_continues_after_the_eye_of_the_holster_is_repaired"),
     (Reason::NotNearDrum, "wrong_command_is_replaced_by_the_right_one"),
+    (Reason::ReleaseNotEnded, "release_without_air_is_completed_by_the_command_sent_again"),
+    (Reason::OffPath, "robot_off_its_path_continues_after_a_pause_that_adopts_its_position"),
 ];
 
 /// Remedies without a scenario here, and why.
@@ -609,11 +636,9 @@ const ELSEWHERE: &[(Reason, &str)] = &[
     (Reason::UnknownStart, "tests/jobs.rs and tests/operator.rs move the robot with the joystick box"),
     (Reason::RobotElsewhere, "tests/operator.rs starts a robot that has sunk up again"),
     (Reason::OffPlace, "tests/jogs.rs moves the robot off its place and back"),
-    (Reason::OffPath, "the supervision of a robot at a port has tests of its own"),
     (Reason::DrumOccupied, "tests/drum.rs follows the remedy"),
     (Reason::ForceUncalibrated, "tests/drum.rs follows the remedy"),
     (Reason::NeighbourLost, "tests/boards.rs replaces lost boards"),
-    (Reason::ReleaseNotEnded, "the levels interrupt a release in every tick (exchange_again)"),
     (Reason::SentAway, "the levels send the robot away in every tick (task recovery)"),
     (Reason::ObjectLost, "no line of a job takes a part out of the fingers"),
     (Reason::GripperGone, "no line of a job takes a gripper off by hand"),
