@@ -15,8 +15,8 @@ use std::{
 use executive::memory::{Attached, RunName, operator_socket};
 use interfaces::ExternalInputs;
 use operator::{Client, ClientError};
-use record::{Log, OperatorLine};
-use runtime::{Boards, ClockKind, LogTarget, OperatorAccess, Run, RunConfig, RunOutcome};
+use record::{Log, LogLimit, OperatorLine};
+use runtime::{Boards, ClockKind, LogTarget, OperatorAccess, Run, RunConfig, RunOutcome, StartError};
 use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
 use whole_system_tests::{copy, rcs_run, root};
@@ -744,4 +744,73 @@ fn a_run_may_take_no_operator() {
         assert!(seen, "the run was there");
         cell.end();
     }
+}
+
+/// A run in the fast clock, with a log and the inputs of another one.
+fn repeated(
+    directory: &TempDir,
+    change: impl FnOnce(RunConfig) -> RunConfig,
+) -> Result<RunOutcome, StartError> {
+    let job = directory.path().join("operated.job");
+    std::fs::write(&job, TO_SAFE_AND_HOME).unwrap();
+    let config = RunConfig {
+        log: LogTarget::None,
+        shared_memory: false,
+        ..RunConfig::new(root().join("data"), job.to_string_lossy())
+    };
+    Run::new(change(config), Box::new(())).map(Run::complete)
+}
+
+#[test]
+fn inputs_of_an_incomplete_log_are_refused_or_announced() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.mcap");
+    let log_limit = Some(LogLimit { bytes: 200_000, kept: None });
+    let log = LogTarget::File(path.clone());
+    let outcome = repeated(&directory, |config| RunConfig { log, log_limit, ..config }).unwrap();
+    assert!(outcome.is_finished());
+    let mut logs: Vec<PathBuf> = std::fs::read_dir(directory.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "mcap"))
+        .collect();
+    let begin = |log: &PathBuf| Log::open(log).unwrap().ticks().next().unwrap().unwrap().tick;
+    logs.sort_by_key(begin);
+    assert!(logs.len() > 2, "{logs:?}");
+    let given = |log: &PathBuf| {
+        let inputs = Some(log.clone());
+        repeated(&directory, |config| RunConfig { inputs, ..config }).map_err(|error| error.to_string())
+    };
+    let refused = given(&path).err().unwrap();
+    let expected = format!(
+        "{}: the log begins at tick {}, not at the start of its run; the first log of the run is {}; name",
+        path.display(),
+        begin(&path),
+        logs[0].display()
+    );
+    assert!(refused.contains(&expected), "{refused}");
+    let part = Log::open(&logs[0]).unwrap().part().unwrap().to_string();
+    let end = format!("the log ends at tick {}, and its run continues", begin(&logs[1]).0 - 1);
+    assert!(part.starts_with(&end), "{part}");
+    assert!(given(&logs[0]).unwrap().is_finished());
+    let second = logs[1].clone();
+    std::fs::remove_file(&second).unwrap();
+    let refused = given(&path).err().unwrap();
+    assert!(refused.contains(&format!("{}, is not there", second.display())), "{refused}");
+}
+
+#[test]
+fn a_job_that_waits_after_the_last_input_of_a_log_ends() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.mcap");
+    let log = LogTarget::File(path.clone());
+    assert!(repeated(&directory, |config| RunConfig { log, ..config }).unwrap().is_finished());
+    let last = Log::open(&path).unwrap().last_tick().unwrap();
+    let inputs = Some(path);
+    let outcome =
+        repeated(&directory, |config| RunConfig { inputs, stand_by: true, ticks: Some(20_000), ..config });
+    let outcome = outcome.unwrap();
+    let failure = outcome.result.failure.unwrap();
+    assert!(failure.text.contains("the log with the operator's inputs has ended"), "{}", failure.text);
+    assert_eq!(outcome.result.ticks, last.0);
 }

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use os_io::console;
+use os_io::{console, shell};
 
 use crate::{cli::InitArguments, error::Error};
 
@@ -16,7 +16,7 @@ pub fn init(arguments: &InitArguments) -> Result<ExitCode, Error> {
         shipped::write(directory).map_err(|source| Error::Write { path: directory.clone(), source })?;
     let is_here = directory.as_os_str() == ".";
     let data = if is_here { "data".into() } else { directory.join("data") };
-    let data = data.display();
+    let data = shell::path(data);
     let option = if is_here { String::new() } else { format!(" --data {data}") };
     console::answer(&format!("{count} files written into {data}; check them with rcs-run check{option}\n"))?;
     Ok(ExitCode::SUCCESS)

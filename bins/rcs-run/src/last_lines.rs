@@ -2,9 +2,10 @@
 
 use std::fmt;
 
+use os_io::shell;
 use runtime::{Ending, RunOutcome};
 
-use crate::programs::{quoted, start_of};
+use crate::programs::start_of;
 
 /// The lines. A run without a log leaves nothing to open.
 pub struct LastLines<'a>(pub &'a RunOutcome);
@@ -24,7 +25,7 @@ impl fmt::Display for LastLines<'_> {
         for part in held.into_iter().chain(others) {
             writeln!(f, "{part}")?;
         }
-        let Some(log) = result.log.as_deref().map(quoted) else { return Ok(()) };
+        let Some(log) = result.log.as_deref().map(shell::path) else { return Ok(()) };
         let tick = match ending {
             Ending::Failed(failure) => format!(" --tick {}", failure.tick),
             Ending::Finished | Ending::Stopped | Ending::StoppedByUser => String::new(),

@@ -5,6 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use os_io::shell;
+
 /// Path of a program that is installed in the directory of this one.
 ///
 /// # Errors
@@ -27,17 +29,7 @@ fn started_as(program: &str, is_by_cargo: bool, own: &Path) -> String {
         return format!("cargo run{profile} -p {program} --");
     }
     let is_by_path = own.parent().is_some_and(|directory| !directory.as_os_str().is_empty());
-    if is_by_path { quoted(&own.with_file_name(program)) } else { program.to_owned() }
-}
-
-/// A path as one word of a shell.
-pub fn quoted(path: &Path) -> String {
-    let text = path.to_string_lossy();
-    let is_plain = |sign: char| sign.is_alphanumeric() || "/._-+=:,@%".contains(sign);
-    if !text.is_empty() && text.chars().all(is_plain) {
-        return text.into_owned();
-    }
-    format!("'{}'", text.replace('\'', r"'\''"))
+    if is_by_path { shell::path(own.with_file_name(program)) } else { program.to_owned() }
 }
 
 #[cfg(test)]
@@ -51,11 +43,5 @@ mod tests {
         assert_eq!(as_by("target/release/rcs-run"), "target/release/rcs-log");
         assert_eq!(as_by("/opt/my robot/rcs-run"), "'/opt/my robot/rcs-log'");
         assert!(started_as("rcs-log", true, Path::new("x/rcs-run")).ends_with(" -p rcs-log --"));
-    }
-
-    #[test]
-    fn path_is_one_word_of_a_shell() {
-        assert_eq!(quoted(Path::new("runs/linkbar-2.mcap")), "runs/linkbar-2.mcap");
-        assert_eq!(quoted(Path::new("it's $HOME")), r"'it'\''s $HOME'");
     }
 }

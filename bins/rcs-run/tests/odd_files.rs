@@ -112,6 +112,24 @@ fn a_limit_of_files_ends_the_log_and_not_the_run() {
         .unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     assert!(said(&output).contains("the log ended before the run did"), "{}", said(&output));
+    let page = String::from_utf8(output.stdout).unwrap();
+    assert!(page.contains("run.mcap is incomplete: the log could not be written further"), "{page}");
+    assert!(!page.contains("\nwatch"), "commands need a complete log: {page}");
+}
+
+#[test]
+fn printed_commands_have_one_word_for_each_odd_path() {
+    let place = tempfile::tempdir().unwrap();
+    let name = "a\nlog\tof \u{202e}mine.mcap";
+    let log = place.path().join(name);
+    let output =
+        run(&["vise-and-back", "--ticks", "5", "--shared-memory", "off", "--log", log.to_str().unwrap()]);
+    let page = String::from_utf8(output.stdout).unwrap();
+    let word = format!(r"$'{}/a\nlog\tof \342\200\256mine.mcap'", place.path().display());
+    for line in [format!("\nlog        {word} ("), format!(" why {word}\n"), format!("--log {word}\n")] {
+        assert!(page.contains(&line), "{line}: {page}");
+    }
+    assert!(!page.contains('\u{202e}'));
 }
 
 #[test]

@@ -36,7 +36,7 @@ const UNITS_VARIABLE: &str = "RCS_UNITS";
 /// process by `--units`, or else by `RCS_UNITS`.
 #[must_use]
 pub fn parse<P: Parser>() -> P {
-    let arguments: Vec<_> = env::args_os().collect();
+    let arguments: Vec<_> = env::args_os().map(length_as_value).collect();
     let mut command = command::<P>();
     // Lengths in the other arguments have these units, so they are set first. A wrong value is refused below.
     match units(&arguments, env::var_os(UNITS_VARIABLE)) {
@@ -93,6 +93,18 @@ fn units(arguments: &[OsString], variable: Option<OsString>) -> Result<Units, St
     variable.map_or(Ok(Units::default()), |value| {
         value.to_string_lossy().parse().map_err(|wrong| format!("{UNITS_VARIABLE}: {wrong}"))
     })
+}
+
+/// An argument, with a blank before it if it is a negative length with a unit, such as `-1813.8mm`: clap reads negative
+/// numbers as values, but anything else that begins with `-` as an option.
+fn length_as_value(argument: OsString) -> OsString {
+    let is_length = |text: &str| {
+        text.starts_with('-') && text.parse::<f64>().is_err() && Units::Inches.length(text).is_ok()
+    };
+    match argument.to_str() {
+        Some(text) if is_length(text) => format!(" {text}").into(),
+        _ => argument,
+    }
 }
 
 /// The value of an argument that is a length: in inches, typed in the units of the command line.
@@ -192,6 +204,24 @@ mod tests {
         );
         let wrong = command::<Program>().try_get_matches_from(["program", "--units", "cm", "one"]);
         assert_eq!(wrong.unwrap_err().kind(), ErrorKind::InvalidValue);
+    }
+
+    #[test]
+    fn a_negative_length_with_a_unit_is_a_value() {
+        #[derive(Debug, Parser)]
+        #[command(allow_negative_numbers = true)]
+        struct Point {
+            #[arg(num_args = 3, value_parser = length)]
+            point: Vec<f64>,
+            #[arg(long)]
+            tilt: f64,
+        }
+        let arguments = ["point", "-25.4mm", "-2", "-3in", "--tilt", "-20"].map(OsString::from);
+        let Point { point, tilt } = Point::try_parse_from(arguments.map(length_as_value)).unwrap();
+        assert_eq!((point, tilt), (vec![-1.0, -2.0, -3.0], -20.0));
+        for other in ["-x", "--in", "-", "-mm"] {
+            assert_eq!(length_as_value(other.into()), OsString::from(other));
+        }
     }
 
     #[test]

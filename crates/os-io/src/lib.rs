@@ -11,5 +11,6 @@ pub mod carried;
 pub mod console;
 pub mod files;
 pub mod replace;
+pub mod shell;
 pub mod text;
 pub mod units;

@@ -12,7 +12,12 @@ const INVISIBLE: [char; 15] = [
 /// True if a terminal must not receive the character: a control character other than tab and newline, or a mark that
 /// changes the direction of text.
 fn is_unsafe(character: char) -> bool {
-    (character.is_control() && !matches!(character, '\n' | '\t')) || INVISIBLE.contains(&character)
+    is_control_or_mark(character) && !matches!(character, '\n' | '\t')
+}
+
+/// True for a control character and for a mark that changes the direction of text.
+pub(crate) fn is_control_or_mark(character: char) -> bool {
+    character.is_control() || INVISIBLE.contains(&character)
 }
 
 /// The text with `?` or another visible character for each control character. Tabs and newlines remain. Byte positions

@@ -16,6 +16,7 @@ use crate::{
     file::LogFile,
     input::{Attachment, CellFrame, End, Setup, Shown},
     operator::OperatorLine,
+    part::CONTINUES,
     recorder::{Lost, Note},
     remarks::Remark,
     rotation::LogLimit,
@@ -92,10 +93,7 @@ impl Drain {
         let sink = Sink::new(file.emptied()?, rotation.durable);
         let mut next = LogWriter::create_with(sink, rotation.setup.clone(), None)?;
         next.continue_run(&mut self.log, name.file_name().unwrap_or_default().to_string_lossy().into_owned());
-        let end = End {
-            result: format!("the run continues at tick {} in another log", record.tick),
-            ..End::default()
-        };
+        let end = End { result: format!("{CONTINUES}{} in another log", record.tick), ..End::default() };
         mem::replace(&mut self.log, next).finish(&end, Lost::default())?;
         self.file = file;
         rotation.count += 1;

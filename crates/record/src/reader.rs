@@ -291,6 +291,12 @@ impl Log {
         self.messages(OPERATOR).map(|(tick, data)| OperatorLine::decode(tick, &data))
     }
 
+    /// The last tick of the log; `None` without ticks.
+    #[must_use]
+    pub fn last_tick(&self) -> Option<Tick> {
+        self.messages(REPLAY).last().map(|(tick, _)| tick)
+    }
+
     /// Path of the file.
     #[must_use]
     pub fn path(&self) -> &Path {

@@ -39,6 +39,7 @@ use crate::{
     input::{Attachment, CellFrame, End, Setup, Shown},
     layout,
     operator::{OperatorChannel, OperatorLine},
+    part::{EARLIER, RESULT},
     proto::{
         descriptor::{self, encode_set, field, file},
         foxglove::{self, Level},
@@ -267,7 +268,7 @@ impl<W: Write + Seek> LogWriter<W> {
         record.memory.encode(&mut Writer::new(&mut self.now.memory));
         self.note_replay(record, state, cell.and_then(|frame| frame.digest), full);
         if let Some(earlier) = self.earlier.take() {
-            let text = format!("the ticks before this one are in {earlier}");
+            let text = format!("{EARLIER}{earlier}");
             self.remark(
                 tick,
                 &Remark { level: Level::Info, source: "log".into(), text, ..Remark::default() },
@@ -339,7 +340,7 @@ impl<W: Write + Seek> LogWriter<W> {
         let digest = end.digest.map_or_else(String::new, |digest| format!("{digest:016x}"));
         let entries = [
             ("digest", digest),
-            ("result", end.result.clone()),
+            (RESULT, end.result.clone()),
             ("ticks", self.ticks.to_string()),
             ("gaps", self.gaps.to_string()),
             ("lost_ticks", lost.ticks.to_string()),

@@ -13,6 +13,7 @@ use executive::{
 };
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::{Ladder, LadderState, ProcessId};
+use os_io::shell;
 use rcs_core::tick::Tick;
 use taskdata::{
     files::TaskData,
@@ -231,10 +232,6 @@ fn spawn(config: &RunConfig, name: &RunName, board: Board) -> std::io::Result<Ch
 
 /// The same as a command line for a terminal.
 fn command_line(config: &RunConfig, name: &RunName, board: Board) -> String {
-    let data = config.data.display();
-    format!(
-        "rcs-run board {} --run {name} --data {data} {}",
-        board.number(),
-        config.played().unwrap_or("--commanded")
-    )
+    let job = config.played().map_or_else(|| "--commanded".to_owned(), shell::path);
+    format!("rcs-run board {} --run {name} --data {} {job}", board.number(), shell::path(&config.data))
 }

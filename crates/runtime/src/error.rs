@@ -77,6 +77,14 @@ pub enum StartError {
     /// The log whose inputs are to be replayed cannot be read.
     #[error("the operator's inputs cannot be replayed: {0}")]
     Inputs(#[source] Box<record::ReadError>),
+    /// The log whose inputs are to be replayed lacks those of the first ticks.
+    #[error("the operator's inputs cannot be replayed: {}: {part}; name the log of a whole run", path.display())]
+    LaterInputs {
+        /// The log.
+        path: PathBuf,
+        /// Its place in the run.
+        part: record::Part,
+    },
     /// The database of the Data System cannot be opened.
     #[error("the Data System cannot keep its items: {0}")]
     DataBase(#[from] StoreError),

@@ -10,6 +10,7 @@ use interfaces::{
     device::{Picture, VisionRequest, VisionResponse, VisionStatus},
 };
 use levels::ladder::LadderState;
+use os_io::shell;
 use plant::{Cell, camera::Subject, clearance::Contact, convert::metres, description::Camera, part_link};
 use rcs_core::{digest::Digest, tick::Tick};
 use record::{
@@ -304,7 +305,7 @@ fn metadata(config: &RunConfig, setup: &Setup, attachments: &[Attachment]) -> BT
     }
     let faults = config.faults.as_deref().and_then(Path::file_name);
     let faults = faults.map(|name| name.to_string_lossy().into_owned());
-    let command_line = std::env::args().collect::<Vec<_>>().join(" ");
+    let command_line = std::env::args_os().map(shell::word).collect::<Vec<_>>().join(" ");
     let outside: Vec<String> = config.outside.iter().map(ToString::to_string).collect();
     let items = if config.database.is_some() { "file" } else { IN_MEMORY };
     let entries = [

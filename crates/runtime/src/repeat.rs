@@ -11,7 +11,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use record::{Attachment, Log};
+use record::{Attachment, Log, Part};
 
 use crate::{
     config::{LogTarget, RobotConfig, RunConfig},
@@ -38,6 +38,9 @@ pub enum RepeatError {
         "{0} took part in the run, and its actions are not in the log: a run with the simulated robot and without other processes can be repeated"
     )]
     Elsewhere(String),
+    /// The run wrote several logs.
+    #[error("a fork needs the log of a whole run, without --log-limit: {0}")]
+    Part(Part),
     /// The log of a fork.
     #[error(
         "the log is that of a fork, after tick {tick} with {changes}: fork the log that it came from, with all changes"
@@ -69,6 +72,9 @@ pub enum RepeatError {
 /// # Errors
 /// [`RepeatError`] if the log does not contain the whole run.
 pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
+    if let Some(part) = log.part() {
+        return Err(RepeatError::Part(part));
+    }
     let said = |key: &str| log.run.get(key).map(String::as_str);
     if let Some(tick) = said(FORKED_AFTER) {
         let changes = said(CHANGES).unwrap_or_default().to_owned();

@@ -187,7 +187,7 @@ pub struct RunResult {
     pub clearance: Option<NearMiss>,
     /// Other events.
     pub events: Events,
-    /// Path of the log.
+    /// Path of the log; `None` without a log, or if the log ended before the run did.
     pub log: Option<PathBuf>,
     /// The failure, if the run failed.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -247,7 +247,7 @@ impl Run {
                 let ending = Ending::Failed(self.explain(&failure, &external));
                 self.end_at_rest(ending);
             }
-            player::Progress::Running => {}
+            player::Progress::Running => self.end_if_nobody_asks(tick),
         }
         // An obstacle stops an arm that sinks without pressure; the verdict is the emergency.
         let stuck = self.closed.contacts().is_stuck() && !self.closed.workstation.is_settling(tick);

@@ -61,12 +61,40 @@ pub fn write(directory: &Path) -> io::Result<usize> {
         let why = format!("{} is there already: name another directory", there.display());
         return Err(io::Error::new(io::ErrorKind::AlreadyExists, why));
     }
+    let mut made = Made::default();
     for file in FILES {
-        let path = place(file);
-        path.parent().map_or(Ok(()), fs::create_dir_all)?;
-        replace(&path, file.bytes)?;
+        if let Err(error) = made.write(&place(file), file.bytes) {
+            made.remove();
+            return Err(error);
+        }
     }
     Ok(FILES.len())
+}
+
+/// The files and directories that were made, each after the directory that contains it.
+#[derive(Default)]
+struct Made(Vec<PathBuf>);
+
+impl Made {
+    fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let is_missing = |directory: &&Path| !directory.as_os_str().is_empty() && !directory.exists();
+        let mut missing: Vec<_> = path.ancestors().skip(1).take_while(is_missing).collect();
+        missing.reverse();
+        for directory in missing {
+            fs::create_dir(directory)?;
+            self.0.push(directory.to_owned());
+        }
+        replace(path, bytes)?;
+        self.0.push(path.to_owned());
+        Ok(())
+    }
+
+    /// Remove them. The error that stopped the work is the one to report, so that errors are ignored here.
+    fn remove(self) {
+        for path in self.0.iter().rev() {
+            let _ = fs::remove_file(path).or_else(|_| fs::remove_dir(path));
+        }
+    }
 }
 
 #[cfg(test)]
@@ -103,6 +131,30 @@ mod tests {
         assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
         assert!(error.to_string().contains("data/jobs/linkbar.job is there already"), "{error}");
         assert!(!place.path().join("data/cell.toml").exists());
+    }
+
+    #[test]
+    fn a_copy_that_fails_leaves_nothing() {
+        let place = tempfile::tempdir().unwrap();
+        // A directory of that name cannot be made, after many files were written.
+        let blocked = "data/robots";
+        assert!(FILES.iter().position(|file| file.path.starts_with(blocked)).unwrap() > 10);
+        let target = place.path().join("new").join(blocked);
+        fs::create_dir_all(target.parent().unwrap()).unwrap();
+        std::os::unix::fs::symlink("nowhere/at all", &target).unwrap();
+        assert!(write(&place.path().join("new")).is_err());
+        let mut left = Vec::new();
+        let mut open = vec![place.path().to_owned()];
+        while let Some(directory) = open.pop() {
+            for path in files::list(&directory).unwrap() {
+                if path.is_dir() {
+                    open.push(path.clone())
+                }
+                left.push(path);
+            }
+        }
+        left.sort();
+        assert_eq!(left, [place.path().join("new"), place.path().join("new/data"), target]);
     }
 
     #[test]

@@ -40,7 +40,7 @@ mod truth;
 
 use std::{fs, io, process::ExitCode};
 
-use os_io::{console, replace::replace_text};
+use os_io::{console, replace::replace_text, shell};
 use runtime::{
     StartError,
     judge::check_job,
@@ -127,7 +127,7 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
             result.smallest = Some(smallest.to_string());
         }
     }
-    let called = format!("rcs-run campaign {job} --seed {}", arguments.seed);
+    let called = format!("rcs-run campaign {} --seed {}", shell::word(job), arguments.seed);
     let report = CampaignReport::new(&facility.job.name, called, &parent, &results, &met);
     if arguments.json {
         console::json(&report.json()?)?;

@@ -19,7 +19,7 @@ mod trial;
 
 use std::{path::Path, process::ExitCode};
 
-use os_io::console;
+use os_io::{console, shell};
 use plant::CellDescription;
 use runtime::{StartError, setup::CELL};
 use taskdata::load::Store;
@@ -87,7 +87,7 @@ fn part(order: &Order<'_>, (write, explain_job): (bool, bool), data: &Path) -> R
     lines.push(("tried", format!("check finds no errors; {runs} runs finished")));
     lines.extend(trial.warnings.into_iter().map(|line| ("warning", line)));
     lines.extend(made.to_teach.into_iter().map(|line| ("to teach", line)));
-    let next = format!("rcs-run {first} --data {}", data.display());
+    let next = format!("rcs-run {first} --data {}", shell::path(data));
     finish(&made.change, lines, write.then_some(next))
 }
 
@@ -104,7 +104,7 @@ fn place(arguments: &PlaceArguments) -> Result<ExitCode, Error> {
     lines.extend(trial.warnings.into_iter().map(|line| ("warning", line)));
     lines.push(("to teach", format!("robot: the pose {name}-P by joystick (rcs-run pose --write)")));
     let next =
-        format!("rcs-run check --data {} --explain 'MOVE -- +0 -- 0 +0 {name} 0 -- 0'", data.display());
+        format!("rcs-run check --data {} --explain 'MOVE -- +0 -- 0 +0 {name} 0 -- 0'", shell::path(data));
     finish(&change, lines, write.then_some(next))
 }
 

@@ -5,7 +5,7 @@ use std::{collections::VecDeque, fs, path::Path};
 use ::operator::{Entrance, Event, Given, Listener};
 use executive::memory::{RunName, operator_socket};
 use rcs_core::tick::Tick;
-use record::{Attachment, Log, OperatorLine};
+use record::{Attachment, Log, OperatorLine, Part};
 use taskdata::load::Source;
 
 use super::request::QUESTIONS;
@@ -38,6 +38,8 @@ pub struct Texts {
     /// Loads of the workstation controller. It also requests them in a repetition; only their verdicts are taken from
     /// the log.
     workstation: VecDeque<OperatorLine>,
+    /// The last tick of the log.
+    end: Tick,
 }
 
 /// Source of the loads that the workstation controller requests; no operator can have this name.
@@ -126,7 +128,7 @@ impl Inputs {
     /// [`StartError::Inputs`].
     pub fn of(config: &RunConfig, name: &RunName, observer: &mut dyn Observer) -> Result<Self, StartError> {
         if let Some(path) = &config.inputs {
-            return Self::recorded(path);
+            return Self::recorded(path, observer);
         }
         let can_connect = config.shared_memory && config.clock == ClockKind::Real;
         if config.operator == OperatorAccess::None || !can_connect {
@@ -145,13 +147,25 @@ impl Inputs {
         }
     }
 
-    fn recorded(path: &Path) -> Result<Self, StartError> {
+    fn recorded(path: &Path, observer: &mut dyn Observer) -> Result<Self, StartError> {
         let log = Log::open(path).map_err(|source| StartError::Inputs(Box::new(source)))?;
+        match log.part() {
+            Some(part @ Part::Later { .. }) => {
+                return Err(StartError::LaterInputs { path: path.to_owned(), part });
+            }
+            Some(part @ Part::First { .. }) => observer.message(&format!(
+                "{}: {part}: the operator's inputs after it are not replayed",
+                path.display()
+            )),
+            None => {}
+        }
+        let end = log.last_tick().unwrap_or_default();
         let (workstation, operators) = log.operator_lines().partition(|line| line.source == WORKSTATION);
         let texts = Texts {
             blocks: log.attachments.iter().filter_map(Attachment::as_reload).collect(),
             jobs: log.attachments.iter().filter_map(Attachment::as_played).collect(),
             workstation,
+            end,
         };
         Ok(Self::Recorded(operators, texts))
     }
@@ -186,6 +200,12 @@ impl Inputs {
     pub fn recorded_refusal(&mut self) -> Option<String> {
         let Self::Recorded(_, texts) = self else { return None };
         texts.workstation.pop_front()?.refused
+    }
+
+    /// True if the inputs are from a log that has ended: nobody will ask for anything more.
+    #[must_use]
+    pub fn have_ended(&self, tick: Tick) -> bool {
+        matches!(self, Self::Recorded(lines, texts) if lines.is_empty() && tick >= texts.end)
     }
 
     /// The job with this number in a log; `None` if the inputs are not from a log.

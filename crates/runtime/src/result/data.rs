@@ -5,7 +5,7 @@ use std::{
     path::{self, Path, PathBuf},
 };
 
-use os_io::carried::is_carried;
+use os_io::{carried::is_carried, shell};
 use serde::Serialize;
 use taskdata::load::amount;
 
@@ -31,7 +31,7 @@ impl fmt::Display for DataResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let files = amount(self.files, "file");
         match &self.directory {
-            Some(directory) => write!(f, "{}, {files}", directory.display()),
+            Some(directory) => write!(f, "{}, {files}", shell::path(directory)),
             None => write!(f, "built into the program, {files}"),
         }
     }

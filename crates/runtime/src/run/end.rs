@@ -1,11 +1,14 @@
 //! The end of a run: the robot ramps to rest before.
 
-use executive::rest::AT_LAST;
+use executive::{failure::Failure, rest::AT_LAST};
 use interfaces::CommonMemory;
 use rcs_core::{digest::Digest, tick::Tick};
 
 use super::Run;
-use crate::{event::Event, verdict::Ending};
+use crate::{
+    event::Event,
+    verdict::{Ending, outside},
+};
 
 /// The robot is brought to rest: the velocity knob is at zero, and no more commands are sent.
 pub(super) struct Ramp {
@@ -26,6 +29,17 @@ impl Run {
         // If another process commands, there is no job that ends by itself.
         let is_commanded = self.neighbours.are_commanding();
         self.end_at_rest(if is_commanded { Ending::Stopped } else { Ending::StoppedByUser });
+    }
+
+    /// End a run whose inputs are from a log that has ended, if the job waits for an operator: in the fast clock it
+    /// would wait forever.
+    pub(super) fn end_if_nobody_asks(&mut self, tick: Tick) {
+        let have_ended = self.ramp.is_none() && self.asked.have_ended(tick);
+        if have_ended && self.neighbours.job_under_way().is_ok_and(|job| job.waits_idle()) {
+            let text = "the job waits for an operator, and the log with the operator's inputs has ended";
+            let failure = Failure { stopped: true, ..outside(tick, "operator", text.to_owned()) };
+            self.end_at_rest(Ending::Failed(failure));
+        }
     }
 
     /// End the run as soon as the robot is at rest. The first ending is kept.

@@ -1,7 +1,9 @@
 //! The outcome of a run.
 
 use ::neighbours::workstation::player::BegunStep;
+use os_io::shell;
 use rcs_core::tick::TICK_S;
+use taskdata::load::amount;
 
 use super::Run;
 use crate::{
@@ -137,23 +139,25 @@ impl Run {
     fn finish_log(&mut self, ending: &Ending, result: &mut RunResult) -> String {
         let Some(log) = self.log.take() else { return "none".to_owned() };
         let outcome = ending.text().to_owned();
-        result.log = self.log_path.take();
+        let path = self.log_path.take();
         match log.finish(self.closed.digest(), outcome, result.facts()) {
             Ok(summary) => {
-                let (file, size) = (summary.path.display(), summary.bytes as f64 / 1e6);
+                result.log = path;
+                let (file, size) = (shell::path(&summary.path), summary.bytes as f64 / 1e6);
                 let lost = match summary.lost.ticks {
                     0 => String::new(),
+                    1 => "; 1 tick found no room and is missing".to_owned(),
                     lost => format!("; {lost} ticks found no room and are missing"),
                 };
                 let earlier = match summary.earlier {
                     0 => String::new(),
-                    earlier => format!("; {earlier} logs before, under the times of their ends"),
+                    earlier => format!("; {} before, under the times of their ends", amount(earlier, "log")),
                 };
                 format!("{file} ({size:.1} MB{lost}{earlier})")
             }
             Err(error) => {
                 self.observer.message(&format!("the log ended before the run did: {error}"));
-                format!("incomplete: {error}")
+                format!("{} is incomplete: {error}", path.map(shell::path).unwrap_or_default())
             }
         }
     }

@@ -121,6 +121,12 @@ impl Hwsc {
         matches!(self.intervention.state, State::Waits { .. })
     }
 
+    /// True if the job waits for an operator whose last command has ended.
+    #[must_use]
+    pub const fn waits_idle(&self) -> bool {
+        matches!(self.intervention.state, State::Waits { command: None, .. })
+    }
+
     /// True if the job waits for an operator before a line that has not been begun.
     pub(super) const fn waits_before_line(&self) -> bool {
         matches!(self.intervention.state, State::Waits { before_line: true, .. })

@@ -1,0 +1,89 @@
+//! The place of a log in a run that wrote several logs, one after the other ([`crate::rotation`]).
+
+use std::path::PathBuf;
+
+use rcs_core::tick::Tick;
+
+use crate::{reader::Log, writer::REPLAY};
+
+/// Begin of the line on `/log` that names the log before this one.
+pub(crate) const EARLIER: &str = "the ticks before this one are in ";
+/// Begin of the result of a log after which the run began another one.
+pub(crate) const CONTINUES: &str = "the run continues at tick ";
+/// Key of the metadata: how the run ended.
+pub(crate) const RESULT: &str = "result";
+
+/// The place of a log that does not have its whole run.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Part {
+    /// The log begins after the first tick.
+    #[error("the log begins at tick {begin}, not at the start of its run; {before}")]
+    Later {
+        /// The first tick of the log.
+        begin: Tick,
+        /// What is known of the logs before it.
+        before: Before,
+    },
+    /// The log has the first ticks, and the run continues in another log.
+    #[error("the log ends at tick {end}, and its run continues in another log")]
+    First {
+        /// The last tick of the log.
+        end: Tick,
+    },
+}
+
+/// The logs before a log of the same run.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Before {
+    /// The first log of the run.
+    #[error("the first log of the run is {}", .0.display())]
+    First(PathBuf),
+    /// A log is missing.
+    #[error("the log before it, {}, is not there", .0.display())]
+    Missing(PathBuf),
+    /// The log was damaged.
+    #[error("its begin is damaged")]
+    Damaged,
+}
+
+impl Log {
+    /// The place of this log in a run that wrote several logs; `None` if the log has its run from the first tick to the
+    /// end, or to where the program was killed.
+    #[must_use]
+    pub fn part(&self) -> Option<Part> {
+        let begin = self.first_tick()?;
+        if begin > Tick::BEFORE_START.next() {
+            return Some(Part::Later { begin, before: self.before(begin) });
+        }
+        let continues = |result: &String| result.starts_with(CONTINUES);
+        let is_continued = self.end.as_ref().and_then(|end| end.get(RESULT)).is_some_and(continues);
+        is_continued.then(|| Part::First { end: self.last_tick().unwrap_or(begin) })
+    }
+
+    fn first_tick(&self) -> Option<Tick> {
+        self.messages(REPLAY).next().map(|(tick, _)| tick)
+    }
+
+    /// Path of the log before this one, in the same directory.
+    fn earlier(&self) -> Option<PathBuf> {
+        let name = self.lines().find_map(|line| line.text.strip_prefix(EARLIER).map(str::to_owned))?;
+        // A name in a log must not lead out of the directory.
+        let is_name = !name.is_empty() && name != ".." && !name.contains('/');
+        is_name.then(|| self.path().with_file_name(name))
+    }
+
+    /// Follow the logs before this one to the first one. Each must begin earlier, so that the search ends.
+    fn before(&self, mut begin: Tick) -> Before {
+        let Some(mut path) = self.earlier() else { return Before::Damaged };
+        loop {
+            let Ok(log) = Self::open(&path) else { return Before::Missing(path) };
+            match log.first_tick() {
+                Some(first) if first == Tick::BEFORE_START.next() => return Before::First(path),
+                Some(first) if first < begin => begin = first,
+                _ => return Before::Damaged,
+            }
+            let Some(earlier) = log.earlier() else { return Before::Damaged };
+            path = earlier;
+        }
+    }
+}
