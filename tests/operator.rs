@@ -179,7 +179,8 @@ fn a_job_is_stopped_commanded_and_finished_and_the_log_gives_the_same_run() {
     let expected = [
         ("PAUSE", "finished"),
         ("SAFE", "interrupted"),
-        ("PAUSE", "finished"),
+        // The PAUSE of the job replaces that of the operator, while the robot still comes to rest.
+        ("PAUSE", "interrupted"),
         ("PAUSE", "finished"),
         ("SAFE", "finished"),
         ("HOME", "finished"),
@@ -813,4 +814,30 @@ fn a_job_that_waits_after_the_last_input_of_a_log_ends() {
     let failure = outcome.result.failure.unwrap();
     assert!(failure.text.contains("the log with the operator's inputs has ended"), "{}", failure.text);
     assert_eq!(outcome.result.ticks, last.0);
+}
+
+#[test]
+fn a_command_right_after_a_motion_by_hand_waits_for_the_robot() {
+    let stand_by = |config| RunConfig { stand_by: true, ..config };
+    let cell = Cell::start(TO_SAFE_AND_HOME, stand_by);
+    let mut client = cell.client("anna");
+    wait_for(&mut client, "the job waits");
+    for ticks in [0, 1, 2, 4, 8, 20] {
+        ask(&mut client, &["joystick frame WORLD", "joystick stick 0 300 20"]);
+        wait_ticks(&mut client, ticks);
+        ask(&mut client, &["joystick frame OFF"]);
+        let begun = Instant::now();
+        while let Err(why) = client.ask("MOVE -- 0 -- 0 0 HOME 0 -- 0").unwrap() {
+            assert!(why.contains("coming to rest") && begun.elapsed() < PATIENCE, "{why}");
+        }
+        wait_ticks(&mut client, 60);
+        ask(&mut client, &["PAUSE"]);
+    }
+    ask(&mut client, &["job go"]);
+    drop(client);
+    let (outcome, log, directory) = cell.end();
+    assert!(outcome.is_finished(), "{:?}", outcome.result.failure);
+    let failed = outcome.steps.iter().filter(|step| step.outcome.text() == "failed").count();
+    assert_eq!(failed, 0, "{:?}", outcomes(&outcome));
+    assert_repeats_with(stand_by, &outcome, &log, &directory);
 }

@@ -67,7 +67,8 @@ impl Given {
     }
 
     /// Marks a request as late if nobody waits for it at this moment.
-    fn judged(mut self) -> Self {
+    #[must_use]
+    pub fn judged(mut self) -> Self {
         if let (Event::Line(text), Some(received)) = (&self.event, &self.request) {
             let Received { number, limit, stream, clock } = received;
             let request = Request { number: *number, limit: *limit, text };

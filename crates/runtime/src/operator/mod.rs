@@ -60,6 +60,8 @@ pub struct Operator {
     terminals: Terminals,
     /// Part of a request that the run must carry out.
     later: Option<Later>,
+    /// A request that waits until the commands have the robot again, and the tick in which it arrived.
+    awaiting: Option<(Input, Tick)>,
     /// True if the velocity knob is at zero until `go`.
     is_stopped: bool,
     /// Names of the connected operators.
@@ -91,6 +93,8 @@ pub enum Later {
     Play(String),
     /// Withdraw a load that the session has requested and that has not been carried out.
     Withdraw,
+    /// Carry the request out when the commands have the robot again.
+    Await,
 }
 
 /// The parts of a run that a request reads and changes.
@@ -124,6 +128,7 @@ impl Operator {
             shown: JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() },
             terminals: Terminals::default(),
             later: None,
+            awaiting: None,
             is_stopped: false,
             sessions: Vec::new(),
             commander: None,
@@ -157,6 +162,16 @@ impl Operator {
     /// The part of the last request that the run must carry out.
     pub const fn take_later(&mut self) -> Option<Later> {
         self.later.take()
+    }
+
+    /// Keep a request that is to be carried out when the commands have the robot again.
+    pub fn keep(&mut self, input: Input, tick: Tick) {
+        self.awaiting = Some((input, tick));
+    }
+
+    /// The request that waits, to be tried again in this tick; as late if its sender has given up.
+    pub fn awaited(&mut self) -> Option<(Input, Tick)> {
+        self.awaiting.take().map(|(input, since)| (input.judged(), since))
     }
 
     /// Count an answered request.
@@ -253,6 +268,13 @@ impl Operator {
                 return Err(
                     "a block is being checked, which counts from the next command on: ask again".to_owned()
                 );
+            }
+            if self.awaiting.is_some() {
+                return Err("a request before it waits for the robot: ask again".to_owned());
+            }
+            if request.needs_the_robot() && !self.hand.is_held() && obstacles::is_led(around.memory) {
+                self.later = Some(Later::Await);
+                return Err(obstacles::LED.to_owned());
             }
         }
         let done = String::new();

@@ -1,6 +1,9 @@
 //! What keeps the robot from moving, as text for the status and for the answers to `job go` and `job skip`.
 
-use interfaces::{CommonMemory, OperatorInputs, device::JoystickBox, operator::BOARDS};
+use interfaces::{
+    CommonMemory, OperatorInputs, StatusReport, device::JoystickBox, hws::HwsReport, operator::BOARDS,
+    prim::PrimReport,
+};
 use neighbours::workstation::player::Workstation as _;
 use plant::EStop;
 
@@ -34,6 +37,17 @@ pub fn check_job(around: &mut Around<'_>) -> Result<(), String> {
         }
         _ => Ok(()),
     }
+}
+
+/// Why a command is refused soon after a motion by hand.
+pub const LED: &str = "the robot is still coming to rest after its motion by hand: ask again";
+
+/// True while a process reports that the joystick box has the robot. The box is read by Prim, and each report passes up a
+/// process per tick: a command that Task gets meanwhile fails.
+pub fn is_led(memory: &CommonMemory) -> bool {
+    memory.prim.status.report == PrimReport::JoystickOn
+        || [memory.emove.status.report, memory.subtask.status.report].contains(&StatusReport::JoystickOn)
+        || memory.task.status.report == HwsReport::JoystickOn
 }
 
 /// What keeps the robot from moving although the job plays; empty if nothing does. `knob` is the operators' knob,

@@ -149,6 +149,11 @@ impl Request {
         }
     }
 
+    /// True if it sends a command to Task at once.
+    pub const fn needs_the_robot(&self) -> bool {
+        matches!(self, Self::GoOn | Self::Skip | Self::Command(..) | Self::Play(_))
+    }
+
     /// True if it sends a command to Task.
     pub const fn is_of_the_job(&self) -> bool {
         matches!(

@@ -65,6 +65,19 @@ impl Input {
         }
     }
 
+    /// True if it is from a session, which waits for the answer.
+    pub const fn is_of_a_session(&self) -> bool {
+        matches!(self, Self::Given(_))
+    }
+
+    /// The input as late, if it is from a session and nobody waits for its answer any more.
+    pub fn judged(self) -> Self {
+        match self {
+            Self::Given(given) => Self::Given(given.judged()),
+            other => other,
+        }
+    }
+
     /// The event.
     pub const fn event(&self) -> &Event {
         match self {

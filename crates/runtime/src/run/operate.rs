@@ -20,6 +20,10 @@ use crate::{
     operator::{A_TICK, Around, Input, Later, WORKSTATION},
 };
 
+/// Longest time in which a command waits for a robot that comes to rest after a motion by hand. It is less than the
+/// second in which a sender waits for its answer.
+const REST_TICKS: u64 = 20;
+
 impl Run {
     /// Carry out an event of an operator in this program, for a run to which nobody else connects: in the fast clock, or
     /// without operators. Runs the tick after which it is carried out; the tick after that is the first to see it. A
@@ -43,8 +47,15 @@ impl Run {
         if let Some(answer) = self.follow_load(tick) {
             self.loaded(tick, answer);
         }
+        let mut awaited = self.operator.awaited();
         for _ in 0..A_TICK {
-            let Some(input) = self.asked.next(first) else { break };
+            let (input, since) = match awaited.take() {
+                Some(awaited) => awaited,
+                None => match self.asked.next(first) {
+                    Some(input) => (input, tick),
+                    None => break,
+                },
+            };
             let desk = self.closed.desk();
             let mut around = Around {
                 tick,
@@ -60,6 +71,12 @@ impl Run {
             let verdict = self.operator.carry_out(&input, &mut around);
             let verdict = match (self.operator.take_later(), input.refusal()) {
                 (None, _) => verdict,
+                // In a repetition it has the tick in which it was carried out.
+                (Some(Later::Await), None) if input.is_of_a_session() && tick.since(since) < REST_TICKS => {
+                    self.operator.keep(input, since);
+                    continue;
+                }
+                (Some(Later::Await), _) => verdict,
                 (Some(Later::Withdraw), _) => {
                     self.loads.withdraw(input.source());
                     verdict

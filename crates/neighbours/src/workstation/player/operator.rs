@@ -177,10 +177,8 @@ impl Hwsc {
         let State::Waits { failure, before_line, command } = &self.intervention.state else {
             return Err(OperatorError::Plays);
         };
-        if let Some(step) = command.and_then(|entry| self.begun_steps.get(entry)) {
-            return Err(OperatorError::Executes(step.text.clone()));
-        }
-        let (has_failed, before_line) = (failure.is_some(), *before_line);
+        let (command, has_failed, before_line) = (*command, failure.is_some(), *before_line);
+        self.replace_pause(tick, command)?;
         if !has_failed && !before_line && !self.is_commanding() {
             self.finish(Outcome::Interrupted);
         }
@@ -335,6 +333,21 @@ impl Hwsc {
         }
     }
 
+    /// Refuse while a command of the operator is executed.
+    fn not_executed(&self, command: Option<usize>) -> Result<(), OperatorError> {
+        let executes = command.and_then(|entry| self.begun_steps.get(entry));
+        executes.map_or(Ok(()), |step| Err(OperatorError::Executes(step.text.clone())))
+    }
+
+    /// Before the job sends PAUSE: it may replace a PAUSE of the operator that is executed, and no other command.
+    fn replace_pause(&mut self, tick: Tick, command: Option<usize>) -> Result<(), OperatorError> {
+        if command.is_some() && self.command.command == super::pause().command {
+            self.end_operators(tick, command, Outcome::Interrupted);
+            return Ok(());
+        }
+        self.not_executed(command)
+    }
+
     fn resume(&mut self, tick: Tick, skips: bool) -> Result<(), OperatorError> {
         self.not_ended()?;
         let State::Waits { failure, before_line, command } = &self.intervention.state else {
@@ -344,15 +357,18 @@ impl Hwsc {
             }
             return Err(OperatorError::Plays);
         };
-        if let Some(step) = command.and_then(|entry| self.begun_steps.get(entry)) {
-            return Err(OperatorError::Executes(step.text.clone()));
-        }
-        let (failed, before_line) = (failure.is_some(), *before_line);
+        let (command, failed, before_line) = (*command, failure.is_some(), *before_line);
         let is_last = self.current > self.steps.len();
         if skips && is_last {
             return Err(OperatorError::NoLine);
         }
         let line_goes_on = !failed && !before_line && !self.is_commanding();
+        let sends_pause = skips || !(is_last || line_goes_on);
+        if sends_pause {
+            self.replace_pause(tick, command)?;
+        } else {
+            self.not_executed(command)?;
+        }
         self.intervention.state = State::Plays;
         if skips && self.current == 0 {
             self.current = 1;

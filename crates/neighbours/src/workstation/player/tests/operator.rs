@@ -224,13 +224,31 @@ fn other_lines_take_the_place_of_the_rest() {
     let mut stage = Stage::commands();
     assert_eq!(stage.hwsc.play(Tick(1), vec![command("POSITION")]), Err(OperatorError::Plays));
     stage.until(|stage| stage.received().contains("MOVE"));
-    stage.order("PAUSE");
+    stage.order("TRANSFER");
     let executed = stage.hwsc.play(Tick(stage.tick), vec![command("POSITION")]);
     assert!(matches!(executed, Err(OperatorError::Executes(_))), "{executed:?}");
+    stage.order("PAUSE");
     stage.until(|stage| stage.outcomes().last() == Some(&("PAUSE", Outcome::Finished)));
     stage.hwsc.play(Tick(stage.tick), vec![command("POSITION"), command("ACQUIRE")]).unwrap();
     stage.until(is_over);
     assert_eq!(stage.received(), "PAUSE MOVE PAUSE PAUSE POSITION ACQUIRE");
+}
+
+#[test]
+fn a_job_continues_at_once_after_a_pause_of_the_operator() {
+    for go_on in [Hwsc::go_on, Hwsc::skip] {
+        let mut stage = Stage::commands();
+        stage.until(|stage| stage.received().contains("MOVE"));
+        stage.order("MOVE");
+        assert!(matches!(go_on(&mut stage.hwsc, Tick(stage.tick)), Err(OperatorError::Executes(_))));
+        stage.order("PAUSE");
+        go_on(&mut stage.hwsc, Tick(stage.tick)).unwrap();
+        stage.until(is_over);
+        assert_eq!(stage.outcomes()[3], ("PAUSE", Outcome::Interrupted));
+        assert!(
+            stage.received().ends_with("PAUSE MOVE ACQUIRE") || stage.received().ends_with("PAUSE ACQUIRE")
+        );
+    }
 }
 
 #[test]
