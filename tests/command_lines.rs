@@ -147,3 +147,46 @@ fn each_program_says_its_version() {
         assert!(said.contains(env!("CARGO_PKG_VERSION")), "{said}");
     }
 }
+
+#[test]
+fn a_mistyped_word_or_path_is_named_once_with_its_nearest_name() {
+    let place = Scratch::new("mistyped");
+    let (here, log) = (place.file("."), place.file("run.mcap"));
+    let run = in_directory(
+        rcs_run(),
+        &here,
+        &["vise-and-back", "--ticks", "3", "--shared-memory", "off", "--log", &log.to_string_lossy()],
+    );
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    for (program, arguments, wrong, near) in [
+        (rcs_log(), &["inof"] as &[&str], "'inof'", "similar subcommand exists: 'info'"),
+        (rcs_run(), &["sned", "stop"], "'sned'", "similar subcommand exists: 'send'"),
+        (rcs_run(), &["chekc", "--all"], "--all", "similar subcommand exists: 'check'"),
+        (rcs_neighbour(), &["workstaton"], "'workstaton'", "similar subcommand exists: 'workstation'"),
+        (
+            rcs_neighbour(),
+            &["workstation", "--network", "unix:/nowhere", "linkbra"],
+            "there is no job linkbra",
+            "the nearest is linkbar",
+        ),
+        (rcs_log(), &["info", "rnu.mcap"], "rnu.mcap: No such file", "the nearest log is run.mcap"),
+        (rcs_log(), &["serve", "nowhere/x.mcap"], "nowhere/x.mcap: No such file", "os error 2"),
+        (rcs_run(), &["send", "--stay", "1m", "stop"], "--stay", "seconds from 0 to 86400 were expected"),
+        (
+            rcs_run(),
+            &["send", "--stay", "1.5", "--run", "none", "status"],
+            "no operator",
+            "operator can connect",
+        ),
+    ] {
+        let output = in_directory(program, &here, arguments);
+        let said = text(&output.stderr);
+        assert_ne!(output.status.code(), Some(0), "{arguments:?}");
+        for expected in [wrong, near] {
+            assert!(said.contains(expected), "{arguments:?}: {said}");
+        }
+        if arguments.len() < 3 {
+            assert_eq!((said.matches(wrong).count(), said.matches(near).count()), (1, 1), "{said}");
+        }
+    }
+}

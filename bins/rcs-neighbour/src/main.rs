@@ -73,6 +73,9 @@ enum Error {
         /// All problems found.
         report: Box<Diagnostics>,
     },
+    /// The job does not exist.
+    #[error(transparent)]
+    NoJob(#[from] diagnostics::UnknownFile),
     /// The job failed.
     #[error("{0}")]
     Job(String),
@@ -89,6 +92,7 @@ impl Error {
             | Self::DataBase(_)
             | Self::Cell(_)
             | Self::AnotherCell { .. }
+            | Self::NoJob(_)
             | Self::Data { .. } => UNUSABLE,
         }
     }

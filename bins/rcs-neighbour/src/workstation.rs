@@ -1,7 +1,8 @@
 //! The workstation controller: the emulator that also runs in the controller's process, here behind mailboxes.
 
-use std::{collections::VecDeque, path::PathBuf};
+use std::{collections::VecDeque, path::Path};
 
+use diagnostics::JOBS;
 use neighbours::{
     fields::successor,
     layout::LayoutError,
@@ -14,7 +15,6 @@ use neighbours::{
         status,
     },
 };
-use os_io::files;
 use rcs_core::tick::Tick;
 use taskdata::load::{Job, Store, job::Workstation as Action};
 
@@ -73,8 +73,7 @@ fn job(arguments: &WorkstationArguments) -> Result<Job, Error> {
     let data = &arguments.data;
     // The controller refuses a command whose data have errors.
     let (store, _) = Store::load_with_faults(data);
-    let named = data.join("jobs").join(&arguments.job).with_added_extension("job");
-    let path = if files::is_file(&named) { named } else { PathBuf::from(&arguments.job) };
+    let path = JOBS.find(Path::new(&arguments.job), data)?;
     let (job, _) = Job::load(&path, &store).map_err(unusable(format!("the job {}", path.display())))?;
     Ok(job)
 }

@@ -1,6 +1,9 @@
 //! The command line.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 use crate::{campaign::CampaignArguments, clock::Clock, new::NewArguments};
 use clap::{
@@ -398,11 +401,19 @@ pub struct SendArguments {
     pub zenoh_config: Option<PathBuf>,
     /// Seconds to stay connected after the last line; at the end, motion by hand ends: stick, buttons and frame of the
     /// joystick box are released
-    #[arg(long, value_name = "SECONDS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=86_400))]
-    pub stay: u32,
+    #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = seconds)]
+    pub stay: Duration,
     /// Name of the operator in status and log; a number follows it if another session has it
     #[arg(long, value_name = "NAME", default_value = "send")]
     pub name: operator::Name,
+}
+
+/// A time in seconds, also with a fraction.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse::<f64>().ok().filter(|seconds| (0.0..=86_400.0).contains(seconds));
+    seconds
+        .map(Duration::from_secs_f64)
+        .ok_or_else(|| format!("seconds from 0 to 86400 were expected, such as 1.5; found {text}"))
 }
 
 /// Arguments of `pose`.

@@ -2,7 +2,12 @@
 
 mod form;
 
-use std::{path::Path, process::ExitCode};
+use std::{
+    path::Path,
+    process::ExitCode,
+    thread,
+    time::{Duration, Instant},
+};
 
 use diagnostics::alternatives;
 use executive::memory::{Attached, OnStuck, SET_UP_LIMIT, within_limit};
@@ -11,6 +16,7 @@ use geometry::{
     pose::Pose,
     units::Length,
 };
+use interfaces::CommonMemory;
 use os_io::console;
 use paths::stand::{self, Standing};
 use plant::{CellDescription, room::Room};
@@ -29,6 +35,11 @@ use crate::{
 
 /// Limit of coordinates in inches and of angles in degrees, far beyond every arm.
 const FARTHEST: f64 = 1000.0;
+/// Ticks until a record button that was pressed has recorded the pose.
+const RECORD_TICKS: u64 = 3;
+/// Longest wait for these ticks.
+const RECORD_LIMIT: Duration = Duration::from_millis(500);
+
 /// Print a pose, and write its form on request. Exit status 2 if the robot cannot reach the pose; then nothing is
 /// written.
 ///
@@ -86,12 +97,27 @@ fn asked(arguments: &PoseArguments, store: &Store) -> Result<Pose, Error> {
     }
     let run = arguments.run.clone().map_or_else(only_run, Ok)?;
     let attached = within_limit(SET_UP_LIMIT, Some(stuck as OnStuck), || Attached::open(&run))?;
-    let memory = attached.memory()?;
+    let memory = settled(&attached)?;
     let recorded = memory.prim.status.recorded_pose.and_then(|number| memory.changing_pose(number).copied());
     recorded.ok_or_else(|| {
         let how = "press the button of the joystick box, or ask for `joystick record`";
         Error::Pose(format!("no pose has been recorded in the run {run}: {how}"))
     })
+}
+
+/// Common memory some ticks later: the controller carries out `joystick record` in the tick after its answer, and an
+/// earlier recorded pose must not be taken for it. A run that makes no tick meanwhile has nothing to carry out.
+fn settled(attached: &Attached) -> Result<CommonMemory, Error> {
+    let first = attached.memory()?;
+    let begun = Instant::now();
+    loop {
+        let memory = attached.memory()?;
+        let tick = |memory: &CommonMemory| memory.prim.header.stamp;
+        if tick(&memory).0.saturating_sub(tick(&first).0) >= RECORD_TICKS || begun.elapsed() > RECORD_LIMIT {
+            return Ok(memory);
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
 }
 
 /// A pose of the task data.

@@ -1,6 +1,6 @@
 //! `rcs-run send`: sends requests to a run in progress, as an operator.
 
-use std::{process::ExitCode, time::Duration};
+use std::process::ExitCode;
 
 use executive::memory::{SharedMemoryError, operator_socket, starting};
 use neighbours::network::{NeighbourKeys, Peer, Role};
@@ -44,6 +44,6 @@ pub fn send(arguments: &SendArguments) -> Result<ExitCode, Error> {
             }
         }
     }
-    client.stay(Duration::from_secs(arguments.stay.into()))?;
+    client.stay(arguments.stay)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -55,8 +55,16 @@ pub fn parse<P: Parser>() -> P {
         });
     }
     let mut matches = command.try_get_matches_from_mut(&arguments).unwrap_or_else(|mut error| {
-        if let Some(near) = misspelt_subcommand(&command, arguments.get(1)) {
+        let first = arguments.get(1);
+        if let Some(near) = misspelt_subcommand(&command, first) {
+            // For clap the word is a job, which has no further words.
+            if error.kind() == ErrorKind::ArgumentConflict {
+                let word = first.map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
+                error = clap::Error::new(ErrorKind::InvalidSubcommand).with_cmd(&command);
+                error.insert(ContextKind::InvalidSubcommand, ContextValue::String(word));
+            }
             let tip = format!("a similar subcommand exists: '{near}'");
+            error.remove(ContextKind::SuggestedSubcommand);
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }
         refuse(&error)
