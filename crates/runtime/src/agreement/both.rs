@@ -41,7 +41,7 @@ impl<'a> Both<'a> {
         let other = CellDescription::place(self.source, entry);
         let line =
             self.source.text.bytes().take(usize::try_from(other.start).unwrap_or(0)).filter(|b| *b == b'\n');
-        let help = format!("{entry} stands in cell.toml, line {}: one of the two is wrong", line.count() + 1);
+        let help = format!("{entry} in line {} of cell.toml disagrees: correct one of the two", line.count() + 1);
         self.in_data.error_help("cell.form", place, message, help);
     }
 
@@ -54,7 +54,7 @@ impl<'a> Both<'a> {
     pub fn entry(&mut self, entry: &str, message: String, form: At) {
         let place = CellDescription::place(self.source, entry);
         let form = self.store.places().words(form);
-        let help = format!("the form stands in {form}: one of the two is wrong");
+        let help = format!("the form in {form} disagrees: correct one of the two");
         self.in_cell.error_help("cell.place", place, format!("{entry}: {message}"), help);
     }
 

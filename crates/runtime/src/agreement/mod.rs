@@ -57,7 +57,7 @@ pub fn of_job(job: &Job, source: &Source, cell: &CellDescription, store: &Store,
         let Err(error) = admitted else {
             if let Some(message) = occupied.or(other) {
                 problems.error("job.cell", place(job.source(), line, None), message);
-                problems.help(format!("what the cell has stands in {}", path.display()));
+                problems.help(format!("what the cell has is in {}", path.display()));
             }
             continue;
         };
@@ -66,7 +66,7 @@ pub fn of_job(job: &Job, source: &Source, cell: &CellDescription, store: &Store,
         problems.error("job.cell", place(job.source(), line, word), error.to_string());
         match blames {
             Some((_, Some(near))) => problems.nearest("one", near),
-            _ => problems.help(format!("what the cell has stands in {}", path.display())),
+            _ => problems.help(format!("what the cell has is in {}", path.display())),
         }
     }
     Diagnostics::of_file(problems, job.source())
