@@ -81,7 +81,7 @@ pub const TIME_LIMIT: u64 = 5 * 60 * 1000 / TICK_MS;
 pub const RETRY_TICKS: u64 = 1000 / TICK_MS;
 
 /// The emulator of the workstation controller.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Hwsc {
     steps: Vec<JobLine>,
     /// The present step: 0 is the first PAUSE, `n` is `steps[n - 1]`.
@@ -115,7 +115,7 @@ pub struct Hwsc {
 }
 
 /// A command that failed while the job continued.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct FailedCommand {
     /// Index in `begun_steps`.
     step: usize,

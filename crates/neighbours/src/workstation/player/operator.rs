@@ -23,7 +23,7 @@ use super::{BegunStep, Hwsc, JobFailure, Outcome, Progress};
 use crate::workstation::status::Status;
 
 /// State of an operator's intervention.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Intervention {
     /// An operator is connected.
     attended: bool,

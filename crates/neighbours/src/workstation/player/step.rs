@@ -7,7 +7,7 @@ use taskdata::load::job::{JobLine, Step, Workstation as Action};
 use super::{BegunStep, Hwsc, JobFailure, Outcome, PAUSE, Progress, Workstation, pause};
 
 /// A delayed action.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Later {
     /// Delay from the command to the action, ticks.
     pub ticks: u64,
