@@ -48,6 +48,12 @@ fn is_sound<W: World>(name: &str, first: W, most: usize) -> Found<W::Event> {
         found.states, found.ticks, found.pause, found.any
     );
     assert!(found.wrong.is_none(), "{name}: {:#?}", found.wrong);
+    if !is_full() {
+        // A role or an image that merges different states makes a search smaller, and lets it pass.
+        let size = format!(" {} states {} ticks", found.states, found.ticks);
+        let page = include_str!("../../../../docs/proof.md").replace(',', "");
+        assert!(page.contains(&size), "{name}: docs/proof.md does not state{size}");
+    }
     found
 }
 
@@ -61,15 +67,13 @@ fn commands() -> &'static [PedestalVerb] {
 #[test]
 fn pedestal_and_table() {
     let found = is_sound("pedestal and table", pedestal::Pair::first(0, commands()), 1_000_000);
-    assert!(found.states > 1000, "{} states", found.states);
     assert!(found.pause <= 22 && found.any <= 44, "{} and {}", found.pause, found.any);
 }
 
 #[test]
 fn pedestal_and_table_with_a_mishap() {
     let commands = if is_full() { SOME } else { &[PedestalVerb::Flip, PedestalVerb::Pause] };
-    let found = is_sound("pedestal and table, a mishap", pedestal::Pair::first(1, commands), 8_000_000);
-    assert!(found.states > 1000, "{} states", found.states);
+    is_sound("pedestal and table, a mishap", pedestal::Pair::first(1, commands), 8_000_000);
 }
 
 const HOLDING: &[PedestalVerb] = &[PedestalVerb::Grip, PedestalVerb::Release, PedestalVerb::Pause];
@@ -78,15 +82,13 @@ const HOLDING: &[PedestalVerb] = &[PedestalVerb::Grip, PedestalVerb::Release, Pe
 fn pedestal_and_hand() {
     let commands = if is_full() { PedestalVerb::ALL } else { HOLDING };
     let found = is_sound("pedestal and hand", hand::Pair::first(0, commands), 1_000_000);
-    assert!(found.states > 1000, "{} states", found.states);
     assert!(found.pause <= 21 && found.any <= 29, "{} and {}", found.pause, found.any);
 }
 
 #[test]
 fn pedestal_and_hand_with_a_mishap() {
     let commands = if is_full() { HOLDING } else { &[PedestalVerb::Grip, PedestalVerb::Pause] };
-    let found = is_sound("pedestal and hand, a mishap", hand::Pair::first(1, commands), 1_000_000);
-    assert!(found.states > 1000, "{} states", found.states);
+    is_sound("pedestal and hand, a mishap", hand::Pair::first(1, commands), 1_000_000);
 }
 
 /// Commands that handle an object.
@@ -103,7 +105,6 @@ const TELLING: &[&str] = &["PAUSE", "STARTUP", "POSITION LINKBAR1 +2 PFIXTURE 0 
 /// Search Task and Subtask with these commands; a pair that rests takes `any` ticks at most.
 fn tasks(name: &str, mishaps: u8, lines: &[&str], any: u32) {
     let found = is_sound(name, task::Pair::first(mishaps, data::commands(lines)), 4_000_000);
-    assert!(found.states > 1000, "{} states", found.states);
     assert!(found.pause <= 14 && found.any <= any, "{} and {}", found.pause, found.any);
 }
 
@@ -129,7 +130,6 @@ fn task_and_subtask_let_an_object_go() {
     commands.truncate(if is_full() { 3 } else { 2 });
     let pair = task::Pair::first(0, commands.clone()).carrying(&commands[1]);
     let found = is_sound("task and subtask, an object that the data base follows", pair, 4_000_000);
-    assert!(found.states > 1000, "{} states", found.states);
     assert!(found.pause <= 14 && found.any <= TELLING_TWICE, "{} and {}", found.pause, found.any);
 }
 
@@ -140,7 +140,6 @@ fn task_and_subtask_take_an_object_out_of_the_mbd() {
     commands.truncate(if is_full() { 3 } else { 2 });
     let pair = task::Pair::first(0, commands).connected("UNIT_1").promptly(!is_full());
     let found = is_sound("task and subtask, an object that is taken out of the MBD", pair, 4_000_000);
-    assert!(found.states > 1000, "{} states", found.states);
     assert!(found.pause <= 14 && found.any <= TELLING_TWICE, "{} and {}", found.pause, found.any);
 }
 
@@ -166,7 +165,6 @@ fn grasping<G: emove::Fingered>(
     (pause, any): (u32, u32),
 ) {
     let found = is_sound(name, emove::Pair::<G>::first(commands, early, restarts), 2_500_000);
-    assert!(found.states > 1000, "{} states", found.states);
     assert!(found.pause <= pause && found.any <= any, "{} and {}", found.pause, found.any);
 }
 
@@ -244,7 +242,6 @@ const THERE_AND_BACK: &[prim::Line] =
 /// E-move and Prim: `motions` commands interrupt a motion, and as many `faults` come.
 fn moves(name: &str, motions: u8, faults: u8) {
     let found = is_sound(name, prim::Pair::first("HOME", THERE_AND_BACK, motions, faults), 1_000_000);
-    assert!(found.states > 1000, "{} states", found.states);
     assert!(found.pause <= 10 && found.any <= 30, "{} and {}", found.pause, found.any);
 }
 
@@ -272,7 +269,6 @@ const CHANGING_TOOLS: &[prim::Line] = &[
 fn guards(name: &str, commands: usize, (unusual, motions, faults): (u8, u8, u8), any: u32) {
     let first = prim::Pair::at_drum(&CHANGING_TOOLS[..commands], unusual, motions, faults);
     let found = is_sound(name, first, 1_000_000);
-    assert!(found.states > 10_000, "{} states", found.states);
     assert!(found.pause <= 10 && found.any <= any, "{} and {}", found.pause, found.any);
 }
 
@@ -301,7 +297,6 @@ const CHANGING_GRIPPERS: &[prim::Line] =
 fn exchanges(name: &str, commands: usize, (unusual, motions, faults): (u8, u8, u8), any: u32) {
     let first = prim::Pair::at_holster(&CHANGING_GRIPPERS[..commands], unusual, motions, faults);
     let found = is_sound(name, first, 1_000_000);
-    assert!(found.states > 100, "{} states", found.states);
     assert!(found.pause <= 10 && found.any <= any, "{} and {}", found.pause, found.any);
 }
 
@@ -327,7 +322,6 @@ fn emove_and_prim_change_grippers_with_a_fault() {
 /// takes `any` ticks at most.
 fn fetches(name: &str, object: &str, lines: &[subtask::Line], (early, mishaps): (u8, u8), any: u32) {
     let found = is_sound(name, subtask::Pair::first(object, lines, early, mishaps), 4_000_000);
-    assert!(found.states > 1000, "{} states", found.states);
     assert!(found.pause <= 12 && found.any <= any, "{} and {}", found.pause, found.any);
 }
 
@@ -372,7 +366,6 @@ fn subtask_and_emove_with_other_commands() {
 /// E-move and Quick Change: `early` commands come before the last one has ended, and so many `faults`.
 fn changes(name: &str, early: u8, faults: u8) {
     let found = is_sound(name, ring::Pair::first(early, faults), 1_000_000);
-    assert!(found.states > 50_000, "{} states", found.states);
     assert!(found.pause <= 14 && found.any <= 43, "{} and {}", found.pause, found.any);
 }
 
