@@ -3,59 +3,47 @@
 use interfaces::device::{DeviceOutputs, valve};
 use serde::{Deserialize, Serialize};
 
+use crate::sensor::Word::{self, Bits, Flag};
+
 /// A valve: its index in the list of all.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub struct Valve(u8);
 
-/// The output that drives a valve.
-#[derive(Clone, Copy)]
-enum Output {
-    /// A bit of the eight valves of the parts gripper.
-    Grip(u8),
-    /// A bit of the eight valves of the pedestal's hand.
-    Hand(u8),
-    VOpen,
-    VClose,
-    ToolOpen,
-    ToolClose,
-    Lock,
-    Unlock,
-    Port,
-}
+/// Name of a valve, and the output that drives it.
+type Row = (&'static str, fn(&mut DeviceOutputs) -> Word<'_>);
 
 /// All valves.
-const VALVES: [(&str, Output); 23] = [
-    ("grip.open-fine", Output::Grip(valve::OPEN_FINE)),
-    ("grip.open-medium", Output::Grip(valve::OPEN_MEDIUM)),
-    ("grip.open-coarse", Output::Grip(valve::OPEN_COARSE)),
-    ("grip.close-fine", Output::Grip(valve::CLOSE_FINE)),
-    ("grip.close-medium", Output::Grip(valve::CLOSE_MEDIUM)),
-    ("grip.close-coarse", Output::Grip(valve::CLOSE_COARSE)),
-    ("grip.vent", Output::Grip(valve::VENT)),
-    ("grip.supply", Output::Grip(valve::SUPPLY)),
-    ("v.open", Output::VOpen),
-    ("v.close", Output::VClose),
-    ("tool.open", Output::ToolOpen),
-    ("tool.close", Output::ToolClose),
-    ("quick-change.lock", Output::Lock),
-    ("quick-change.unlock", Output::Unlock),
-    ("quick-change.port", Output::Port),
-    ("pedestal.open-fine", Output::Hand(valve::OPEN_FINE)),
-    ("pedestal.open-medium", Output::Hand(valve::OPEN_MEDIUM)),
-    ("pedestal.open-coarse", Output::Hand(valve::OPEN_COARSE)),
-    ("pedestal.close-fine", Output::Hand(valve::CLOSE_FINE)),
-    ("pedestal.close-medium", Output::Hand(valve::CLOSE_MEDIUM)),
-    ("pedestal.close-coarse", Output::Hand(valve::CLOSE_COARSE)),
-    ("pedestal.vent", Output::Hand(valve::VENT)),
-    ("pedestal.supply", Output::Hand(valve::SUPPLY)),
+const VALVES: [Row; 23] = [
+    ("grip.open-fine", |outputs| Bits(&mut outputs.grip.bits, valve::OPEN_FINE)),
+    ("grip.open-medium", |outputs| Bits(&mut outputs.grip.bits, valve::OPEN_MEDIUM)),
+    ("grip.open-coarse", |outputs| Bits(&mut outputs.grip.bits, valve::OPEN_COARSE)),
+    ("grip.close-fine", |outputs| Bits(&mut outputs.grip.bits, valve::CLOSE_FINE)),
+    ("grip.close-medium", |outputs| Bits(&mut outputs.grip.bits, valve::CLOSE_MEDIUM)),
+    ("grip.close-coarse", |outputs| Bits(&mut outputs.grip.bits, valve::CLOSE_COARSE)),
+    ("grip.vent", |outputs| Bits(&mut outputs.grip.bits, valve::VENT)),
+    ("grip.supply", |outputs| Bits(&mut outputs.grip.bits, valve::SUPPLY)),
+    ("v.open", |outputs| Flag(&mut outputs.v_grip.open)),
+    ("v.close", |outputs| Flag(&mut outputs.v_grip.close)),
+    ("tool.open", |outputs| Flag(&mut outputs.tool_grip.open)),
+    ("tool.close", |outputs| Flag(&mut outputs.tool_grip.close)),
+    ("quick-change.lock", |outputs| Flag(&mut outputs.quick_change.lock)),
+    ("quick-change.unlock", |outputs| Flag(&mut outputs.quick_change.unlock)),
+    ("quick-change.port", |outputs| Flag(&mut outputs.quick_change.port)),
+    ("pedestal.open-fine", |outputs| Bits(&mut outputs.pedestal_hand.bits, valve::OPEN_FINE)),
+    ("pedestal.open-medium", |outputs| Bits(&mut outputs.pedestal_hand.bits, valve::OPEN_MEDIUM)),
+    ("pedestal.open-coarse", |outputs| Bits(&mut outputs.pedestal_hand.bits, valve::OPEN_COARSE)),
+    ("pedestal.close-fine", |outputs| Bits(&mut outputs.pedestal_hand.bits, valve::CLOSE_FINE)),
+    ("pedestal.close-medium", |outputs| Bits(&mut outputs.pedestal_hand.bits, valve::CLOSE_MEDIUM)),
+    ("pedestal.close-coarse", |outputs| Bits(&mut outputs.pedestal_hand.bits, valve::CLOSE_COARSE)),
+    ("pedestal.vent", |outputs| Bits(&mut outputs.pedestal_hand.bits, valve::VENT)),
+    ("pedestal.supply", |outputs| Bits(&mut outputs.pedestal_hand.bits, valve::SUPPLY)),
 ];
 
 impl Valve {
     /// The valve with a name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
-        let at = VALVES.iter().position(|(known, _)| *known == name)?;
-        u8::try_from(at).ok().map(Self)
+        Self::all().find(|valve| valve.name() == name)
     }
 
     /// All valves.
@@ -63,34 +51,20 @@ impl Valve {
         (0..).take(VALVES.len()).map(Self)
     }
 
-    const fn entry(self) -> &'static (&'static str, Output) {
+    const fn row(self) -> &'static Row {
         &VALVES[self.0 as usize]
     }
 
     /// Its name.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        self.entry().0
+        self.row().0
     }
 
     /// Set this valve in the outputs as stuck open or closed.
-    pub const fn stick(self, outputs: &mut DeviceOutputs, open: bool) {
-        match self.entry().1 {
-            Output::Grip(mask) => bit_to(&mut outputs.grip.bits, mask, open),
-            Output::Hand(mask) => bit_to(&mut outputs.pedestal_hand.bits, mask, open),
-            Output::VOpen => outputs.v_grip.open = open,
-            Output::VClose => outputs.v_grip.close = open,
-            Output::ToolOpen => outputs.tool_grip.open = open,
-            Output::ToolClose => outputs.tool_grip.close = open,
-            Output::Lock => outputs.quick_change.lock = open,
-            Output::Unlock => outputs.quick_change.unlock = open,
-            Output::Port => outputs.quick_change.port = open,
-        }
+    pub fn stick(self, outputs: &mut DeviceOutputs, open: bool) {
+        self.row().1(outputs).write(open.into());
     }
-}
-
-const fn bit_to(bits: &mut u8, mask: u8, on: bool) {
-    *bits = if on { *bits | mask } else { *bits & !mask };
 }
 
 /// Remove the air supply: nothing flows in, and air trapped behind the closed valves of a hand stays. The check valves

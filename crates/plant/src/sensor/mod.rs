@@ -15,8 +15,10 @@ mod delay;
 mod name;
 pub mod resolver;
 mod switch;
+mod word;
 
 pub use analog::Analog;
 pub use delay::{DeadTimes, DelayLine};
 pub use name::{Group, Sensor};
 pub use switch::Switch;
+pub(crate) use word::Word;

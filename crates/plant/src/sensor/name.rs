@@ -4,103 +4,17 @@
 //! potentiometer on the same one (III.3.7), so `grip.potentiometer` is that of the attached gripper. A fault of a
 //! sensor, a cable or a converter changes only this word, so the fault injector acts here ([`crate::fault`]).
 
-use core::ops::RangeInclusive;
+use std::ops::RangeInclusive;
 
-use interfaces::device::{ADC_FULL_SCALE, DeviceInputs, HolsterSensors, RESOLVER_COUNTS, VisionResponse};
+use interfaces::device::{ADC_FULL_SCALE, DeviceInputs, RESOLVER_COUNTS};
 use serde::{Deserialize, Serialize};
+
+use super::word::Word::{self, Answer, Bits, Flag, Long, Short};
+use Group::{Converter, Force, Other, Resolver, Switch};
 
 /// A sensor: its index in the list of all.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub struct Sensor(u8);
-
-/// The word that a name stands for.
-#[derive(Clone, Copy)]
-enum Word {
-    /// Power of the resolver box.
-    Resolvers,
-    Resolver(usize),
-    GripPotentiometer,
-    GripStrainLeft,
-    GripStrainRight,
-    Beam(u8),
-    Locked,
-    Unlocked,
-    GripperId,
-    /// A sensor of a holster: 0 right, 1 left, 2 centre, and its bit.
-    Holster(usize, u8),
-    /// Power of the conditioners of the force sensor.
-    Force,
-    ForceX,
-    ForceY,
-    ForceZ,
-    Moment,
-    HandPotentiometer,
-    HandStrainLeft,
-    HandStrainRight,
-    TablePotentiometer,
-    LimitPlus,
-    LimitMinus,
-    Camera,
-}
-
-/// All sensors.
-const SENSORS: [(&str, Word); 48] = [
-    ("resolvers", Word::Resolvers),
-    ("resolver.base", Word::Resolver(0)),
-    ("resolver.shoulder", Word::Resolver(1)),
-    ("resolver.elbow", Word::Resolver(2)),
-    ("resolver.pitch", Word::Resolver(3)),
-    ("resolver.yaw", Word::Resolver(4)),
-    ("resolver.roll", Word::Resolver(5)),
-    ("grip.potentiometer", Word::GripPotentiometer),
-    ("grip.strain-left", Word::GripStrainLeft),
-    ("grip.strain-right", Word::GripStrainRight),
-    ("beam.1", Word::Beam(0)),
-    ("beam.2", Word::Beam(1)),
-    ("beam.3", Word::Beam(2)),
-    ("beam.4", Word::Beam(3)),
-    ("beam.5", Word::Beam(4)),
-    ("beam.6", Word::Beam(5)),
-    ("beam.7", Word::Beam(6)),
-    ("beam.8", Word::Beam(7)),
-    ("quick-change.locked", Word::Locked),
-    ("quick-change.unlocked", Word::Unlocked),
-    ("quick-change.id", Word::GripperId),
-    ("holster.right.large-1", Word::Holster(0, 0)),
-    ("holster.right.large-2", Word::Holster(0, 1)),
-    ("holster.right.small-1", Word::Holster(0, 2)),
-    ("holster.right.small-2", Word::Holster(0, 3)),
-    ("holster.left.large-1", Word::Holster(1, 0)),
-    ("holster.left.large-2", Word::Holster(1, 1)),
-    ("holster.left.small-1", Word::Holster(1, 2)),
-    ("holster.left.small-2", Word::Holster(1, 3)),
-    ("holster.centre.large-1", Word::Holster(2, 0)),
-    ("holster.centre.large-2", Word::Holster(2, 1)),
-    ("holster.centre.small-1", Word::Holster(2, 2)),
-    ("holster.centre.small-2", Word::Holster(2, 3)),
-    ("force", Word::Force),
-    ("force.x", Word::ForceX),
-    ("force.y", Word::ForceY),
-    ("force.z", Word::ForceZ),
-    ("force.moment", Word::Moment),
-    ("pedestal.potentiometer", Word::HandPotentiometer),
-    ("pedestal.strain-left", Word::HandStrainLeft),
-    ("pedestal.strain-right", Word::HandStrainRight),
-    ("table.potentiometer", Word::TablePotentiometer),
-    ("table.limit-plus", Word::LimitPlus),
-    ("table.limit-minus", Word::LimitMinus),
-    ("camera", Word::Camera),
-    ("holster.right", Word::Holster(0, WHOLE)),
-    ("holster.left", Word::Holster(1, WHOLE)),
-    ("holster.centre", Word::Holster(2, WHOLE)),
-];
-
-/// Bit value for all four sensors of a holster together: their cable.
-const WHOLE: u8 = u8::MAX;
-/// Bits of the four sensors of a holster.
-const HOLSTER_BITS: u8 = 0x0F;
-/// The greatest `endeff-id#` that two id pins can show.
-const GREATEST_ID: i64 = 3;
 
 /// Kinds of sensors with common electronics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,37 +31,79 @@ pub enum Group {
     Other,
 }
 
-impl Sensor {
-    /// The kind of sensor.
-    #[must_use]
-    pub const fn group(self) -> Group {
-        match self.entry().1 {
-            Word::Resolver(_) => Group::Resolver,
-            Word::GripPotentiometer
-            | Word::GripStrainLeft
-            | Word::GripStrainRight
-            | Word::HandPotentiometer
-            | Word::HandStrainLeft
-            | Word::HandStrainRight
-            | Word::TablePotentiometer => Group::Converter,
-            Word::ForceX | Word::ForceY | Word::ForceZ | Word::Moment => Group::Force,
-            Word::Holster(_, WHOLE) | Word::Resolvers | Word::Force | Word::GripperId | Word::Camera => {
-                Group::Other
-            }
-            Word::Beam(_)
-            | Word::Locked
-            | Word::Unlocked
-            | Word::Holster(..)
-            | Word::LimitPlus
-            | Word::LimitMinus => Group::Switch,
-        }
-    }
+/// Name, group, greatest value and word of a sensor. The least value is 0.
+type Row = (&'static str, Group, i64, fn(&mut DeviceInputs) -> Word<'_>);
 
+/// The vision system, which answers in messages and not in a word: it can only be off.
+const CAMERA: &str = "camera";
+/// Greatest count of a resolver, which wraps around.
+const TURN: i64 = RESOLVER_COUNTS as i64 - 1;
+/// Greatest count of a converter.
+const FULL: i64 = ADC_FULL_SCALE as i64;
+/// The greatest `endeff-id#` that two id pins can show.
+const ID: i64 = 3;
+/// The four sensors of a holster together: their cable.
+const HOLSTER: i64 = 0x0F;
+/// All bits of a byte.
+const ALL: u8 = u8::MAX;
+
+/// All sensors.
+const SENSORS: [Row; 48] = [
+    ("resolvers", Other, 1, |inputs| Flag(&mut inputs.resolvers.valid)),
+    ("resolver.base", Resolver, TURN, |inputs| Long(&mut inputs.resolvers.counts[0])),
+    ("resolver.shoulder", Resolver, TURN, |inputs| Long(&mut inputs.resolvers.counts[1])),
+    ("resolver.elbow", Resolver, TURN, |inputs| Long(&mut inputs.resolvers.counts[2])),
+    ("resolver.pitch", Resolver, TURN, |inputs| Long(&mut inputs.resolvers.counts[3])),
+    ("resolver.yaw", Resolver, TURN, |inputs| Long(&mut inputs.resolvers.counts[4])),
+    ("resolver.roll", Resolver, TURN, |inputs| Long(&mut inputs.resolvers.counts[5])),
+    ("grip.potentiometer", Converter, FULL, |inputs| Short(&mut inputs.grip.potentiometer)),
+    ("grip.strain-left", Converter, FULL, |inputs| Short(&mut inputs.grip.strain_left)),
+    ("grip.strain-right", Converter, FULL, |inputs| Short(&mut inputs.grip.strain_right)),
+    ("beam.1", Switch, 1, |inputs| Bits(&mut inputs.grip.beams, 0x01)),
+    ("beam.2", Switch, 1, |inputs| Bits(&mut inputs.grip.beams, 0x02)),
+    ("beam.3", Switch, 1, |inputs| Bits(&mut inputs.grip.beams, 0x04)),
+    ("beam.4", Switch, 1, |inputs| Bits(&mut inputs.grip.beams, 0x08)),
+    ("beam.5", Switch, 1, |inputs| Bits(&mut inputs.grip.beams, 0x10)),
+    ("beam.6", Switch, 1, |inputs| Bits(&mut inputs.grip.beams, 0x20)),
+    ("beam.7", Switch, 1, |inputs| Bits(&mut inputs.grip.beams, 0x40)),
+    ("beam.8", Switch, 1, |inputs| Bits(&mut inputs.grip.beams, 0x80)),
+    ("quick-change.locked", Switch, 1, |inputs| Flag(&mut inputs.quick_change.locked)),
+    ("quick-change.unlocked", Switch, 1, |inputs| Flag(&mut inputs.quick_change.unlocked)),
+    ("quick-change.id", Other, ID, |inputs| Bits(&mut inputs.quick_change.end_effector_id, ALL)),
+    ("holster.right.large-1", Switch, 1, |inputs| Bits(&mut inputs.holsters.right, 0x01)),
+    ("holster.right.large-2", Switch, 1, |inputs| Bits(&mut inputs.holsters.right, 0x02)),
+    ("holster.right.small-1", Switch, 1, |inputs| Bits(&mut inputs.holsters.right, 0x04)),
+    ("holster.right.small-2", Switch, 1, |inputs| Bits(&mut inputs.holsters.right, 0x08)),
+    ("holster.left.large-1", Switch, 1, |inputs| Bits(&mut inputs.holsters.left, 0x01)),
+    ("holster.left.large-2", Switch, 1, |inputs| Bits(&mut inputs.holsters.left, 0x02)),
+    ("holster.left.small-1", Switch, 1, |inputs| Bits(&mut inputs.holsters.left, 0x04)),
+    ("holster.left.small-2", Switch, 1, |inputs| Bits(&mut inputs.holsters.left, 0x08)),
+    ("holster.centre.large-1", Switch, 1, |inputs| Bits(&mut inputs.holsters.centre, 0x01)),
+    ("holster.centre.large-2", Switch, 1, |inputs| Bits(&mut inputs.holsters.centre, 0x02)),
+    ("holster.centre.small-1", Switch, 1, |inputs| Bits(&mut inputs.holsters.centre, 0x04)),
+    ("holster.centre.small-2", Switch, 1, |inputs| Bits(&mut inputs.holsters.centre, 0x08)),
+    ("force", Other, 1, |inputs| Flag(&mut inputs.force.valid)),
+    ("force.x", Force, FULL, |inputs| Short(&mut inputs.force.x)),
+    ("force.y", Force, FULL, |inputs| Short(&mut inputs.force.y)),
+    ("force.z", Force, FULL, |inputs| Short(&mut inputs.force.z)),
+    ("force.moment", Force, FULL, |inputs| Short(&mut inputs.force.moment)),
+    ("pedestal.potentiometer", Converter, FULL, |inputs| Short(&mut inputs.pedestal.potentiometer)),
+    ("pedestal.strain-left", Converter, FULL, |inputs| Short(&mut inputs.pedestal.strain_left)),
+    ("pedestal.strain-right", Converter, FULL, |inputs| Short(&mut inputs.pedestal.strain_right)),
+    ("table.potentiometer", Converter, FULL, |inputs| Short(&mut inputs.pedestal.table_potentiometer)),
+    ("table.limit-plus", Switch, 1, |inputs| Flag(&mut inputs.pedestal.limit_plus)),
+    ("table.limit-minus", Switch, 1, |inputs| Flag(&mut inputs.pedestal.limit_minus)),
+    (CAMERA, Other, 1, |inputs| Answer(&mut inputs.vision)),
+    ("holster.right", Other, HOLSTER, |inputs| Bits(&mut inputs.holsters.right, ALL)),
+    ("holster.left", Other, HOLSTER, |inputs| Bits(&mut inputs.holsters.left, ALL)),
+    ("holster.centre", Other, HOLSTER, |inputs| Bits(&mut inputs.holsters.centre, ALL)),
+];
+
+impl Sensor {
     /// The sensor with a name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
-        let at = SENSORS.iter().position(|(known, _)| *known == name)?;
-        u8::try_from(at).ok().map(Self)
+        Self::all().find(|sensor| sensor.name() == name)
     }
 
     /// All sensors.
@@ -155,142 +111,56 @@ impl Sensor {
         (0..).take(SENSORS.len()).map(Self)
     }
 
-    const fn entry(self) -> &'static (&'static str, Word) {
+    const fn row(self) -> &'static Row {
         &SENSORS[self.0 as usize]
     }
 
     /// Its name.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        self.entry().0
+        self.row().0
     }
 
-    /// True for the vision system, which answers in messages and not in a word: it can only be off.
+    /// The kind of sensor.
     #[must_use]
-    pub const fn is_camera(self) -> bool {
-        matches!(self.entry().1, Word::Camera)
+    pub const fn group(self) -> Group {
+        self.row().1
+    }
+
+    /// True for the vision system.
+    #[must_use]
+    pub fn is_camera(self) -> bool {
+        self.name() == CAMERA
     }
 
     /// Range of the word: counts of a converter, or 0 and 1.
     #[must_use]
-    pub fn range(self) -> RangeInclusive<i64> {
-        match self.entry().1 {
-            Word::Resolver(_) => 0..=i64::from(RESOLVER_COUNTS) - 1,
-            Word::GripPotentiometer
-            | Word::GripStrainLeft
-            | Word::GripStrainRight
-            | Word::ForceX
-            | Word::ForceY
-            | Word::ForceZ
-            | Word::Moment
-            | Word::HandPotentiometer
-            | Word::HandStrainLeft
-            | Word::HandStrainRight
-            | Word::TablePotentiometer => 0..=i64::from(ADC_FULL_SCALE),
-            Word::GripperId => 0..=GREATEST_ID,
-            Word::Holster(_, WHOLE) => 0..=i64::from(HOLSTER_BITS),
-            Word::Resolvers
-            | Word::Beam(_)
-            | Word::Locked
-            | Word::Unlocked
-            | Word::Holster(..)
-            | Word::Force
-            | Word::LimitPlus
-            | Word::LimitMinus
-            | Word::Camera => 0..=1,
-        }
+    pub const fn range(self) -> RangeInclusive<i64> {
+        0..=self.row().2
     }
 
     /// Its present value.
     #[must_use]
     pub fn read(self, inputs: &DeviceInputs) -> i64 {
-        match self.entry().1 {
-            Word::Resolvers => inputs.resolvers.valid.into(),
-            Word::Resolver(joint) => inputs.resolvers.counts[joint].into(),
-            Word::GripPotentiometer => inputs.grip.potentiometer.into(),
-            Word::GripStrainLeft => inputs.grip.strain_left.into(),
-            Word::GripStrainRight => inputs.grip.strain_right.into(),
-            Word::Beam(bit) => i64::from(inputs.grip.beams >> bit & 1),
-            Word::Locked => inputs.quick_change.locked.into(),
-            Word::Unlocked => inputs.quick_change.unlocked.into(),
-            Word::GripperId => inputs.quick_change.end_effector_id.into(),
-            Word::Holster(which, WHOLE) => holster(&inputs.holsters, which).into(),
-            Word::Holster(which, bit) => i64::from(holster(&inputs.holsters, which) >> bit & 1),
-            Word::Force => inputs.force.valid.into(),
-            Word::ForceX => inputs.force.x.into(),
-            Word::ForceY => inputs.force.y.into(),
-            Word::ForceZ => inputs.force.z.into(),
-            Word::Moment => inputs.force.moment.into(),
-            Word::HandPotentiometer => inputs.pedestal.potentiometer.into(),
-            Word::HandStrainLeft => inputs.pedestal.strain_left.into(),
-            Word::HandStrainRight => inputs.pedestal.strain_right.into(),
-            Word::TablePotentiometer => inputs.pedestal.table_potentiometer.into(),
-            Word::LimitPlus => inputs.pedestal.limit_plus.into(),
-            Word::LimitMinus => inputs.pedestal.limit_minus.into(),
-            Word::Camera => 1,
-        }
+        let (.., word) = self.row();
+        word(&mut inputs.clone()).read()
     }
 
     /// Set it to the nearest possible value. A resolver wraps around.
     pub fn write(self, inputs: &mut DeviceInputs, value: i64) {
-        let range = self.range();
-        let value = match self.entry().1 {
-            Word::Resolver(_) => value.rem_euclid(range.end() + 1),
-            _ => value.clamp(*range.start(), *range.end()),
+        let (_, group, greatest, word) = self.row();
+        let value = match group {
+            Resolver => value.rem_euclid(greatest + 1),
+            _ => value.clamp(0, *greatest),
         };
-        let (on, byte, word) = (value != 0, value as u8, value as u16);
-        match self.entry().1 {
-            Word::Resolvers => inputs.resolvers.valid = on,
-            Word::Resolver(joint) => inputs.resolvers.counts[joint] = value as u32,
-            Word::GripPotentiometer => inputs.grip.potentiometer = word,
-            Word::GripStrainLeft => inputs.grip.strain_left = word,
-            Word::GripStrainRight => inputs.grip.strain_right = word,
-            Word::Beam(bit) => set_bit(&mut inputs.grip.beams, bit, on),
-            Word::Locked => inputs.quick_change.locked = on,
-            Word::Unlocked => inputs.quick_change.unlocked = on,
-            Word::GripperId => inputs.quick_change.end_effector_id = byte,
-            Word::Holster(which, WHOLE) => *holster_mut(&mut inputs.holsters, which) = byte,
-            Word::Holster(which, bit) => set_bit(holster_mut(&mut inputs.holsters, which), bit, on),
-            Word::Force => inputs.force.valid = on,
-            Word::ForceX => inputs.force.x = word,
-            Word::ForceY => inputs.force.y = word,
-            Word::ForceZ => inputs.force.z = word,
-            Word::Moment => inputs.force.moment = word,
-            Word::HandPotentiometer => inputs.pedestal.potentiometer = word,
-            Word::HandStrainLeft => inputs.pedestal.strain_left = word,
-            Word::HandStrainRight => inputs.pedestal.strain_right = word,
-            Word::TablePotentiometer => inputs.pedestal.table_potentiometer = word,
-            Word::LimitPlus => inputs.pedestal.limit_plus = on,
-            Word::LimitMinus => inputs.pedestal.limit_minus = on,
-            Word::Camera if !on => inputs.vision = VisionResponse::default(),
-            Word::Camera => {}
-        }
+        word(inputs).write(value);
     }
-}
-
-const fn holster(sensors: &HolsterSensors, which: usize) -> u8 {
-    match which {
-        0 => sensors.right,
-        1 => sensors.left,
-        _ => sensors.centre,
-    }
-}
-
-const fn holster_mut(sensors: &mut HolsterSensors, which: usize) -> &mut u8 {
-    match which {
-        0 => &mut sensors.right,
-        1 => &mut sensors.left,
-        _ => &mut sensors.centre,
-    }
-}
-
-const fn set_bit(bits: &mut u8, bit: u8, on: bool) {
-    *bits = if on { *bits | 1 << bit } else { *bits & !(1 << bit) };
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use interfaces::device::VisionResponse;
 
     #[test]
     fn every_sensor_is_found_by_its_name_and_has_its_own_word() {
