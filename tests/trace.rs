@@ -24,12 +24,12 @@ use interfaces::{CommonMemory, Decided, DeviceOutputs, Header};
 use rcs_core::{
     Plain,
     plain::{Schema, StructSchema, Writer, from_bytes},
+    reflect,
     tick::Tick,
 };
 use record::{
     Log, ReadError,
     channels::{HeaderPlace, headers},
-    layout,
 };
 use zstd::stream::{read::Decoder, write::Encoder};
 
@@ -214,15 +214,15 @@ fn changes(
             Ok(())
         }
         Schema::U8 | Schema::U16 | Schema::U32 | Schema::U64 => {
-            visit(path, &layout::unsigned(is).to_string())
+            visit(path, &reflect::unsigned(is).to_string())
         }
-        Schema::I16 | Schema::I32 => visit(path, &layout::signed(is).to_string()),
+        Schema::I16 | Schema::I32 => visit(path, &reflect::signed(is).to_string()),
         // The shortest text from which the same number comes back.
-        Schema::F64 => visit(path, &f64::from_bits(layout::unsigned(is)).to_string()),
-        Schema::Bool => visit(path, if layout::unsigned(is) == 0 { "false" } else { "true" }),
-        Schema::Text(_) => visit(path, &layout::text(is)),
+        Schema::F64 => visit(path, &f64::from_bits(reflect::unsigned(is)).to_string()),
+        Schema::Bool => visit(path, if reflect::unsigned(is) == 0 { "false" } else { "true" }),
+        Schema::Text(_) => visit(path, reflect::text(is)),
         Schema::Enum(of) => {
-            let code = layout::unsigned(is);
+            let code = reflect::unsigned(is);
             match of.variants.iter().find(|variant| u64::from(variant.code) == code) {
                 Some(variant) => visit(path, variant.text),
                 None => visit(path, &format!("code {code}")),

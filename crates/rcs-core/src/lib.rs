@@ -5,6 +5,7 @@
 //!
 //! * [`tick`], [`name`]: time and names;
 //! * [`plain`]: one definition of a record gives its structure, its byte image and its description;
+//! * [`reflect`]: the fields of a byte image by path, with their values as text;
 //! * [`header`], [`handshake`]: what every set of output buffers starts with; command numbers, echoes and time
 //!   stamps between two processes;
 //! * [`table`]: decision tables, exhaustive by compilation;
@@ -37,5 +38,6 @@ pub mod handshake;
 pub mod header;
 pub mod name;
 pub mod plain;
+pub mod reflect;
 pub mod table;
 pub mod tick;

@@ -94,6 +94,8 @@ pub struct UnionVariant {
     pub code: u8,
     /// Text in logs and on screens.
     pub text: &'static str,
+    /// Name of what it carries, in paths and messages: the text as an identifier.
+    pub name: &'static str,
     /// What it carries.
     pub payload: Option<Schema>,
 }

@@ -1,5 +1,7 @@
 //! Spellings of a name, and doc comments.
 
+use std::fmt::Display;
+
 use syn::{Attribute, Expr, ExprLit, Lit, Meta};
 
 /// The words of a name in upper camel case, in lower case with `separator` between them: `LettingGo` is `letting-go`.
@@ -24,6 +26,15 @@ pub fn camel(name: &str) -> String {
             .unwrap_or_default()
     };
     name.split('_').map(upper).collect()
+}
+
+/// A text as an identifier. Beside it stands a field `kind`, so that this word gets the code as a suffix.
+pub fn identifier(text: &str, code: &impl Display) -> String {
+    let name = text.replace(|letter: char| !letter.is_ascii_alphanumeric(), "_");
+    match name.trim_matches('_') {
+        "kind" => format!("kind_{code}"),
+        name => name.to_owned(),
+    }
 }
 
 /// The value of an attribute `#[name = "value"]`.
@@ -64,7 +75,7 @@ pub fn doc(attributes: &[Attribute]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{camel, clause, words};
+    use super::{camel, clause, identifier, words};
 
     #[test]
     fn names_are_spelt_in_both_ways() {
@@ -72,6 +83,8 @@ mod tests {
         assert_eq!(words("Start", '-'), "start");
         assert_eq!(camel("get_object"), "GetObject");
         assert_eq!(camel("goto"), "Goto");
+        assert_eq!(identifier("MOVE-TO (slow)", &0), "MOVE_TO__slow");
+        assert_eq!(identifier("kind", &2), "kind_2");
         assert_eq!(clause("The fingers are stuck."), "the fingers are stuck");
     }
 }

@@ -183,8 +183,9 @@ fn payload(variant: &Variant) -> Result<Option<&Field>> {
 fn of_union(name: &Ident, data: &DataEnum) -> Result<TokenStream> {
     let text = name.to_string();
     let (mut schemas, mut encode, mut decode, mut zero) = (Vec::new(), Vec::new(), Vec::new(), None);
-    for (variant, code) in data.variants.iter().zip(codes()) {
+    for (variant, code) in data.variants.iter().zip(0_u8..=u8::MAX) {
         let (ident, label) = (&variant.ident, text_of(variant));
+        let word = names::identifier(&label, &code);
         let (schema, pattern, size, written, read) = match payload(variant)? {
             None => (quote!(None), quote!(Self::#ident), quote!(0), quote!(), quote!(Self::#ident)),
             Some(Field { ty, .. }) => (
@@ -203,7 +204,7 @@ fn of_union(name: &Ident, data: &DataEnum) -> Result<TokenStream> {
             _ => quote!(Self::#ident),
         });
         schemas.push(quote! {
-            ::rcs_core::plain::UnionVariant { code: #code, text: #label, payload: #schema }
+            ::rcs_core::plain::UnionVariant { code: #code, text: #label, name: #word, payload: #schema }
         });
         encode.push(quote! {
             #pattern => {

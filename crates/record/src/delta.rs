@@ -12,7 +12,7 @@
 //! differ from tick to tick, so that they compress well. Names and frames on the line are bytes, not numbers: their
 //! difference is a list of runs. A full image is a delta from zeros.
 
-use rcs_core::plain::StructSchema;
+use rcs_core::{plain::StructSchema, reflect};
 
 use crate::{
     layout::{self, Piece},
@@ -94,7 +94,7 @@ impl Piece {
     fn encode(&self, was: &[u8], is: &[u8], out: &mut Vec<u8>) {
         if self.number {
             let unused = 64 - 8 * self.size.clamp(1, 8);
-            let difference = layout::unsigned(is).wrapping_sub(layout::unsigned(was));
+            let difference = reflect::unsigned(is).wrapping_sub(reflect::unsigned(was));
             put_varint(zigzag((difference << unused).cast_signed() >> unused), out);
         } else {
             let mut runs = Vec::new();
@@ -124,7 +124,7 @@ fn add(field: &mut [u8], difference: u64) {
     } else if let Ok(field) = <&mut [u8; 8]>::try_from(&mut *field) {
         *field = u64::from_le_bytes(*field).wrapping_add(difference).to_le_bytes();
     } else {
-        let sum = layout::unsigned(field).wrapping_add(difference);
+        let sum = reflect::unsigned(field).wrapping_add(difference);
         field.iter_mut().zip(sum.to_le_bytes()).for_each(|(slot, byte)| *slot = byte);
     }
 }

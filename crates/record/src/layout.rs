@@ -1,18 +1,6 @@
 //! The layout of byte images: the position of each field, the text of a value, and the version of the whole layout.
 //!
-//! Everything here walks the [`Schema`] trees that `#[derive(Plain)]` makes, so that a new field of a buffer is
-//! described, compared and versioned without further code.
-//!
-//! | in the schema                              | leaves                                | as text           |
-//! |--------------------------------------------|---------------------------------------|-------------------|
-//! | number, flag, name, enum, array of bytes   | one                                   | `7`, `"HOME"`     |
-//! | record, other array                        | those of its fields, of its elements  |                   |
-//! | option of what is one leaf                 | one                                   | `none`, `7`       |
-//! | other option                               | `x` for the flag, those of the value  | `none`, `some`    |
-//! | union whose variants carry at most a leaf  | one                                   | `"candle" 7`      |
-//! | other union                                | `x` for the variant, `x.variant` ...  | `"candle"`        |
-//!
-//! A leaf of a value that an image does not hold is `none` there.
+//! [`rcs_core::reflect`] walks the schemas; a [`Leaf`] is one field of it that is kept.
 
 use std::{fmt::Write as _, sync::LazyLock};
 
@@ -20,10 +8,9 @@ use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::LadderState;
 use rcs_core::{
     digest::Digest,
-    plain::{FieldSchema, Schema, StructSchema, UnionSchema},
+    plain::{FieldSchema, Schema, StructSchema},
+    reflect::{self, Value},
 };
-
-use crate::proto::descriptor;
 
 /// A field that is not made of other fields: its position in the image and its schema.
 #[derive(Clone, Debug)]
@@ -57,7 +44,8 @@ impl Leaf {
     /// The value in `image` as text.
     #[must_use]
     pub fn text(&self, image: &[u8]) -> String {
-        if self.is_in(image) { value_text(self.schema, self.bytes(image)) } else { NONE.to_owned() }
+        let value = Value { schema: self.schema, bytes: self.bytes(image) };
+        if self.is_in(image) { value.to_string() } else { reflect::NONE.to_owned() }
     }
 
     /// The field holds a record number of the task data. A record has another number when something is added before it,
@@ -99,9 +87,6 @@ const RECORD_NUMBERS: [&str; 16] = [
     "trajectory_parameters",
 ];
 
-/// Text of an absent value.
-const NONE: &str = "none";
-
 /// All leaves of a record in the order of the image.
 #[must_use]
 pub fn leaves(record: &'static StructSchema) -> Vec<Leaf> {
@@ -111,87 +96,13 @@ pub fn leaves(record: &'static StructSchema) -> Vec<Leaf> {
 /// All leaves of consecutive fields.
 #[must_use]
 pub fn leaves_of(fields: &'static [FieldSchema]) -> Vec<Leaf> {
-    let mut walk = Walk::default();
-    walk.fields(fields, "", 0);
-    walk.found
-}
-
-/// A walk through a schema.
-#[derive(Default)]
-struct Walk {
-    /// Conditions on the image at the present position of the walk.
-    given: Vec<(usize, u8)>,
-    found: Vec<Leaf>,
-}
-
-impl Walk {
-    fn fields(&mut self, fields: &'static [FieldSchema], prefix: &str, mut offset: usize) {
-        for field in fields {
-            let path =
-                if prefix.is_empty() { field.name.to_owned() } else { format!("{prefix}.{}", field.name) };
-            self.schema(&field.schema, path, offset);
-            offset += field.schema.size();
-        }
-    }
-
-    fn schema(&mut self, schema: &'static Schema, path: String, offset: usize) {
-        match schema {
-            Schema::Struct(record) => self.fields(record.fields, &path, offset),
-            Schema::Array(of, count) if !is_leaf(schema) => {
-                for index in 0..*count {
-                    self.schema(of, format!("{path}[{index}]"), offset + index * of.size());
-                }
-            }
-            Schema::Option(of) if !is_leaf(schema) => {
-                self.leaf(schema, path.clone(), offset, 1);
-                self.carried(of, path, offset, 1);
-            }
-            Schema::Union(of) if !is_leaf(schema) => {
-                self.leaf(schema, path.clone(), offset, 1);
-                for (variant, name) in of.variants.iter().zip(payload_names(of)) {
-                    if let Some(payload) = &variant.payload {
-                        self.carried(payload, format!("{path}.{name}"), offset, variant.code);
-                    }
-                }
-            }
-            _ => self.leaf(schema, path, offset, schema.size()),
-        }
-    }
-
-    /// The value after the flag of an option or the code of a variant.
-    fn carried(&mut self, schema: &'static Schema, path: String, offset: usize, given: u8) {
-        self.given.push((offset, given));
-        self.schema(schema, path, offset + 1);
-        self.given.pop();
-    }
-
-    fn leaf(&mut self, schema: &'static Schema, path: String, offset: usize, size: usize) {
-        self.found.push(Leaf { path, offset, size, schema, given: self.given.clone() });
-    }
-}
-
-/// True if the value is shown as one word.
-fn is_leaf(schema: &Schema) -> bool {
-    match schema {
-        Schema::Struct(_) => false,
-        // Bytes are read as one word: a frame on the line, not 64 numbers.
-        Schema::Array(of, _) => **of == Schema::U8,
-        Schema::Option(of) => is_leaf(of),
-        Schema::Union(of) => of.variants.iter().filter_map(|variant| variant.payload.as_ref()).all(is_leaf),
-        _ => true,
-    }
-}
-
-/// Name of what each variant carries, in paths and in messages: the variant's text as an identifier.
-#[must_use]
-pub fn payload_names(of: &UnionSchema) -> Vec<String> {
-    let texts = of.variants.iter().map(|variant| (variant.code, variant.text));
-    let name = |(code, name)| match name {
-        // The field beside it, which says which variant it is.
-        name if name == descriptor::KIND => format!("{name}_{code}"),
-        name => name,
-    };
-    descriptor::identifiers(texts).into_iter().map(name).collect()
+    let mut found = Vec::new();
+    reflect::leaves(fields, &mut |leaf| {
+        let given = leaf.given().collect();
+        let reflect::Leaf { path, offset, size, schema, .. } = leaf;
+        found.push(Leaf { path: path.to_string(), offset, size, schema, given });
+    });
+    found
 }
 
 /// A stretch of an image that changes as a whole.
@@ -244,62 +155,6 @@ fn schema_pieces(schema: &Schema, offset: usize, found: &mut Vec<Piece>) {
     }
 }
 
-/// The value of a leaf as text: numbers in decimal, names and variants as their text, bytes in hexadecimal.
-#[must_use]
-pub fn value_text(schema: &Schema, bytes: &[u8]) -> String {
-    match schema {
-        Schema::U8 | Schema::U16 | Schema::U32 | Schema::U64 => unsigned(bytes).to_string(),
-        Schema::I16 | Schema::I32 => signed(bytes).to_string(),
-        Schema::F64 => f64::from_bits(unsigned(bytes)).to_string(),
-        Schema::Bool => (unsigned(bytes) != 0).to_string(),
-        Schema::Text(_) => format!("{:?}", text(bytes)),
-        Schema::Enum(of) => {
-            let code = unsigned(bytes);
-            let variant = of.variants.iter().find(|variant| u64::from(variant.code) == code);
-            variant.map_or_else(|| format!("code {code}"), |variant| format!("{:?}", variant.text))
-        }
-        Schema::Option(of) => match bytes.split_first() {
-            Some((0, _)) | None => NONE.to_owned(),
-            Some((_, [])) => "some".to_owned(),
-            Some((_, value)) => value_text(of, value),
-        },
-        Schema::Union(of) => union_text(of, bytes),
-        Schema::Array(..) | Schema::Struct(_) => bytes.iter().map(|byte| format!("{byte:02X}")).collect(),
-    }
-}
-
-/// The variant, and its payload if it follows.
-fn union_text(of: &UnionSchema, bytes: &[u8]) -> String {
-    let (code, carried) = bytes.split_first().map_or((0, bytes), |(code, carried)| (*code, carried));
-    let Some(variant) = of.variants.iter().find(|variant| variant.code == code) else {
-        return format!("code {code}");
-    };
-    match variant.payload.as_ref().and_then(|payload| Some((payload, carried.get(..payload.size())?))) {
-        Some((payload, value)) => format!("{:?} {}", variant.text, value_text(payload, value)),
-        None => format!("{:?}", variant.text),
-    }
-}
-
-/// An unsigned number of up to eight bytes, little-endian.
-#[must_use]
-pub fn unsigned(bytes: &[u8]) -> u64 {
-    bytes.iter().take(8).rev().fold(0, |value, byte| value << 8 | u64::from(*byte))
-}
-
-/// A signed number of up to eight bytes, little-endian.
-#[must_use]
-pub fn signed(bytes: &[u8]) -> i64 {
-    let unused = 64 - 8 * bytes.len().clamp(1, 8);
-    (unsigned(bytes) << unused).cast_signed() >> unused
-}
-
-/// The text of a zero-filled name.
-#[must_use]
-pub fn text(bytes: &[u8]) -> String {
-    let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
-    bytes.iter().take(end).copied().map(char::from).collect()
-}
-
 /// The first leaf in which two images of one record differ.
 #[must_use]
 pub fn first_difference<'a>(leaves: &'a [Leaf], was: &[u8], is: &[u8]) -> Option<&'a Leaf> {
@@ -317,66 +172,18 @@ pub fn first_difference<'a>(leaves: &'a [Leaf], was: &[u8], is: &[u8]) -> Option
 pub fn describe(name: &str, record: &'static StructSchema) -> String {
     let mut lines = format!("{name}: {}, {} bytes\n", record.name, record.size());
     for leaf in leaves(record) {
-        let kind = kind_name(leaf.schema);
+        let kind = leaf.schema.to_string();
         // Writing to a String cannot fail.
         let _ = writeln!(lines, "{:6} {:4} {kind:12} {}", leaf.offset, leaf.size, leaf.path);
     }
-    let mut definitions = Vec::new();
-    record.fields.iter().for_each(|field| define(&field.schema, &mut definitions));
+    let mut definitions: Vec<String> = Vec::new();
+    reflect::definitions(record.fields, &mut |definition| {
+        let line = format!("{definition}\n");
+        if !definitions.contains(&line) {
+            definitions.push(line);
+        }
+    });
     lines + &definitions.concat()
-}
-
-/// A line for each enum and union in a schema that has none yet.
-fn define(schema: &Schema, lines: &mut Vec<String>) {
-    let mut add = |line: String| {
-        if !lines.contains(&line) {
-            lines.push(line);
-        }
-    };
-    match schema {
-        Schema::Enum(of) => {
-            let codes: Vec<String> =
-                of.variants.iter().map(|variant| format!("{} {:?}", variant.code, variant.text)).collect();
-            add(format!("enum {}: {}\n", of.name, codes.join(", ")));
-        }
-        Schema::Union(of) => {
-            let payloads = || of.variants.iter().map(|variant| variant.payload.as_ref());
-            let kinds = payloads()
-                .map(|payload| payload.map_or_else(String::new, |of| format!(" {}", kind_name(of))));
-            let codes: Vec<String> = of
-                .variants
-                .iter()
-                .zip(kinds)
-                .map(|(variant, kind)| format!("{} {:?}{kind}", variant.code, variant.text))
-                .collect();
-            add(format!("union {}: {}\n", of.name, codes.join(", ")));
-            payloads().flatten().for_each(|payload| define(payload, lines));
-        }
-        Schema::Struct(of) => of.fields.iter().for_each(|field| define(&field.schema, lines)),
-        Schema::Array(of, _) | Schema::Option(of) => define(of, lines),
-        _ => {}
-    }
-}
-
-/// The kind of a value in a word: `u16`, `option text 10`, the name of an enum.
-#[must_use]
-pub fn kind_name(schema: &Schema) -> String {
-    match schema {
-        Schema::U8 => "u8".into(),
-        Schema::U16 => "u16".into(),
-        Schema::U32 => "u32".into(),
-        Schema::U64 => "u64".into(),
-        Schema::I16 => "i16".into(),
-        Schema::I32 => "i32".into(),
-        Schema::F64 => "f64".into(),
-        Schema::Bool => "bool".into(),
-        Schema::Text(length) => format!("text {length}"),
-        Schema::Enum(of) => of.name.into(),
-        Schema::Array(of, count) => format!("{}[{count}]", kind_name(of)),
-        Schema::Struct(of) => of.name.into(),
-        Schema::Option(of) => format!("option {}", kind_name(of)),
-        Schema::Union(of) => of.name.into(),
-    }
 }
 
 /// How images are written on `/replay`: see [`crate::delta`]. Logs of another format are refused as those of
@@ -454,6 +261,10 @@ mod tests {
         let mut bytes = vec![0xA5; T::SIZE];
         record.encode(&mut Writer::new(&mut bytes));
         bytes
+    }
+
+    fn value_text(schema: &Schema, bytes: &[u8]) -> String {
+        Value { schema, bytes }.to_string()
     }
 
     fn texts<T: Plain>(record: &'static StructSchema, value: &T) -> Vec<(String, String)> {

@@ -112,7 +112,7 @@ fn field(leaf: &Leaf, now: &[u8], was: Option<&Vec<u8>>) -> Field {
     Field {
         name: leaf.path.clone(),
         value: leaf.text(now),
-        kind: layout::kind_name(leaf.schema),
+        kind: leaf.schema.to_string(),
         unit: unit(&leaf.path),
         changed: was.is_some_and(|was| leaf.differs(was, now)),
     }

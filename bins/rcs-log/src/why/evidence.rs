@@ -13,6 +13,7 @@ use levels::{
 use rcs_core::{
     Plain,
     plain::{Schema, Writer, from_bytes},
+    reflect,
 };
 use record::{
     Log,
@@ -99,7 +100,7 @@ impl Trace {
     fn look(&mut self, tick: u64, image: &[u8]) {
         let bytes = self.leaf.bytes(image);
         if self.is_converter() {
-            let value = layout::unsigned(bytes);
+            let value = reflect::unsigned(bytes);
             (self.least, self.most) = (self.least.min(value), self.most.max(value));
             return;
         }

@@ -4,63 +4,43 @@
 //! number of requested reports: otherwise no state would ever repeat.
 
 use depc::host::{Host, HostState, RESTART_TICKS, START_ATTEMPTS};
-use rcs_core::{
-    Plain,
-    plain::{Schema, StructSchema, Writer},
+use rcs_core::{Plain, plain::Writer, reflect};
+use std::{
+    hash::{DefaultHasher, Hasher as _},
+    ops::Range,
+    sync::LazyLock,
 };
-use std::hash::{DefaultHasher, Hasher as _};
 
 /// A state as bytes.
 #[derive(Default)]
 pub struct Image(Vec<u8>);
 
-const HOST: &StructSchema = match &Host::SCHEMA {
-    Schema::Struct(fields) => fields,
-    _ => panic!("the host is a struct"),
-};
+/// The fields of the host that are changed.
+const NAMES: [&str; 9] = [
+    "counters",
+    "lost_function",
+    "frame",
+    "candidate",
+    "has_candidate",
+    "waited",
+    "asked",
+    "attempts",
+    "starting",
+];
 
-/// Offset of a field of the host in its image, and its size.
-fn field(name: &str) -> (usize, usize) {
-    let mut at = 0;
-    for field in HOST.fields {
-        if field.name == name {
-            return (at, field.schema.size());
+/// The bytes of each of them in the image of the host.
+static FIELDS: LazyLock<[Range<usize>; 9]> = LazyLock::new(|| NAMES.map(field));
+
+fn field(name: &str) -> Range<usize> {
+    let (mut start, mut end) = (usize::MAX, 0);
+    reflect::leaves(Host::STRUCT.fields, &mut |leaf| {
+        if leaf.path.to_string().split(['.', '[']).next() == Some(name) {
+            (start, end) = (start.min(leaf.offset), leaf.offset + leaf.size);
         }
-        at += field.schema.size();
-    }
-    panic!("the host has no field {name}");
+    });
+    assert!(start < end, "the host has no field {name}");
+    start..end
 }
-
-/// Offsets and sizes of the fields that are changed.
-pub struct Fields {
-    counters: (usize, usize),
-    lost_function: (usize, usize),
-    frame: (usize, usize),
-    candidate: (usize, usize),
-    has_candidate: (usize, usize),
-    waited: (usize, usize),
-    asked: (usize, usize),
-    attempts: (usize, usize),
-    starting: (usize, usize),
-}
-
-impl Fields {
-    fn new() -> Self {
-        Self {
-            counters: field("counters"),
-            lost_function: field("lost_function"),
-            frame: field("frame"),
-            candidate: field("candidate"),
-            has_candidate: field("has_candidate"),
-            waited: field("waited"),
-            asked: field("asked"),
-            attempts: field("attempts"),
-            starting: field("starting"),
-        }
-    }
-}
-
-static FIELDS: std::sync::LazyLock<Fields> = std::sync::LazyLock::new(Fields::new);
 
 impl Image {
     pub fn add(&mut self, bytes: &[u8]) {
@@ -77,26 +57,26 @@ impl Image {
     pub fn add_host(&mut self, host: &Host, faults: u8) {
         let from = self.0.len();
         self.add_plain(host);
-        let (image, fields) = (&mut self.0[from..], &*FIELDS);
-        let clear = |image: &mut [u8], (at, size): (usize, usize)| image[at..at + size].fill(0);
-        clear(image, fields.counters);
+        let image = &mut self.0[from..];
+        let [counters, lost_function, frame, candidate, has_candidate, waited, asked, attempts, starting] =
+            FIELDS.clone();
+        image[counters].fill(0);
         // It is only reported to the user; nothing depends on it.
-        clear(image, fields.lost_function);
+        image[lost_function].fill(0);
         if host.state() != HostState::Waiting {
-            clear(image, fields.frame);
+            image[frame].fill(0);
         }
-        if image[fields.has_candidate.0] == 0 {
-            clear(image, fields.candidate);
+        if image[has_candidate.start] == 0 {
+            image[candidate].fill(0);
         }
-        for time in [fields.waited, fields.starting] {
-            let ticks = u16::from_le_bytes([image[time.0], image[time.0 + 1]]);
-            let bounded = ticks.min(RESTART_TICKS + 5);
-            image[time.0..time.0 + 2].copy_from_slice(&bounded.to_le_bytes());
+        for time in [waited, starting] {
+            let ticks = reflect::unsigned(&image[time.clone()]).min(u64::from(RESTART_TICKS) + 5);
+            image[time].copy_from_slice(&ticks.to_le_bytes()[..2]);
         }
-        let attempts = &mut image[fields.attempts.0];
+        let attempts = &mut image[attempts.start];
         *attempts = (*attempts).min(START_ATTEMPTS);
         // Each damaged report reduces the number of awaited ones by one; all numbers beyond that are equivalent.
-        let asked = &mut image[fields.asked.0];
+        let asked = &mut image[asked.start];
         *asked = (*asked).min(faults + 4);
     }
 

@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use interfaces::{ExternalInputs, for_each_process};
-use rcs_core::{Plain, digest::Digest, plain::Schema, tick::Tick};
+use rcs_core::{Plain, digest::Digest, plain::FieldSchema, reflect, tick::Tick};
 
 use super::{
     cell::{CELL, CellView},
@@ -48,12 +48,12 @@ macro_rules! services {
         }
     )+) => {
         /// The services of a run: for each its name and the schema of its slots.
-        pub const SERVICES: &[(&str, Schema)] = &[
-            $( (stringify!($field), <$outputs as Plain>::SCHEMA), )+
-            (OUTSIDE, ExternalInputs::SCHEMA),
-            (EXECUTIVE, Pulse::SCHEMA),
-            (HISTORY, AllHeaders::SCHEMA),
-            (CELL, CellView::SCHEMA),
+        pub const SERVICES: &[FieldSchema] = &[
+            $( FieldSchema { name: stringify!($field), schema: <$outputs as Plain>::SCHEMA }, )+
+            FieldSchema { name: OUTSIDE, schema: ExternalInputs::SCHEMA },
+            FieldSchema { name: EXECUTIVE, schema: Pulse::SCHEMA },
+            FieldSchema { name: HISTORY, schema: AllHeaders::SCHEMA },
+            FieldSchema { name: CELL, schema: CellView::SCHEMA },
         ];
     };
 }
@@ -64,101 +64,57 @@ for_each_process!(services);
 #[must_use]
 pub fn layout_version() -> u32 {
     static VERSION: LazyLock<u32> = LazyLock::new(|| {
-        let mut digest = Digest::new();
-        for (service, schema) in SERVICES {
-            add_text(&mut digest, service);
-            add_schema(&mut digest, schema);
-        }
-        let hash = digest.value().to_le_bytes();
+        let hash = fingerprint(SERVICES).to_le_bytes();
         u32::from_le_bytes([hash[0] ^ hash[4], hash[1] ^ hash[5], hash[2] ^ hash[6], hash[3] ^ hash[7]])
     });
     *VERSION
 }
 
-fn add_text(digest: &mut Digest, text: &str) {
-    digest.add(text.as_bytes());
-    digest.add(&[0]);
-}
-
-fn add_schema(digest: &mut Digest, schema: &Schema) {
-    match schema {
-        Schema::U8 => add_text(digest, "u8"),
-        Schema::U16 => add_text(digest, "u16"),
-        Schema::U32 => add_text(digest, "u32"),
-        Schema::U64 => add_text(digest, "u64"),
-        Schema::I16 => add_text(digest, "i16"),
-        Schema::I32 => add_text(digest, "i32"),
-        Schema::F64 => add_text(digest, "f64"),
-        Schema::Bool => add_text(digest, "bool"),
-        Schema::Text(length) => add_text(digest, &format!("text {length}")),
-        Schema::Array(of, length) => {
-            add_text(digest, &format!("array {length}"));
-            add_schema(digest, of);
-        }
-        Schema::Enum(of) => {
-            add_text(digest, of.name);
-            for variant in of.variants {
-                digest.add(&[variant.code]);
-                add_text(digest, variant.text);
-            }
-        }
-        Schema::Option(of) => {
-            add_text(digest, "option");
-            add_schema(digest, of);
-        }
-        Schema::Union(of) => {
-            add_text(digest, of.name);
-            for variant in of.variants {
-                digest.add(&[variant.code]);
-                add_text(digest, variant.text);
-                match &variant.payload {
-                    Some(payload) => add_schema(digest, payload),
-                    None => add_text(digest, "nothing"),
-                }
-            }
-            digest.add(&[0]);
-        }
-        Schema::Struct(of) => {
-            add_text(digest, of.name);
-            for field in of.fields {
-                add_text(digest, field.name);
-                add_schema(digest, &field.schema);
-            }
-            digest.add(&[0]);
-        }
-    }
+/// A hash of the kind and place of each field, and of the codes of enums and unions.
+fn fingerprint(fields: &'static [FieldSchema]) -> u64 {
+    let mut digest = Digest::new();
+    reflect::leaves(fields, &mut |leaf| {
+        digest.add(format!("{} {} {}", leaf.path, leaf.offset, leaf.schema).as_bytes());
+    });
+    reflect::definitions(fields, &mut |definition| digest.add(definition.to_string().as_bytes()));
+    digest.value()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use interfaces::{SubtaskOutputs, TaskOutputs};
-    use rcs_core::plain::{UnionSchema, UnionVariant};
+    use rcs_core::plain::{Schema, UnionSchema, UnionVariant};
     use std::collections::BTreeSet;
 
     #[test]
     fn the_layout_version_depends_on_every_word() {
-        let version = |schema: &Schema| {
-            let mut digest = Digest::new();
-            add_schema(&mut digest, schema);
-            digest.value()
-        };
-        assert_ne!(version(&Schema::Text(10)), version(&Schema::Text(12)));
-        assert_ne!(version(&Schema::Array(&Schema::U8, 3)), version(&Schema::Array(&Schema::I16, 3)));
-        assert_ne!(version(&TaskOutputs::SCHEMA), version(&SubtaskOutputs::SCHEMA));
-        assert_ne!(version(&Schema::Option(&Schema::U8)), version(&Schema::U8));
-        assert_ne!(version(&Schema::Option(&Schema::U8)), version(&Schema::Option(&Schema::Bool)));
-        const fn carried(text: &'static str, payload: Option<Schema>) -> UnionVariant {
-            UnionVariant { code: 0, text, payload }
+        const fn of(schema: Schema) -> [FieldSchema; 1] {
+            [FieldSchema { name: "service", schema }]
         }
-        static UNIONS: [UnionSchema; 4] = [
-            UnionSchema::new("Goal", &[carried("at", None)]),
-            UnionSchema::new("Goal", &[carried("at", Some(Schema::U8))]),
-            UnionSchema::new("Goal", &[carried("at", Some(Schema::Bool))]),
-            UnionSchema::new("Goal", &[carried("in", Some(Schema::Bool))]),
+        const fn goal(variants: &'static [UnionVariant]) -> UnionSchema {
+            UnionSchema::new("Goal", variants)
+        }
+        const fn carried(text: &'static str, payload: Option<Schema>) -> UnionVariant {
+            UnionVariant { code: 0, text, name: text, payload }
+        }
+        static SCHEMAS: &[[FieldSchema; 1]] = &[
+            of(Schema::Text(10)),
+            of(Schema::Text(12)),
+            of(Schema::Array(&Schema::U8, 3)),
+            of(Schema::Array(&Schema::I16, 3)),
+            of(TaskOutputs::SCHEMA),
+            of(SubtaskOutputs::SCHEMA),
+            of(Schema::U8),
+            of(Schema::Option(&Schema::U8)),
+            of(Schema::Option(&Schema::Bool)),
+            of(Schema::Union(&goal(&[carried("at", None)]))),
+            of(Schema::Union(&goal(&[carried("at", Some(Schema::U8))]))),
+            of(Schema::Union(&goal(&[carried("at", Some(Schema::Bool))]))),
+            of(Schema::Union(&goal(&[carried("in", Some(Schema::Bool))]))),
         ];
-        let versions: BTreeSet<_> = UNIONS.iter().map(|of| version(&Schema::Union(of))).collect();
-        assert_eq!(versions.len(), UNIONS.len());
+        let versions: BTreeSet<_> = SCHEMAS.iter().map(|fields| fingerprint(fields)).collect();
+        assert_eq!(versions.len(), SCHEMAS.len());
         assert_eq!(layout_version(), layout_version());
     }
 }

@@ -4,7 +4,7 @@
 //! on the line and payloads of larger unions, the new bytes). A field that never changes is an empty column; the noise
 //! of a converter is two small bytes a change, which compress to a few bits.
 
-use rcs_core::plain::StructSchema;
+use rcs_core::{plain::StructSchema, reflect};
 
 use crate::{
     layout::{self, Piece},
@@ -49,7 +49,7 @@ impl Columns {
             put_varint(self.tick - column.changed, out);
             if number {
                 let unused = 64 - 8 * now.len().clamp(1, 8);
-                let difference = layout::unsigned(now).wrapping_sub(layout::unsigned(&column.last));
+                let difference = reflect::unsigned(now).wrapping_sub(reflect::unsigned(&column.last));
                 put_varint(zigzag((difference << unused).cast_signed() >> unused), out);
             } else {
                 out.extend_from_slice(now);
@@ -104,7 +104,7 @@ fn change(column: &Column, due: &mut Option<u64>, rest: &mut &[u8], image: &mut 
     let field = image.get_mut(offset..offset + size)?;
     if number {
         let difference = unzigzag(take_varint(rest)?).cast_unsigned();
-        let sum = layout::unsigned(field).wrapping_add(difference);
+        let sum = reflect::unsigned(field).wrapping_add(difference);
         field.iter_mut().zip(sum.to_le_bytes()).for_each(|(slot, byte)| *slot = byte);
     } else {
         let (bytes, behind) = rest.split_at_checked(field.len())?;

@@ -28,8 +28,6 @@ use prost_types::{
 };
 use rcs_core::plain::{EnumSchema, Schema, StructSchema, UnionSchema};
 
-use crate::layout;
-
 /// Package of all messages of this project.
 pub const PACKAGE: &str = "rcs";
 
@@ -177,10 +175,9 @@ fn add_union(of: &'static UnionSchema, messages: &mut Vec<DescriptorProto>) {
         return;
     }
     let payloads = || of.variants.iter().filter_map(|variant| variant.payload.as_ref());
-    let named = of.variants.iter().zip(layout::payload_names(of));
-    let carried = named.filter_map(|(variant, name)| {
+    let carried = of.variants.iter().filter_map(|variant| {
         let number = payload_number(variant.code).into();
-        Some(optional(schema_field(&name, number, variant.payload.as_ref()?)))
+        Some(optional(schema_field(variant.name, number, variant.payload.as_ref()?)))
     });
     let kind = typed_field(KIND, 1, Type::Enum, &format!("{PACKAGE}.{}.Kind.Value", of.name));
     let texts = of.variants.iter().map(|variant| (variant.code, variant.text));

@@ -1,9 +1,11 @@
 //! Converts a record's byte image into a protobuf message, described by [`super::descriptor`].
 
-use rcs_core::plain::{Schema, StructSchema, UnionSchema};
+use rcs_core::{
+    plain::{Schema, StructSchema, UnionSchema},
+    reflect,
+};
 
 use super::{descriptor, wire};
-use crate::layout;
 
 /// Append the message of `record`; `image` is its byte image.
 pub fn encode(record: &StructSchema, mut image: &[u8], out: &mut Vec<u8>) {
@@ -17,10 +19,10 @@ pub fn encode(record: &StructSchema, mut image: &[u8], out: &mut Vec<u8>) {
 fn encode_field(number: u32, schema: &Schema, bytes: &[u8], out: &mut Vec<u8>) {
     match schema {
         Schema::U8 | Schema::U16 | Schema::U32 | Schema::U64 | Schema::Bool | Schema::Enum(_) => {
-            wire::unsigned(number, layout::unsigned(bytes), out);
+            wire::unsigned(number, reflect::unsigned(bytes), out);
         }
-        Schema::I16 | Schema::I32 => wire::signed(number, layout::signed(bytes), out),
-        Schema::F64 => wire::double(number, f64::from_bits(layout::unsigned(bytes)), out),
+        Schema::I16 | Schema::I32 => wire::signed(number, reflect::signed(bytes), out),
+        Schema::F64 => wire::double(number, f64::from_bits(reflect::unsigned(bytes)), out),
         Schema::Text(_) => {
             let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
             wire::bytes(number, bytes.get(..end).unwrap_or_default(), out);
@@ -64,8 +66,8 @@ fn encode_union(of: &UnionSchema, bytes: &[u8], out: &mut Vec<u8>) {
 fn encode_packed(schema: &Schema, bytes: &[u8], out: &mut Vec<u8>) {
     match schema {
         Schema::F64 => out.extend_from_slice(bytes),
-        Schema::I16 | Schema::I32 => wire::put_varint(wire::zigzag(layout::signed(bytes)), out),
-        _ => wire::put_varint(layout::unsigned(bytes), out),
+        Schema::I16 | Schema::I32 => wire::put_varint(wire::zigzag(reflect::signed(bytes)), out),
+        _ => wire::put_varint(reflect::unsigned(bytes), out),
     }
 }
 
