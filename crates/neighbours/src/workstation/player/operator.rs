@@ -57,7 +57,7 @@ impl fmt::Display for WaitReason {
 }
 
 /// Whether the job runs or waits for the operator.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 enum State {
     /// The job runs.
     #[default]
