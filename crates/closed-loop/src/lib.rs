@@ -18,6 +18,7 @@ pub mod contacts;
 pub mod generations;
 mod given;
 mod line;
+mod player;
 mod present;
 pub mod truth;
 pub mod workstation;
@@ -53,6 +54,7 @@ use self::{
 pub use self::{
     given::{Given, RobotInputs},
     line::RobotLine,
+    player::JobPlayer,
     present::Present,
 };
 

@@ -2,26 +2,17 @@
 
 use std::{path::Path, sync::Arc};
 
-use closed_loop::{ClosedLoop, Given, Present};
+use closed_loop::{ClosedLoop, JobPlayer, Present};
 use depc::fault::{FaultKind, Plan, Rule};
-use neighbours::{
-    mailbox::{HWSC_COMMAND, Mailbox},
-    workstation::{
-        Unchecked, command,
-        player::{Hwsc, TIME_LIMIT},
-        status,
-    },
-};
 use plant::{Cell, CellDescription};
 use rcs_core::tick::Tick;
 use taskdata::load::{Job, Store};
 
-/// A closed loop, and the emulator of the workstation controller that plays a job.
+/// A closed loop, and the player of its job.
 #[derive(Clone)]
 struct Run {
     closed: ClosedLoop,
-    hwsc: Hwsc,
-    mailbox: Mailbox,
+    player: JobPlayer,
 }
 
 impl Run {
@@ -36,30 +27,13 @@ impl Run {
         let cell = Cell::new(&description, 1).expect("the cell is sound");
         Self {
             closed: ClosedLoop::new(Present::default(), Arc::new(store), Arc::new(job.reloads), cell),
-            hwsc: Hwsc::new(job.steps, TIME_LIMIT),
-            mailbox: Mailbox::initialized(HWSC_COMMAND),
+            player: JobPlayer::new(job.steps),
         }
-    }
-
-    fn step(&mut self) {
-        let Self { closed, hwsc, mailbox } = self;
-        let Ok(()) = closed.decide(&Given::default());
-        closed.settle(None);
-        closed.exchange(|desk| {
-            if let Ok(status) = status::decode(desk.gate.status_box().data()) {
-                hwsc.step(desk.tick, &status, desk.workstation);
-            }
-            if let Some(bytes) = hwsc.mailgram().and_then(|command| command::encode(command).ok()) {
-                mailbox.write(&bytes).expect("a command fits into its mailbox");
-            }
-            desk.gate.read(mailbox, &Unchecked);
-        });
-        closed.reload();
     }
 
     fn run_to(&mut self, tick: u64) {
         while self.closed.tick() < Tick(tick) {
-            self.step();
+            self.player.step(&mut self.closed);
         }
     }
 

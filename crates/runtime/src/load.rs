@@ -316,8 +316,9 @@ impl Run {
         if let Some(coordinator) = self.coordinator() {
             coordinator.commit(load);
         }
-        let generation = self.closed.generations().number();
-        let name = self.job.reload(generation).map_or("", |reload| &reload.source.name);
+        let generations = self.closed.generations();
+        let generation = generations.number();
+        let name = generations.reload(generation).map_or("", |reload| &reload.source.name);
         Ok(format!("{number} of {name} is loaded; the data have generation {generation}"))
     }
 }

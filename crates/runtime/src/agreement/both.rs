@@ -41,7 +41,8 @@ impl<'a> Both<'a> {
         let other = CellDescription::place(self.source, entry);
         let line =
             self.source.text.bytes().take(usize::try_from(other.start).unwrap_or(0)).filter(|b| *b == b'\n');
-        let help = format!("{entry} in line {} of cell.toml disagrees: correct one of the two", line.count() + 1);
+        let help =
+            format!("{entry} in line {} of cell.toml disagrees: correct one of the two", line.count() + 1);
         self.in_data.error_help("cell.form", place, message, help);
     }
 
