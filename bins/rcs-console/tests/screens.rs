@@ -318,7 +318,7 @@ fn the_keys_of_an_operator_ask_the_run() {
     model.robot_elsewhere = true;
     keys(&mut model, &run, "!!");
     assert_eq!(asked(&mut model), "joystick hold PRIM; board 4 stop", "the E-stops are at the robot");
-    keys(&mut model, &run, "6w35jjj\n");
+    keys(&mut model, &run, "6w35jjj\n\n");
     assert_eq!(
         asked(&mut model),
         "joystick frame WORLD; joystick velocity 300; joystick velocity 500; PAUSE"
@@ -338,6 +338,46 @@ fn the_keys_of_an_operator_ask_the_run() {
     model.operating = None;
     keys(&mut model, &run, "\x1b :");
     assert!(model.prompt.is_none());
+}
+
+#[test]
+fn text_at_the_terminal_of_an_operator_never_acts_as_keys() {
+    let run = As(log(), State::Runs);
+    let mut model = operating(Screen::Terminal, &run);
+    for line in ["610 NO-SUCH-WORD 1", "job wait", "2 7", "hold", "quit", ".R"] {
+        keys(&mut model, &run, line);
+        model.key(Key::Left, &run);
+        model.key(Key::PageUp, &run);
+        assert_eq!(model.prompt, Some(Prompt::Request(line.to_owned())));
+        model.key(Key::Esc, &run);
+        assert_eq!((model.screen, &model.prompt), (Screen::Terminal, &None));
+    }
+    assert_eq!(model.operating.as_ref().unwrap().outbox, [""; 0]);
+    keys(&mut model, &run, "job wait\n");
+    assert_eq!(model.operating.as_ref().unwrap().outbox, ["job wait"]);
+    // Stops are keys also while a line is typed, and a console that only reads takes letters as keys.
+    keys(&mut model, &run, "job");
+    model.key(Key::F1, &run);
+    assert!(model.prompt.is_none() && model.operating.as_ref().unwrap().is_armed);
+    keys(&mut model, &run, " ");
+    assert_eq!(model.operating.take().unwrap().outbox, ["job wait", "stop"]);
+    keys(&mut model, &run, "6");
+    assert_eq!(model.screen, Screen::Panels);
+}
+
+#[test]
+fn one_enter_starts_no_job() {
+    let run = As(log(), State::Runs);
+    let mut model = operating(Screen::Panels, &run);
+    let asked = |model: &mut Model| std::mem::take(&mut model.operating.as_mut().unwrap().outbox).join("; ");
+    keys(&mut model, &run, ":\n");
+    assert_eq!(asked(&mut model), "", "the line is empty");
+    keys(&mut model, &run, "\n");
+    assert_eq!(model.answer.as_deref(), Some("Enter again presses: job go"));
+    keys(&mut model, &run, "j\nk\n");
+    assert_eq!(asked(&mut model), "", "another key takes the first Enter back");
+    keys(&mut model, &run, "\n");
+    assert_eq!(asked(&mut model), "job go");
 }
 
 /// The pictures of the documentation are those of this run, with one process under the cursor. `RCS_PAGES=write` writes
@@ -443,7 +483,7 @@ fn names_are_completed_in_the_terminal() {
 #[test]
 fn terminal_with_a_show_word() {
     let log = log();
-    insta::assert_snapshot!("terminal-show", screen(&at_the_terminal(&log, "bbbb:II\n"), &log));
+    insta::assert_snapshot!("terminal-show", screen(&at_the_terminal(&log, "\t\t\t\t:II\n"), &log));
 }
 
 #[test]
@@ -459,7 +499,8 @@ fn control_c_stops_the_board_of_the_terminal_and_ends_no_console_that_operates()
     let mut model = operating(Screen::Terminal, &run);
     assert_eq!(model.key(Key::Interrupt, &run), Effect::Draw);
     assert_eq!(std::mem::take(&mut model.operating.as_mut().unwrap().outbox), ["board 6 stop"]);
-    keys(&mut model, &run, "B:GO\n");
+    model.key(Key::BackTab, &run);
+    keys(&mut model, &run, ":GO\n");
     assert_eq!(std::mem::take(&mut model.operating.as_mut().unwrap().outbox), ["board 4 go"]);
     model.operating = None;
     assert_eq!(model.key(Key::Interrupt, &run), Effect::Quit);

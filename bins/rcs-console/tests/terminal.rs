@@ -302,6 +302,7 @@ fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_fi
     // Tab completes, and a refusal is shown.
     console.press(":job n\r");
     console.wait_for("refused: job wait, job go or job skip was expected");
+    console.escape(">5 Terminal");
     console.press("6");
     console.wait_for("no frame is on");
     // Prim is held, executed once, and released.

@@ -75,7 +75,7 @@ impl Model {
         } else if self.help {
             self.help = false;
         } else if !self.take_over(key)
-            && !self.is_of_the_terminal(key)
+            && !self.is_of_the_terminal(key, source)
             && !self.operate(key)
             && !self.is_of_a_procedure(key, source)
         {
@@ -84,8 +84,9 @@ impl Model {
         Effect::Draw
     }
 
-    fn is_of_the_terminal(&mut self, key: Key) -> bool {
-        self.screen == Screen::Terminal && self.work_the_terminal(key)
+    fn is_of_the_terminal(&mut self, key: Key, source: &dyn Source) -> bool {
+        let runs = !matches!(source.about().state, State::Over | State::Log);
+        self.screen == Screen::Terminal && self.work_the_terminal(key, runs)
     }
 
     fn is_of_a_procedure(&mut self, key: Key, source: &dyn Source) -> bool {
@@ -263,7 +264,12 @@ impl Model {
         }
     }
 
+    /// Carry out a key while text is typed: only Enter, Esc, Control-C and F1 end the input.
     fn type_on(&mut self, mut prompt: Prompt, key: Key, source: &dyn Source) {
+        if key == Key::F1 {
+            self.operate(key);
+            return;
+        }
         let text = match &mut prompt {
             Prompt::Filter(text) | Prompt::Tick(text) | Prompt::Reason(text) | Prompt::Watch(text) => text,
             Prompt::Request(text) => return self.type_request(std::mem::take(text), key),
@@ -272,7 +278,8 @@ impl Model {
             Key::Char(typed) => text.push(typed),
             Key::Backspace => drop(text.pop()),
             Key::Enter => return self.typed(prompt, source),
-            _ => return,
+            Key::Esc | Key::Interrupt => return,
+            _ => {}
         }
         self.prompt = Some(prompt);
     }

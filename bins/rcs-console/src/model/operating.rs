@@ -47,6 +47,8 @@ pub struct Operating {
     pub cursor: usize,
     /// True if the next F1 presses the emergency stop.
     pub is_armed: bool,
+    /// True if the next Enter presses the panel key under the cursor.
+    pub is_chosen: bool,
     /// Number of requests by which the arrow keys of the prompt have gone back.
     pub back: usize,
     /// The question whether to take the command over, if it is open.
@@ -142,6 +144,7 @@ impl Model {
             return false;
         };
         let was_armed = std::mem::take(&mut operating.is_armed);
+        let was_chosen = std::mem::take(&mut operating.is_chosen);
         match key {
             Key::Char(' ') if velocity == 0 => operating.ask("go"),
             Key::Char(' ') => operating.ask("stop"),
@@ -165,13 +168,14 @@ impl Model {
                 operating.back = 0;
                 self.prompt = Some(Prompt::Request(String::new()));
             }
-            _ => return on_panels && self.work_a_panel(key),
+            _ => return on_panels && self.work_a_panel(key, was_chosen),
         }
         true
     }
 
-    /// Carry out a key of the panel screen: of the joystick box, or of the key list beside it.
-    fn work_a_panel(&mut self, key: Key) -> bool {
+    /// Carry out a key of the panel screen: of the joystick box, or of the key list. The first Enter names the key under
+    /// the cursor, the second one presses it, so that a stray Enter starts nothing.
+    fn work_a_panel(&mut self, key: Key, was_chosen: bool) -> bool {
         let frame = self.joystick().frame;
         let Some(operating) = &mut self.operating else { return false };
         let size = JOGS.get(operating.jog).copied().unwrap_or(JOGS[0]);
@@ -224,6 +228,11 @@ impl Model {
                     self.prompt = Some(Prompt::Request(words.to_owned()));
                     return true;
                 }
+                if !was_chosen {
+                    operating.is_chosen = true;
+                    self.answer = Some(format!("Enter again presses: {chosen}"));
+                    return true;
+                }
                 chosen.to_owned()
             }
             _ => return false,
@@ -257,7 +266,8 @@ impl Model {
             }
             Key::Enter if text.trim().is_empty() => return,
             Key::Enter => return self.enter(text.trim()),
-            _ => return,
+            Key::Esc | Key::Interrupt => return,
+            _ => {}
         }
         self.prompt = Some(Prompt::Request(text));
     }

@@ -21,7 +21,7 @@ const KEYS: [(&str, &str); 16] = [
     ("a", "acknowledge the alarm in the line above the keys"),
     ("o", "open the log of this run, at the first cause"),
     ("Enter y s u r", "on screen 7: do a step, it is so, leave out, take back, anew"),
-    (":, b; Space h F1", "screen 5: words, board; --operate: stop, hold, E-stop"),
+    (":, Tab; Space h F1", "screen 5: a line, board; --operate: stop, hold, E-stop"),
     ("q, Control-C", "quit; the run is not affected"),
 ];
 

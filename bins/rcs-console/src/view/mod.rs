@@ -337,10 +337,10 @@ fn keys(model: &Model, state: State) -> &'static str {
         (_, Screen::Process, _) => {
             " Esc=back  Tab=pane  j k=scroll  /=filter  w v=watch  s=source  [ ]=tick  n N"
         }
-        (_, Screen::Terminal, _) if model.operating.is_none() => " Esc=back  :=words  b=board  j k=scroll",
+        (_, Screen::Terminal, _) if model.operating.is_none() => " Esc=back  :=words  Tab=board  j k=scroll",
         (_, Screen::Panels, _) if model.operating.is_none() => " Esc=back",
         (_, Screen::Terminal, _) => {
-            " Esc=back  :=enter  b=board  ^C=stop it  Space=stop, go  h=hold Prim  F1=E-stop"
+            " Esc=back  Tab=board  letters, digits=a line  ^C=stop it  Space=stop  F1=E-stop"
         }
         (_, Screen::Procedures, _) if !model.procedures.is_open => " j k=choose  Enter=open  Esc=back",
         (_, Screen::Procedures, _) if model.operating.is_none() => {

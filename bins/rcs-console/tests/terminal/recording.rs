@@ -128,6 +128,7 @@ fn a_recording_shows_the_start_up_of_the_robot_and_a_taught_point() {
     console.wait_for("knob 100 %");
     teach(&mut console, pause);
     thread::sleep(pause * 2);
+    console.escape(">5 Terminal");
     console.press("q");
     let written = console.written();
     assert_eq!(console.end(), Some(0));

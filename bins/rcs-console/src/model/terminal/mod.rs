@@ -34,6 +34,8 @@ pub use self::{screen::sections, words::known};
 pub const BOARDS: [u8; 6] = [0, 2, 4, 6, 8, 12];
 /// Number of typed lines that are kept.
 const KEPT: usize = 100;
+/// The characters that are keys on this screen while the run takes requests; all others begin a line.
+const KEYS: &str = " !:?[]{}";
 
 /// The command that connects the Data System (V.4.1).
 const STARTUP: &str = "STARTUP";
@@ -201,7 +203,7 @@ impl Model {
             return Some("this console looks only: start it with --operate to edit blocks".to_owned());
         }
         if !RUNNING.contains(&board) {
-            return Some(format!("board {board} has no processes to stop: b turns to the next board"));
+            return Some(format!("board {board} has no processes to stop: Tab turns to the next board"));
         }
         let picture = self.picture.as_ref()?;
         let runs = !picture.external.operator.is_stopped(board);
@@ -281,14 +283,15 @@ impl Model {
         }
     }
 
-    /// Carry out a key that only the terminal has. Returns false for other keys.
-    pub(super) fn work_the_terminal(&mut self, key: Key) -> bool {
+    /// Carry out a key that only the terminal has, or begin a line with it if the run takes requests. Returns false for
+    /// other keys.
+    pub(super) fn work_the_terminal(&mut self, key: Key, runs: bool) -> bool {
         let is_recording = self.picture.as_ref().is_some_and(|picture| picture.memory.prim.status.recording);
         let board = &mut self.terminal.board;
         let at = BOARDS.iter().position(|number| *number == board.number).unwrap_or_default();
         match key {
-            Key::Char('b') => board.turn_to(BOARDS[(at + 1) % BOARDS.len()]),
-            Key::Char('B') => board.turn_to(BOARDS[(at + BOARDS.len() - 1) % BOARDS.len()]),
+            Key::Tab => board.turn_to(BOARDS[(at + 1) % BOARDS.len()]),
+            Key::BackTab => board.turn_to(BOARDS[(at + BOARDS.len() - 1) % BOARDS.len()]),
             Key::Char(':') => self.prompt = Some(super::Prompt::Request(String::new())),
             Key::F2 => match self.terminal.listed {
                 Some(number) => self.begin_edit(number),
@@ -303,6 +306,13 @@ impl Model {
                 }
             }
             Key::Esc if board.shown.is_some() => board.shown = None,
+            Key::Char(typed) if !KEYS.contains(typed) => match &mut self.operating {
+                Some(operating) if runs && operating.lost.is_none() => {
+                    operating.back = 0;
+                    self.prompt = Some(super::Prompt::Request(typed.to_string()));
+                }
+                Some(_) | None => return false,
+            },
             _ => return false,
         }
         true

@@ -88,7 +88,7 @@ fn about(operating: Option<&Operating>, picture: &Picture, is_used: bool) -> Vec
         return lines;
     }
     let hints = [
-        " words: GO ^C .R  n LIST  863 12 12 LINE-LOAD  TAI  LOC name  :S name   b=board",
+        " words: GO ^C .R  n LIST  863 12 12 LINE-LOAD  TAI  LOC name  :S name Tab=board",
         " today: PAUSE   MOVE ...   job wait, go, skip   vise open PFIXTURE   panel auto",
     ];
     lines.extend(hints.map(|text| Text::new(Tone::Faint, text)));

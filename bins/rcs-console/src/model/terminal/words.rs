@@ -286,7 +286,7 @@ impl<'a> Interpreter<'a> {
         }
         let number = self.board.number;
         Err(format!(
-            "it is a word of board {board}, this terminal speaks to board {number}: b turns to the next"
+            "it is a word of board {board}, this terminal speaks to board {number}: Tab turns to the next"
         ))
     }
 
