@@ -185,6 +185,24 @@ fn items_are_kept_by_another_process_and_not_a_bit_of_the_run_changes() {
 }
 
 #[test]
+fn a_data_system_that_connects_last_is_connected_in_the_first_tick() {
+    let scratch = Scratch::new("last");
+    let (file, outbox) = (scratch.file("items.db"), scratch.file("outbox").display().to_string());
+    let job = scratch.file("pause.job");
+    std::fs::write(&job, "== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n").expect("a job can be written");
+    let more = [job.to_str().expect("a path"), "--json", "--outbox", &outbox];
+    let controller = Controller::start_at(scratch, None, "data-system", &more);
+    let server = serve(controller.connect(Role::DataSystem, None), file, Fate::Answers);
+    let ended = controller.end();
+    server.join().expect("it has not panicked");
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    let events = ended.result["events"]["first"].as_array().expect("events").iter();
+    let connected: Vec<_> = events.filter(|event| event["text"] == "data-system has connected").collect();
+    assert_eq!(connected.len(), 1, "{:?}", ended.result["events"]);
+    assert_eq!(connected[0]["tick"], 1);
+}
+
+#[test]
 fn a_data_system_that_is_killed_and_started_again_hears_the_update_once() {
     for fate in [Fate::DiesBefore, Fate::DiesAfter] {
         let scratch = Scratch::new(&format!("{fate:?}"));

@@ -235,8 +235,9 @@ impl Neighbours {
     }
 
     /// Before the first tick: the pedestal reads the initial buffers, so that it runs from the controller's first tick
-    /// on.
+    /// on, and a Data System that has connected is noted.
     pub fn begin(&mut self, memory: &CommonMemory, inputs: &DeviceInputs) {
+        self.data_system.iter().for_each(DataSystem::begin);
         self.step_pedestal(Tick::BEFORE_START, memory, inputs);
     }
 

@@ -102,6 +102,11 @@ impl DataSystem {
         Self::with(Threaded::elsewhere(agent, pace), ticks)
     }
 
+    /// Call before the first tick: in a run that waits, [`Self::remarks`] then contains a server that has connected.
+    pub fn begin(&self) {
+        self.keeper.look();
+    }
+
     /// Remarks about a server in another process since the last call.
     pub fn remarks(&self) -> Vec<Remark> {
         self.keeper.remarks()

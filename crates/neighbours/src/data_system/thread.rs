@@ -39,6 +39,8 @@ enum Request {
     /// The command of this number.
     Execute(u16, Vec<u8>),
     Items,
+    /// Check for a server in another process.
+    Look,
 }
 
 /// A response of the thread.
@@ -48,6 +50,8 @@ enum Response {
     /// The command of this number has no answer.
     Silent(u16),
     Items(rusqlite::Result<Vec<Item>>),
+    /// The thread has checked for a server in another process.
+    Looked,
 }
 
 /// The server that the thread asks.
@@ -60,7 +64,7 @@ enum Place {
 
 impl Place {
     fn respond(&mut self, request: Request) -> Response {
-        match (self, request) {
+        match (&mut *self, request) {
             (Self::Here(server), Request::Execute(id, bytes)) => {
                 Response::Executed(id, server.execute(&bytes))
             }
@@ -70,6 +74,10 @@ impl Place {
             }
             // The items are available only in the process that keeps them.
             (Self::Elsewhere(_), Request::Items) => Response::Items(Ok(Vec::new())),
+            (_, Request::Look) => {
+                self.idle();
+                Response::Looked
+            }
         }
     }
 
@@ -139,6 +147,16 @@ impl Threaded {
         Self { pace, remarks, stop_handle: None, requests: Some(requests), responses, thread: Some(thread) }
     }
 
+    /// Check for a server in another process, and wait for the result if the run waits for answers. Otherwise the thread
+    /// reports a server that connected last before the first tick only after [`IDLE`], which is many ticks in fast
+    /// clock.
+    pub(super) fn look(&self) {
+        if self.pace == Pace::Poll || self.stop_handle.is_none() || !self.send(Request::Look) {
+            return;
+        }
+        while !matches!(self.responses.recv(), Ok(Response::Looked) | Err(_)) {}
+    }
+
     /// Remarks about a server in another process since the last call.
     pub(super) fn remarks(&self) -> Vec<Remark> {
         self.remarks.try_iter().collect()
@@ -194,7 +212,7 @@ impl Keeper for Threaded {
         loop {
             match self.responses.recv_timeout(PATIENCE) {
                 Ok(Response::Items(items)) => return items.map_err(|error| error.to_string()),
-                Ok(Response::Executed(..) | Response::Silent(_)) => {}
+                Ok(Response::Executed(..) | Response::Silent(_) | Response::Looked) => {}
                 Err(_) => return Err("the Data System does not answer".to_owned()),
             }
         }
