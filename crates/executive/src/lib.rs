@@ -5,8 +5,7 @@
 //! when each tick begins, [`realtime`] requests real-time priority from the system, [`timing`] measures the parts of a
 //! tick, [`overrun`] reacts to skipped slots, [`serial`] is the line to a real robot, [`alloc`] counts allocations,
 //! [`boards`] distributes the processes over operating system processes, [`memory`] publishes the buffers in shared
-//! memory, [`status`] summarises them, [`generations`] exchanges task data between commands, and [`failure`] finds
-//! process, table and row of a failure.
+//! memory, [`status`] summarises them, and [`failure`] finds process, table and row of a failure.
 
 #![deny(unsafe_code)]
 
