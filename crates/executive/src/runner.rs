@@ -46,8 +46,8 @@ impl<L> Runner<L> {
         }
     }
 
-    /// Run the next tick of a course on its external inputs. `skipped` is the number of slots of the grid that were skipped so far;
-    /// it is published, and has no other effect.
+    /// Run the next tick of a course on its external inputs. `skipped` is the number of slots of the grid that were
+    /// skipped so far; it is published, and has no other effect.
     ///
     /// Allocations are counted from here to the end of the call. The controller's time includes the processes and
     /// publishing; it excludes the digest, the watch for failures and the copies for the status and for warm-ups, which
@@ -97,8 +97,8 @@ impl<L> Runner<L> {
         Ok(())
     }
 
-    /// Run the next tick of a course on a copy of its levels and discard the result: see the head of this module. It changes nothing that another
-    /// process can see; it publishes the last buffers once more. Call it between two ticks, when there is time.
+    /// Run the next tick of a course on a copy of its levels and discard the result: see the head of this module. It
+    /// changes nothing that another process can see; it publishes the last buffers once more. Call it between two ticks, when there is time.
     ///
     /// The first warm-up creates the copy, which allocates; later ones do not allocate.
     pub fn warm_up<Data: ?Sized>(&mut self, course: &mut Course<L>, external: &ExternalInputs, data: &Data)

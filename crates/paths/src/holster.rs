@@ -23,7 +23,7 @@ pub const TAKE: [&str; 5] = ["QCA-FAST", "QCA-SLOW", "QCA-BACK", "QCA-LIFT", "QC
 /// The objects of the grippers with `endeff-id#` 1 to 3.
 const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
 
-/// What the task data lack for the change of a gripper.
+/// A record that the task data need for the change of a gripper, and do not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lacking {
     /// The gripper, as an object.
@@ -116,8 +116,8 @@ pub fn wanted(command: &HwsCommand, attached: Option<u8>, data: &TaskData<'_>) -
     u8::try_from(grips.endeff_id).ok().filter(|id| *id != 0 && Some(*id) != attached)
 }
 
-/// What the task data lack to fetch a gripper, and to leave the attached one. A change that lacks nothing costs no
-/// allocation.
+/// The first missing record for fetching a gripper and leaving the attached one; `None` if there are all. Then it does
+/// not allocate.
 #[must_use]
 pub fn lacking(attached: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Option<Lacking> {
     let put =

@@ -51,7 +51,7 @@ pub struct Leaf<'a> {
     pub offset: usize,
     /// Bytes in the image. Only the first one of an option or a union that has other leaves.
     pub size: usize,
-    /// What it holds.
+    /// Schema of its value.
     pub schema: &'static Schema,
     /// The innermost option or union to which it belongs.
     pub within: Option<&'a Within<'a>>,
@@ -215,7 +215,7 @@ impl Schema {
 /// The value of a leaf as text: numbers in decimal, names and variants as their text, bytes in hexadecimal.
 #[derive(Clone, Copy, Debug)]
 pub struct Value<'a> {
-    /// What the bytes hold.
+    /// Schema of the value.
     pub schema: &'a Schema,
     /// The bytes of the leaf.
     pub bytes: &'a [u8],

@@ -21,7 +21,7 @@ pub enum Part {
     Later {
         /// The first tick of the log.
         begin: Tick,
-        /// What is known of the logs before it.
+        /// The earlier logs of the run, as far as they are known.
         before: Before,
     },
     /// The log has the first ticks, and the run continues in another log.

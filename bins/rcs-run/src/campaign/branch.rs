@@ -150,7 +150,7 @@ impl<'f> Branch<'f> {
         self.closed.truth().result().judged
     }
 
-    /// What the Data System knows of the items.
+    /// The items in the Data System.
     ///
     /// # Errors
     /// A text that says why it cannot list them.
