@@ -379,6 +379,9 @@ pub struct Beliefs {
     pub empty: bool,
     /// Where along the fingers the object is that they have closed on last.
     pub seat: Seat,
+    /// The last place where an object may not be where the data say: a person has led the robot past it, the arm has
+    /// sunk past it, or it was let go there after it had slid in the fingers.
+    pub disturbed: Option<RobotPlace>,
     /// The object that the gripper has let go, and where.
     pub placed: Option<PlacedObject>,
     /// What vision has located.

@@ -13,15 +13,11 @@ use taskdata::files::{MovtabId, TaskData, TrajParaId};
 use super::{
     locate::{centred, looked_at, part_frame, request, stays_in_array, view_of},
     postprocess::Slot,
-    robot_place::{gone_to, is_led, place_named, present_frame, robot_at},
+    robot_place::{gone_to, is_led, may_push, place_named, present_frame, robot_at},
     route::Goal,
     state::State,
     tables::{Action, Reach},
 };
-
-/// A robot that a person moves within this distance of a located object may push it, in: the fingers and the part that
-/// they hold reach so far (ASSUMED).
-const PUSHED_INCHES: f64 = 6.0;
 
 /// From where the camera is moved next, and how.
 pub(super) struct Aim {
@@ -38,10 +34,7 @@ impl State {
     /// the located object; nor after a person has moved the robot near the object, because the fingers may have pushed
     /// it.
     pub(super) fn sense_pictures(&mut self, memory: &CommonMemory) {
-        let may_touch = |located: &Located| match (present_frame(memory), located.pose.to_frame()) {
-            (Some(present), Ok(object)) => present.distance(&object).inches <= PUSHED_INCHES,
-            _ => true,
-        };
+        let may_touch = |located: &Located| may_push(&located.pose, memory);
         let is_pushed = is_led(memory) && self.beliefs.located.as_ref().is_some_and(may_touch);
         if is_pushed || memory.prim.status.report == PrimReport::T3LinkOff {
             self.beliefs.located = None;

@@ -76,6 +76,7 @@ impl State {
     pub(super) fn hold(&mut self, grasped: Grasped) {
         self.beliefs.held = Some(grasped);
         (self.beliefs.placed, self.beliefs.located) = (None, None);
+        self.forget_disturbance();
         self.unfelt = 0;
     }
 }

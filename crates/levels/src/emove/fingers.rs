@@ -11,15 +11,15 @@ use interfaces::{
     process::Inputs,
     quick_change::RingPosition,
 };
-use rcs_core::{handshake::Lower, name::Name16};
+use rcs_core::handshake::Lower;
 use taskdata::files::{EndEffId, EndEffPara, TaskData};
 
 use super::{
     gripper::{Gripper, is_open},
     order::{FingerOrder, FingerVerb},
     preprocess::holster,
-    robot_place::{is_led, present_frame},
-    route::{Ahead, FULL_OPENING, near},
+    robot_place::{is_led, may_push, place, place_named, present_frame},
+    route::{Ahead, FULL_OPENING, near, same_location},
     state::State,
     tables::{Action, Fingers, Holster, Opening, Spread},
     whereabouts::{LOST_INCHES, LOST_RADIANS},
@@ -105,16 +105,24 @@ impl State {
     /// Where along the fingers the object is: nothing measures it. With the robot it slides as soon as it meets
     /// anything, while a person leads the robot or the arm has no pressure: then the robot controller is off, whatever
     /// Prim has made of its last command, or the resolvers give no position. An arm that moves away from an object
-    /// which it has just released pushes it in the same way.
+    /// which it has just released pushes it in the same way, and so does one that a person leads past an object before
+    /// it is grasped.
     fn sense_seat(&mut self, memory: &CommonMemory) {
         let prim = &memory.prim.status;
         let is_off = prim.controller_off || prim.report == PrimReport::T3LinkOff;
         let is_off = is_off || present_frame(memory).is_none();
         let Beliefs { held, grasping, empty, .. } = &self.beliefs;
         let have_closed = !empty && (held.is_some() || grasping.is_some());
-        if (have_closed || self.is_around_placed()) && (is_led(memory) || is_off) {
+        if !is_led(memory) && !is_off {
+            return;
+        }
+        if have_closed || self.is_around_placed() {
             self.beliefs.seat = Seat::NotKnown;
         }
+        let Beliefs { place, way, .. } = self.beliefs;
+        let ends = [place, way.map(|way| way.to), way.map(|way| way.from)];
+        let near = ends.into_iter().flatten().find(|at| may_push(&at.pose, memory));
+        self.beliefs.disturbed = near.or(self.beliefs.disturbed);
     }
 
     /// Is the robot still where it has released an object, or on its way from there to its next place?
@@ -126,13 +134,24 @@ impl State {
         })
     }
 
-    /// The seat of what the fingers are to close on. The object that was let go last lies as it was held, unless a
-    /// picture has shown since where it is.
-    pub(super) fn next_seat(&self, object: Option<Name16>) -> Seat {
-        let Beliefs { seat, empty, placed, located, .. } = self.beliefs;
-        let is_placed = placed.is_some_and(|placed| Some(placed.object) == object);
-        let is_new = empty && (located.is_some() || !is_placed);
-        if is_new { Seat::Kept } else { seat }
+    /// The seat of what the fingers are to close on. An object that may have been pushed, or that has slid before it was
+    /// let go, is not known to be at its place, unless a picture shows where it is.
+    pub(super) fn next_seat(&self, command: &EmoveCommand) -> Seat {
+        let Beliefs { seat, empty, located, disturbed, .. } = self.beliefs;
+        let is_disturbed = disturbed.is_some_and(|at| same_location(&place(&at), &place_named(command)));
+        match (empty, located, is_disturbed) {
+            (false, ..) => seat,
+            (true, None, true) => Seat::NotKnown,
+            (true, ..) => Seat::Kept,
+        }
+    }
+
+    /// The robot has grasped an object where it stands, or has let one go there that has not slid: it is not disturbed
+    /// any more.
+    pub(super) fn forget_disturbance(&mut self) {
+        let here = self.place();
+        let is_here = |at: &RobotPlace| here.is_some_and(|here| same_location(&place(at), &place(&here)));
+        self.beliefs.disturbed = self.beliefs.disturbed.filter(|at| !is_here(at));
     }
 
     /// Do the id pins say that the gripper has gone, while the ring has been locked ever since it was there?
@@ -192,7 +211,13 @@ impl State {
                 array: at.array,
                 sector: at.sector,
             };
-            self.beliefs.placed = self.place().filter(|_| has_let_go && !gone).map(let_go);
+            let put = self.place().filter(|_| has_let_go && !gone);
+            self.beliefs.placed = put.map(let_go);
+            match (put, self.beliefs.seat) {
+                (Some(_), Seat::Kept) => self.forget_disturbance(),
+                (Some(_), Seat::NotKnown) => self.beliefs.disturbed = put,
+                (None, _) => {}
+            }
         }
     }
 

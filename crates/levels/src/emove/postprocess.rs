@@ -276,7 +276,7 @@ impl State {
                     // By hand: only what counts as held has a name, and it is not let go any more.
                     self.beliefs.grasping = self.beliefs.held;
                 }
-                self.beliefs.seat = self.next_seat(command.object);
+                self.beliefs.seat = self.next_seat(command);
                 // What was placed may be taken, and lost elsewhere.
                 (self.beliefs.placed, self.beliefs.empty) = (None, false);
             }

@@ -91,6 +91,19 @@ pub fn present_frame(memory: &CommonMemory) -> Option<Frame> {
     memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()
 }
 
+/// A robot that is not under control within this distance of an object may push it, in: the fingers and the part that
+/// they hold reach so far (ASSUMED).
+const PUSHED_INCHES: f64 = 6.0;
+
+/// Is the robot near enough to a pose to push an object there? If the resolvers give no position, it may be.
+#[must_use]
+pub fn may_push(pose: &Pose, memory: &CommonMemory) -> bool {
+    match (present_frame(memory), pose.to_frame()) {
+        (Some(present), Ok(object)) => present.distance(&object).inches <= PUSHED_INCHES,
+        _ => true,
+    }
+}
+
 /// The last commanded pose of the robot; the pose of the resolvers if Prim commands nothing.
 #[must_use]
 pub fn commanded_pose(memory: &CommonMemory) -> Option<Pose> {

@@ -146,6 +146,33 @@ fn part_that_was_just_released_may_be_pushed_by_an_arm_without_pressure() {
     }
 }
 
+/// No picture is taken in the vise. A person leads the robot beside the object before it is grasped, or far from it. An
+/// object that is let go with an unknown place in the fingers keeps it.
+#[test]
+fn part_beside_which_a_person_has_led_the_empty_robot_has_no_confirmed_place_in_the_fingers() {
+    for (led_at, fetched_at, unconfirmed) in [
+        ("VISE", "VISE", Unconfirmed::PartInFingers),
+        ("VISE", "BENCH", Unconfirmed::None),
+        ("HOME", "VISE", Unconfirmed::None),
+    ] {
+        let mut bench = Bench::ready("HOME", 1);
+        assert_eq!(bench.run(MovToObj, "BLOCK", 1, led_at, 1), DONE, "{led_at}");
+        bench.pause();
+        bench.world.joystick = true;
+        bench.steps(5);
+        bench.world.joystick = false;
+        bench.pause();
+        for at in [fetched_at, "BENCH", fetched_at] {
+            let expected = if at == fetched_at { unconfirmed } else { Unconfirmed::None };
+            assert_eq!(bench.run(MovToObj, "BLOCK", 1, at, 1), DONE, "{led_at} {at}");
+            bench.world.object = Some(75);
+            assert_eq!(bench.run(GraspObj, "BLOCK", 1, at, 1), DONE, "{led_at} {at}");
+            assert_eq!(bench.memory.emove.status.unconfirmed, expected, "{led_at} {at}");
+            assert_eq!(bench.run(Release, "BLOCK", 1, at, 1), DONE, "{led_at} {at}");
+        }
+    }
+}
+
 #[test]
 fn empty_fingers_have_nothing_that_slides() {
     let mut bench = Bench::ready("HOME", 1);
