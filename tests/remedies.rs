@@ -606,6 +606,62 @@ fn robot_off_its_path_continues_after_a_pause_that_adopts_its_position() {
     it.finishes();
 }
 
+/// A fault plan in which valves are stuck open.
+fn stuck_open(valves: &[&str], from: u64, until: u64) -> String {
+    let fault = |valve: &&str| {
+        format!(
+            "[[fault]]\nkind = \"stuck\"\nvalve = \"{valve}\"\nvalue = \"open\"\nfrom = {from}\nuntil = {until}\n"
+        )
+    };
+    valves.iter().map(fault).collect()
+}
+
+/// The remedy "take the object away, and put it back at the command's source location": the gripper opens on the way, and
+/// the blank falls to the floor.
+#[test]
+fn object_that_was_lost_on_the_way_is_fetched_again_from_its_source() {
+    let faults = stuck_open(&["grip.open-coarse", "grip.supply"], 1700, 1760);
+    let mut it = Operated::with_faults(&format!("{TO_VISE}** vise close PFIXTURE\n{LEAVE}"), &faults);
+    it.fails(Reason::ObjectLost);
+    it.wait(100).please(&["tray UNIT_1 4 LINKBAR1_BH 0 0 0"]).go();
+    it.finishes_without_the_part();
+}
+
+/// The remedy "put the object farther from the edge of its tray".
+#[test]
+fn object_at_the_edge_of_its_tray_is_moved_to_the_middle() {
+    let mut it = Operated::start(&TO_VISE.replace("0 0 0", "0 400 0"));
+    it.fails(Reason::AtTrayEdge);
+    let cell = it.run.as_mut().unwrap().cell_mut();
+    let part = cell.parts()[0].id;
+    cell.take_part(part).unwrap();
+    it.please(&["tray UNIT_1 4 LINKBAR1_BH 0 0 0"]).go();
+    it.finishes();
+}
+
+/// The remedy "take the object out of the pedestal, and put it back at its place": the hand opens while the table turns.
+/// The first place of the part is the tray, from which the whole job begins again.
+#[test]
+fn object_that_the_pedestal_has_lost_is_delivered_again() {
+    let faults = stuck_open(&["pedestal.open-coarse", "pedestal.supply"], 5700, 5760);
+    let mut it = Operated::with_faults(&clevis(), &faults);
+    it.fails(Reason::HandLost);
+    it.wait(100).does(&[HOME]).please(&["run clevis"]);
+    it.finishes_without_the_part();
+}
+
+/// The remedy "check the sensors and the air of the pedestal's hand".
+#[test]
+fn hand_of_the_pedestal_calibrates_after_its_potentiometer_is_repaired() {
+    let faults =
+        "[[fault]]\nkind = \"stuck\"\nsensor = \"pedestal.potentiometer\"\nvalue = 500\nuntil = 4800\n";
+    let mut it = Operated::with_faults(&clevis(), faults);
+    it.fails(Reason::HandNotCalibrated);
+    let ticks = 4820_u64.saturating_sub(it.tick());
+    it.wait(u32::try_from(ticks).unwrap()).go();
+    it.finishes();
+}
+
 /// Reasons with the scenario that follows their remedy; other reasons share the text.
 const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::JoystickOn, "joystick_that_is_on_is_switched_off"),
@@ -628,6 +684,10 @@ const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::NotNearDrum, "wrong_command_is_replaced_by_the_right_one"),
     (Reason::ReleaseNotEnded, "release_without_air_is_completed_by_the_command_sent_again"),
     (Reason::OffPath, "robot_off_its_path_continues_after_a_pause_that_adopts_its_position"),
+    (Reason::ObjectLost, "object_that_was_lost_on_the_way_is_fetched_again_from_its_source"),
+    (Reason::AtTrayEdge, "object_at_the_edge_of_its_tray_is_moved_to_the_middle"),
+    (Reason::HandLost, "object_that_the_pedestal_has_lost_is_delivered_again"),
+    (Reason::HandNotCalibrated, "hand_of_the_pedestal_calibrates_after_its_potentiometer_is_repaired"),
 ];
 
 /// Remedies without a scenario here, and why.
@@ -640,13 +700,9 @@ const ELSEWHERE: &[(Reason, &str)] = &[
     (Reason::ForceUncalibrated, "tests/drum.rs follows the remedy"),
     (Reason::NeighbourLost, "tests/boards.rs replaces lost boards"),
     (Reason::SentAway, "the levels send the robot away in every tick (task recovery)"),
-    (Reason::ObjectLost, "no line of a job takes a part out of the fingers"),
-    (Reason::GripperGone, "no line of a job takes a gripper off by hand"),
-    (Reason::HolsterOccupied, "no line of a job puts a gripper into a holster by hand"),
-    (Reason::HolsterEmpty, "no line of a job puts a gripper into a holster by hand"),
-    (Reason::AtTrayEdge, "no line of a job moves a part that lies in a tray"),
-    (Reason::HandLost, "no line of a job takes a part out of the pedestal"),
-    (Reason::HandNotCalibrated, "the hand calibrates itself before a job begins"),
+    (Reason::GripperGone, "nobody takes a gripper off in the simulated cell"),
+    (Reason::HolsterOccupied, "nobody puts a gripper into a holster in the simulated cell"),
+    (Reason::HolsterEmpty, "nobody puts a gripper into a holster in the simulated cell"),
 ];
 
 #[test]

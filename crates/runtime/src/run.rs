@@ -24,6 +24,7 @@ use executive::{
 use geometry::{frame::Frame, pose::WireFrame};
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::LadderState;
+use plant::Cell;
 use rcs_core::tick::Tick;
 use taskdata::load::Job;
 
@@ -126,6 +127,11 @@ impl Run {
     #[must_use]
     pub const fn last_tick(&self) -> Tick {
         self.closed.tick()
+    }
+
+    /// The simulated cell, to change it between two ticks as a person in it would.
+    pub const fn cell_mut(&mut self) -> &mut Cell {
+        &mut self.closed.workstation.cell
     }
 
     /// All buffers after the last tick.
