@@ -13,6 +13,7 @@ use interfaces::{
     subtask::SubtaskVerb,
 };
 use operator::Event;
+use plant::Cell;
 use runtime::{LogTarget, Run, RunConfig, RunOutcome};
 use tempfile::TempDir;
 use whole_system_tests::root;
@@ -61,6 +62,11 @@ impl Operated {
 
     fn memory(&self) -> &CommonMemory {
         self.run().memory()
+    }
+
+    /// The cell, for a person in it.
+    fn cell(&mut self) -> &mut Cell {
+        self.run.as_mut().unwrap().cell_mut()
     }
 
     fn tick(&self) -> u64 {
@@ -206,6 +212,10 @@ fn story(outcome: &RunOutcome) -> String {
 const TO_VISE: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0
 ** vise partial PFIXTURE
 == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0
+";
+/// A shaft goes from the tray to the turning machine, with the v-gripper.
+const SHAFT: &str = "** tray UNIT_2 7 SHAFT_BH
+== TRANSFER SHAFT_BH +1 UNIT_2 7 +1 V-VFIXTURE 0 HOME 0
 ";
 /// The robot rests at HOME for 4 s, then moves to SAFE.
 const TO_SAFE: &str = "** wait 100\n== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
@@ -632,9 +642,8 @@ fn object_that_was_lost_on_the_way_is_fetched_again_from_its_source() {
 fn object_at_the_edge_of_its_tray_is_moved_to_the_middle() {
     let mut it = Operated::start(&TO_VISE.replace("0 0 0", "0 400 0"));
     it.fails(Reason::AtTrayEdge);
-    let cell = it.run.as_mut().unwrap().cell_mut();
-    let part = cell.parts()[0].id;
-    cell.take_part(part).unwrap();
+    let part = it.cell().parts()[0].id;
+    it.cell().take_part(part).unwrap();
     it.please(&["tray UNIT_1 4 LINKBAR1_BH 0 0 0"]).go();
     it.finishes();
 }
@@ -659,6 +668,28 @@ fn hand_of_the_pedestal_calibrates_after_its_potentiometer_is_repaired() {
     it.fails(Reason::HandNotCalibrated);
     let ticks = 4820_u64.saturating_sub(it.tick());
     it.wait(u32::try_from(ticks).unwrap()).go();
+    it.finishes();
+}
+
+/// The remedy "put the gripper into its holster": the v-gripper is not in the cell when the shaft is to be fetched.
+#[test]
+fn gripper_that_is_missing_is_fetched_after_it_was_hung_in_its_holster() {
+    let mut it = Operated::start(SHAFT);
+    it.cell().hang_gripper(2, None).unwrap();
+    it.fails(Reason::HolsterEmpty);
+    it.cell().hang_gripper(2, Some(1)).unwrap();
+    it.go();
+    it.finishes();
+}
+
+/// The remedy "empty the holster": somebody has hung the tool gripper in the holster of the parts gripper.
+#[test]
+fn gripper_is_put_away_after_its_holster_was_emptied() {
+    let mut it = Operated::start(SHAFT);
+    it.cell().hang_gripper(3, Some(0)).unwrap();
+    it.fails(Reason::HolsterOccupied);
+    it.cell().hang_gripper(3, Some(2)).unwrap();
+    it.go();
     it.finishes();
 }
 
@@ -687,6 +718,8 @@ const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::ObjectLost, "object_that_was_lost_on_the_way_is_fetched_again_from_its_source"),
     (Reason::AtTrayEdge, "object_at_the_edge_of_its_tray_is_moved_to_the_middle"),
     (Reason::HandLost, "object_that_the_pedestal_has_lost_is_delivered_again"),
+    (Reason::HolsterEmpty, "gripper_that_is_missing_is_fetched_after_it_was_hung_in_its_holster"),
+    (Reason::HolsterOccupied, "gripper_is_put_away_after_its_holster_was_emptied"),
     (Reason::HandNotCalibrated, "hand_of_the_pedestal_calibrates_after_its_potentiometer_is_repaired"),
 ];
 
@@ -699,10 +732,11 @@ const ELSEWHERE: &[(Reason, &str)] = &[
     (Reason::DrumOccupied, "tests/drum.rs follows the remedy"),
     (Reason::ForceUncalibrated, "tests/drum.rs follows the remedy"),
     (Reason::NeighbourLost, "tests/boards.rs replaces lost boards"),
+    (
+        Reason::GripperGone,
+        "in the cell a ring that opens takes the air from the fingers first: the object is lost before",
+    ),
     (Reason::SentAway, "the levels send the robot away in every tick (task recovery)"),
-    (Reason::GripperGone, "nobody takes a gripper off in the simulated cell"),
-    (Reason::HolsterOccupied, "nobody puts a gripper into a holster in the simulated cell"),
-    (Reason::HolsterEmpty, "nobody puts a gripper into a holster in the simulated cell"),
 ];
 
 #[test]

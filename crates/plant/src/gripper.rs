@@ -360,6 +360,14 @@ impl Gripper {
         }
     }
 
+    /// Let somebody hold a gripper that has fallen.
+    pub fn pick_up(&self, world: &mut PhysicsWorld) {
+        world.bodies[self.hand].set_body_type(RigidBodyType::KinematicPositionBased, true);
+        for finger in &self.fingers {
+            world.bodies[finger.body].set_gravity_scale(0.0, true);
+        }
+    }
+
     /// Load on the fingers and the held part, including their weight, at the tool point in the axes of the tool.
     #[must_use]
     pub fn load(&self, world: &PhysicsWorld) -> Wrench {

@@ -240,3 +240,26 @@ fn a_part_is_lost_when_the_air_is_cut() {
     assert!(!rig.part().held);
     assert!(rig.log.iter().any(|event| matches!(event, CellEvent::Dropped { .. })), "{:?}", rig.log);
 }
+
+/// A person takes the v-gripper, which the robot does not carry, out of its holster, and hangs it in one.
+#[test]
+fn a_gripper_goes_only_into_an_empty_holster_and_only_off_the_robot() {
+    let mut rig = Rig::new(&description(), 1);
+    assert_eq!(rig.inputs.holsters.left, FULL);
+    rig.cell.hang_gripper(2, None).unwrap();
+    rig.tick();
+    assert_eq!(rig.inputs.holsters.left, 0);
+    assert!(!rig.cell.is_holstered(2));
+    let on_the_robot = rig.cell.hang_gripper(1, Some(0)).unwrap_err().to_string();
+    let occupied = rig.cell.hang_gripper(2, Some(2)).unwrap_err().to_string();
+    let (no_gripper, no_holster) = (rig.cell.hang_gripper(4, None), rig.cell.hang_gripper(2, Some(3)));
+    assert!(on_the_robot.contains("parts_gripper"), "{on_the_robot}");
+    assert!(occupied.contains("tool_gripper is in the way"), "{occupied}");
+    assert!(no_gripper.is_err() && no_holster.is_err());
+    for (which, full) in [(0, [FULL, 0]), (1, [0, FULL])] {
+        rig.cell.hang_gripper(2, Some(which)).unwrap();
+        rig.tick();
+        assert_eq!([rig.inputs.holsters.right, rig.inputs.holsters.left], full);
+    }
+    assert!(rig.cell.is_holstered(2));
+}

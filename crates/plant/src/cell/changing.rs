@@ -7,9 +7,10 @@
 
 use geometry::frame::Frame;
 use interfaces::device::{HolsterSensors, QuickChangeSensors, QuickChangeValves};
+use rapier3d_f64::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 
-use super::{Cell, CellEvent, handling::Hand, truth::RingState};
+use super::{Cell, CellEvent, handling::Hand, truth::RingState, workstation::WorkstationError};
 use crate::{
     convert::{on_the_side_of, to_frame, to_pose},
     description::{CellDescription, Mounted, QuickChange},
@@ -21,6 +22,9 @@ use crate::{
 /// The grippers of the robot, in the order of their end effector ids.
 pub(super) const ROBOT_HANDS: [Hand; 3] = [Hand::Parts, Hand::V, Hand::Tool];
 
+/// Where a gripper is that a person has taken out of the cell, m: far below the floor.
+const AWAY: Vector = Vector::new(0.0, 0.0, -100.0);
+
 /// Place of a gripper.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub(super) enum GripperPlace {
@@ -30,6 +34,8 @@ pub(super) enum GripperPlace {
     Holster(usize, Perch),
     /// It was released away from a holster.
     Fallen,
+    /// A person has taken it out of the cell.
+    Away,
 }
 
 /// Quick change, holsters, and the places of the grippers.
@@ -111,7 +117,7 @@ impl Changer {
         match self.place(hand)? {
             GripperPlace::Robot => Some(*robot),
             GripperPlace::Holster(which, perch) => Some(self.holsters[which].gripper(&perch)),
-            GripperPlace::Fallen => None,
+            GripperPlace::Fallen | GripperPlace::Away => None,
         }
     }
 
@@ -119,7 +125,8 @@ impl Changer {
     fn is_present(&self, hand: Hand) -> bool {
         match self.place(hand) {
             Some(GripperPlace::Holster(_, perch)) => self.mated == Some(hand) || !perch.rests(),
-            _ => true,
+            Some(GripperPlace::Away) => false,
+            Some(GripperPlace::Robot | GripperPlace::Fallen) | None => true,
         }
     }
 
@@ -235,6 +242,44 @@ impl Cell {
             gripper.hang(world, &to_pose(&frame));
             gripper.set_present(world, present);
         }
+    }
+
+    /// Hang a gripper that is not on the robot in a holster, numbered from 0 in the order of the grippers' ids, or take it
+    /// out of the cell, as a person does.
+    ///
+    /// # Errors
+    /// [`WorkstationError`] if there is no such gripper or holster, the quick change has the gripper, or another one is
+    /// in the holster; the state is unchanged.
+    pub fn hang_gripper(&mut self, id: u8, holster: Option<usize>) -> Result<(), WorkstationError> {
+        let none = WorkstationError::NoSuchGripper { id };
+        let hand = ROBOT_HANDS.into_iter().find(|hand| hand.end_effector_id() == Some(id)).ok_or(none)?;
+        let name = || hand.link().to_owned();
+        if self.changer.carried() == Some(hand) || self.changer.mated() == Some(hand) {
+            return Err(WorkstationError::Held { part: name() });
+        }
+        let place = match holster {
+            None => GripperPlace::Away,
+            Some(which) => {
+                let holster = self.changer.holsters.get(which);
+                let seat = holster.ok_or(WorkstationError::NoSuchHolster { number: which })?.seated();
+                let by = ROBOT_HANDS.into_iter().find(|other| {
+                    *other != hand
+                        && matches!(self.changer.place(*other), Some(GripperPlace::Holster(at, _)) if at == which)
+                });
+                if let Some(by) = by {
+                    return Err(WorkstationError::Occupied { part: name(), by: by.link().to_owned() });
+                }
+                GripperPlace::Holster(which, seat)
+            }
+        };
+        if let Some(slot) = hand.slot() {
+            self.changer.places[slot] = place;
+        }
+        let (gripper, world) = self.hand_at_work(hand);
+        gripper.pick_up(world);
+        gripper.hang(world, &Pose::from_translation(AWAY));
+        self.hang_grippers();
+        Ok(())
     }
 
     /// New place of the gripper in the ring; `None` if the ring keeps it.

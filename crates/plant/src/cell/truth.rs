@@ -94,7 +94,7 @@ impl Cell {
                 let aside = self.description.holsters.seat - perch.forward;
                 perch.rests() && aside.abs() <= self.description.holsters.detent
             }
-            Some(GripperPlace::Robot | GripperPlace::Fallen) | None => false,
+            Some(GripperPlace::Robot | GripperPlace::Fallen | GripperPlace::Away) | None => false,
         }
     }
 

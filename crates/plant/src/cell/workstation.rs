@@ -166,6 +166,18 @@ pub enum WorkstationError {
         /// All locations where something can be machined.
         known: Vec<String>,
     },
+    /// There is no gripper with this end effector id.
+    #[error("no gripper has the end effector id {id}; the grippers have 1 to 3")]
+    NoSuchGripper {
+        /// The id asked for.
+        id: u8,
+    },
+    /// There is no holster with this number.
+    #[error("no holster has the number {number}; the holsters have 0 to 2")]
+    NoSuchHolster {
+        /// The number asked for.
+        number: usize,
+    },
     /// The place is occupied.
     #[error("{part} cannot be put there: {by} is in the way")]
     Occupied {

@@ -14,6 +14,7 @@ pub mod motion;
 pub mod mov_obj_to;
 pub mod mov_to_hol;
 pub mod mov_to_obj;
+pub mod mov_to_vu;
 pub mod ordered;
 pub mod qc_attach;
 pub mod qc_detach;
@@ -351,7 +352,8 @@ commands! {
         MovToLoc: goals::PLACE              => motion::motion;
         MovToObj: goals::PLACE              => mov_to_obj::mov_to_obj then motion::motion;
         MovObjTo: goals::BROUGHT            => mov_obj_to::mov_obj_to then motion::motion;
-        MovToHol | MovToVu: goals::PLACE    => mov_to_hol::mov_to_hol then motion::motion;
+        MovToHol: goals::PLACE              => mov_to_hol::mov_to_hol then motion::motion;
+        MovToVu: goals::PLACE               => mov_to_vu::mov_to_vu then motion::motion;
         LocateObj: goals::LOCATED           => locate_obj::locate_obj;
         GraspObj: goals::HELD               => grasp_obj::grasp_obj;
         Release: goals::RELEASED            => release::release;

@@ -18,6 +18,7 @@ pub const SCENARIOS: &[fn()] = &[
     the_gripper_closes_on_the_way_to_its_holster,
     a_robot_that_is_sent_away_from_above_a_holster_leaves_upward,
     detaching_begins_only_when_it_can,
+    robot_brings_no_gripper_to_a_holster_that_is_not_empty,
     attaching_begins_only_when_it_can,
     what_is_done_already_is_done_at_once,
     a_guarded_move_that_sees_nothing_is_given_up,
@@ -113,17 +114,17 @@ fn the_gripper_closes_on_the_way_to_its_holster() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "HOLSTER-C", 1), DONE);
     assert_eq!(bench.run(Release, "BLOCK", 1, "HOLSTER-C", 1), DONE);
-    assert_eq!(bench.run(MovToHol, "GRIPPER-1", 1, "HOLSTER-R", 1), DONE);
+    assert_eq!(bench.run(MovToHol, GRIPPERS[0].1, 1, GRIPPERS[0].2, 1), DONE);
     assert_eq!(bench.log()[..3], ["GO-THRU A/D-5", "POSITION", "GO-THRU"]);
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("POSITION", Mishap::Grip(Reason::GripTimeout));
-    assert_eq!(bench.run(MovToHol, "GRIPPER-1", 1, "HOLSTER-R", 1), error(Reason::GripTimeout));
+    assert_eq!(bench.run(MovToHol, GRIPPERS[0].1, 1, GRIPPERS[0].2, 1), error(Reason::GripTimeout));
     let mut bench = Bench::ready("HOME", 1);
     bench.hold("BLOCK", 75, 1);
-    assert_eq!(bench.run(MovToHol, "GRIPPER-1", 1, "HOLSTER-R", 1), error(Reason::AlreadyHolding));
+    assert_eq!(bench.run(MovToHol, GRIPPERS[0].1, 1, GRIPPERS[0].2, 1), error(Reason::AlreadyHolding));
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("POSITION", Mishap::Never);
-    bench.command(MovToHol, "GRIPPER-1", 1, "HOLSTER-R", 1);
+    bench.command(MovToHol, GRIPPERS[0].1, 1, GRIPPERS[0].2, 1);
     bench.steps(100);
     assert_eq!(bench.log(), ["POSITION", "GO-THRU", "GO-THRU A/D-5"], "the final motion waits");
 }
@@ -157,6 +158,21 @@ fn detaching_begins_only_when_it_can() {
         bench.step();
         assert_eq!(bench.log().last(), Some(&"PAUSE"));
     }
+}
+
+/// Something hangs in the holster from the start, or is hung there when the robot is on its way.
+#[test]
+fn robot_brings_no_gripper_to_a_holster_that_is_not_empty() {
+    for (bits, ticks) in [(0b0001, 0), (0b1111, 0), (0b1111, 10)] {
+        let mut bench = Bench::ready("HOME", 1);
+        bench.command(MovToHol, GRIPPERS[0].1, 1, GRIPPERS[0].2, 1);
+        bench.steps(ticks);
+        bench.world.holsters[0] = bits;
+        assert_eq!(bench.finish(), error(Reason::HolsterOccupied), "{bits:04b} after {ticks} ticks");
+        assert_eq!(bench.motions().is_empty(), ticks == 0, "{bits:04b} after {ticks} ticks");
+    }
+    let mut bare = Bench::ready("HOME", 0);
+    assert_eq!(bare.run(MovToHol, GRIPPERS[0].1, 1, GRIPPERS[0].2, 1), DONE, "it fetches what is there");
 }
 
 #[test]
@@ -196,7 +212,7 @@ fn a_guarded_move_that_sees_nothing_is_given_up() {
     for word in ["QCD-DOWN", "QCD-SEAT"] {
         let mut bench = above(1);
         bench.spoil(word, Mishap::Prim(PrimReport::NotDetected, Reason::NotDetected));
-        bench.command(QcDetach, "GRIPPER-1", 1, "HOLSTER-R", 1);
+        bench.command(QcDetach, GRIPPERS[0].1, 1, GRIPPERS[0].2, 1);
         while bench.memory.prim.status.report != PrimReport::NotDetected {
             bench.step();
         }
@@ -268,7 +284,7 @@ fn a_gripper_that_does_not_come_off_is_named() {
     bench.spoil("QCD-UP", Mishap::Holster(0b0011));
     assert_eq!(detach(&mut bench, 1), error(Reason::NotDetached), "it is off, and not at its seat");
     let mut bench = above(1);
-    bench.command(QcDetach, "GRIPPER-1", 1, "HOLSTER-R", 1);
+    bench.command(QcDetach, GRIPPERS[0].1, 1, GRIPPERS[0].2, 1);
     while !bench.log().contains(&"DELTA-MOVE QCD-UP") {
         bench.step();
     }
@@ -350,10 +366,10 @@ fn the_parts_gripper_is_calibrated_when_it_comes() {
 #[test]
 fn data_for_the_holsters_must_be_there() {
     let mut bench = Bench::ready("HOLSTER-R", 1);
-    assert_eq!(bench.run(QcDetach, "GRIPPER-1", 1, "HOLSTER-R", 0), error(Reason::NoHolster));
+    assert_eq!(bench.run(QcDetach, GRIPPERS[0].1, 1, GRIPPERS[0].2, 0), error(Reason::NoHolster));
     assert_eq!(bench.run(QcDetach, "GRIPPER-9", 1, "HOLSTER-R", 1), error(Reason::UnknownGrip));
     assert_eq!(bench.run(QcDetach, "GRIPPER-1", 1, "BENCH", 1), error(Reason::NoRelativeMove));
-    bench.command(QcDetach, "GRIPPER-1", 1, "HOLSTER-R", 1);
+    bench.command(QcDetach, GRIPPERS[0].1, 1, GRIPPERS[0].2, 1);
     bench.memory.subtask.emove.pose = None;
     assert_eq!(bench.finish(), error(Reason::NoDestination));
 }
