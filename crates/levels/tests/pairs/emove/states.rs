@@ -13,7 +13,8 @@ impl<G: Fingered> Pair<G> {
         forget(&mut it.emove);
         it.gripper.execution().reason = Reason::None;
         // Rows that order something lead to later steps: none of them fires twice in a command.
-        (it.emove.execution.last_order, it.emove.beliefs.placed) = (None, None);
+        (it.emove.execution.last_order, it.emove.beliefs.placed, it.emove.beliefs.disturbed) =
+            (None, None, None);
         if it.is_settled() {
             G::forget_order(&mut it.emove_out);
         }

@@ -25,7 +25,7 @@ impl Pair {
             }
         }
         it.emove.surroundings = Default::default();
-        it.emove.beliefs.placed = None;
+        (it.emove.beliefs.placed, it.emove.beliefs.disturbed) = (None, None);
         it.prim.restarts = Default::default();
         if it.prim.execution.outcome != Outcome::Executing {
             it.prim.standstill = Default::default();
