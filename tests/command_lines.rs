@@ -170,6 +170,7 @@ fn a_mistyped_word_or_path_is_named_once_with_its_nearest_name() {
             "the nearest is linkbar",
         ),
         (rcs_log(), &["info", "rnu.mcap"], "rnu.mcap: No such file", "the nearest log is run.mcap"),
+        (rcs_log(), &["replay", "rnu.mcap"], "rnu.mcap: No such file", "the nearest log is run.mcap"),
         (rcs_log(), &["serve", "nowhere/x.mcap"], "nowhere/x.mcap: No such file", "os error 2"),
         (rcs_run(), &["send", "--stay", "1m", "stop"], "--stay", "seconds from 0 to 86400 were expected"),
         (

@@ -140,8 +140,8 @@ fn command_that_fails_its_check_is_refused_with_the_reason_of_a_job_line() {
 /// Nothing is opened for one.
 #[test]
 fn lines_for_the_cell_are_refused_by_their_number_and_their_words() {
-    const LOAD: &str = "load OFFSET BLOCK was expected, such as load 21000 610; load FILE stands in the controller's \
-                        own jobs only, whose blocks are read before the first tick";
+    const LOAD: &str = "load OFFSET BLOCK was expected, such as load 21000 610; load FILE is for the controller's \
+                        own jobs";
     let controller = Controller::start("lines", "workstation", &[]);
     let mut workstation = Workstation::connect(&controller);
     let line = |number, text| cell::encode_line(number, text).to_vec();

@@ -3,7 +3,7 @@
 use std::{path::PathBuf, str::FromStr};
 
 use clap::Parser;
-use cli_pages::{data_directory, fault_file};
+use cli_pages::{DataArgument, fault_file};
 use depc::Limits;
 use egm_robot::EgmOptions;
 
@@ -51,16 +51,9 @@ pub struct Cli {
     /// silent-at, silent-for=S, seed=N.
     #[arg(long, value_name = "egm:PORT", conflicts_with_all = ["link", "auto", "faults"])]
     pub emulate: Option<EgmTarget>,
-    /// Directory with robots/NAME.toml [default: data; if there is none: built-in,
-    /// the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
     /// Do the start-up without a person, and press ENTER when a host connects
     #[arg(long)]
     pub auto: bool,

@@ -22,6 +22,7 @@ use egm_robot::{
     network::Network,
 };
 use os_io::stdout_line;
+use os_io::text::amount;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::cli::EgmTarget;
@@ -186,7 +187,7 @@ impl Emulation {
         let [x, y, z] = self.robot.pose().position;
         let joints = self.robot.joints().map(|joint| format!("{:.2}", joint.to_degrees())).join(" ");
         let state = self.robot.stopped().map_or("EGM runs", |stopped| stopped.text());
-        stdout_line!("[status] {state}; {} messages, {} refused", self.received, self.refused);
+        stdout_line!("[status] {state}; {}, {} refused", amount(self.received, "message"), self.refused);
         stdout_line!("[status] tool at {x:.2} {y:.2} {z:.2} mm, joints {joints} degrees");
     }
 }

@@ -16,6 +16,7 @@ use std::{
 use depc::fault::{Direction, Injector, Plan};
 use interfaces::device::LinkBytes;
 use os_io::stdout_line;
+use os_io::text::amount;
 use plant::{
     Key,
     description::Actuators,
@@ -230,7 +231,7 @@ impl Shell {
             lines.push(Message::Warning(depc.warning()).to_string());
         }
         if let Some(injector) = &self.faults {
-            lines.push(format!("[status] {} faults on the line", injector.total().faults()));
+            lines.push(format!("[status] {} on the line", amount(injector.total().faults(), "fault")));
         }
         lines.push(Message::Position(t3.position()).to_string());
         stdout_line!("{}", lines.join("\n"));

@@ -7,12 +7,17 @@ use executive::memory::RunName;
 
 use crate::{model::Screen, view::Look};
 
+/// The help of `--data`, which only serves a run or a log without data of its own.
+const DATA: &str = "Task data whose blocks screen 5 lists [with --operate those of the run, with a log those in the log; \
+                    else data, or built-in, the data of the program]";
+
 /// Shows what every control process does and why: in a run, or at any tick of a log. With --operate it operates the run
 #[derive(Debug, Parser)]
 #[command(
     name = "rcs-console",
     version,
     about,
+    mut_arg("data", |data| data.help(DATA)),
     after_help = "\
 Examples:
   rcs-console                                  the run in progress; waits for one if there is none
@@ -33,16 +38,9 @@ pub struct Cli {
     /// Operate the run, instead of only looking at it; the run needs --clock real
     #[arg(long, conflicts_with_all = ["once", "tick"])]
     pub operate: bool,
-    /// Task data whose blocks screen 5 lists [with --operate those of the run, with a log those in the log; else data, or
-    /// built-in, the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = cli_pages::data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: cli_pages::DataArgument,
     /// Whether to use colours, which only repeat what the text says; auto follows NO_COLOR and TERM=dumb
     #[arg(long, value_enum, default_value_t = Colour::Auto)]
     pub colour: Colour,

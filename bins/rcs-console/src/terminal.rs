@@ -69,7 +69,7 @@ pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
         drawn: None,
         log: cli.log.clone(),
         operate: cli.operate,
-        data: cli.data.clone(),
+        data: cli.data.to_path_buf(),
         watch: watch::place(),
         watched: Vec::new(),
     }

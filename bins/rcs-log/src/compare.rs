@@ -11,6 +11,7 @@ use std::{
 use cli_pages::{data_directory, job};
 use diagnostics::JOBS;
 use interfaces::CommonMemory;
+use os_io::text::amount;
 use runtime::{LogTarget, Run, RunConfig, StartError};
 use serde::Serialize;
 
@@ -160,7 +161,7 @@ impl OneJob {
         let rows = match (otherwise, late) {
             (0, 0) => "none".to_owned(),
             (0, late) => format!("none; {late} at other times"),
-            (otherwise, _) => format!("{otherwise} processes"),
+            (otherwise, _) => amount(otherwise, "process"),
         };
         let outcome = if self.outcome[0] == self.outcome[1] {
             self.outcome[0].clone()

@@ -12,6 +12,7 @@ use std::{
 };
 
 use interfaces::{CommonMemory, ExternalInputs};
+use os_io::text::amount;
 use rcs_core::{Plain, plain::Writer};
 use record::{
     Attachment, Log,
@@ -224,7 +225,8 @@ impl fmt::Display for Differences {
         let Self { compared, only_a, only_b, different, .. } = self;
         writeln!(
             f,
-            "{compared} ticks compared, {different} different; {only_a} only in the first log, {only_b} only in the second"
+            "{} compared, {different} different; {only_a} only in the first log, {only_b} only in the second",
+            amount(*compared, "tick")
         )?;
         write!(f, "{}", self.changes)?;
         let Some(First { tick_a, tick_b, field, a, b }) = &self.first else { return Ok(()) };
@@ -235,7 +237,7 @@ impl fmt::Display for Differences {
             writeln!(f, "  {:>9} {:>7}  {}", story.first_tick, story.ticks, story.field)?;
         }
         if self.more_fields > 0 {
-            writeln!(f, "  and {} more fields", self.more_fields)?;
+            writeln!(f, "  and {}", amount(self.more_fields, "more field"))?;
         }
         Ok(())
     }

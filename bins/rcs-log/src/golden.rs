@@ -8,6 +8,7 @@ use std::{
 };
 
 use os_io::replace::replace;
+use os_io::text::amount;
 use record::golden;
 use serde::Serialize;
 
@@ -72,7 +73,8 @@ fn make(path: &Path, directory: &Path) -> Result<One, Error> {
 impl fmt::Display for Made {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.goldens.iter().try_for_each(|One { file, ticks, bytes, digest }| {
-            writeln!(f, "{}: {ticks} ticks, {:.1} kB, digest {digest}", file.display(), *bytes as f64 / 1e3)
+            let ticks = amount(*ticks, "tick");
+            writeln!(f, "{}: {ticks}, {:.1} kB, digest {digest}", file.display(), *bytes as f64 / 1e3)
         })
     }
 }

@@ -3,6 +3,7 @@
 use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode};
 
 use interfaces::t3i::LinkCounters;
+use os_io::text::amount;
 use rcs_core::tick::{TICK_S, Tick};
 use record::{Log, proto::foxglove::Level};
 use serde::Serialize;
@@ -182,13 +183,13 @@ impl fmt::Display for Info {
         writeln!(f, "ended      {end}")?;
         writeln!(
             f,
-            "length     {} ticks, {:.1} s; {} ticks missing; {:.1} MB, {} warnings, {} errors",
-            self.ticks,
+            "length     {}, {:.1} s; {} missing; {:.1} MB, {}, {}",
+            amount(self.ticks, "tick"),
             self.seconds,
-            self.missing_ticks,
+            amount(self.missing_ticks, "tick"),
             self.bytes as f64 / 1e6,
-            self.warnings,
-            self.errors
+            amount(self.warnings, "warning"),
+            amount(self.errors, "error")
         )?;
         if let Some(damage) = &self.damage {
             writeln!(f, "damage     {damage}")?;
@@ -196,14 +197,19 @@ impl fmt::Display for Info {
         if let Some(Times { overruns, p50_us, p99_us, max_us }) = &self.times {
             writeln!(
                 f,
-                "controller p50 {p50_us:.1} us, p99 {p99_us:.1} us, max {max_us:.1} us; {overruns} slots skipped"
+                "controller p50 {p50_us:.1} us, p99 {p99_us:.1} us, max {max_us:.1} us; {} skipped",
+                amount(*overruns, "slot")
             )?;
         }
         let Link { frames, acknowledged, naks, timeouts, restarts, checksum_errors, limited } = &self.link;
         writeln!(
             f,
-            "link       {frames} frames, {acknowledged} acknowledged, {naks} NAKs, {timeouts} without answer, \
-             {restarts} re-starts, {checksum_errors} checksum errors, {limited} points limited"
+            "link       {}, {acknowledged} acknowledged, {}, {timeouts} without answer, {}, {}, {} limited",
+            amount(*frames, "frame"),
+            amount(*naks, "NAK"),
+            amount(*restarts, "re-start"),
+            amount(*checksum_errors, "checksum error"),
+            amount(*limited, "point")
         )?;
         if let Some(digest) = &self.digest {
             writeln!(f, "digest     {digest}")?;

@@ -182,8 +182,7 @@ enum Error {
     },
     /// The replay of this program differs from the log.
     #[error(
-        "{}: this program differs from the log from tick {first} to {last}: make a golden from a run of the program \
-         that is to be tested (rcs-log replay names the field)",
+        "{}: this program differs from the log from tick {first} to {last}: name a log of this program",
         path.display()
     )]
     NotGolden {

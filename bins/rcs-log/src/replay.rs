@@ -1,14 +1,19 @@
 //! `rcs-log replay`: computes the control processes again on the recorded inputs, and compares every output buffer of
 //! every tick, bit for bit. Several logs are replayed in parallel.
 
-use std::{fmt, path::PathBuf, process::ExitCode};
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
+use os_io::text::amount;
 use rcs_core::tick::Tick;
 use record::{Options, ReplayError, ReplayReport};
 use serde::Serialize;
 use taskdata::load::{Diagnostics, Store};
 
-use crate::{Answer, DIFFERENT, Error, UNUSABLE, parallel, print};
+use crate::{Answer, DIFFERENT, Error, UNUSABLE, parallel, print, unreadable};
 
 /// Arguments of `replay`.
 #[derive(Clone, Debug, clap::Args)]
@@ -51,12 +56,13 @@ struct OneLog {
     digest: Option<String>,
     /// The first difference.
     difference: Option<String>,
-    /// Why the log was not replayed.
+    /// Why the log was not replayed, with its path.
     error: Option<String>,
 }
 
 impl OneLog {
-    fn new(file: String, outcome: Result<ReplayReport, ReplayError>) -> Self {
+    fn new(path: &Path, outcome: Result<ReplayReport, ReplayError>) -> Self {
+        let file = path.display().to_string();
         match outcome {
             Ok(report) => Self {
                 file,
@@ -80,7 +86,10 @@ impl OneLog {
                 times_real_time: 0.0,
                 digest: None,
                 difference: None,
-                error: Some(error.to_string()),
+                error: Some(match &error {
+                    ReplayError::Read(source) => unreadable(path, source),
+                    other => format!("{}: {other}", path.display()),
+                }),
             },
         }
     }
@@ -95,8 +104,7 @@ pub fn replay(arguments: &Arguments) -> Result<ExitCode, Error> {
     });
     let options =
         Options { data: data.transpose()?, from: arguments.from.map(Tick), until: arguments.until.map(Tick) };
-    let replay =
-        |path: &PathBuf| OneLog::new(path.display().to_string(), record::replay_with(path, &options));
+    let replay = |path: &PathBuf| OneLog::new(path, record::replay_with(path, &options));
     let outcome = Outcome { logs: parallel::each(&arguments.files, replay) };
     print(&outcome, arguments.answer.json)?;
     let worst = |log: &OneLog| match (log.same, &log.error) {
@@ -107,7 +115,7 @@ pub fn replay(arguments: &Arguments) -> Result<ExitCode, Error> {
     let status = outcome.logs.iter().map(worst).max().unwrap_or(0);
     if status != 0 {
         let failed = outcome.logs.iter().filter(|log| !log.same).count();
-        os_io::stderr_line!("rcs-log: {failed} of {} logs did not replay", outcome.logs.len());
+        os_io::stderr_line!("rcs-log: {failed} of {} did not replay", amount(outcome.logs.len(), "log"));
     }
     Ok(ExitCode::from(status))
 }
@@ -116,17 +124,22 @@ impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for log in &self.logs {
             if let Some(error) = &log.error {
-                writeln!(f, "{}: not replayed: {error}", log.file)?;
+                writeln!(f, "not replayed: {error}")?;
                 continue;
             }
             let verdict = if log.same { "same" } else { "DIFFERENT" };
             let end = if log.complete { "" } else { "; the log has no end" };
-            let gaps =
-                if log.skipped > 0 { format!("; {} ticks skipped", log.skipped) } else { String::new() };
+            let gaps = if log.skipped > 0 {
+                format!("; {} skipped", amount(log.skipped, "tick"))
+            } else {
+                String::new()
+            };
             writeln!(
                 f,
-                "{}: {verdict}, {} ticks, {:.0} x real time{gaps}{end}",
-                log.file, log.ticks, log.times_real_time
+                "{}: {verdict}, {}, {:.0} x real time{gaps}{end}",
+                log.file,
+                amount(log.ticks, "tick"),
+                log.times_real_time
             )?;
             if let Some(damage) = &log.damage {
                 writeln!(f, "  {damage}")?;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use cli_pages::data_directory;
+use cli_pages::DataArgument;
 use neighbours::network::Address;
 
 use crate::vision::Fault;
@@ -100,16 +100,9 @@ pub struct WorkstationArguments {
     /// Name of a job in the data directory, or a path
     #[arg(default_value = "linkbar", value_parser = cli_pages::job(), hide_possible_values = true)]
     pub job: String,
-    /// Jobs, and the task data with which the job is checked [default: data; if there is none: built-in,
-    /// the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
     /// After a command that ends with an error, send PAUSE and the same command again, at most N times for a line of
     /// the job
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -137,20 +130,14 @@ pub struct PedestalArguments {
 
 /// Arguments of `vision`.
 #[derive(Clone, Debug, Args)]
+#[command(mut_arg("data", |data| data.help("Directory with the cell description of the run, cell.toml")))]
 pub struct VisionArguments {
     /// Where the controller is.
     #[command(flatten)]
     pub controller: ControllerArguments,
-    /// Directory with the cell description of the run, cell.toml [default: data; if there is none: built-in,
-    /// the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
     /// Faults of pictures, separated by commas: N:KIND or N-M:KIND; pictures count from 1 over all runs
     ///
     /// off: no answer; camera-blind: the camera sees nothing; not-recognised: the object is not recognised;

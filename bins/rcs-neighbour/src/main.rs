@@ -56,8 +56,7 @@ enum Error {
     Cell(#[from] DescriptionError),
     /// The cell descriptions of the run and of this process differ.
     #[error(
-        "the cell description of the run was expected: camera and parts have the fingerprint {found:016x} there, and here \
-         {expected:016x}; name its directory with --data"
+        "camera and parts are {expected:016x}, those of the run {found:016x}: name the data of the run with --data"
     )]
     AnotherCell {
         /// Fingerprint of this process's description.

@@ -15,6 +15,7 @@ use neighbours::{
         status,
     },
 };
+use os_io::text::amount;
 use rcs_core::tick::Tick;
 use taskdata::load::{Job, Store, job::Workstation as Action};
 
@@ -82,7 +83,7 @@ fn job(arguments: &WorkstationArguments) -> Result<Job, Error> {
 fn tell(hwsc: &Hwsc, told: &mut usize, over: bool) {
     let finished = if over { hwsc.begun_steps().len() } else { hwsc.begun_steps().len().saturating_sub(1) };
     for step in hwsc.begun_steps().get(*told..finished).unwrap_or_default() {
-        os_io::stdout_line!("{}: {} after {} ticks", step.text, step.ending(), step.ticks);
+        os_io::stdout_line!("{}: {} after {}", step.text, step.ending(), amount(step.ticks, "tick"));
     }
     *told = finished.max(*told);
 }

@@ -16,15 +16,16 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
+use cli_pages::DataArgument;
 use diagnostics::{
-    Blame, Diagnostic, Diagnostics, FAULTS, Finding, Group, JOBS, Problems, ROBOTS, Severity, Source, amount,
-    grouped,
+    Blame, Diagnostic, Diagnostics, FAULTS, Finding, Group, JOBS, Problems, ROBOTS, Severity, Source, grouped,
 };
 use egm_robot::{RobotFile, placement::PlacementError};
 use os_io::{
     console::{self, shown},
     files,
     replace::{Format, check_output, replace},
+    text::amount,
 };
 use paths::known::Known;
 use plant::{
@@ -77,10 +78,11 @@ struct OfDatum {
 
 /// Load and report. Exit status 0 if there is no error, else 2.
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
-    let named = arguments.directory.clone().unwrap_or_else(|| arguments.data.clone());
-    let arguments = &CheckArguments { data: named, ..arguments.clone() };
+    let named = arguments.directory.clone().map(DataArgument::from);
+    let data = named.unwrap_or_else(|| arguments.data.clone());
+    let arguments = &CheckArguments { data, ..arguments.clone() };
     if !files::is_directory(&arguments.data) {
-        return Err(StartError::NoData(arguments.data.clone()).into());
+        return Err(StartError::NoData(arguments.data.to_path_buf()).into());
     }
     if let Some(command) = &arguments.explain {
         return explain::explain(arguments, command);

@@ -10,7 +10,7 @@ use clap::{
     Args, Parser, Subcommand, ValueEnum,
     builder::{ArgPredicate, StringValueParser, TypedValueParser},
 };
-use cli_pages::{data_directory, default_data, fault_file, with_names};
+use cli_pages::{DataArgument, data_directory, default_data, fault_file, with_names};
 use diagnostics::ROBOTS;
 use executive::{boards::Board, memory::RunName, overrun::Policy};
 use live::Origin;
@@ -236,6 +236,7 @@ pub struct RunArguments {
 
 /// Arguments of `board`.
 #[derive(Clone, Debug, Args)]
+#[command(mut_arg("data", |data| data.help("Task data and jobs; they must be those of the run")))]
 pub struct BoardArguments {
     /// Number of the board: 2 (E-move, Prim), 4 (T3 Interface), 6 (Task, Subtask), 8 (Quick Change, grippers, pedestal)
     #[arg(value_name = "BOARD")]
@@ -249,16 +250,9 @@ pub struct BoardArguments {
     /// Name of the run, as rcs-run prints it
     #[arg(long, value_name = "NAME")]
     pub run: RunName,
-    /// Task data and jobs; they must be those of the run [default: data; if there is none: built-in,
-    /// the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
     /// CPU core to run on if ticks come every 40 ms [default: the highest number that this process may use]
     #[arg(long, value_name = "N")]
     pub cpu: Option<usize>,
@@ -313,7 +307,7 @@ impl CheckArguments {
     #[must_use]
     pub fn of(data: &Path) -> Self {
         Self {
-            data: data.to_owned(),
+            data: data.to_owned().into(),
             directory: None,
             all: false,
             json: false,
@@ -454,16 +448,9 @@ pub struct PoseArguments {
     /// Write no pose, but a movetable that leads from this pose of the task data to the one that is shown
     #[arg(long, value_name = "POSE", requires = "write", conflicts_with = "movetable")]
     pub relative: Option<String>,
-    /// Task data and cell description [default: data; if there is none: built-in,
-    /// the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
     pub json: bool,
@@ -480,16 +467,9 @@ pub struct InitArguments {
 /// Arguments of `check`.
 #[derive(Clone, Debug, Args)]
 pub struct CheckArguments {
-    /// Task data, jobs and cell description [default: data; if there is none: built-in,
-    /// the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
     /// The same as --data DIR
     #[arg(value_name = "DIR", conflicts_with = "data", value_parser = data_directory())]
     pub directory: Option<PathBuf>,
@@ -536,15 +516,9 @@ pub struct CheckArguments {
 /// Arguments of `jobs`.
 #[derive(Clone, Debug, Args)]
 pub struct JobsArguments {
-    /// The data directory with the jobs [default: data; if there is none: built-in, the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
     pub json: bool,

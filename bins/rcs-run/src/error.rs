@@ -55,8 +55,7 @@ pub enum Error {
     },
     /// A robot at a port, and no data that a person has named.
     #[error(
-        "a robot at a port needs data of its own cell, and there is no directory data here: name one with --data DIR, \
-         or take those of the program with --data built-in"
+        "a robot at a port needs the data of its cell: --data DIR, or those of the program with --data built-in"
     )]
     BuiltInAtPort,
     /// A word that is no job, but nearly a subcommand.

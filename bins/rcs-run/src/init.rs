@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use os_io::text::amount;
 use os_io::{console, shell};
 
 use crate::{cli::InitArguments, error::Error};
@@ -18,6 +19,9 @@ pub fn init(arguments: &InitArguments) -> Result<ExitCode, Error> {
     let data = if is_here { "data".into() } else { directory.join("data") };
     let data = shell::path(data);
     let option = if is_here { String::new() } else { format!(" --data {data}") };
-    console::answer(&format!("{count} files written into {data}; check them with rcs-run check{option}\n"))?;
+    console::answer(&format!(
+        "{} written into {data}; check them with rcs-run check{option}\n",
+        amount(count, "file")
+    ))?;
     Ok(ExitCode::SUCCESS)
 }

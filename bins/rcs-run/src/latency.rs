@@ -17,6 +17,7 @@ use executive::{
     machine::Machine,
     realtime,
 };
+use os_io::text::amount;
 use rcs_core::tick::TICK_MS;
 use serde::Serialize;
 
@@ -175,8 +176,10 @@ impl fmt::Display for Measurement {
         writeln!(f, "real time  {}", self.realtime)?;
         writeln!(
             f,
-            "wake-ups   {} in {:.1} s, {} slots of 40 ms skipped",
-            self.wakeups, self.seconds, self.skipped
+            "wake-ups   {} in {:.1} s, {} of 40 ms skipped",
+            self.wakeups,
+            self.seconds,
+            amount(self.skipped, "slot")
         )?;
         let Late { p50, p99, p999, max } = self.late_us;
         writeln!(f, "late by    p50 {p50:.1} us, p99 {p99:.1} us, p99.9 {p999:.1} us, max {max:.1} us")?;

@@ -51,8 +51,8 @@ pub fn explain() -> Result<(), Error> {
 /// End this program: the set-up of shared memory took too long. Nothing has moved.
 pub fn stuck(limit: Duration) {
     stderr_line!(
-        "rcs-run: shared memory was not set up within {} s: another program has damaged it meanwhile; \
-         end that program and try again; a run on one board can do without: --shared-memory off",
+        "rcs-run: shared memory was not set up within {} s: another program damages it; end that, or do without by \
+         --shared-memory off",
         limit.as_secs()
     );
     exit(i32::from(UNUSABLE));

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use os_io::text::amount;
 use rcs_core::tick::{TICK_MS, TICK_S};
 use runtime::{
     Ending, RunOutcome,
@@ -39,7 +40,7 @@ impl fmt::Display for Page<'_> {
             writeln!(f, "retries    {}, the last one at tick {}", result.retries.len(), last.tick)?;
         }
         if let Some(operator) = &result.operator {
-            writeln!(f, "operator   {} requests, {} refused", operator.requests, operator.refused)?;
+            writeln!(f, "operator   {}, {} refused", amount(operator.requests, "request"), operator.refused)?;
         }
         for item in &result.data_base {
             writeln!(f, "database   {item}")?;
@@ -57,22 +58,26 @@ impl fmt::Display for Page<'_> {
         if let Some(EmergencyResult { tick, cause, touched, .. }) = &result.emergency_stop {
             let into = match touched.len() {
                 0 => "the sagging arm touched nothing".to_owned(),
-                count => format!("the sagging arm ran into {count} things"),
+                count => format!("the sagging arm ran into {}", amount(count, "thing")),
             };
             writeln!(f, "stop       tick {tick}: {cause}; {into}")?;
         }
         let link = &result.link;
         writeln!(
             f,
-            "link       {} frames, {} NAKs, {} retries, {} checksum errors, {} points limited",
-            link.frames, link.naks, link.retries, link.checksum_errors, link.limited
+            "link       {}, {}, {}, {}, {} limited",
+            amount(link.frames, "frame"),
+            amount(link.naks, "NAK"),
+            amount(link.retries, "retry"),
+            amount(link.checksum_errors, "checksum error"),
+            amount(link.limited, "point")
         )?;
         if result.ramp_ticks > 0 {
             let seconds = f64::from(result.ramp_ticks) * TICK_S;
             writeln!(
                 f,
-                "ramp       the robot came to rest within {} ticks ({seconds:.1} s)",
-                result.ramp_ticks
+                "ramp       the robot came to rest within {} ({seconds:.1} s)",
+                amount(result.ramp_ticks, "tick")
             )?;
         }
         if let Some(faults) = &result.faults {
@@ -84,9 +89,12 @@ impl fmt::Display for Page<'_> {
         if let Some(egm) = &result.egm {
             write!(
                 f,
-                "egm        {} messages, {} refused, {} from other addresses; the robot was {:.1} mm from its target \
+                "egm        {}, {} refused, {} from other addresses; the robot was {:.1} mm from its target \
                  at most",
-                egm.received, egm.refused, egm.elsewhere, egm.error_max_mm
+                amount(egm.received, "message"),
+                egm.refused,
+                egm.elsewhere,
+                egm.error_max_mm
             )?;
             match &egm.last_refused {
                 Some(last) => writeln!(f, "\n           the last refused {last}")?,
@@ -97,9 +105,11 @@ impl fmt::Display for Page<'_> {
             let TickTimes { p50, p99, max } = port.deviation_us;
             writeln!(
                 f,
-                "port       {} bytes sent, {} received, {} not taken, lost {} times; a frame every {TICK_MS} ms, \
-                 beside it by p50 {p50:.0} us, p99 {p99:.0} us, max {max:.0} us",
-                port.sent, port.received, port.unsent, port.losses
+                "port       {} sent, {} received, {} not taken, lost {}\n           a frame every {TICK_MS} ms, off by p50 {p50:.0} us, p99 {p99:.0} us, max {max:.0} us",
+                amount(port.sent, "byte"),
+                port.received,
+                port.unsent,
+                amount(port.losses, "time")
             )?;
         }
         let allocations = result.allocations_after_start.map_or("not counted".to_owned(), |n| n.to_string());
@@ -110,11 +120,11 @@ impl fmt::Display for Page<'_> {
         if is_timed {
             let TickTimes { p50, p99, max } = times;
             timing = format!(
-                ": p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us; {} slots skipped",
-                result.overruns
+                ": p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us; {} skipped",
+                amount(result.overruns, "slot")
             );
         }
-        writeln!(f, "controller {} ticks{timing}; allocations: {allocations}", result.ticks)?;
+        writeln!(f, "controller {}{timing}; allocations: {allocations}", amount(result.ticks, "tick"))?;
         for board in result.boards.iter().flatten() {
             let TickTimes { p50, p99, max } = board.tick_us;
             let mut timing = String::new();
@@ -133,7 +143,7 @@ impl fmt::Display for Page<'_> {
         if let Some(TickTimes { p50, p99, max }) = &result.late_us {
             let mut skipped = String::new();
             for (part, slots) in &result.overruns_by {
-                skipped += &format!("; {slots} slots skipped for {part}");
+                skipped += &format!("; {} skipped for {part}", amount(*slots, "slot"));
             }
             writeln!(
                 f,

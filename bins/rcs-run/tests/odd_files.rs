@@ -118,6 +118,20 @@ fn a_limit_of_files_ends_the_log_and_not_the_run() {
 }
 
 #[test]
+fn log_whose_head_exceeds_the_limit_of_files_is_not_begun() {
+    let place = tempfile::tempdir().unwrap();
+    let log = place.path().join("run.mcap");
+    let output = Command::new("sh")
+        .args(["-c", "ulimit -f 1 && exec \"$@\"", "sh", env!("CARGO_BIN_EXE_rcs-run")])
+        .args(["linkbar", "--shared-memory", "off", "--log", log.to_str().unwrap()])
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("the log could not be begun: File too large"), "{}", said(&output));
+}
+
+#[test]
 fn printed_commands_have_one_word_for_each_odd_path() {
     let place = tempfile::tempdir().unwrap();
     let name = "a\nlog\tof \u{202e}mine.mcap";

@@ -16,7 +16,7 @@ use diagnostics::nearest;
 use os_io::{text::plain, units::Units};
 
 pub use markdown::markdown;
-pub use values::{data_directory, default_data, fault_file, job, names, robot, with_names};
+pub use values::{DataArgument, data_directory, default_data, fault_file, job, names, robot, with_names};
 
 /// The version, and the commit that the program was built from if that is known.
 pub const VERSION: &str = if env!("RCS_COMMIT").is_empty() {

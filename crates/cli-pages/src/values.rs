@@ -2,10 +2,14 @@
 //!
 //! Shell completions offer the names of the default data directory. Other values are accepted, too.
 
-use std::{ffi::OsStr, path::PathBuf};
+use std::{
+    ffi::OsStr,
+    ops::Deref,
+    path::{Path, PathBuf},
+};
 
 use clap::{
-    Arg, Command, Error,
+    Arg, Args, Command, Error,
     builder::{NonEmptyStringValueParser, PathBufValueParser, PossibleValue, TypedValueParser},
 };
 use diagnostics::{FAULTS, JOBS, NamedFiles, ROBOTS};
@@ -15,6 +19,35 @@ use diagnostics::{FAULTS, JOBS, NamedFiles, ROBOTS};
 pub fn default_data() -> PathBuf {
     let name = PathBuf::from(shipped::default_data());
     shipped::data_directory(&name).unwrap_or(name)
+}
+
+/// The option `--data` with its default, flattened into the arguments of each command that needs data.
+#[derive(Clone, Debug, Args)]
+pub struct DataArgument {
+    /// Directory with task data, cell.toml, jobs, faults and robots [default: data; if there is none: built-in,
+    /// the data of the program]
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = shipped::default_data(),
+        hide_default_value = true,
+        value_parser = data_directory()
+    )]
+    pub data: PathBuf,
+}
+
+impl Deref for DataArgument {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.data
+    }
+}
+
+impl From<PathBuf> for DataArgument {
+    fn from(data: PathBuf) -> Self {
+        Self { data }
+    }
 }
 
 /// A data directory: an existing directory, or `built-in`.

@@ -13,6 +13,7 @@ use std::{collections::BTreeMap, fmt};
 use executive::failure::Failure;
 use geometry::units::Point;
 use interfaces::{CommonMemory, StatusReport, emove::EmoveVerb, subtask::SubtaskVerb};
+use os_io::text::amount;
 use plant::{clearance::Contact, description::Permits};
 use rcs_core::tick::Tick;
 use serde::Serialize;
@@ -121,7 +122,8 @@ impl fmt::Display for ContactEvent {
             Self::Ends(Collision { mover, obstacle, ticks, depth_in, .. }) => {
                 write!(
                     f,
-                    "{mover} comes free of {obstacle} after {ticks} ticks; it was {depth_in:.3} in deep"
+                    "{mover} comes free of {obstacle} after {}; it was {depth_in:.3} in deep",
+                    amount(*ticks, "tick")
                 )
             }
         }

@@ -28,5 +28,5 @@ pub use named_files::{FAULTS, JOBS, NamedFiles, ROBOTS, UnknownFile};
 pub use names::{alternatives, distance, nearest};
 pub use places::{Places, Position};
 pub use problem::{Problem, Problems, Severity};
-pub use report::{Diagnostics, Loaded, amount};
+pub use report::{Diagnostics, Loaded};
 pub use source::{At, BlockLines, BlockNumber, Source, lines_of};

@@ -3,15 +3,9 @@
 use std::{fmt, io::IsTerminal};
 
 use miette::{GraphicalReportHandler, GraphicalTheme};
-use os_io::console::shown;
+use os_io::{console::shown, text::amount};
 
 use crate::{Diagnostic, Places, Problems, Severity, Source};
-
-/// A count with its noun: `1 error`, `2 errors`.
-#[must_use]
-pub fn amount(count: usize, one: &str) -> String {
-    if count == 1 { format!("1 {one}") } else { format!("{count} {one}s") }
-}
 
 /// Number of records in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

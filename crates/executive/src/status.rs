@@ -5,6 +5,7 @@ use std::fmt;
 
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::{Ladder, ProcessId};
+use os_io::text::amount;
 use rcs_core::tick::TICK_S;
 use serde::Serialize;
 
@@ -104,13 +105,13 @@ impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{}: tick {} ({:.1} s){}, {} slots skipped, {} allocations, controller {:.1} us",
+            "{}: tick {} ({:.1} s){}, {} skipped, {}, controller {:.1} us",
             self.run,
             self.tick,
             self.simulated_s,
             if self.over { ", over" } else { "" },
-            self.skipped,
-            self.allocations,
+            amount(self.skipped, "slot"),
+            amount(self.allocations, "allocation"),
             self.controller_us
         )?;
         if let Some(phase) = &self.phase {

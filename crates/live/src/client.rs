@@ -283,7 +283,7 @@ impl Client {
         }
         let dropped = self.queue.dropped();
         if dropped > self.dropped.0 && self.dropped.1.elapsed() > COUNT {
-            let text = format!("{dropped} messages are left out so far: the viewer reads them too slowly");
+            let text = format!("messages left out so far: {dropped}; the viewer reads them too slowly");
             self.dropped = (dropped, Instant::now());
             self.outgoing.reply(Message::text(protocol::status(
                 StatusLevel::Warning,

@@ -42,8 +42,7 @@ pub enum ClientError {
     Protocol(#[from] ProtocolError),
     /// The run has not answered in time.
     #[error(
-        "the run has not answered within {} s (a load: {} s); it discards a request that it has not carried out by \
-         then, unless it is a stop",
+        "the run has not answered within {} s (a load: {} s): the request is void, unless it is a stop",
         PATIENCE.as_secs(),
         LOAD_PATIENCE.as_secs()
     )]

@@ -129,8 +129,7 @@ impl fmt::Display for Late {
             }
             Self::Unlimited => write!(
                 f,
-                "a time limit was expected, as in `7 @LIMIT PAUSE`: the time in the run's last line, plus the \
-                 milliseconds since then, plus those for which you wait, {} at most",
+                "a time limit was expected, as in `7 @LIMIT PAUSE`: the run's time now, plus your wait in ms, {} at most",
                 LONGEST.as_millis()
             ),
         }

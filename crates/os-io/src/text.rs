@@ -1,7 +1,7 @@
 //! Text from files, sockets and logs without control characters. An escape sequence in a log or a job file could
 //! otherwise command the terminal of the person who reads a message.
 
-use std::borrow::Cow;
+use std::{borrow::Cow, fmt::Display};
 
 /// Marks that change the direction of text, and separators of lines and paragraphs.
 const INVISIBLE: [char; 15] = [
@@ -50,6 +50,19 @@ pub fn escaped_json(json: &str) -> Cow<'_, str> {
     Cow::Owned(json.chars().map(escape).collect())
 }
 
+/// A count with its noun: `1 error`, `2 errors`, `0 retries`.
+#[must_use]
+pub fn amount<N: Display + PartialEq + From<u8>>(count: N, one: &str) -> String {
+    if count == N::from(1) {
+        return format!("{count} {one}");
+    }
+    match one.strip_suffix('y') {
+        Some(stem) if !stem.ends_with(['a', 'e', 'o', 'u']) => format!("{count} {stem}ies"),
+        _ if one.ends_with(['s', 'h']) => format!("{count} {one}es"),
+        _ => format!("{count} {one}s"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -61,6 +74,13 @@ mod tests {
         assert_eq!(shown, "one?[31mtwo?\u{b7}2J\u{fffd}x\ttab\nline??");
         assert_eq!(shown.len(), text.len());
         assert!(matches!(plain("ordinary text, ä µ …\n"), Cow::Borrowed(_)));
+    }
+
+    #[test]
+    fn amount_has_the_plural_unless_it_is_one() {
+        assert_eq!([0_u64, 1, 2].map(|count| amount(count, "tick")), ["0 ticks", "1 tick", "2 ticks"]);
+        let twice = |one| amount(2_usize, one);
+        assert_eq!(["retry", "tray", "branch"].map(twice), ["2 retries", "2 trays", "2 branches"]);
     }
 
     #[test]

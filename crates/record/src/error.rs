@@ -26,6 +26,9 @@ pub enum RecordError {
         /// The file.
         path: PathBuf,
     },
+    /// The head of the log cannot be written: the disk is full, or a limit of file sizes is below the head.
+    #[error("the log could not be begun: {}", deepest(.0))]
+    Begin(#[source] mcap::McapError),
     /// Writing failed: the disk is full, or the device is gone.
     #[error("the log could not be written further: {}", deepest(.0))]
     Write(#[from] mcap::McapError),
@@ -95,8 +98,7 @@ pub enum ReadError {
     },
     /// A log of a program with another layout of buffers.
     #[error(
-        "the log was written with layout {found}, this program has layout {expected}: \
-         replay it with the program that wrote it{}",
+        "the log has layout {found}, this program {expected}: use the program that wrote it{}",
         by(.version)
     )]
     OtherLayout {

@@ -16,6 +16,7 @@ use std::{
 
 use mcap::{McapError, records::Record};
 use os_io::files;
+use os_io::text::amount;
 use rcs_core::tick::Tick;
 
 use crate::{
@@ -199,7 +200,7 @@ impl Log {
     pub fn damage(&self) -> Option<String> {
         let damaged = |segment: &Segment| match segment {
             Segment::Damaged(range, damage) => {
-                Some(format!("{} bytes from byte {} on are {damage}", range.len(), range.start))
+                Some(format!("{} from byte {}: {damage}", amount(range.len(), "byte"), range.start))
             }
             Segment::Chunk(..) | Segment::Loose(_) => None,
         };

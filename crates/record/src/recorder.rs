@@ -162,7 +162,8 @@ impl Recorder {
         let emptied = file.emptied()?;
         let durable = pace == Pace::Drop;
         let rotation = limit.map(|limit| Rotation { limit, setup: setup.clone(), durable, count: 0 });
-        let log = LogWriter::create_with(Sink::new(emptied, durable), setup, tap)?;
+        let log =
+            LogWriter::create_with(Sink::new(emptied, durable), setup, tap).map_err(RecordError::Begin)?;
         let tick = Tick::BEFORE_START;
         let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
         let (ticks, tick_consumer) = ring(RING, TickRecord { tick, gap: 0, external, memory, timing: None });

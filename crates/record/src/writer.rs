@@ -30,6 +30,7 @@ use std::{
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::LadderState;
 use mcap::{Compression, McapResult, WriteOptions, records::Metadata};
+use os_io::text::amount;
 use prost_types::field_descriptor_proto::Type;
 use rcs_core::{Plain, plain::Writer, tick::Tick};
 
@@ -275,7 +276,10 @@ impl<W: Write + Seek> LogWriter<W> {
             )?;
         } else if record.gap > 0 {
             self.gaps += 1;
-            let text = format!("{} ticks are missing before this one: the log could not keep up", record.gap);
+            let text = format!(
+                "missing before this tick: {}; the log could not keep up",
+                amount(record.gap, "tick")
+            );
             self.remark(
                 tick,
                 &Remark { level: Level::Warning, source: "log".into(), text, ..Remark::default() },

@@ -9,9 +9,10 @@ use neighbours::{
     network::{KeysError, address::AddressError, listener::ListenError},
 };
 use os_io::console::shown;
+use os_io::text::amount;
 use plant::CellError;
 use record::RecordError;
-use taskdata::load::{Diagnostics, amount};
+use taskdata::load::Diagnostics;
 
 /// Errors of the start of a run.
 #[derive(Debug, thiserror::Error)]
@@ -109,8 +110,8 @@ pub enum StartError {
     OperatorNetwork,
     /// A job on stand-by would wait forever.
     #[error(
-        "--stand-by waits for an operator, and none can connect: --clock real or a speed such as 5x, \
-         --operator owner or network, and --shared-memory on let one"
+        "--stand-by waits for an operator, and none can connect: add --clock real, --operator owner, \
+         --shared-memory on"
     )]
     StandBy,
     /// The socket for operators cannot be opened, and the job would wait for one forever.

@@ -35,7 +35,7 @@ pub enum RepeatError {
     Missing(&'static str),
     /// The run had a participant that is not in the log.
     #[error(
-        "{0} took part in the run, and its actions are not in the log: a run with the simulated robot and without other processes can be repeated"
+        "{0} took part in the run, and its actions are not in the log: only a run that is simulated whole can be repeated"
     )]
     Elsewhere(String),
     /// The run wrote several logs.

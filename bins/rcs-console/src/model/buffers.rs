@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use interfaces::{CommonMemory, ExternalInputs, ProcessId, for_each_process};
+use os_io::text::amount;
 use rcs_core::{Plain, plain::Writer};
 use record::layout::{self, Leaf};
 
@@ -127,7 +128,7 @@ pub fn section(process: ProcessId, picture: &Picture, last: Option<&Picture>, fi
     let lines: Vec<Text> = lines("in ", inputs(process, picture, last))
         .chain(lines("out", outputs(process, picture, last)))
         .collect();
-    Section::new(format!("buffers, {} fields", lines.len()), lines)
+    Section::new(format!("buffers, {}", amount(lines.len(), "field")), lines)
 }
 
 fn holds(field: &Field, filter: &str) -> bool {

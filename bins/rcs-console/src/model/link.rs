@@ -4,6 +4,7 @@ use depc::warning::Warning;
 use executive::memory::cell::LatenessView;
 use geometry::pose::WireFrame;
 use interfaces::t3i::{LinkFault, T3iStatus};
+use os_io::text::amount;
 use rcs_core::{Plain, plain::Schema, tick::TICK_S};
 use record::{Level, reader::LogLine};
 
@@ -100,9 +101,9 @@ fn times(picture: &Picture, story: &Story, cell: &Cell) -> Section {
     );
     let lines = vec![
         Text::plain(format!(
-            " controller {:.1} us in this tick; {} ticks seen: p50 {:.1}  p99 {:.1}  max {:.1} us",
+            " controller {:.1} us in this tick; {} seen: p50 {:.1}  p99 {:.1}  max {:.1} us",
             timing.controller_ns as f64 / 1000.0,
-            story.times().count(),
+            amount(story.times().count(), "tick"),
             summary.p50,
             summary.p99,
             summary.max

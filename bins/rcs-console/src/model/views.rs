@@ -1,6 +1,7 @@
 //! Groups of values: the show words of IV.2.6, the vocabularies of IV.2.5, and the watched fields (VI.6.1).
 
 use interfaces::ProcessId;
+use os_io::text::amount;
 
 use super::{Section, Text, Tone, buffers};
 use crate::picture::Picture;
@@ -249,7 +250,7 @@ pub fn watched(watch: &[String], picture: &Picture, last: Option<&Picture>) -> S
     if watch.is_empty() {
         lines.push(Text::new(Tone::Faint, "  w adds a field or a buffer, as task.status or t3i.status.echo"));
     }
-    Section::new(format!("watched, {} fields", lines.len() - usize::from(watch.is_empty())), lines)
+    Section::new(format!("watched, {}", amount(lines.len() - usize::from(watch.is_empty()), "field")), lines)
 }
 
 #[cfg(test)]

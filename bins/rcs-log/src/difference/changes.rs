@@ -5,10 +5,10 @@ use std::{collections::HashMap, fmt};
 
 use interfaces::Decided;
 use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId};
+use os_io::text::amount;
 use rcs_core::tick::TICK_S;
 use record::remarks::row_text;
 use serde::Serialize;
-use taskdata::load::amount;
 
 use super::{
     Align,
@@ -130,7 +130,11 @@ impl Changes {
                 |command| {
                     let ticks = command.last_tick - command.first_tick;
                     let (status, remark) = (&command.status, command.remark());
-                    format!("{status} after {ticks} ticks ({:.2} s){remark}", ticks as f64 * TICK_S)
+                    format!(
+                        "{status} after {} ({:.2} s){remark}",
+                        amount(ticks, "tick"),
+                        ticks as f64 * TICK_S
+                    )
                 },
             )
         };
@@ -180,8 +184,7 @@ impl fmt::Display for Changes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for Rows { process, ticks, same_order, first, a, b } in &self.rows {
             if *same_order {
-                let (first, ticks) =
-                    (both(*first), amount(usize::try_from(*ticks).unwrap_or(usize::MAX), "tick"));
+                let (first, ticks) = (both(*first), amount(*ticks, "tick"));
                 writeln!(f, "row        {process}: the same rows, {ticks} at other times, first in {first}")?;
             } else {
                 writeln!(f, "row        {process} decides otherwise, first in {}:", both(*first))?;
@@ -189,13 +192,11 @@ impl fmt::Display for Changes {
             }
         }
         if let Some(Motion { ticks, first, greatest_in, at }) = &self.motion {
-            let (first, at, ticks) =
-                (both(*first), both(*at), amount(usize::try_from(*ticks).unwrap_or(usize::MAX), "tick"));
+            let (first, at, ticks) = (both(*first), both(*at), amount(*ticks, "tick"));
             writeln!(f, "motion     {ticks}, first in {first}; {greatest_in:.2} in apart at most, in {at}")?;
         }
         if let Some((first, ticks)) = &self.link {
-            let (first, ticks) =
-                (both(*first), amount(usize::try_from(*ticks).unwrap_or(usize::MAX), "tick"));
+            let (first, ticks) = (both(*first), amount(*ticks, "tick"));
             writeln!(f, "link       other bytes in {ticks}, first in {first}")?;
         }
         for Time { command, a, b } in &self.times {

@@ -57,8 +57,7 @@ pub enum ForkError {
     },
     /// The program has changed, or the log lacks data that the run depended on.
     #[error(
-        "this program differs from the log from tick {tick} on: {field} was {was} and is {is}; \
-         run the job again with this program, and fork that log"
+        "this program differs from the log from tick {tick} on ({field} was {was}, is {is}): fork a log of this program"
     )]
     Differs {
         /// The first tick that differs.

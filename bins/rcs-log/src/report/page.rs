@@ -1,6 +1,7 @@
 //! The HTML page, for light and dark screens and for print. It loads nothing from other files.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use os_io::text::amount;
 use os_io::units::shown;
 use rcs_core::tick::TICK_S;
 use record::{Log, proto::foxglove::Level};
@@ -76,7 +77,7 @@ fn tiles(log: &Log, run: &Run) -> Markup {
     let finished = commands.iter().filter(|command| command.status == "finished").count();
     let digest = log.end.as_ref().and_then(|end| end.get("digest")).cloned().unwrap_or_default();
     let mut tiles = vec![
-        ("tile", duration(seconds), format!("{} ticks", run.ticks.len())),
+        ("tile", duration(seconds), amount(run.ticks.len(), "tick")),
         ("tile", format!("{finished} of {}", commands.len()), "commands finished".to_owned()),
         (
             over(speed, SPEED_LIMIT),
@@ -95,7 +96,7 @@ fn tiles(log: &Log, run: &Run) -> Markup {
         let mut sorted = run.controller.clone();
         sorted.sort_by(f64::total_cmp);
         let p99 = sorted.get((sorted.len() - 1) * 99 / 100).copied().unwrap_or_default();
-        let text = format!("controller, 99 of 100 ticks; {} overruns", run.overruns);
+        let text = format!("controller, 99 of 100 ticks; {}", amount(run.overruns, "overrun"));
         tiles.push((over(p99, CONTROLLER_LIMIT), format!("{p99:.1} µs"), text));
     }
     tiles.push(("tile long", digest, "digest of all output buffers".to_owned()));

@@ -6,7 +6,7 @@ use clap::{
     Args,
     builder::{ArgPredicate, StringValueParser},
 };
-use cli_pages::{data_directory, with_names};
+use cli_pages::{DataArgument, with_names};
 use diagnostics::FAULTS;
 
 use super::{interruption::first_words, operator::Recovery, trial::Until};
@@ -17,16 +17,9 @@ pub struct CampaignArguments {
     /// Names of jobs in the data directory, or paths
     #[arg(default_value = "linkbar", value_parser = cli_pages::job(), hide_possible_values = true)]
     pub jobs: Vec<String>,
-    /// Task data, jobs and cell description [default: data; if there is none: built-in,
-    /// the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
     /// Seed of the cell's sensor noise and of the positions of delivered parts
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,

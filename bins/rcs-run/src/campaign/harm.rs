@@ -1,6 +1,7 @@
 //! Compares the cell with that of the undisturbed run, and watches for harm.
 
 use neighbours::data_system::Item;
+use os_io::text::amount;
 use plant::{CellEvent, t3::Stage};
 use rcs_core::tick::Tick;
 
@@ -69,7 +70,11 @@ impl World {
             return Some(format!("the robot has gripper {is}, not {was}"));
         }
         if self.parts.len() != undisturbed.parts.len() {
-            return Some(format!("{} parts in the cell, not {}", self.parts.len(), undisturbed.parts.len()));
+            return Some(format!(
+                "{} in the cell, not {}",
+                amount(self.parts.len(), "part"),
+                undisturbed.parts.len()
+            ));
         }
         let parts = self.parts.iter().zip(&undisturbed.parts);
         let part = parts.filter_map(|(one, other)| one.unlike(other)).next();

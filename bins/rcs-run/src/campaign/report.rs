@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, fmt::Write as _, io};
 
+use os_io::text::amount;
 use serde::Serialize;
 
 use closed_loop::truth::Verdict as TruthVerdict;
@@ -178,8 +179,10 @@ impl<'a> CampaignReport<'a> {
                 row.apart,
                 row.share(),
                 row.without_command,
-                row.rest_after
-                    .map_or_else(String::new, |ticks| format!("  at rest after {ticks} ticks at most"))
+                row.rest_after.map_or_else(String::new, |ticks| format!(
+                    "  at rest after {} at most",
+                    amount(ticks, "tick")
+                ))
             );
         }
         for (verdict, title) in [
@@ -204,9 +207,10 @@ impl<'a> CampaignReport<'a> {
         let remedied = self.results.iter().filter(|one| one.remedied && one.verdict == Verdict::Done).count();
         let _ = writeln!(
             text,
-            "\n{judged} confirmations judged: {lies} false, {} not sensed; {remedied} failed jobs went on after the \
-             remedy",
-            untrue().count() - lies
+            "\n{} judged: {lies} false, {} not sensed; {} went on after the remedy",
+            amount(judged, "confirmation"),
+            untrue().count() - lies,
+            amount(remedied, "failed job")
         );
         let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
         for one in untrue() {

@@ -8,6 +8,7 @@ use std::{
 
 use indicatif::{ProgressBar, ProgressStyle};
 use os_io::console::shown;
+use os_io::text::amount;
 
 use super::{
     arguments::CampaignArguments,
@@ -115,7 +116,7 @@ impl<'a> Runner<'a> {
         let new = all.take_in(met);
         if let Some(bar) = &self.bar {
             let (rows, states) = all.counts();
-            bar.set_message(format!("{rows} rows, {states} states"));
+            bar.set_message(format!("{}, {}", amount(rows, "row"), amount(states, "state")));
             bar.inc(1);
         }
         new

@@ -4,6 +4,7 @@ use std::{fmt, time::Duration};
 
 use executive::serial::{SerialCounts, SerialSettings};
 use interfaces::t3i::LinkCounters;
+use os_io::text::amount;
 use rcs_core::tick::TICK_MS;
 use serde::Serialize;
 
@@ -171,13 +172,15 @@ impl Tally {
         match self.verdict {
             Verdict::Good | Verdict::Usable => None,
             Verdict::NotUsable => Some(format!(
-                "the link at {port} is not usable: {} of {} frames were acknowledged within {TICK_MS} ms, {USABLE} of \
-                 them are needed; {} had no answer, {LOST_USABLE} of them are allowed",
-                self.in_time, self.sent, self.lost
+                "the link at {port} is not usable: {} of {} acknowledged in time, {USABLE} of them needed; \
+                 {} lost, {LOST_USABLE} of them allowed",
+                self.in_time,
+                amount(self.sent, "frame"),
+                self.lost
             )),
             Verdict::NoLink if self.starts == 0 => Some(format!(
-                "no link at {port}: the robot controller has not reported its position, after {} re-start commands",
-                self.restarts
+                "no link at {port}: the robot controller has not reported its position, after {}",
+                amount(self.restarts, "re-start command")
             )),
             Verdict::NoLink => Some(format!("no link at {port}: it ran, and was lost")),
         }
@@ -187,11 +190,13 @@ impl Tally {
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let modem = if self.modem_lines { "with modem lines" } else { "without modem lines" };
-        writeln!(f, "port       {} {modem}, lost {} times", self.port, self.port_lost)?;
+        writeln!(f, "port       {} {modem}, lost {}", self.port, amount(self.port_lost, "time"))?;
         writeln!(
             f,
-            "link       {} starts, {} re-start commands, {} checksum errors",
-            self.starts, self.restarts, self.checksum_errors
+            "link       {}, {}, {}",
+            amount(self.starts, "start"),
+            amount(self.restarts, "re-start command"),
+            amount(self.checksum_errors, "checksum error")
         )?;
         writeln!(
             f,

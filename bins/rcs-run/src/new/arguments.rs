@@ -1,9 +1,7 @@
 //! The command line of `rcs-run new`.
 
-use std::path::PathBuf;
-
 use clap::{Args, Subcommand};
-use cli_pages::{data_directory, length};
+use cli_pages::{DataArgument, length};
 
 use super::size::Size;
 
@@ -59,16 +57,9 @@ pub struct PartArguments {
     /// Print the paths of all lines of the job, as `check --explain-job` does
     #[arg(long)]
     pub explain_job: bool,
-    /// Task data, jobs and cell description [default: data; if there is none: built-in,
-    /// the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
 }
 
 /// Arguments of `new tool`.
@@ -92,16 +83,9 @@ pub struct ToolArguments {
     /// Print the paths of all lines of the job, as `check --explain-job` does
     #[arg(long)]
     pub explain_job: bool,
-    /// Task data, jobs and cell description [default: data; if there is none: built-in,
-    /// the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
 }
 
 /// Arguments of `new place`.
@@ -130,16 +114,9 @@ pub struct PlaceArguments {
     /// Write the files; without this option they are only shown
     #[arg(long)]
     pub write: bool,
-    /// Task data, jobs and cell description [default: data; if there is none: built-in,
-    /// the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
 }
 
 /// Arguments of `new tray`.
@@ -158,14 +135,7 @@ pub struct TrayArguments {
     /// Write the files; without this option they are only shown
     #[arg(long)]
     pub write: bool,
-    /// Task data, jobs and cell description [default: data; if there is none: built-in,
-    /// the data of the program]
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = shipped::default_data(),
-        hide_default_value = true,
-        value_parser = data_directory()
-    )]
-    pub data: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
 }

@@ -19,6 +19,7 @@ mod trial;
 
 use std::{path::Path, process::ExitCode};
 
+use os_io::text::amount;
 use os_io::{console, shell};
 use plant::CellDescription;
 use runtime::{StartError, setup::CELL};
@@ -84,7 +85,7 @@ fn part(order: &Order<'_>, (write, explain_job): (bool, bool), data: &Path) -> R
     let runs = made.jobs.iter().map(|job| trial.run(job, made.others)).sum::<Result<usize, Error>>()?;
     let mut lines = vec![(if tool { "tool" } else { "part" }, format!("{name}, {}, like {like}", made.size))];
     lines.extend(made.chosen);
-    lines.push(("tried", format!("check finds no errors; {runs} runs finished")));
+    lines.push(("tried", format!("check finds no errors; {} finished", amount(runs, "run"))));
     lines.extend(trial.warnings.into_iter().map(|line| ("warning", line)));
     lines.extend(made.to_teach.into_iter().map(|line| ("to teach", line)));
     let next = format!("rcs-run {first} --data {}", shell::path(data));
@@ -104,7 +105,7 @@ fn place(arguments: &PlaceArguments) -> Result<ExitCode, Error> {
     lines.extend(trial.warnings.into_iter().map(|line| ("warning", line)));
     lines.push(("to teach", format!("robot: the pose {name}-P by joystick (rcs-run pose --write)")));
     let next =
-        format!("rcs-run check --data {} --explain 'MOVE -- +0 -- 0 +0 {name} 0 -- 0'", shell::path(data));
+        format!("rcs-run check --data {} --explain 'MOVE -- +0 -- 0 +0 {name} 0 -- 0'", shell::path(&**data));
     finish(&change, lines, write.then_some(next))
 }
 
@@ -118,7 +119,10 @@ fn tray(arguments: &TrayArguments) -> Result<ExitCode, Error> {
     let trial = Trial::checked(&made.trial, name)?;
     let runs = trial.run(&made.job, false)?;
     let mut lines = vec![("tray", format!("{name}, like {like}"))];
-    lines.push(("tried", format!("check finds no errors; {runs} runs with a part from it finished")));
+    lines.push((
+        "tried",
+        format!("check finds no errors; {} with a part from it finished", amount(runs, "run")),
+    ));
     lines.extend(trial.warnings.into_iter().map(|line| ("warning", line)));
     lines.push(("to teach", format!("robot: the pose {name}-P by joystick, square to the tray (VIII.3)")));
     lines.push(("to teach", "cell: what the tray stands on, as a [[fixture]] of cell.toml".to_owned()));

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use geometry::movetable::MovetableLine;
+use os_io::text::amount;
 use plant::{
     CellDescription,
     description::{PartType, Shape},
@@ -252,9 +253,9 @@ impl New<'_> {
         let first = self.family.entered.free_blocks(self.area, blocks.count());
         let first = first.ok_or_else(|| {
             Error::New(format!(
-                "the area {} has no {} blocks in a row that are free",
+                "the area {} does not have {} free in a row",
                 self.area,
-                blocks.count()
+                amount(blocks.count(), "block")
             ))
         })?;
         Ok((blocks.text(first), first, names))

@@ -33,8 +33,8 @@ impl FromStr for Size {
             _ => {
                 let most = units::shown(&format!("0.10 to {GREATEST:.2} in")).into_owned();
                 Err(format!(
-                    "length x width x height of the blank as it lies, such as 3x1.5x1, or length x diameter of a \
-                     cylinder, such as 4x1.5, was expected, each side {most}; found {text}"
+                    "a length x width x height such as 3x1.5x1, or length x diameter such as 4x1.5, was expected, \
+                     each {most}; found {text}"
                 ))
             }
         }

@@ -1,5 +1,6 @@
 //! Inserts the form of a pose or a movetable into the text of a file of blocks.
 
+use os_io::text::amount;
 use taskdata::load::{
     Source,
     source::{BLOCK_LINES, blocks},
@@ -67,7 +68,11 @@ pub fn put(
         Some(last) => {
             let old = kind.lines(&lines, last);
             let first = (last + 1).checked_sub(old);
-            (first.ok_or_else(|| format!("the form of that name has no {old} lines"))?, old)
+            (
+                first
+                    .ok_or_else(|| format!("the form of that name does not have {}", amount(old, "line")))?,
+                old,
+            )
         }
         None => (end_of(text, block, form.len())?, 0),
     };

@@ -9,6 +9,8 @@
 
 use std::fmt;
 
+use os_io::text::amount;
+
 /// Columns of the report EQUIP_ITEM_ACTION.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Column {
@@ -103,7 +105,7 @@ pub fn parse(text: &str) -> Result<Update<'_>, StatementError> {
     scanner.sign('=')?;
     let (before, values) = (scanner.at, scanner.list(Scanner::quoted)?);
     if values.len() != columns.len() {
-        let expected = format!("{} values", columns.len());
+        let expected = amount(columns.len(), "value");
         return Err(StatementError { at: before, expected, found: Found::Count(values.len()) });
     }
     let mut update = Update::default();

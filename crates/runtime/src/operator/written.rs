@@ -111,8 +111,7 @@ fn is_felt(variable: Variable, memory: &CommonMemory) -> Result<(), String> {
             Err(format!("{hand} holds nothing by its sensors; only what they feel can be named"))
         }
         Felt::NotKnown => Err(format!(
-            "the sensors of {hand} do not say that it holds something: its process must run (board {board}) and \
-             be calibrated, and its fingers be at rest"
+            "the sensors of {hand} show no grasp yet: run its process (board {board}), calibrated, fingers at rest"
         )),
     }
 }

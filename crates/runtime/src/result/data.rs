@@ -5,9 +5,9 @@ use std::{
     path::{self, Path, PathBuf},
 };
 
+use os_io::text::amount;
 use os_io::{carried::is_carried, shell};
 use serde::Serialize;
-use taskdata::load::amount;
 
 /// The task data and the cell description of a run.
 #[derive(Clone, Debug, Serialize)]

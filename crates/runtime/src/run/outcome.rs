@@ -2,8 +2,8 @@
 
 use ::neighbours::workstation::player::BegunStep;
 use os_io::shell;
+use os_io::text::amount;
 use rcs_core::tick::TICK_S;
-use taskdata::load::amount;
 
 use super::Run;
 use crate::{
@@ -146,8 +146,7 @@ impl Run {
                 let (file, size) = (shell::path(&summary.path), summary.bytes as f64 / 1e6);
                 let lost = match summary.lost.ticks {
                     0 => String::new(),
-                    1 => "; 1 tick found no room and is missing".to_owned(),
-                    lost => format!("; {lost} ticks found no room and are missing"),
+                    lost => format!("; no room for {}", amount(lost, "tick")),
                 };
                 let earlier = match summary.earlier {
                     0 => String::new(),

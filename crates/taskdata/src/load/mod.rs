@@ -40,7 +40,7 @@ pub mod verdict;
 use std::{collections::HashSet, path::Path};
 
 use diagnostics::Problems;
-pub use diagnostics::{At, BlockNumber, Diagnostic, Diagnostics, Loaded, Severity, Source, amount};
+pub use diagnostics::{At, BlockNumber, Diagnostic, Diagnostics, Loaded, Severity, Source};
 
 pub use fault::Fault;
 pub use job::{Job, Step, ViseOpening, Workstation};

@@ -4,7 +4,8 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use diagnostics::{At, BlockNumber, Problems, Severity, amount, distance};
+use diagnostics::{At, BlockNumber, Problems, Severity, distance};
+use os_io::text::amount;
 
 use super::{entries::LoadLine, parse::Parsed, print, source::LAST_BLOCK};
 

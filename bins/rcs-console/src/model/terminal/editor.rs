@@ -15,6 +15,7 @@ use std::{
 };
 
 use os_io::replace::replace_text;
+use os_io::text::amount;
 use taskdata::load::{
     BlockNumber, Source, Store,
     source::{BLOCK_COLUMNS, BLOCK_LINES, blocks},
@@ -95,8 +96,7 @@ impl Editor {
         let path = directory.join(&source.name);
         if !path.is_file() {
             return Err(format!(
-                "{} is not a file: the run uses the data built into the program; rcs-run init DIR writes them into a \
-                 directory, and --data DIR uses it",
+                "{} is built into the program: rcs-run init DIR writes a copy, and --data DIR uses it",
                 path.display()
             ));
         }
@@ -151,7 +151,7 @@ impl Editor {
         };
         let after = self.lines.len().min(first);
         self.lines.splice(after..after, form.iter().cloned());
-        let full = || format!("{} has no room for {} lines", self.number, form.len());
+        let full = || format!("{} has no room for {}", self.number, amount(form.len(), "line"));
         if self.lines.iter().skip(BLOCK_LINES).any(|line| !line.is_empty())
             || first + form.len() > BLOCK_LINES
         {

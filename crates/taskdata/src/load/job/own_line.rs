@@ -36,8 +36,7 @@ impl fmt::Display for OwnLineError {
         f.write_str(match self {
             Self::Nothing => "a line for the cell was expected, such as vise close PFIXTURE; found none",
             Self::Load => {
-                "load OFFSET BLOCK was expected, such as load 21000 610; load FILE stands in the controller's own \
-                 jobs only, whose blocks are read before the first tick"
+                "load OFFSET BLOCK was expected, such as load 21000 610; load FILE is for the controller's own jobs"
             }
             Self::Wait => "wait stands in jobs only: the workstation controller counts the ticks by itself",
             Self::After => {
