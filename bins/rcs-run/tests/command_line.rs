@@ -151,6 +151,7 @@ fn objects_that_only_the_camera_can_tell_apart_are_warned_of() {
         let output = rcs_run(&["check", "--json", "--data", &data.display().to_string()]);
         let found = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(found.contains("TWO is a part, and no OBJ-GRIPS record"), "{found}");
+        assert_announced(&data.display().to_string());
         found.contains("TWO differs from ONE in nothing but its vision id")
     };
     assert!(warned(0.5));
@@ -378,6 +379,77 @@ fn run_starts_in_spite_of_an_unrelated_datum() {
     assert_eq!(linkbar.status.code(), Some(2));
     let said = String::from_utf8_lossy(&linkbar.stderr).into_owned();
     assert!(said.contains("no movetable is named LK-GPR-FX1"), "{said}");
+}
+
+/// Check that a run announces as many errors and warnings of task data and cell description as `check` shows.
+fn assert_announced(data: &str) {
+    let shown = json(&rcs_run(&["check", "--json", data]));
+    let count = |severity: &str, extension: &str| {
+        let findings = shown["findings"].as_array().unwrap().iter();
+        let of = |finding: &&Value| {
+            let file = finding["file"].as_str().unwrap_or_default();
+            finding["severity"] == severity && file.ends_with(extension)
+        };
+        findings.filter(of).count()
+    };
+    let run = ["clevis", "--stand-by", "--clock", "real", "--log", "none", "--ticks", "1", "--data", data];
+    let said = String::from_utf8_lossy(&rcs_run(&run).stderr).into_owned();
+    let announced = |what: &str, source: &str| {
+        let line = said.lines().find_map(|line| {
+            let (before, _) = line.split_once(&format!(" in {source}"))?;
+            let (count, kind) = before.trim_start_matches("rcs-run: ").split_once(' ')?;
+            (kind.trim_end_matches('s') == what).then(|| count.parse::<usize>().unwrap())
+        });
+        line.unwrap_or(0)
+    };
+    for (severity, extension, source) in [
+        ("error", ".blk", "the task data"),
+        ("warning", ".blk", "the task data"),
+        ("error", "cell.toml", "the cell description"),
+        ("warning", "cell.toml", "the cell description"),
+    ] {
+        assert_eq!(
+            announced(severity, source),
+            count(severity, extension),
+            "{severity} in {source}:\n{said}"
+        );
+    }
+    assert!(said.contains("rcs-run check shows"), "{said}");
+}
+
+/// Changes of copied data, each with a finding that does not prevent `--stand-by`: file, text, replacement.
+const TOLERATED: [&[(&str, &str, &str)]; 5] = [
+    // A name of the cell that the task data lack.
+    &[("cell.toml", "name = \"LINKBAR1_BH\"", "name = \"LINKBAR1_BX\"")],
+    // The same beside an error of the task data: these are not compared with the cell.
+    &[
+        ("cell.toml", "name = \"LINKBAR1_BH\"", "name = \"LINKBAR1_BX\""),
+        ("directory.blk", "100 load ( files            )", "999 load ( files            )"),
+    ],
+    // A place of the cell that disagrees with its form.
+    &[("cell.toml", "location = \"BRUSH\"", "location = \"BRUSX\"")],
+    // The same beside an error of the task data.
+    &[
+        ("cell.toml", "location = \"BRUSH\"", "location = \"BRUSX\""),
+        ("directory.blk", "642 load ( brush           )", "999 load ( brush           )"),
+    ],
+    // A mistyped line that others do not need.
+    &[("directory.blk", "642 load ( brush           )", "999 load ( brush           )")],
+];
+
+#[test]
+fn run_announces_the_findings_that_check_shows() {
+    for changes in TOLERATED {
+        let place = Place::new();
+        let data = place.data();
+        for (file, from, to) in changes {
+            let path = data.join(file);
+            let text = fs::read_to_string(&path).unwrap();
+            assert!(text.contains(from), "{file}: {from}");
+            fs::write(&path, text.replacen(from, to, 1)).unwrap();
+        }
+        assert_announced(&data.display().to_string());
+    }
 }
 
 #[test]

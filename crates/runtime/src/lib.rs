@@ -27,6 +27,7 @@ pub mod config;
 mod egm;
 pub mod error;
 pub mod event;
+pub mod findings;
 pub mod judge;
 mod live;
 mod load;

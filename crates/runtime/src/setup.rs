@@ -26,13 +26,14 @@ use plant::{
     fault::text::{self, FaultFile},
 };
 use record::{LogFile, RecordError};
-use taskdata::load::{Diagnostics, Fault, Job, Source, Store, amount};
+use taskdata::load::{Diagnostics, Fault, Job, Source, Store};
 
 use crate::{
     agreement,
     config::{ClockKind, LogTarget, RobotKind, RunConfig},
     egm::EgmPort,
     error::StartError,
+    findings::Findings,
     judge::{add_paths, check_job},
     live::Live,
     neighbours::{Emulator, Neighbours, WorkstationSource},
@@ -101,17 +102,13 @@ impl Setup {
         let is_lenient = config.stand_by;
         let mut files = TaskFiles::load(data, config.played(), is_lenient)?;
         let cell = CellFile::load(data, &mut files, is_lenient || config.unchecked)?;
-        let CellFile { text: description_text, description, warnings: of_cell } = cell;
-        let TaskFiles { mut store, mut job, warnings, .. } = files;
-        let is_sound = store.faults().next().is_none();
+        let CellFile { text: description_text, description, findings } = cell;
+        let TaskFiles { mut store, mut job, left_out, .. } = files;
         let walked = (!config.unchecked).then(|| add_paths(&mut store, &mut job, &description));
         if !config.unchecked && !config.stand_by {
             check_job(&job, &store, walked.as_ref())?;
         }
-        warnings.into_iter().chain(of_cell).for_each(|line| observer.message(&line));
-        if !is_sound {
-            observer.message(&errors(&store, config));
-        }
+        left_out.into_iter().chain(findings.lines(config.unchecked)).for_each(|line| observer.message(&line));
         let (faults, faults_text) = faults(config, &description)?;
         let cell = Cell::with_faults(&description, config.seed, &faults.cell)?;
         let sees_elsewhere = config.outside.contains(&Role::Vision);
@@ -167,10 +164,12 @@ pub struct TaskFiles {
     pub job: Job,
     /// Path of the job's file; empty without one.
     pub job_path: PathBuf,
-    /// Lines that report the number of warnings.
-    pub warnings: Vec<String>,
     /// The findings in the task data.
     in_data: Diagnostics,
+    /// The warnings of the job.
+    in_job: Diagnostics,
+    /// The line about a job with errors that was left out.
+    left_out: Option<String>,
 }
 
 impl TaskFiles {
@@ -200,8 +199,7 @@ impl TaskFiles {
             None => without_lines(format!("{}.{EXTENSION}", Role::Workstation)),
         };
         let (job, in_job) = read.map_err(|report| StartError::Data { what: what(), report })?;
-        let warnings = [warning(&in_data, "the task data"), warning(&in_job, "the job"), left_out];
-        Ok(Self { store, job, job_path, warnings: warnings.into_iter().flatten().collect(), in_data })
+        Ok(Self { store, job, job_path, in_data, in_job, left_out })
     }
 }
 
@@ -211,8 +209,8 @@ pub struct CellFile {
     pub text: String,
     /// The description.
     pub description: CellDescription,
-    /// Lines about its warnings and tolerated errors.
-    pub warnings: Vec<String>,
+    /// The findings of task data, job and description that do not prevent the run.
+    pub findings: Findings,
 }
 
 impl CellFile {
@@ -222,7 +220,7 @@ impl CellFile {
     /// # Errors
     /// [`StartError`], with all errors.
     pub fn load(data: &Path, task: &mut TaskFiles, is_lenient: bool) -> Result<Self, StartError> {
-        let TaskFiles { store, job, job_path, in_data, .. } = task;
+        let TaskFiles { store, job, job_path, in_data, in_job, .. } = task;
         let path = data.join(CELL);
         let text =
             files::read_text(&path).map_err(|source| StartError::Read { path: path.clone(), source })?;
@@ -239,34 +237,19 @@ impl CellFile {
             .map(|error| Fault::found(error, store))
             .collect();
         let in_cell = of_cell.errors().count() - in_forms.len();
+        let findings = Findings::of(in_data, in_job, &of_cell, &of_job);
         if of_job.has_errors() || in_cell > 0 && !is_lenient {
             let what = format!("the job {} in the cell of {}", job_path.display(), path.display());
             // An error of the data is probably the cause.
             let report = in_data.clone().with(of_cell).with(of_job);
             return Err(StartError::Data { what, report: Box::new(report) });
         }
-        let report = of_cell.with(of_job);
-        let tolerated = (in_cell > 0).then(|| {
-            format!("{} in the cell description; rcs-run check shows them", amount(in_cell, "error"))
-        });
-        let warnings = warning(&report, "the cell description").into_iter().chain(tolerated).collect();
         for reload in &mut job.reloads {
             reload.store.add_faults(in_forms.iter().cloned());
         }
         store.add_faults(in_forms);
-        Ok(Self { text, description, warnings })
+        Ok(Self { text, description, findings })
     }
-}
-
-/// The line about errors in the task data, which do not prevent a run.
-fn errors(store: &Store, config: &RunConfig) -> String {
-    let count = amount(store.faults().count(), "error");
-    let effect = if config.unchecked {
-        "--unchecked: commands that use these data are executed"
-    } else {
-        "commands that use these data are refused"
-    };
-    format!("{count} in the task data; {effect}; rcs-run check shows all")
 }
 
 /// The neighbours in this process, and the address for those in other processes.
@@ -350,14 +333,5 @@ pub fn fault_file(path: &Path, cell: &CellDescription) -> Result<(FaultFile, Str
         Err(report) => {
             Err(StartError::Data { what: format!("the faults of {}", source.name), report: Box::new(report) })
         }
-    }
-}
-
-/// Warnings do not prevent a run; this line reports their number.
-fn warning(report: &Diagnostics, what: &str) -> Option<String> {
-    match report.warnings().count() {
-        0 => None,
-        1 => Some(format!("1 warning in {what}; rcs-run check shows it")),
-        count => Some(format!("{count} warnings in {what}; rcs-run check shows them")),
     }
 }
