@@ -129,6 +129,10 @@ fn a_copy_of_the_data_can_be_changed() {
     let run = |arguments: &[&str]| in_directory(rcs_run(), &scratch.file("."), arguments);
     let made = run(&["init", "."]);
     assert!(text(&made.stdout).ends_with("check them with rcs-run check\n"), "{}", text(&made.stdout));
+    let outside = run(&["check", "."]);
+    assert_eq!(outside.status.code(), Some(2));
+    let near = ". has no cell.toml, ./data has one: name ./data";
+    assert!(text(&outside.stderr).contains(near), "{}", text(&outside.stderr));
     let job = scratch.file("data/jobs/linkbar.job");
     let changed = fs::read_to_string(&job).expect("the job is written").replace("LINKBAR1_BH", "LINKBAR9_BH");
     fs::write(&job, changed).expect("the job can be changed");
@@ -170,14 +174,22 @@ fn a_mistyped_word_or_path_is_named_once_with_its_nearest_name() {
             "the nearest is linkbar",
         ),
         (rcs_log(), &["info", "rnu.mcap"], "rnu.mcap: No such file", "the nearest log is run.mcap"),
+        (
+            rcs_console(),
+            &["--log", "rnu.mcap", "--once", "ladder"],
+            "rnu.mcap: No such",
+            "the nearest log is run.mcap",
+        ),
+        (rcs_run(), &["--seed", "abc"], "'abc' for '--seed <N>'", "a whole number was expected"),
+        (rcs_run(), &["--robot", "egm:sim,robto=same"], "no option robto", "the nearest is robot"),
         (rcs_log(), &["replay", "rnu.mcap"], "rnu.mcap: No such file", "the nearest log is run.mcap"),
         (rcs_log(), &["serve", "nowhere/x.mcap"], "nowhere/x.mcap: No such file", "os error 2"),
         (rcs_run(), &["send", "--stay", "1m", "stop"], "--stay", "seconds from 0 to 86400 were expected"),
         (
             rcs_run(),
             &["send", "--stay", "1.5", "--run", "none", "status"],
-            "no operator",
-            "operator can connect",
+            "there is no run named none",
+            "no run of this user",
         ),
     ] {
         let output = in_directory(program, &here, arguments);

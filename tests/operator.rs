@@ -165,7 +165,7 @@ fn a_job_is_stopped_commanded_and_finished_and_the_log_gives_the_same_run() {
     wait_for(&mut client, "the job plays");
     wait_ticks(&mut client, 150);
     ask(&mut client, &["stop"]);
-    assert!(client.ask("bogus").unwrap().unwrap_err().contains("no line for the cell is named bogus"));
+    assert!(client.ask("bogus").unwrap().unwrap_err().contains("no request is named bogus"));
     ask(&mut client, &["go", "PAUSE"]);
     wait_for(&mut client, "the job waits");
     let refused = other.ask("job go").unwrap().unwrap_err();

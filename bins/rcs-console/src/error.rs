@@ -17,7 +17,7 @@ pub enum ConsoleError {
     #[error("a log cannot be operated: leave --operate out, or name a run")]
     OperateLog,
     /// The log cannot be read.
-    #[error("{}: {source}", path.display())]
+    #[error("{}", .source.of(.path))]
     Log {
         /// Path of the file.
         path: PathBuf,

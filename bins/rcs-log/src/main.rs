@@ -25,15 +25,9 @@ mod serve;
 mod story;
 mod why;
 
-use std::{
-    fs, io,
-    path::{Path, PathBuf},
-    process::ExitCode,
-};
+use std::{io, path::PathBuf, process::ExitCode};
 
 use clap::{Args, Parser, Subcommand};
-use diagnostics::nearest;
-use os_io::files;
 
 /// Exit status of an answer that is no: a replay that differs, two logs that differ.
 const DIFFERENT: u8 = 1;
@@ -118,31 +112,11 @@ struct Answer {
     json: bool,
 }
 
-/// Why a log cannot be read, with its path once; for a missing file also the nearest name of a log beside it.
-fn unreadable(path: &Path, source: &record::ReadError) -> String {
-    let (named, mut text) = (path.display().to_string(), source.to_string());
-    if !text.starts_with(&named) {
-        text = format!("{named}: {text}");
-    }
-    if fs::symlink_metadata(path).is_err() {
-        let beside = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-        let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
-        let entries = files::list(beside.unwrap_or(Path::new("."))).unwrap_or_default();
-        let logs = entries.iter().filter(|entry| entry.extension().is_some_and(|end| end == "mcap"));
-        let logs: Vec<String> = logs.filter_map(|entry| name(entry)).collect();
-        let wanted = name(path).unwrap_or_default();
-        if let Some(near) = nearest(&wanted, logs.iter().map(String::as_str)) {
-            text += &format!("; the nearest log is {}", path.with_file_name(near).display());
-        }
-    }
-    text
-}
-
 /// Errors of examining a log.
 #[derive(Debug, thiserror::Error)]
 enum Error {
     /// The log cannot be read.
-    #[error("{}", unreadable(.path, .source))]
+    #[error("{}", .source.of(.path))]
     Read {
         /// Path of the log.
         path: PathBuf,

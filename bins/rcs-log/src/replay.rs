@@ -13,7 +13,7 @@ use record::{Options, ReplayError, ReplayReport};
 use serde::Serialize;
 use taskdata::load::{Diagnostics, Store};
 
-use crate::{Answer, DIFFERENT, Error, UNUSABLE, parallel, print, unreadable};
+use crate::{Answer, DIFFERENT, Error, UNUSABLE, parallel, print};
 
 /// Arguments of `replay`.
 #[derive(Clone, Debug, clap::Args)]
@@ -87,7 +87,7 @@ impl OneLog {
                 digest: None,
                 difference: None,
                 error: Some(match &error {
-                    ReplayError::Read(source) => unreadable(path, source),
+                    ReplayError::Read(source) => source.of(path),
                     other => format!("{}: {other}", path.display()),
                 }),
             },

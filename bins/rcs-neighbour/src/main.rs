@@ -128,6 +128,9 @@ const GOOD: Duration = Duration::from_secs(1);
 /// Time within which the controller detects a closed connection.
 const NOTICED: Duration = Duration::from_secs(5);
 
+/// Waiting for a controller is announced after this time.
+const UNNOTICED: Duration = Duration::from_secs(2);
+
 /// Pauses between attempts to connect, which grow while connections are short.
 struct Reconnect {
     since: Instant,
@@ -176,7 +179,17 @@ fn connect(arguments: &ControllerArguments, role: Role) -> Result<Peer, Error> {
     let keys = arguments.keys.as_deref().map(|directory| NeighbourKeys::load(directory, role)).transpose()?;
     let wait = Duration::from_secs(arguments.wait);
     let address = arguments.network.clone().configured(arguments.zenoh_config.clone())?;
-    Ok(Peer::connect_within(wait, &address, role, keys.as_ref())?)
+    let soon = wait.min(UNNOTICED);
+    match Peer::connect_within(soon, &address, role, keys.as_ref()) {
+        Err(error) if error.is_passing() && soon < wait => {
+            os_io::stderr_line!(
+                "rcs-neighbour: {error}; waiting for a controller, {} s at most (--wait)",
+                wait.as_secs()
+            );
+            Ok(Peer::connect_within(wait - soon, &address, role, keys.as_ref())?)
+        }
+        outcome => Ok(outcome?),
+    }
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ pub enum Error {
     #[error("the reach of the robot cannot be checked: {0}")]
     Reach(String),
     /// A pose cannot be shown or written.
-    #[error("no pose: {0}")]
+    #[error("the pose cannot be shown or written: {0}")]
     Pose(String),
     /// `rcs-run new` cannot make the data.
     #[error("nothing is written: {0}")]

@@ -84,8 +84,7 @@ impl Reach {
         let RobotFile { placement, arm, .. } = RobotFile::load(&path).map_err(StartError::from)?;
         let Some(arm) = arm else {
             return Err(Error::Reach(format!(
-                "{} has no [arm]: add lengths, limits and speeds of the axes, as data/robots/irb6700.toml has them",
-                path.display()
+                "{robot} has no [arm]: add its lengths, limits and speeds, as in data/robots/irb6700.toml"
             )));
         };
         let (store, _) = Store::load(data).map_err(|report| StartError::Data {

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use executive::memory::{SharedMemoryError, operator_socket, starting};
+use executive::memory::{Attached, SharedMemoryError, operator_socket, starting};
 use neighbours::network::{NeighbourKeys, Peer, Role};
 use operator::Client;
 use os_io::{console, stderr_line};
@@ -20,7 +20,12 @@ fn connect(arguments: &SendArguments) -> Result<Client, Error> {
         if let Some(phase) = starting(&run) {
             return Err(SharedMemoryError::Starting { run, phase }.into());
         }
-        return Ok(Client::connect(&operator_socket(&run), &arguments.name)?);
+        let socket = operator_socket(&run);
+        if !socket.exists() {
+            // A run without operators has no socket either: then connecting fails with the reason.
+            Attached::open(&run)?;
+        }
+        return Ok(Client::connect(&socket, &arguments.name)?);
     };
     let keys = arguments.keys.as_deref().map(|keys| NeighbourKeys::load(keys, Role::Operator)).transpose()?;
     let address = address.clone().configured(arguments.zenoh_config.clone())?;

@@ -5,7 +5,15 @@
 mod markdown;
 mod values;
 
-use std::{env, ffi::OsString, fs, io, path::Path, process};
+use std::{
+    env, error,
+    error::Error as _,
+    ffi::OsString,
+    fs, io,
+    num::{ParseFloatError, ParseIntError},
+    path::Path,
+    process,
+};
 
 use clap::{
     Arg, Command, Parser, ValueEnum,
@@ -67,9 +75,32 @@ pub fn parse<P: Parser>() -> P {
             error.remove(ContextKind::SuggestedSubcommand);
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }
+        let expected = error.source().and_then(expected_number);
+        if let (Some(expected), Some(argument), Some(value)) =
+            (expected, given(&error, ContextKind::InvalidArg), given(&error, ContextKind::InvalidValue))
+        {
+            let text = format!("invalid value '{value}' for '{argument}': {expected} was expected");
+            error = command.error(ErrorKind::ValueValidation, text);
+        }
         refuse(&error)
     });
     P::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| refuse(&error.format(&mut command)))
+}
+
+/// What was expected in the place of a text that is no number; `None` for other errors.
+fn expected_number(source: &(dyn error::Error + 'static)) -> Option<&'static str> {
+    if source.is::<ParseIntError>() {
+        return Some("a whole number");
+    }
+    source.is::<ParseFloatError>().then_some("a number")
+}
+
+/// A text that an error of the command line is about.
+fn given(error: &clap::Error, kind: ContextKind) -> Option<&str> {
+    match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text),
+        _ => None,
+    }
 }
 
 /// Print an error of the command line and end the process. If an argument has control characters, they and the colours

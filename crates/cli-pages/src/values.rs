@@ -14,6 +14,9 @@ use clap::{
 };
 use diagnostics::{FAULTS, JOBS, NamedFiles, ROBOTS};
 
+/// File of the cell description in a data directory.
+const CELL: &str = "cell.toml";
+
 /// The default data directory.
 #[must_use]
 pub fn default_data() -> PathBuf {
@@ -59,7 +62,13 @@ pub fn data_directory() -> impl TypedValueParser<Value = PathBuf> {
             let named = named.display();
             format!("there is no task data directory {named}; {built_in} names the data of the program")
         };
-        shipped::data_directory(&named).ok_or_else(none)
+        let directory = shipped::data_directory(&named).ok_or_else(none)?;
+        let inside = named.join("data");
+        if !named.join(CELL).is_file() && inside.join(CELL).is_file() {
+            let (named, inside) = (named.display(), inside.display());
+            return Err(format!("{named} has no {CELL}, {inside} has one: name {inside}"));
+        }
+        Ok(directory)
     })
 }
 

@@ -9,7 +9,7 @@ use std::{
 };
 
 use depc::track::LAG_MS;
-use diagnostics::ROBOTS;
+use diagnostics::{ROBOTS, alternatives};
 use egm::host::Settings;
 
 use crate::{
@@ -122,7 +122,10 @@ impl EgmOptions {
                 self.slack_ms = slack.ok_or_else(|| format!("slack is 0 to 200 ms, found {value}"))?;
             }
             _ if emulated => self.emulate(name, value)?,
-            _ => return Err(format!("EGM has no option {name}; it has robot, from, speed-ref, slack")),
+            _ => {
+                let near = alternatives(name, ["robot", "from", "speed-ref", "slack"], "it has");
+                return Err(format!("EGM has no option {name}: {near}"));
+            }
         }
         Ok(())
     }
@@ -153,11 +156,11 @@ impl EgmOptions {
             "seed" => self.seed = value.parse().map_err(|_| format!("seed is a number, found {value}"))?,
             _ => {
                 let mut numbers = self.numbers();
-                let names = numbers.each_ref().map(|(name, ..)| *name).join(", ");
+                let names = numbers.each_ref().map(|(name, ..)| *name);
                 let Some((_, slot, range)) = numbers.iter_mut().find(|(known, ..)| *known == name) else {
-                    return Err(format!(
-                        "an emulated EGM robot has no option {name}; it has robot, do-not-restart, seed, {names}"
-                    ));
+                    let known = ["robot", "do-not-restart", "seed"].into_iter().chain(names);
+                    let near = alternatives(name, known, "it has");
+                    return Err(format!("an emulated EGM robot has no option {name}: {near}"));
                 };
                 let (low, high) = (range.start(), range.end());
                 let number = value.parse().ok().filter(|number| range.contains(number));

@@ -1,6 +1,12 @@
 //! Why a log cannot be written, read or replayed.
 
-use std::path::PathBuf;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use diagnostics::nearest;
+use os_io::files;
 
 /// Errors of writing a log: it ended before the run did, or never began.
 #[derive(Debug, thiserror::Error)]
@@ -115,6 +121,29 @@ pub enum ReadError {
         /// Number in the message.
         tick: u64,
     },
+}
+
+impl ReadError {
+    /// The error as text, with the path of the log once; for a missing file also the nearest name of a log beside it.
+    #[must_use]
+    pub fn of(&self, path: &Path) -> String {
+        let (named, mut text) = (path.display().to_string(), self.to_string());
+        if !text.starts_with(&named) {
+            text = format!("{named}: {text}");
+        }
+        if fs::symlink_metadata(path).is_err() {
+            let beside = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+            let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
+            let entries = files::list(beside.unwrap_or(Path::new("."))).unwrap_or_default();
+            let logs = entries.iter().filter(|entry| entry.extension().is_some_and(|end| end == "mcap"));
+            let logs: Vec<String> = logs.filter_map(|entry| name(entry)).collect();
+            let wanted = name(path).unwrap_or_default();
+            if let Some(near) = nearest(&wanted, logs.iter().map(String::as_str)) {
+                text += &format!("; the nearest log is {}", path.with_file_name(near).display());
+            }
+        }
+        text
+    }
 }
 
 fn by(version: &str) -> String {

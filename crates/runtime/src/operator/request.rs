@@ -1,5 +1,6 @@
 //! Requests of an operator, and their text form.
 
+use diagnostics::nearest;
 use interfaces::HwsCommand;
 use plant::BoxAction;
 use taskdata::load::{
@@ -81,6 +82,21 @@ const WORDS: &[(&str, Request)] = &[
     ("workstation", Request::Workstation),
 ];
 
+/// First words of the requests with arguments, beside the lines for the cell.
+const OTHER_WORDS: [&str; 11] = [
+    "note",
+    "job",
+    "board",
+    "execute",
+    "robot-init",
+    "db-done",
+    "write",
+    "confirm",
+    "line-load",
+    "load",
+    "run",
+];
+
 impl Request {
     /// Read a request.
     ///
@@ -108,10 +124,15 @@ impl Request {
         if let Some(request) = line_load(&each, store).or_else(|| play(&each)) {
             return request;
         }
-        if job::is_command(line) {
+        let first = each.first().copied().unwrap_or_default();
+        // The commands of Task have capital letters, the lines for the cell small ones.
+        if job::is_command(line) || first.starts_with(|first: char| first.is_ascii_uppercase()) {
             let read = job::own_command(line, store).map_err(|error| error.to_string())?;
             let Step::Command(command) = read.step else { return Err(format!("{line} is no command")) };
             return Ok(Self::Command(read.text, command));
+        }
+        if !first.is_empty() && !job::own_line_words().any(|word| word == first) {
+            return Err(unknown(first));
         }
         match job::own_line(line, store).map_err(|error| error.to_string())? {
             Workstation::Joystick(action) => Ok(Self::Box(at_the_box(action))),
@@ -168,6 +189,15 @@ impl Request {
     }
 }
 
+/// The refusal of a request that begins with an unknown word.
+fn unknown(word: &str) -> String {
+    let known = WORDS.iter().filter_map(|(words, _)| words.split(' ').next());
+    match nearest(word, known.chain(OTHER_WORDS).chain(job::own_line_words())) {
+        Some(near) => format!("no request is named {word}: the nearest is {near}"),
+        None => format!("no request is named {word}: docs/operator.md lists the requests"),
+    }
+}
+
 /// Read `line-load BLOCK LINE LINE` (IV.3.3): the command in these lines of the block; `None` if the words begin
 /// another request.
 fn line_load(words: &[&str], store: &Store) -> Option<Result<Request, String>> {
@@ -189,5 +219,28 @@ fn play(words: &[&str]) -> Option<Result<Request, String>> {
         ["run", job] => Some(Ok(Request::Play((*job).to_owned()))),
         ["run", ..] => Some(Err("run JOB was expected, such as run linkbar".to_owned())),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn mistyped_request_is_answered_with_the_nearest_name() {
+        let Ok((store, _)) = Store::load(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data")))
+        else {
+            panic!("the shipped data do not load")
+        };
+        let refused = |line: &str| Request::read(line, &store).unwrap_err();
+        assert_eq!(refused("bord 2 stop"), "no request is named bord: the nearest is board");
+        assert_eq!(refused("joystik hold PRIM"), "no request is named joystik: the nearest is joystick");
+        assert_eq!(refused("zzz"), "no request is named zzz: docs/operator.md lists the requests");
+        assert!(refused("MVOE -- +0 -- 0 +0 HOME 0 -- 0").contains("(the nearest is MOVE)"));
+        assert!(refused("MOVE -- +0 -- 0 +0 HOMME 0 -- 0").contains("(the nearest known name is HOME)"));
+        for line in ["vise open PFIXTURE", "board 2 stop", "run linkbar", "write task.ledger NONE"] {
+            assert!(Request::read(line, &store).is_ok(), "{line}");
+        }
     }
 }

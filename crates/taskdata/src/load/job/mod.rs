@@ -49,6 +49,7 @@ use interfaces::hws::HwsCommand;
 
 pub use own_line::{OwnLineError, is_command, own_command, own_line, reported_command};
 pub use reload::Reload;
+pub use workstation::own_line_words;
 
 pub use action::{
     Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, ResolverPanel, Stepped, TablePanel,

@@ -8,7 +8,12 @@ use std::fmt;
 use diagnostics::{At, Diagnostics, Problems, Source};
 
 use super::{
-    super::{Store, lex::words_of_line, source::SourceLine, verdict::TASK_COMMANDS},
+    super::{
+        Store,
+        lex::words_of_line,
+        source::SourceLine,
+        verdict::{TASK_COMMANDS, with_nearest},
+    },
     JobLine, Step, Workstation,
     fields::Fields,
     read::Reader,
@@ -100,7 +105,7 @@ fn report(text: &str, problems: Problems) -> Diagnostics {
 }
 
 fn unreadable(report: &Diagnostics) -> OwnLineError {
-    let errors: Vec<_> = report.errors().map(|error| error.message().to_owned()).collect();
+    let errors: Vec<_> = report.errors().map(|error| with_nearest(error.message(), error.help())).collect();
     OwnLineError::Unreadable(errors.join("; "))
 }
 

@@ -46,6 +46,11 @@ const VERBS: &[(&str, Verb)] = &[
     ("workstation", Verb::HandOver),
 ];
 
+/// The words with which lines for the cell begin.
+pub fn own_line_words() -> impl Iterator<Item = &'static str> {
+    VERBS.iter().map(|(name, _)| *name)
+}
+
 #[derive(Clone, Copy)]
 enum BoxVerb {
     Frame,

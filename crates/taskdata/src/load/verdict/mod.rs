@@ -180,8 +180,16 @@ pub(super) fn names_of(command: &HwsCommand, data: &TaskData<'_>) -> Vec<Finding
 /// Findings as one text: the reason of a refusal.
 #[must_use]
 pub fn in_words(findings: &[Finding]) -> String {
-    let messages: Vec<&str> = findings.iter().map(|finding| finding.message.as_str()).collect();
-    messages.join("; ")
+    let words = |finding: &Finding| with_nearest(&finding.message, finding.help.as_deref());
+    findings.iter().map(words).collect::<Vec<_>>().join("; ")
+}
+
+/// A message, with its help if that is the nearest known name.
+pub(super) fn with_nearest(message: &str, help: Option<&str>) -> String {
+    match help.filter(|help| help.starts_with("the nearest ")) {
+        Some(nearest) => format!("{message} ({nearest})"),
+        None => message.to_owned(),
+    }
 }
 
 /// The command that a word means: all of the word, or its first ten characters, which are what all processes below
