@@ -124,6 +124,27 @@ fn completions_know_jobs_faults_robots_and_interruptions() {
 }
 
 #[test]
+fn option_data_has_the_same_words_in_all_commands() {
+    let commands: [(&Path, &[&str]); 8] = [
+        (rcs_run(), &["check"]),
+        (rcs_run(), &["jobs"]),
+        (rcs_run(), &["pose"]),
+        (rcs_run(), &["campaign"]),
+        (rcs_run(), &["new", "part"]),
+        (rcs_run(), &["new", "tray"]),
+        (rcs_cell(), &[]),
+        (rcs_neighbour(), &["workstation"]),
+    ];
+    for (program, words) in commands {
+        let help = text(&in_directory(program, root(), &[words, &["--help"]].concat()).stdout);
+        let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+        let expected =
+            "--data <DIR> Directory with task data, cell.toml, jobs, faults and robots [default: data;";
+        assert!(help.contains(expected), "{words:?}: {help}");
+    }
+}
+
+#[test]
 fn a_copy_of_the_data_can_be_changed() {
     let scratch = Scratch::new("init");
     let run = |arguments: &[&str]| in_directory(rcs_run(), &scratch.file("."), arguments);
@@ -184,16 +205,22 @@ fn a_mistyped_word_or_path_is_named_once_with_its_nearest_name() {
         (rcs_run(), &["--robot", "egm:sim,robto=same"], "no option robto", "the nearest is robot"),
         (rcs_log(), &["replay", "rnu.mcap"], "rnu.mcap: No such file", "the nearest log is run.mcap"),
         (rcs_log(), &["serve", "nowhere/x.mcap"], "nowhere/x.mcap: No such file", "os error 2"),
+        (
+            rcs_neighbour(),
+            &["workstation", "--network", "unix:/nowhere", "--wait", "3"],
+            "waiting for a controller, 3 s at most",
+            "unix:/nowhere: No such file",
+        ),
         (rcs_run(), &["send", "--stay", "1m", "stop"], "--stay", "seconds from 0 to 86400 were expected"),
         (
             rcs_run(),
             &["send", "--stay", "1.5", "--run", "none", "status"],
             "there is no run named none",
-            "no run of this user",
+            "named none: ",
         ),
     ] {
         let output = in_directory(program, &here, arguments);
-        let said = text(&output.stderr);
+        let said = text(&output.stdout) + &text(&output.stderr);
         assert_ne!(output.status.code(), Some(0), "{arguments:?}");
         for expected in [wrong, near] {
             assert!(said.contains(expected), "{arguments:?}: {said}");

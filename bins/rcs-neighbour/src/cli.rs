@@ -128,9 +128,13 @@ pub struct PedestalArguments {
     pub controller: ControllerArguments,
 }
 
+/// The help of `vision --data`.
+const VISION_DATA: &str = "Directory with the cell description of the run, cell.toml [default: data; if there is \
+                           none: built-in, the data of the program]";
+
 /// Arguments of `vision`.
 #[derive(Clone, Debug, Args)]
-#[command(mut_arg("data", |data| data.help("Directory with the cell description of the run, cell.toml")))]
+#[command(mut_arg("data", |data| data.help(VISION_DATA)))]
 pub struct VisionArguments {
     /// Where the controller is.
     #[command(flatten)]

@@ -234,9 +234,13 @@ pub struct RunArguments {
     pub json: bool,
 }
 
+/// The help of `board --data`.
+const BOARD_DATA: &str = "Task data and jobs; they must be those of the run [default: data; if there is none: \
+                          built-in, the data of the program]";
+
 /// Arguments of `board`.
 #[derive(Clone, Debug, Args)]
-#[command(mut_arg("data", |data| data.help("Task data and jobs; they must be those of the run")))]
+#[command(mut_arg("data", |data| data.help(BOARD_DATA)))]
 pub struct BoardArguments {
     /// Number of the board: 2 (E-move, Prim), 4 (T3 Interface), 6 (Task, Subtask), 8 (Quick Change, grippers, pedestal)
     #[arg(value_name = "BOARD")]

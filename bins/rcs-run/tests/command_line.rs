@@ -453,6 +453,17 @@ fn run_announces_the_findings_that_check_shows() {
 }
 
 #[test]
+fn count_of_one_is_singular() {
+    let page =
+        stdout(&rcs_run(&["vise-and-back", "--ticks", "1", "--log", "none", "--shared-memory", "off"]));
+    assert!(page.contains("\ncontroller 1 tick;"), "{page}");
+    let page =
+        stdout(&rcs_run(&["vise-and-back", "--ticks", "2", "--log", "none", "--shared-memory", "off"]));
+    assert!(page.contains("\nlink       1 frame, 0 NAKs, 0 retries,"), "{page}");
+    assert!(page.contains("\ncontroller 2 ticks;"), "{page}");
+}
+
+#[test]
 fn findings_are_grouped_by_datum() {
     let place = Place::new();
     let data = data_with(&place, "movetables.blk", DOWN[0], DOWN[1]);
