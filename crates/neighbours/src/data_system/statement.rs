@@ -255,7 +255,7 @@ mod tests {
             ),
             (
                 "UPDATE EQUIP_ITEM_ACTION SET (DEVICE) = ('A', 'B')",
-                "1 values expected at character 40, found 2",
+                "1 value expected at character 40, found 2",
             ),
             (
                 "UPDATE EQUIP_ITEM_ACTION SET (DEVICE) = ('A",

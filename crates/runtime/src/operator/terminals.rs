@@ -398,7 +398,7 @@ mod tests {
         memory.grip.status.position = 400;
         assert_eq!(ask(held, &memory).unwrap(), "emove.beliefs.held was NONE, is LINKBAR1_BH 2");
         memory.grip.header.republished = true;
-        assert!(ask(held, &memory).unwrap_err().contains("must run"), "its sensors are not read");
+        assert!(ask(held, &memory).unwrap_err().contains("run its process"), "its sensors are not read");
         for (line, why) in [
             ("write emove.beliefs.held LINKBAR9 2", "no object form"),
             ("write emove.beliefs.held LINKBAR1_BH 9", "a grip of LINKBAR1_BH was expected: +2; found +9"),

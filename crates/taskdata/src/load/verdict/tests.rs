@@ -68,7 +68,7 @@ fn commands_from_line_request_and_mailbox_get_the_same_text() {
         let text = format!("** joystick frame OFF\n== {fields}\n");
         let source = Source { name: "try.job".into(), text: text.into() };
         let report = Job::from_source(source, &store).unwrap_err();
-        let line: Vec<_> = report.errors().map(|error| error.message()).collect();
+        let line: Vec<_> = report.errors().map(|error| with_nearest(error.message(), error.help())).collect();
         assert_eq!(line.join("; "), found, "{fields}");
     }
 }
