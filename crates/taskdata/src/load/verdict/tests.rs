@@ -5,7 +5,7 @@ use std::path::Path;
 use interfaces::HwsCommand;
 use rcs_core::name::Name16;
 
-use super::{super::Store, super::job::own_command, Before, Verdict, in_words};
+use super::{super::Store, super::job::own_command, Before, Verdict, in_words, with_nearest};
 use crate::load::{Job, Source, Step};
 
 fn store() -> Store {
