@@ -316,7 +316,7 @@ impl State {
     }
 
     /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), whatever was
-    /// done before; a command that was given up for it ends in an error and is not resumed
+    /// done before, and E-PAUSE keeps it until the processes below pause again; another command that was given up for it ends in an error and is not resumed
     /// (docs/design/ownership.md "Joystick box"). A link that fails while E-PAUSE stands is no failure of it:
     /// the reason stands beside `done`.
     fn outcome(&self, inputs: &Inputs<'_, TaskData<'_>>) -> (StatusReport, Reason) {
@@ -324,10 +324,12 @@ impl State {
         let prim = &inputs.memory.prim;
         let taken =
             prim.status.report == PrimReport::JoystickOn && prim.header.stamp == inputs.tick.previous();
+        let pauses = inputs.memory.subtask.emove.command == EmoveVerb::Pause;
         match (taken, execution.outcome) {
             (true, Outcome::Done | Outcome::Joystick) => (StatusReport::JoystickOn, Reason::JoystickOn),
+            (false, Outcome::Joystick) if pauses => (StatusReport::JoystickOn, Reason::JoystickOn),
             (false, Outcome::Joystick) => (StatusReport::Error, Reason::JoystickOn),
-            (false, Outcome::Done) if inputs.memory.subtask.emove.command == EmoveVerb::Pause => {
+            (false, Outcome::Done) if pauses => {
                 let below =
                     self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
                 (StatusReport::Done, if below == Lower::Error { prim.status.reason } else { Reason::None })

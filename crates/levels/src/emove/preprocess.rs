@@ -177,7 +177,10 @@ impl State {
             self.away = self.beliefs.place.is_some_and(|place| !there(&place.pose));
         }
         let pause = match (command.command, self.step) {
-            (EmoveVerb::Pause, Step::EPause(EPauseStep::Standing)) => Pause::Standing,
+            (
+                EmoveVerb::Pause,
+                Step::EPause(EPauseStep::Standing | EPauseStep::Led | EPauseStep::Resting),
+            ) => Pause::Standing,
             (EmoveVerb::Pause, _) => Pause::UnderWay,
             _ => Pause::Other,
         };

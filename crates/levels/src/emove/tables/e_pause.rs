@@ -8,7 +8,8 @@ decision_table! {
     /// that move do first what they were told: a valve that is left open would close them with the whole
     /// supply pressure. While it stands, the joystick box has robot and gripper. A link that fails before it
     /// is done is initialized again, once; one that fails afterwards is reported beside `done`, and the next
-    /// motion restarts it.
+    /// motion restarts it. When the operator gives the robot back, the processes below pause again: jaws keep their
+    /// air, and may have begun to close.
     pub E_PAUSE: fn e_pause(enum EPauseStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                                              => Wait;
@@ -40,7 +41,7 @@ decision_table! {
         }
         Pausing | PausingAgain {
             9:  prim: Lost                                             => PassUp;
-            10: prim: Joystick                                         => Manual    -> Standing;
+            10: prim: Joystick                                         => Manual    -> Led;
             11: prim: Done, tooling: Busy                              => Wait;
             12: prim: Done, tooling: RingFaulty                        => FailRing;
             13: prim: Done, tooling: GripFaulty                        => FailGrip;
@@ -49,19 +50,35 @@ decision_table! {
         }
         /// They pause. The operator may take the robot and give it back as long as the command stands.
         Standing {
-            16: button: Open                                           => OpenByHand;
-            17: button: Close                                          => CloseByHand;
-            18: button: None, prim: Joystick                           => Manual;
-            19: button: None, prim: Done | Error                       => Finish;
-            20: button: None, prim: Pending | Executing | Lost         => Wait;
+            16: button: None, prim: Done | Error                       => Finish;
+        }
+        /// The operator has the robot, or has just given it back.
+        Led {
+            17: button: None, prim: Error                              => Finish    -> Standing;
+            18: button: None, prim: Done, motion: Moving               => Wait;
+            19: button: None, prim: Done, motion: AtRest               => Pause     -> Resting;
+        }
+        Standing | Led {
+            20: button: None, prim: Joystick                           => Manual    -> Led;
+            21: button: None, prim: Pending | Executing | Lost         => Wait;
+            22: button: Open                                           => OpenByHand;
+            23: button: Close                                          => CloseByHand;
+        }
+        /// The processes below pause again after the operator has given the robot back.
+        Resting {
+            24: prim: Pending | Executing                              => Wait;
+            25: prim: Done, tooling: Busy                              => Wait;
+            26: prim: Done, tooling: Ready | RingFaulty | GripFaulty   => Finish    -> Standing;
+            27: prim: Error | Lost                                     => Finish    -> Standing;
+            28: prim: Joystick                                         => Manual    -> Led;
         }
         /// Prim is initializing a link that has failed while the robot paused.
         InitializingAgain {
-            21: work: Over                                             => Pause     -> PausingAgain;
+            29: work: Over                                             => Pause     -> PausingAgain;
         }
         /// The processes below are pausing once more.
         PausingAgain {
-            22: prim: Error                                            => PassUp;
+            30: prim: Error                                            => PassUp;
         }
     }
 }

@@ -36,6 +36,7 @@ pub const SCENARIOS: &[fn()] = &[
     the_robot_is_found_where_it_stands,
     the_operator_moves_the_robot_and_the_fingers,
     the_operator_interrupts_a_command,
+    robot_given_back_by_the_operator_is_done_when_everything_rests,
     nothing_begins_while_the_operator_has_the_robot,
     a_restarted_e_move_executes_nothing,
     a_link_that_fails_in_a_pause_is_initialized_again_or_reported,
@@ -316,6 +317,52 @@ fn the_operator_moves_the_robot_and_the_fingers() {
     assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "done stays");
 }
 
+/// The operator gives the robot back while the fingers still move, while the ring still pauses, and with a link that
+/// fails; and takes it once more before everything rests.
+#[test]
+fn robot_given_back_by_the_operator_is_done_when_everything_rests() {
+    let led = || {
+        let mut bench = Bench::ready("HOME", 2);
+        assert_eq!(bench.pause(), DONE);
+        bench.world.joystick = true;
+        bench.steps(3);
+        bench
+    };
+    let ticks = |bench: &mut Bench| {
+        (bench.world.joystick, bench.world.button) = (false, JoystickGrip::None);
+        let ticks = (0..40).find(|_| {
+            bench.step();
+            bench.memory.emove.status.report != StatusReport::JoystickOn
+        });
+        assert_eq!(bench.memory.emove.status.report, StatusReport::Done);
+        ticks.unwrap()
+    };
+    let at_rest = ticks(&mut led());
+    let mut bench = led();
+    bench.world.button = JoystickGrip::Open;
+    bench.steps(2);
+    assert!(ticks(&mut bench) > at_rest, "the fingers open first");
+    let mut bench = led();
+    bench.spoil("QC-PAUSE", Mishap::Ring(QuickChangeReport::Executing));
+    bench.world.joystick = false;
+    bench.steps(20);
+    assert_eq!(bench.memory.emove.status.report, StatusReport::JoystickOn, "Quick Change never pauses");
+    for again in 1..at_rest {
+        let mut bench = led();
+        bench.world.joystick = false;
+        bench.steps(again);
+        bench.world.joystick = true;
+        bench.steps(4);
+        assert_eq!(bench.memory.emove.status.report, StatusReport::JoystickOn, "after {again} ticks");
+        ticks(&mut bench);
+    }
+    let mut bench = led();
+    bench.memory.prim.status.report = PrimReport::T3LinkErr;
+    bench.dead.push("Prim");
+    bench.steps(2);
+    assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "the reason stands beside it");
+}
+
 #[test]
 fn the_operator_interrupts_a_command() {
     let mut bench = Bench::ready("HOME", 1);
@@ -325,7 +372,7 @@ fn the_operator_interrupts_a_command() {
     assert_eq!(bench.finish(), (StatusReport::JoystickOn, Reason::JoystickOn));
     assert_eq!(bench.pause(), (StatusReport::JoystickOn, Reason::JoystickOn));
     bench.world.joystick = false;
-    bench.steps(5);
+    bench.steps(10);
     assert_eq!(bench.memory.emove.status.report, StatusReport::Done);
     // A command that was interrupted and not followed by a pause ends in an error when the box is let go.
     let mut bench = Bench::ready("HOME", 1);

@@ -242,7 +242,7 @@ fn the_operator_opens_and_closes_any_gripper() {
             assert!((real.openings[at] - goal).abs() < 0.03, "gripper {gripper}: {}", real.openings[at]);
         }
         (bench.world.joystick, bench.world.button) = (false, JoystickGrip::None);
-        bench.steps(5);
+        bench.steps(10);
         assert_eq!(bench.memory.emove.status.report, StatusReport::Done);
         assert_eq!(bench.pause(), DONE);
     }
