@@ -6,7 +6,7 @@
 use std::{error::Error, path::Path, sync::Arc};
 
 use closed_loop::{ClosedLoop, JobPlayer, Present};
-use neighbours::workstation::player::Progress;
+use neighbours::workstation::player::{Hwsc, Progress, TIME_LIMIT};
 use plant::{Cell, CellDescription};
 use rcs_core::tick::Tick;
 use taskdata::load::{Job, Store};
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (job, _) = Job::load(&data.join("jobs/linkbar.job"), &store).map_err(|report| report.in_line())?;
     let cell = Cell::new(&CellDescription::load(&data.join("cell.toml"))?, 1)?;
     let mut closed = ClosedLoop::new(Present::default(), Arc::new(store), Arc::new(job.reloads), cell);
-    let mut player = JobPlayer::new(job.steps);
+    let mut player = JobPlayer::new(Hwsc::new(job.steps, TIME_LIMIT));
     while closed.tick() < Tick(3000) {
         player.step(&mut closed);
     }

@@ -54,7 +54,7 @@ use self::{
 pub use self::{
     given::{Given, RobotInputs},
     line::RobotLine,
-    player::JobPlayer,
+    player::{CommandBox, Commander, JobPlayer},
     present::Present,
 };
 

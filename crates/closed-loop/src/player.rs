@@ -1,32 +1,161 @@
-//! Plays a job on a closed loop.
+//! Sends commands to Task through the command mailbox.
+//!
+//! ```text
+//!   Gate: status mailbox ──► Commander::step ──► command ──► CommandBox ──► Gate::read ──► Task
+//! ```
+//!
+//! Whoever commands in this process uses a [`CommandBox`]: the job of a run and an operator ([`JobPlayer`]), and the
+//! operator of a campaign.
 
 use std::convert::Infallible;
 
 use executive::course::Levels;
+use interfaces::HwsCommand;
 use neighbours::{
     mailbox::{HWSC_COMMAND, Mailbox},
     workstation::{
-        Unchecked, command,
-        player::{Hwsc, JobFailure, Progress, TIME_LIMIT},
-        status,
+        Gate, Unchecked, command,
+        player::{BegunStep, Hwsc, JobFailure, Progress},
+        status::{self, Status},
     },
 };
-use taskdata::{files::TaskData, load::job::JobLine};
+use rcs_core::tick::Tick;
+use taskdata::files::TaskData;
 
-use crate::{ClosedLoop, Given};
+use crate::{ClosedLoop, Given, Settled, workstation::SimulatedWorkstation};
+
+/// Commands Task, and operates the workstation around the robot.
+pub trait Commander {
+    /// Called once per tick: reads Task's status and returns the command to write into the mailbox, if any.
+    fn step(
+        &mut self,
+        tick: Tick,
+        status: &Status<'_>,
+        workstation: &mut SimulatedWorkstation,
+    ) -> Option<HwsCommand>;
+}
+
+impl Commander for Hwsc {
+    fn step(
+        &mut self,
+        tick: Tick,
+        status: &Status<'_>,
+        workstation: &mut SimulatedWorkstation,
+    ) -> Option<HwsCommand> {
+        Self::step(self, tick, status, workstation);
+        self.mailgram().copied()
+    }
+}
+
+/// The command mailbox of a [`Commander`].
+#[derive(Clone, Debug)]
+pub struct CommandBox(Mailbox);
+
+impl Default for CommandBox {
+    fn default() -> Self {
+        Self(Mailbox::initialized(HWSC_COMMAND))
+    }
+}
+
+impl CommandBox {
+    /// The mailbox, for the gate to read.
+    #[must_use]
+    pub const fn mailbox(&self) -> &Mailbox {
+        &self.0
+    }
+
+    /// Called once per tick: the commander reads the status mailbox, and its command is written into the command
+    /// mailbox, if it has one. The caller then has the gate read the mailbox.
+    ///
+    /// # Errors
+    /// [`JobFailure::Refused`] if the status cannot be decoded or the command does not fit into the mailbox.
+    pub fn write(
+        &mut self,
+        tick: Tick,
+        gate: &Gate,
+        workstation: &mut SimulatedWorkstation,
+        commander: &mut impl Commander,
+    ) -> Result<(), JobFailure> {
+        let status = status::decode(gate.status_box().data())
+            .map_err(|error| JobFailure::Refused(error.to_string()))?;
+        match commander.step(tick, &status, workstation) {
+            Some(command) => self.post(&command),
+            None => Ok(()),
+        }
+    }
+
+    fn post(&mut self, command: &HwsCommand) -> Result<(), JobFailure> {
+        let refused = |why: String| JobFailure::Refused(why);
+        let bytes = command::encode(command).map_err(|error| refused(error.to_string()))?;
+        self.0.write(&bytes).map_err(|error| refused(error.to_string()))
+    }
+}
+
+impl<L> ClosedLoop<L>
+where
+    L: for<'a> Levels<TaskData<'a>, Error = Infallible>,
+{
+    /// Run one tick, without anything from outside. The commands are not checked against the task data: they are those
+    /// of a job that was checked when it was loaded.
+    ///
+    /// # Errors
+    /// As [`CommandBox::write`]; the tick counts.
+    pub fn step(
+        &mut self,
+        command_box: &mut CommandBox,
+        commander: &mut impl Commander,
+    ) -> (Settled, Result<(), JobFailure>) {
+        let Ok(()) = self.decide(&Given::default());
+        let settled = self.settle(None);
+        let written = self.exchange(|desk| {
+            let written = command_box.write(desk.tick, desk.gate, desk.workstation, commander);
+            desk.gate.read(command_box.mailbox(), &Unchecked);
+            written
+        });
+        self.reload();
+        (settled, written)
+    }
+}
 
 /// The emulator of the workstation controller with a job, and its command mailbox. A copy continues from the same line.
 #[derive(Clone, Debug)]
 pub struct JobPlayer {
-    hwsc: Hwsc,
-    command_box: Mailbox,
+    /// The emulator.
+    pub hwsc: Hwsc,
+    command_box: CommandBox,
 }
 
 impl JobPlayer {
-    /// A player before the first line of a job that was checked with its task data.
+    /// The emulator plays a job that was checked with its task data.
     #[must_use]
-    pub fn new(steps: Vec<JobLine>) -> Self {
-        Self { hwsc: Hwsc::new(steps, TIME_LIMIT), command_box: Mailbox::initialized(HWSC_COMMAND) }
+    pub fn new(hwsc: Hwsc) -> Self {
+        Self { hwsc, command_box: CommandBox::default() }
+    }
+
+    /// The command mailbox, for the gate to read.
+    #[must_use]
+    pub const fn command_box(&self) -> &Mailbox {
+        self.command_box.mailbox()
+    }
+
+    /// Called once per tick: the emulator reads its status mailbox and writes its command mailbox. The caller then has
+    /// the gate read it; the emulator learns from its status which commands the gate refuses.
+    pub fn write(&mut self, tick: Tick, gate: &Gate, workstation: &mut SimulatedWorkstation) -> Progress {
+        let written = self.command_box.write(tick, gate, workstation, &mut self.hwsc);
+        self.progress(written)
+    }
+
+    /// Return the command to the job, and write its next command: the mailboxes are initialized, as they are whenever a
+    /// neighbour connects (IX.1). The caller then has the gate read the command mailbox.
+    pub fn take_back(&mut self, tick: Tick, gate: &mut Gate, commands: Vec<BegunStep>) -> Progress {
+        self.command_box.0.initialize();
+        gate.initialize();
+        self.hwsc.take_back(tick, gate.command().number, commands);
+        let written = self.hwsc.mailgram().map_or(Ok(()), |command| self.command_box.post(command));
+        match written {
+            Ok(()) => Progress::Running,
+            Err(failure) => Progress::Failed(failure),
+        }
     }
 
     /// Run one tick of a loop that this player commands, without anything from outside.
@@ -34,28 +163,11 @@ impl JobPlayer {
     where
         L: for<'a> Levels<TaskData<'a>, Error = Infallible>,
     {
-        let Ok(()) = closed.decide(&Given::default());
-        closed.settle(None);
-        let Self { hwsc, command_box } = self;
-        let progress = closed.exchange(|desk| {
-            let refused = |why: String| Progress::Failed(JobFailure::Refused(why));
-            let status = match status::decode(desk.gate.status_box().data()) {
-                Ok(status) => status,
-                Err(error) => return refused(error.to_string()),
-            };
-            let progress = hwsc.step(desk.tick, &status, desk.workstation).clone();
-            if let Some(command) = hwsc.mailgram() {
-                let written = command::encode(command)
-                    .map_err(|error| error.to_string())
-                    .and_then(|bytes| command_box.write(&bytes).map_err(|error| error.to_string()));
-                if let Err(why) = written {
-                    return refused(why);
-                }
-            }
-            desk.gate.read(command_box, &Unchecked);
-            progress
-        });
-        closed.reload();
-        progress
+        let (_, written) = closed.step(&mut self.command_box, &mut self.hwsc);
+        self.progress(written)
+    }
+
+    fn progress(&self, written: Result<(), JobFailure>) -> Progress {
+        written.map_or_else(Progress::Failed, |()| self.hwsc.progress().clone())
     }
 }

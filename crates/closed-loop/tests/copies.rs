@@ -4,6 +4,7 @@ use std::{path::Path, sync::Arc};
 
 use closed_loop::{ClosedLoop, JobPlayer, Present};
 use depc::fault::{FaultKind, Plan, Rule};
+use neighbours::workstation::player::{Hwsc, TIME_LIMIT};
 use plant::{Cell, CellDescription};
 use rcs_core::tick::Tick;
 use taskdata::load::{Job, Store};
@@ -27,7 +28,7 @@ impl Run {
         let cell = Cell::new(&description, 1).expect("the cell is sound");
         Self {
             closed: ClosedLoop::new(Present::default(), Arc::new(store), Arc::new(job.reloads), cell),
-            player: JobPlayer::new(job.steps),
+            player: JobPlayer::new(Hwsc::new(job.steps, TIME_LIMIT)),
         }
     }
 

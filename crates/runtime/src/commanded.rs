@@ -11,7 +11,7 @@
 //! The numbers of the commands form one sequence. While an operator commands, the workstation controller reads an
 //! initialized status mailbox, like one that has connected too early, and its commands are not executed.
 
-use closed_loop::workstation::SimulatedWorkstation;
+use closed_loop::{JobPlayer, workstation::SimulatedWorkstation};
 use interfaces::{CommonMemory, TaskOutputs, hws::HwsReport};
 use neighbours::{
     network::{Endpoint, EndpointHandle, Role},
@@ -25,8 +25,8 @@ use taskdata::load::BlockNumber;
 
 use crate::{
     event::Event,
-    judge::CommandJudge,
-    neighbours::{Emulator, Neighbours, WorkstationSource},
+    judge::{CommandJudge, play},
+    neighbours::{Neighbours, WorkstationSource},
     outside::OutsideWorkstation,
     switched::obstacle,
 };
@@ -35,7 +35,7 @@ use crate::{
 pub struct Commanded {
     outside: OutsideWorkstation,
     /// Sends the commands of the operator; `None` while the workstation controller commands.
-    alone: Option<Emulator>,
+    alone: Option<JobPlayer>,
     /// Commands of the earlier sources.
     before: Vec<BegunStep>,
 }
@@ -86,7 +86,7 @@ impl Commanded {
             return self.outside.step(tick, gate, workstation, judge, events);
         };
         self.outside.attend(tick, workstation, events);
-        match emulator.step(tick, gate, workstation, judge, events) {
+        match play(emulator, tick, gate, workstation, judge, events) {
             Progress::Running => {}
             Progress::Over => emulator.hwsc.wait_without_job(),
             Progress::Failed(failure) => {
@@ -128,7 +128,7 @@ impl Commanded {
             let paused = hwsc.command_by_operator(tick, "PAUSE".to_owned(), pause());
             paused.map_err(|error| error.to_string())?;
         }
-        self.alone = Some(Emulator::new(hwsc));
+        self.alone = Some(JobPlayer::new(hwsc));
         Ok("the workstation controller commands no more; `workstation` gives the command back".to_owned())
     }
 

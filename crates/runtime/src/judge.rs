@@ -4,12 +4,12 @@
 //! A command passes if the task data have what it needs ([`Verdict`]), and if `check` has found no error in the records
 //! that it uses. With `--unchecked` the second condition does not count. PAUSE always passes.
 
-use closed_loop::generations::Generations;
+use closed_loop::{JobPlayer, generations::Generations, workstation::SimulatedWorkstation};
 use diagnostics::{Blame, Group, grouped};
 use interfaces::{CommonMemory, HwsCommand, emove::Holding};
 use neighbours::{
     mailbox::Mailbox,
-    workstation::{Gate, Judge, Refusal},
+    workstation::{Gate, Judge, Refusal, player::Progress},
 };
 use paths::{
     finding::Finding,
@@ -18,6 +18,7 @@ use paths::{
     uses::{Present, used},
 };
 use plant::{CellDescription, room::Room};
+use rcs_core::tick::Tick;
 use taskdata::load::{
     At, Fault, Job, Step, Store, Workstation,
     verdict::{Before, Verdict, in_words},
@@ -100,6 +101,23 @@ pub fn read_command(
         events.push(Event::CommandFailsCheck(wrong.to_owned()));
     }
     refused
+}
+
+/// Called once per tick: a job reads its status and writes its command, which is then read from its mailbox.
+pub fn play(
+    job: &mut JobPlayer,
+    tick: Tick,
+    gate: &mut Gate,
+    workstation: &mut SimulatedWorkstation,
+    judge: &CommandJudge<'_>,
+    events: &mut Vec<Event>,
+) -> Progress {
+    let before = job.hwsc.retried().len();
+    let progress = job.write(tick, gate, workstation);
+    events.extend(job.hwsc.retried().iter().skip(before).cloned().map(Event::Retries));
+    let judge = CommandJudge { load: workstation.first_load(), ..*judge };
+    read_command(gate, job.command_box(), &judge, events);
+    progress
 }
 
 /// The reason why a command with these errors in its data is refused; `None` without an error.

@@ -10,19 +10,14 @@ use std::{
     time::{Duration, Instant},
 };
 
-use closed_loop::{Desk, workstation::SimulatedWorkstation};
+use closed_loop::{Desk, JobPlayer, workstation::SimulatedWorkstation};
 use interfaces::{CommonMemory, DataBaseStatus, DeviceInputs, OutsidePedestal};
 use neighbours::{
     data_system::DataSystem,
-    mailbox::{HWSC_COMMAND, Mailbox},
     network::{Endpoint, EndpointHandle, Role},
     pedestal,
     vision::{self, picture::Part},
-    workstation::{
-        Gate,
-        player::{BegunStep, Hwsc, JobFailure, Outcome, Progress, Retry, WaitReason},
-        status,
-    },
+    workstation::player::{BegunStep, Hwsc, Outcome, Progress, Retry, WaitReason},
 };
 use plant::camera::Subject;
 use rcs_core::{Plain as _, tick::Tick};
@@ -35,7 +30,7 @@ use crate::{
     config::{ClockKind, RunConfig},
     error::StartError,
     event::Event,
-    judge::{CommandJudge, read_command},
+    judge::{CommandJudge, play},
     network::Network,
     observer::Observer,
 };
@@ -43,18 +38,11 @@ use crate::{
 /// The source of Task's commands.
 pub enum WorkstationSource {
     /// The emulator of the workstation controller, with a job.
-    Emulator(Box<Emulator>),
+    Emulator(Box<JobPlayer>),
     /// A workstation controller in another process.
     Outside(Box<Commanded>),
     /// The emulator, whose job hands over to a workstation controller in another process.
     Switched(Box<Switched>),
-}
-
-/// The emulator of the workstation controller, with its command mailbox.
-pub struct Emulator {
-    /// The emulator.
-    pub hwsc: Hwsc,
-    command_box: Mailbox,
 }
 
 impl WorkstationSource {
@@ -324,7 +312,7 @@ impl Neighbours {
         let progress = match &mut self.workstation {
             _ if self.is_ending => Progress::Running,
             WorkstationSource::Emulator(emulator) => {
-                emulator.step(tick, gate, workstation, &judge, &mut self.events)
+                play(emulator, tick, gate, workstation, &judge, &mut self.events)
             }
             WorkstationSource::Outside(commanded) => {
                 commanded.step(tick, gate, workstation, &judge, &mut self.events)
@@ -349,68 +337,6 @@ impl Neighbours {
     /// A Data System that the run does not keep itself.
     pub const fn data_system(&mut self) -> Option<&mut DataSystem> {
         self.data_system.as_mut()
-    }
-}
-
-impl Emulator {
-    /// The emulator plays a job.
-    #[must_use]
-    pub fn new(hwsc: Hwsc) -> Self {
-        Self { hwsc, command_box: Mailbox::initialized(HWSC_COMMAND) }
-    }
-
-    /// Called once per tick: the emulator reads its status mailbox and writes its command mailbox.
-    pub fn step(
-        &mut self,
-        tick: Tick,
-        gate: &mut Gate,
-        workstation: &mut SimulatedWorkstation,
-        judge: &CommandJudge<'_>,
-        events: &mut Vec<Event>,
-    ) -> Progress {
-        let before = self.hwsc.retried().len();
-        let progress = match status::decode(gate.status_box().data()) {
-            Ok(status) => self.hwsc.step(tick, &status, workstation).clone(),
-            Err(error) => return Progress::Failed(JobFailure::Refused(error.to_string())),
-        };
-        let retries = self.hwsc.retried().iter().skip(before);
-        events.extend(retries.cloned().map(Event::Retries));
-        let judge = CommandJudge { load: workstation.first_load(), ..*judge };
-        self.post(gate, &judge, events).unwrap_or(progress)
-    }
-
-    /// Send the command through the mailbox. Returns the failure if it does not fit.
-    fn post(
-        &mut self,
-        gate: &mut Gate,
-        judge: &CommandJudge<'_>,
-        events: &mut Vec<Event>,
-    ) -> Option<Progress> {
-        let mut failure = None;
-        if let Some(command) = self.hwsc.mailgram() {
-            let written = neighbours::workstation::command::encode(command)
-                .map_err(|error| error.to_string())
-                .and_then(|bytes| self.command_box.write(&bytes).map_err(|error| error.to_string()));
-            failure = written.err().map(|why| Progress::Failed(JobFailure::Refused(why)));
-        }
-        // The emulator learns from its status which commands the gate refuses.
-        read_command(gate, &self.command_box, judge, events);
-        failure
-    }
-
-    /// Return the command to the job: its mailbox is initialized, as every mailbox is when a neighbour connects (IX.1).
-    pub fn take_back(
-        &mut self,
-        tick: Tick,
-        gate: &mut Gate,
-        commands: Vec<BegunStep>,
-        judge: &CommandJudge<'_>,
-        events: &mut Vec<Event>,
-    ) -> Progress {
-        self.command_box.initialize();
-        gate.initialize();
-        self.hwsc.take_back(tick, gate.command().number, commands);
-        self.post(gate, judge, events).unwrap_or(Progress::Running)
     }
 }
 

@@ -6,6 +6,7 @@ use std::{
     sync::Arc,
 };
 
+use closed_loop::JobPlayer;
 use depc::fault::Plan;
 use diagnostics::JOBS;
 use executive::serial::SerialLine;
@@ -36,7 +37,7 @@ use crate::{
     findings::Findings,
     judge::{add_paths, check_job},
     live::Live,
-    neighbours::{Emulator, Neighbours, WorkstationSource},
+    neighbours::{Neighbours, WorkstationSource},
     network::Network,
     observer::Observer,
     own::{OwnPort, OwnRobot},
@@ -289,7 +290,7 @@ fn neighbours(
             WorkstationSource::Switched(Box::new(Switched::new(hwsc, endpoint, config.wait)))
         }
         Some(endpoint) => WorkstationSource::outside(endpoint),
-        None => WorkstationSource::Emulator(Box::new(Emulator::new(hwsc))),
+        None => WorkstationSource::Emulator(Box::new(JobPlayer::new(hwsc))),
     };
     let pedestal = regrips.map(|endpoint| Box::new(pedestal::Agent::new(endpoint)));
     let vision =

@@ -14,7 +14,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use closed_loop::workstation::SimulatedWorkstation;
+use closed_loop::{JobPlayer, workstation::SimulatedWorkstation};
 use interfaces::{CommonMemory, HwsCommand, hws::HwsReport};
 use neighbours::{
     network::{ClockKind, Endpoint},
@@ -25,7 +25,11 @@ use neighbours::{
 };
 use rcs_core::tick::{TICK_MS, Tick};
 
-use crate::{event::Event, judge::CommandJudge, neighbours::Emulator, outside::OutsideWorkstation};
+use crate::{
+    event::Event,
+    judge::{CommandJudge, play, read_command},
+    outside::OutsideWorkstation,
+};
 
 /// Location of the robot when the workstation controller takes over (IV.4.1).
 const HOME: &str = "HOME";
@@ -44,7 +48,7 @@ pub struct Around<'a> {
 
 /// A job, and the workstation controller in another process to which it hands over.
 pub struct Switched {
-    job: Emulator,
+    job: JobPlayer,
     outside: OutsideWorkstation,
     /// Time limit for the connection of the workstation controller, s.
     wait: u32,
@@ -59,7 +63,7 @@ impl Switched {
     #[must_use]
     pub fn new(hwsc: Hwsc, endpoint: Endpoint, wait: u32) -> Self {
         Self {
-            job: Emulator::new(hwsc),
+            job: JobPlayer::new(hwsc),
             outside: OutsideWorkstation::new(endpoint),
             wait,
             since: Tick::BEFORE_START,
@@ -120,7 +124,7 @@ impl Switched {
             return self.follow(around, gate, workstation, events);
         }
         self.outside.attend(around.tick, workstation, events);
-        let progress = self.job.step(around.tick, gate, workstation, &around.judge, events);
+        let progress = play(&mut self.job, around.tick, gate, workstation, &around.judge, events);
         if self.is_handed_over() { self.hand_over(around, gate, events) } else { progress }
     }
 
@@ -183,7 +187,9 @@ impl Switched {
             return progress;
         }
         events.push(Event::TakenBack);
-        self.job.take_back(around.tick, gate, self.outside.take_steps(), &around.judge, events)
+        let progress = self.job.take_back(around.tick, gate, self.outside.take_steps());
+        read_command(gate, self.job.command_box(), &around.judge, events);
+        progress
     }
 
     fn refuse(&mut self, tick: Tick, why: String) -> Progress {

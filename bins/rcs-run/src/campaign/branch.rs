@@ -8,20 +8,10 @@ use std::{
     sync::Arc,
 };
 
-use closed_loop::{
-    ClosedLoop, Given, Present, Settled, truth::Confirmation, workstation::SimulatedWorkstation,
-};
+use closed_loop::{ClosedLoop, CommandBox, Commander, Present, Settled, truth::Confirmation};
 use interfaces::{CommonMemory, HwsCommand};
 use levels::ladder::LadderState;
-use neighbours::{
-    data_system::Item,
-    mailbox::{HWSC_COMMAND, Mailbox},
-    workstation::{
-        Unchecked, command,
-        player::Hwsc,
-        status::{self, Status},
-    },
-};
+use neighbours::data_system::Item;
 use plant::{Cell, CellDescription, CellEvent};
 use rcs_core::{Plain as _, digest::Digest, tick::Tick};
 use runtime::StartError;
@@ -53,36 +43,13 @@ impl Facility {
     }
 }
 
-/// Commands Task in a branch, and operates the workstation beside the robot.
-pub trait Commander {
-    /// Called once per tick: reads Task's status and returns the command to write into the mailbox, if any.
-    fn step(
-        &mut self,
-        tick: Tick,
-        status: &Status<'_>,
-        workstation: &mut SimulatedWorkstation,
-    ) -> Option<HwsCommand>;
-}
-
-impl Commander for Hwsc {
-    fn step(
-        &mut self,
-        tick: Tick,
-        status: &Status<'_>,
-        workstation: &mut SimulatedWorkstation,
-    ) -> Option<HwsCommand> {
-        Self::step(self, tick, status, workstation);
-        self.mailgram().copied()
-    }
-}
-
 /// A run between two ticks. A copy continues from the same state.
 #[derive(Clone)]
 pub struct Branch<'f> {
     facility: &'f Facility,
     /// Control processes and cell.
     pub closed: ClosedLoop,
-    command_box: Mailbox,
+    command_box: CommandBox,
     /// Events in the cell in the last tick.
     pub events: Vec<CellEvent>,
     /// Confirmations of the last tick that are not true.
@@ -100,7 +67,7 @@ impl<'f> Branch<'f> {
         Ok(Self {
             facility,
             closed: ClosedLoop::new(Present::default(), store, reloads, cell).without_near_misses(),
-            command_box: Mailbox::initialized(HWSC_COMMAND),
+            command_box: CommandBox::default(),
             events: Vec::new(),
             untrue: Vec::new(),
         })
@@ -108,22 +75,9 @@ impl<'f> Branch<'f> {
 
     /// Run a tick.
     pub fn step(&mut self, commander: &mut impl Commander) {
-        let Ok(()) = self.closed.decide(&Given::default());
-        let Settled { events, untrue, .. } = self.closed.settle(None);
+        // The commands come from a job that was checked when it was loaded: their fields fit into the mailbox.
+        let (Settled { events, untrue, .. }, _) = self.closed.step(&mut self.command_box, commander);
         (self.events, self.untrue) = (events, untrue);
-        let command_box = &mut self.command_box;
-        self.closed.exchange(|desk| {
-            let command = status::decode(desk.gate.status_box().data())
-                .ok()
-                .and_then(|status| commander.step(desk.tick, &status, desk.workstation));
-            // The commands come from a job, whose fields fit into the mailbox.
-            if let Some(bytes) = command.and_then(|command| command::encode(&command).ok()) {
-                let _ = command_box.write(&bytes);
-            }
-            // The job was checked when it was loaded.
-            desk.gate.read(command_box, &Unchecked);
-        });
-        self.closed.reload();
     }
 
     /// The last tick.
@@ -188,7 +142,7 @@ impl<'f> Branch<'f> {
         digest.add_record(closed.inputs(), &mut scratch);
         let command = HwsCommand { number: 0, ..*command };
         let mailboxes =
-            (command, gate.refused(), gate.unread(command_box), closed.line(), levels.processes());
+            (command, gate.refused(), gate.unread(command_box.mailbox()), closed.line(), levels.processes());
         let books = closed.books().map(|books| books.state(self.at()));
         let data = (closed.generations().state(), books);
         let all = (mailboxes, data, closed.contacts().state(), closed.workstation.state(), beside);

@@ -19,8 +19,7 @@ use neighbours::workstation::{
 use rcs_core::tick::Tick;
 use taskdata::load::job::{JobLine, Step, Workstation as Action};
 
-use super::branch::Commander;
-use closed_loop::workstation::SimulatedWorkstation;
+use closed_loop::{Commander, workstation::SimulatedWorkstation};
 
 /// Ticks within which the robot must come to rest after the joystick box is off.
 const REST_LIMIT: u64 = 25;

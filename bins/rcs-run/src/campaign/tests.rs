@@ -10,7 +10,7 @@ use rcs_core::{digest::Digest, tick::Tick};
 use taskdata::load::{Job, Source};
 
 use super::{
-    branch::{Branch, Commander, Facility},
+    branch::{Branch, Facility},
     coverage::Coverage,
     interruption::Kind,
     journal::{self, Journal},
@@ -22,7 +22,7 @@ use super::{
     series::Series,
     trial::{self, BranchResult, NoObserver, Procedure, Until, Verdict},
 };
-use closed_loop::workstation::SimulatedWorkstation;
+use closed_loop::{Commander, workstation::SimulatedWorkstation};
 use runtime::setup::{CellFile, TaskFiles};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
