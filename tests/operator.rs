@@ -14,10 +14,10 @@ use std::{
 
 use executive::memory::{Attached, RunName, operator_socket};
 use interfaces::ExternalInputs;
-use operator::{Client, ClientError};
 use record::{Log, LogLimit, OperatorLine};
 use runtime::{Boards, ClockKind, LogTarget, OperatorAccess, Run, RunConfig, RunOutcome, StartError};
 use rustix::process::{Pid, Signal, kill_process};
+use sessions::operator::{Client, ClientError};
 use tempfile::TempDir;
 use whole_system_tests::{copy, rcs_run, root};
 

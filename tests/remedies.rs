@@ -12,9 +12,9 @@ use interfaces::{
     pedestal::{PedestalReport, PedestalVerb},
     subtask::SubtaskVerb,
 };
-use operator::Event;
 use plant::Cell;
 use runtime::{LogTarget, Run, RunConfig, RunOutcome};
+use sessions::operator::Event;
 use tempfile::TempDir;
 use whole_system_tests::root;
 

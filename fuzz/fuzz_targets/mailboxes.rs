@@ -11,11 +11,6 @@ use libfuzzer_sys::fuzz_target;
 use neighbours::{
     data_system::{command as das_command, statement, status as das_status},
     mailbox::{HWSC_COMMAND, Mailbox},
-    network::{
-        ClockKind, Role,
-        frame::Frame,
-        session::{Event, Session},
-    },
     pedestal::{
         cell::{OrdersLayout, SensorsLayout},
         command::CommandLayout,
@@ -29,6 +24,11 @@ use neighbours::{
         cell::{self, CellStatus},
         command, status,
     },
+};
+use sessions::network::{
+    ClockKind, Role,
+    frame::Frame,
+    session::{Event, Session},
 };
 
 /// Every layout, whichever mailbox it is meant for.

@@ -11,7 +11,6 @@ use std::{
 use interfaces::{CommonMemory, Header, HwsCommand};
 use neighbours::{
     mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS, Mailbox},
-    network::{Address, NeighbourKeys, Peer, PeerError, Received, Role},
     workstation::{
         Status,
         cell::{self, CellStatus},
@@ -21,6 +20,7 @@ use neighbours::{
 use rcs_core::{Plain as _, digest::Digest, name::Name16, plain::from_bytes};
 use record::Log;
 use serde_json::Value;
+use sessions::network::{Address, NeighbourKeys, Peer, PeerError, Received, Role};
 use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 
 /// How long something may take that takes milliseconds.

@@ -12,7 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use neighbours::network::{Address, NeighbourKeys, Peer, Role};
+use sessions::network::{Address, NeighbourKeys, Peer, Role};
 use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 use zenoh::{Config, Session, Wait as _};
 

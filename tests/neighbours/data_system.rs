@@ -12,13 +12,16 @@ use std::{
 use interfaces::HwsCommand;
 use neighbours::{
     data_system::{
-        Records as _, Server, Store, command,
+        Records as _, Server, command,
         status::{Refusal, ServerStatus, Status, Summary},
     },
     mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox},
-    network::{Peer, Received, Role},
 };
 use rcs_core::name::Name16;
+use sessions::{
+    data_system::Store,
+    network::{Peer, Received, Role},
+};
 use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 
 use super::bench::{Controller, Ended, Workstation, bare};

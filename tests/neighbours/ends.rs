@@ -9,11 +9,11 @@ use executive::memory::Attached;
 use interfaces::HwsCommand;
 use neighbours::{
     mailbox::{HWSC_STATUS, Mailbox},
-    network::{Received, Role},
     workstation::cell::Trouble,
 };
 use rcs_core::name::Name16;
 use rustix::process::{Pid, Signal, kill_process};
+use sessions::network::{Received, Role};
 
 use super::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
 

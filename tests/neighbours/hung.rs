@@ -3,8 +3,8 @@
 
 use std::thread;
 
-use neighbours::network::{Peer, Role};
 use rustix::process::{Pid, Signal, kill_process};
+use sessions::network::{Peer, Role};
 use whole_system_tests::Scratch;
 
 use super::bench::{Controller, Workstation, bare};

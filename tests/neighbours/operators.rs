@@ -16,9 +16,9 @@ use std::{
 };
 
 use executive::memory::{RunName, operator_socket};
-use neighbours::network::{Address, NeighbourKeys, Peer, PeerError, Role};
-use operator::{Client, ClientError};
 use record::Log;
+use sessions::network::{Address, NeighbourKeys, Peer, PeerError, Role};
+use sessions::operator::{Client, ClientError};
 use whole_system_tests::{Scratch, rcs_run, root};
 
 use super::bench::{Controller, PATIENCE, make_keys};

@@ -22,10 +22,10 @@ use interfaces::{
 };
 use neighbours::{
     mailbox::{Mailbox, PEDESTAL_COMMAND, PEDESTAL_SENSORS, PEDESTAL_STATUS},
-    network::{Peer, Received, Role},
     pedestal::{System, cell::SensorsLayout, command::CommandLayout, status::Status},
 };
 use rcs_core::name::Name16;
+use sessions::network::{Peer, Received, Role};
 use whole_system_tests::{Scratch, rcs_log, rcs_neighbour, rcs_run, root};
 
 use super::bench::{Controller, Ended, Workstation, bare, computed, computed_alone};

@@ -13,9 +13,9 @@ use neighbours::{
         status::{ServerStatus, Status, Summary},
     },
     mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox},
-    network::{Peer, Received, Role},
 };
 use rustix::process::{Pid, Signal, kill_process};
+use sessions::network::{Peer, Received, Role};
 use whole_system_tests::Scratch;
 
 use super::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};

@@ -11,7 +11,7 @@ use std::{
     time::Duration,
 };
 
-use neighbours::network::{Address, NeighbourKeys, Peer, Role};
+use sessions::network::{Address, NeighbourKeys, Peer, Role};
 use whole_system_tests::{NOBODY, Scratch, may_become_nobody, rcs_neighbour, rcs_run, root};
 
 use super::bench::{Controller, PATIENCE, make_keys};

@@ -6,8 +6,8 @@ use std::time::Instant;
 use executive::memory::operator_socket;
 use interfaces::HwsCommand;
 use neighbours::mailbox::HWSC_STATUS;
-use operator::Client;
 use rcs_core::name::Name16;
+use sessions::operator::Client;
 
 use super::bench::{Controller, PATIENCE, Workstation, bare};
 

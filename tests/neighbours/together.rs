@@ -6,7 +6,8 @@ use std::{
     process::{Child, Command, Stdio},
 };
 
-use neighbours::data_system::{Item, Records as _, Store};
+use neighbours::data_system::{Item, Records as _};
+use sessions::data_system::Store;
 use whole_system_tests::{Scratch, rcs_neighbour, root};
 
 use super::bench::{Controller, computed, computed_alone};

@@ -14,10 +14,10 @@ use interfaces::{
 };
 use neighbours::{
     mailbox::{Mailbox, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE},
-    network::{Peer, Received, Role},
     vision::{Areas, Picture, Ready, request},
 };
 use rcs_core::name::Name16;
+use sessions::network::{Peer, Received, Role};
 use whole_system_tests::{Scratch, golden, rcs_log, rcs_neighbour, root};
 
 use super::bench::{Controller, Ended, Workstation, bare};

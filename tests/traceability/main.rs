@@ -15,11 +15,12 @@ use std::{
 
 use interfaces::{CommonMemory, ExternalInputs, Reason};
 use levels::task::plan::TaskVerb;
-use neighbours::{mailbox::TABLE, network::Role};
+use neighbours::mailbox::TABLE;
 use rcs_core::{
     Plain,
     plain::{EnumSchema, Schema, StructSchema, UnionSchema, VariantSchema},
 };
+use sessions::network::Role;
 use whole_system_tests::root;
 
 use self::sources::Sources;

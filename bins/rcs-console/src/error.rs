@@ -12,7 +12,7 @@ pub enum ConsoleError {
     SharedMemory(#[from] SharedMemoryError),
     /// The run accepts no operator.
     #[error(transparent)]
-    Operator(#[from] operator::ClientError),
+    Operator(#[from] sessions::operator::ClientError),
     /// A log cannot be operated.
     #[error("a log cannot be operated: leave --operate out, or name a run")]
     OperateLog,

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use executive::memory::{RunName, operator_socket};
-use operator::{Client, ClientError, Name};
+use sessions::operator::{Client, ClientError, Name};
 
 use crate::model::Operating;
 
@@ -26,7 +26,7 @@ impl Hand {
     /// [`ClientError`] if the run accepts no operator.
     pub fn reach(run: &RunName) -> Result<Self, ClientError> {
         let name = format!("console-{}", std::process::id());
-        let name: Name = name.parse().map_err(operator::protocol::ProtocolError::from)?;
+        let name: Name = name.parse().map_err(sessions::operator::protocol::ProtocolError::from)?;
         Ok(Self { client: Client::connect(&operator_socket(run), &name)?, asked: None, data: None })
     }
 

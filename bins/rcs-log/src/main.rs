@@ -202,7 +202,7 @@ enum Error {
     },
     /// The operating system supplies no random numbers.
     #[error(transparent)]
-    NoRandom(#[from] live::NoRandom),
+    NoRandom(#[from] sessions::live::NoRandom),
     /// The answer cannot be written.
     #[error("the answer cannot be written: {0}")]
     Output(#[from] io::Error),

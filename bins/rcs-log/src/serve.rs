@@ -8,9 +8,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use live::{Feed, Options, Origin, Port, Server, protocol::ServerInfo};
 use os_io::stderr_line;
 use record::Log;
+use sessions::live::{Feed, Options, Origin, Port, Server, protocol::ServerInfo};
 
 use crate::Error;
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use cli_pages::DataArgument;
-use neighbours::network::Address;
+use sessions::network::Address;
 
 use crate::vision::Fault;
 

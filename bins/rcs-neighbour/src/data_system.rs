@@ -1,8 +1,11 @@
 //! The Data System: a server with a data base of items, which serves one run after the other.
 
 use neighbours::{
-    data_system::{Server, Store, command},
+    data_system::{Server, command},
     mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox},
+};
+use sessions::{
+    data_system::Store,
     network::{Peer, PeerError, Received, Role},
 };
 
@@ -28,7 +31,7 @@ pub fn serve(arguments: &DataSystemArguments) -> Result<(), Error> {
 }
 
 /// Executes the commands of a run.
-fn attend(peer: &mut Peer, server: &mut Server) -> Result<(), Error> {
+fn attend(peer: &mut Peer, server: &mut Server<Store>) -> Result<(), Error> {
     let mut status_box = Mailbox::initialized(DATA_SYSTEM_STATUS);
     let mut read = 0;
     loop {

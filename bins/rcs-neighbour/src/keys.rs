@@ -1,7 +1,7 @@
 //! `rcs-neighbour keys`: makes a certificate authority, and certificates for the controller and all neighbours.
 //!
 //! Existing files are kept. To renew a certificate, delete it and its key; the same authority then signs a new one.
-//! [`neighbours::network::keys`] explains the names and purposes in the certificates.
+//! [`sessions::network::keys`] explains the names and purposes in the certificates.
 
 use std::{
     fs::{DirBuilder, OpenOptions},
@@ -10,16 +10,16 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use neighbours::network::{
-    Role,
-    keys::{AUTHORITY, CONTROLLER, CONTROLLER_NAME, role_uri},
-};
 use os_io::files;
 use rcgen::{
     BasicConstraints, CertificateParams, DnType, ExtendedKeyUsagePurpose, IsCa, Issuer, KeyPair,
     KeyUsagePurpose, SanType,
 };
 use rustls_pki_types::{CertificateDer, pem::PemObject as _};
+use sessions::network::{
+    Role,
+    keys::{AUTHORITY, CONTROLLER, CONTROLLER_NAME, role_uri},
+};
 use time::{Duration, OffsetDateTime};
 
 use crate::cli::KeysArguments;

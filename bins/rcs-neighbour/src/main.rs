@@ -16,11 +16,11 @@ use std::{
     time::{Duration, Instant},
 };
 
-use neighbours::{
+use plant::description::DescriptionError;
+use sessions::{
     data_system::StoreError,
     network::{AttachError, KeysError, NeighbourKeys, Peer, PeerError, Role, address::AddressError},
 };
-use plant::description::DescriptionError;
 use taskdata::load::Diagnostics;
 
 use crate::{

@@ -6,9 +6,9 @@
 use interfaces::pedestal::PedestalReport;
 use neighbours::{
     mailbox::{PEDESTAL_COMMAND, PEDESTAL_SENSORS},
-    network::{Peer, PeerError, Received, Role},
     pedestal::System,
 };
+use sessions::network::{Peer, PeerError, Received, Role};
 
 use crate::{Error, Reconnect, cli::PedestalArguments, connect, connect_again};
 

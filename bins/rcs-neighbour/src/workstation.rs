@@ -7,7 +7,6 @@ use neighbours::{
     fields::successor,
     layout::LayoutError,
     mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS, Mailbox},
-    network::{ClockKind, Peer, Received, Role},
     workstation::{
         cell::{self, CellStatus, Trouble},
         command,
@@ -17,6 +16,7 @@ use neighbours::{
 };
 use os_io::text::amount;
 use rcs_core::tick::Tick;
+use sessions::network::{ClockKind, Peer, Received, Role};
 use taskdata::load::{Job, Store, job::Workstation as Action};
 
 use crate::{Error, cli::WorkstationArguments, connect};

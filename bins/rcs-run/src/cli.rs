@@ -13,11 +13,11 @@ use clap::{
 use cli_pages::{DataArgument, data_directory, default_data, fault_file, with_names};
 use diagnostics::ROBOTS;
 use executive::{boards::Board, memory::RunName, overrun::Policy};
-use live::Origin;
-use neighbours::network::{Address, Role};
 use rcs_core::name::Name10;
 use record::LogLimit;
 use runtime::{Boards, LogTarget, OperatorAccess, RobotConfig, RunConfig};
+use sessions::live::Origin;
+use sessions::network::{Address, Role};
 
 /// Bytes of a megabyte.
 const MEGABYTE: u64 = 1_000_000;
@@ -403,7 +403,7 @@ pub struct SendArguments {
     pub stay: Duration,
     /// Name of the operator in status and log; a number follows it if another session has it
     #[arg(long, value_name = "NAME", default_value = "send")]
-    pub name: operator::Name,
+    pub name: sessions::operator::Name,
 }
 
 /// A time in seconds, also with a fraction.

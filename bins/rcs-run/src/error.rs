@@ -6,8 +6,8 @@ use executive::{
     boards::MemberError,
     memory::{ReadError, SharedMemoryError},
 };
-use neighbours::network::{KeysError, PeerError, address::AddressError};
 use runtime::StartError;
+use sessions::network::{KeysError, PeerError, address::AddressError};
 
 /// Exit status of a job that failed.
 pub const FAILED: u8 = 1;
@@ -86,7 +86,7 @@ pub enum Error {
     WhichRun(Vec<String>),
     /// A run does not accept the operator.
     #[error(transparent)]
-    Operator(#[from] operator::ClientError),
+    Operator(#[from] sessions::operator::ClientError),
     /// A remote run cannot be reached, or does not admit the operator.
     #[error(transparent)]
     Network(#[from] PeerError),

@@ -3,9 +3,9 @@
 use std::process::ExitCode;
 
 use executive::memory::{Attached, SharedMemoryError, operator_socket, starting};
-use neighbours::network::{NeighbourKeys, Peer, Role};
-use operator::Client;
 use os_io::{console, stderr_line};
+use sessions::network::{NeighbourKeys, Peer, Role};
+use sessions::operator::Client;
 
 use crate::{
     cli::SendArguments,

@@ -8,8 +8,9 @@ use std::{
     time::Duration,
 };
 
-use neighbours::data_system::{Item, Records as _, Store};
+use neighbours::data_system::{Item, Records as _};
 use serde_json::Value;
+use sessions::data_system::Store;
 
 const CONNECT: &str = "== STARTUP -- +0 -- 0 +0 -- 0 -- 0\n";
 const FETCH: &str = "** tray UNIT_1 4 LINKBAR1_BH\n\

@@ -4,10 +4,12 @@
 //! * [`mod@layout`]: layouts of mailbox data, defined once for encoding, decoding and documentation;
 //! * [`workstation`]: the command and the status of V.4.2 as bytes, and the check of commands;
 //! * [`data_system`]: the command of Figure IX.2 as bytes, its status, and a server that keeps the items of the
-//!   workstation in SQLite.
-//! * [`pedestal`]: the Active Pedestal as a separate system, its mailboxes as bytes, and both ends of them.
-//! * [`vision`]: the areas of the vision mailbox (IX.4), which E-move reads and writes;
-//! * [`network`]: transport of mailboxes to other processes.
+//!   workstation;
+//! * [`pedestal`]: the Active Pedestal as a separate system, and its mailboxes as bytes;
+//! * [`vision`]: the areas of the vision mailbox (IX.4), which E-move reads and writes.
+//!
+//! This crate has no file, socket, thread or clock: `sessions` carries mailboxes to other processes, and keeps the items
+//! in a database.
 //!
 //! A level never uses a mailbox: Task's request to the Data System is a record of common memory
 //! ([`interfaces::DataBaseCommand`]), which this crate encodes.
@@ -19,7 +21,6 @@ pub mod data_system;
 pub mod fields;
 pub mod layout;
 pub mod mailbox;
-pub mod network;
 pub mod pedestal;
 pub mod vision;
 pub mod workstation;

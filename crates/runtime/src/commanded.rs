@@ -13,14 +13,12 @@
 
 use closed_loop::{JobPlayer, workstation::SimulatedWorkstation};
 use interfaces::{CommonMemory, TaskOutputs, hws::HwsReport};
-use neighbours::{
-    network::{Endpoint, EndpointHandle, Role},
-    workstation::{
-        Gate,
-        player::{BegunStep, Hwsc, Progress, TIME_LIMIT, pause},
-    },
+use neighbours::workstation::{
+    Gate,
+    player::{BegunStep, Hwsc, Progress, TIME_LIMIT, pause},
 };
 use rcs_core::tick::Tick;
+use sessions::network::{Endpoint, EndpointHandle, Role};
 use taskdata::load::BlockNumber;
 
 use crate::{

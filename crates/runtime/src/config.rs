@@ -2,7 +2,6 @@
 
 use std::{collections::BTreeMap, fmt, path::PathBuf, str::FromStr, sync::Arc, sync::atomic::AtomicBool};
 
-use ::live::Origin;
 use depc::{
     host::RESTART_TICKS,
     track::{LAG_MS, MOST_LAG_MS},
@@ -13,9 +12,10 @@ use executive::{
     overrun::Policy,
     serial::SerialSettings,
 };
-use neighbours::network::{Address, Role};
 use record::LogLimit;
 use serde::{Deserialize, Serialize};
+use sessions::live::Origin;
+use sessions::network::{Address, Role};
 
 use crate::as_text;
 

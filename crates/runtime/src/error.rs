@@ -4,14 +4,14 @@ use std::{io, path::PathBuf};
 
 use diagnostics::UnknownFile;
 use executive::{boards::SplitError, memory::SharedMemoryError, serial::OpenError};
-use neighbours::{
-    data_system::{OutboxError, StoreError},
-    network::{KeysError, address::AddressError, listener::ListenError},
-};
 use os_io::console::shown;
 use os_io::text::amount;
 use plant::CellError;
 use record::RecordError;
+use sessions::{
+    data_system::{OutboxError, StoreError},
+    network::{KeysError, address::AddressError, listener::ListenError},
+};
 use taskdata::load::Diagnostics;
 
 /// Errors of the start of a run.
@@ -167,7 +167,7 @@ pub enum StartError {
     Thread(#[source] io::Error),
     /// The system provides no random numbers.
     #[error(transparent)]
-    NoRandom(#[from] ::live::NoRandom),
+    NoRandom(#[from] sessions::live::NoRandom),
     /// The user has stopped the run before the first tick.
     #[error("{0} was stopped by the user before the first tick")]
     Interrupted(String),

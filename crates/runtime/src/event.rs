@@ -8,10 +8,7 @@ use executive::{
     overrun::{Overrun, PUNCTUAL},
 };
 use neighbours::{
-    data_system,
     mailbox::MailboxError,
-    network::{Disconnect, NetEvent, Role},
-    pedestal, vision,
     workstation::{
         self,
         player::{JobFailure, Retry, WaitReason},
@@ -19,6 +16,11 @@ use neighbours::{
 };
 use plant::{CellEvent, t3::explained};
 use record::Level;
+use sessions::{
+    data_system,
+    network::{Disconnect, NetEvent, Role},
+    pedestal, vision,
+};
 
 use closed_loop::{contacts::ContactEvent, truth::Confirmation};
 
@@ -270,7 +272,7 @@ impl From<vision::Remark> for Event {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use neighbours::network::Role;
+    use sessions::network::Role;
 
     #[test]
     fn an_event_has_a_code_a_weight_and_a_source_beside_its_sentence() {

@@ -6,12 +6,12 @@ use std::{
     sync::mpsc::{Receiver, channel},
 };
 
-use ::live::{
+use record::Tap;
+use sessions::live::{
     Feed, NoRandom, Options, Port, Server,
     commands::{Access, Knob, Token},
     protocol::ServerInfo,
 };
-use record::Tap;
 
 use crate::{
     config::{ClockKind, LogTarget, RunConfig},

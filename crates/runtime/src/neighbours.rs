@@ -13,14 +13,16 @@ use std::{
 use closed_loop::{Desk, JobPlayer, workstation::SimulatedWorkstation};
 use interfaces::{CommonMemory, DataBaseStatus, DeviceInputs, OutsidePedestal};
 use neighbours::{
-    data_system::DataSystem,
-    network::{Endpoint, EndpointHandle, Role},
-    pedestal,
-    vision::{self, picture::Part},
+    vision::picture::Part,
     workstation::player::{BegunStep, Hwsc, Outcome, Progress, Retry, WaitReason},
 };
 use plant::camera::Subject;
 use rcs_core::{Plain as _, tick::Tick};
+use sessions::{
+    data_system::DataSystem,
+    network::{Endpoint, EndpointHandle, Role},
+    pedestal, vision,
+};
 
 use super::{
     commanded::Commanded,
@@ -225,7 +227,7 @@ impl Neighbours {
     /// Before the first tick: the pedestal reads the initial buffers, so that it runs from the controller's first tick
     /// on, and a Data System that has connected is noted.
     pub fn begin(&mut self, memory: &CommonMemory, inputs: &DeviceInputs) {
-        self.data_system.iter().for_each(DataSystem::begin);
+        self.data_system.iter().for_each(|system| system.keeper().look());
         self.step_pedestal(Tick::BEFORE_START, memory, inputs);
     }
 
@@ -304,7 +306,7 @@ impl Neighbours {
         if let Some(data_system) = &mut self.data_system {
             data_system.step(tick, &memory.task.data_base);
             self.events.extend(data_system.refusals().into_iter().map(Event::DataBaseRefuses));
-            self.events.extend(data_system.remarks().into_iter().map(Event::from));
+            self.events.extend(data_system.keeper().remarks().into_iter().map(Event::from));
         }
         self.events.extend(self.network.iter().flat_map(Network::events).map(Event::Network));
         self.step_vision(tick, memory, workstation);

@@ -6,7 +6,7 @@ use std::{
     sync::mpsc::{Receiver, channel},
 };
 
-use ::neighbours::network::{ControllerKeys, Endpoint, EndpointHandle, Listener, NetEvent, Operators, Role};
+use sessions::network::{ControllerKeys, Endpoint, EndpointHandle, Listener, NetEvent, Operators, Role};
 
 use crate::{
     config::{ClockKind, OperatorAccess, RunConfig},

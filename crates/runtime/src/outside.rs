@@ -8,7 +8,6 @@ use closed_loop::workstation::SimulatedWorkstation;
 use interfaces::{HwsCommand, TaskOutputs, Unconfirmed, hws::HwsReport};
 use neighbours::{
     mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS},
-    network::{ClockKind, Disconnect, Endpoint, NetEvent, Presence},
     workstation::{
         Gate,
         cell::{self, CellLine, CellStatus, Trouble},
@@ -16,6 +15,7 @@ use neighbours::{
     },
 };
 use rcs_core::{name::Name16, tick::Tick};
+use sessions::network::{ClockKind, Disconnect, Endpoint, NetEvent, Presence};
 use taskdata::load::{
     BlockNumber, Store,
     job::{self, Workstation as Action},

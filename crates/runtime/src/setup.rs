@@ -11,9 +11,7 @@ use depc::fault::Plan;
 use diagnostics::JOBS;
 use executive::serial::SerialLine;
 use neighbours::{
-    data_system::{self, ANSWER_TICKS, Agent, DataSystem, Outbox, Pace},
-    network::{self, Endpoint, Role},
-    pedestal, vision,
+    data_system::ANSWER_TICKS,
     workstation::player::{Hwsc, TIME_LIMIT},
 };
 use os_io::{
@@ -27,6 +25,11 @@ use plant::{
     fault::text::{self, FaultFile},
 };
 use record::{LogFile, RecordError};
+use sessions::{
+    data_system::{self, Agent, Outbox, Pace},
+    network::{self, Endpoint, Role},
+    pedestal, vision,
+};
 use taskdata::load::{Diagnostics, Fault, Job, Source, Store};
 
 use crate::{
@@ -274,11 +277,11 @@ fn neighbours(
     let endpoints: Vec<_> = commands.iter().chain(&items).chain(&regrips).chain(&sees).collect();
     let network = Network::start(config, &endpoints, observer)?;
     let data_system = match items {
-        Some(endpoint) => Some(DataSystem::elsewhere(Agent::new(endpoint, outbox(config)?), pace)),
+        Some(endpoint) => Some(data_system::elsewhere(Agent::new(endpoint, outbox(config)?), pace)),
         // Without a file the run keeps the books itself.
         None => {
             let items = config.database.as_deref().map(data_system::Store::open_alone).transpose()?;
-            items.map(|items| DataSystem::new(items, ANSWER_TICKS, pace))
+            items.map(|items| data_system::here(items, ANSWER_TICKS, pace))
         }
     };
     let mut hwsc = Hwsc::new(job.steps.clone(), TIME_LIMIT).with_retries(config.retry);

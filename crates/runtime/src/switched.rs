@@ -16,14 +16,12 @@ use std::{
 
 use closed_loop::{JobPlayer, workstation::SimulatedWorkstation};
 use interfaces::{CommonMemory, HwsCommand, hws::HwsReport};
-use neighbours::{
-    network::{ClockKind, Endpoint},
-    workstation::{
-        Gate,
-        player::{BegunStep, Hwsc, Progress, Retry},
-    },
+use neighbours::workstation::{
+    Gate,
+    player::{BegunStep, Hwsc, Progress, Retry},
 };
 use rcs_core::tick::{TICK_MS, Tick};
+use sessions::network::{ClockKind, Endpoint};
 
 use crate::{
     event::Event,

@@ -7,8 +7,8 @@
 
 use std::{env, fmt::Write as _};
 
-use operator::Client;
 use serde_json::json;
+use sessions::operator::Client;
 
 use super::*;
 

@@ -9,13 +9,13 @@ use geometry::frame::Vector;
 use interfaces::device::{VisionRequest, VisionStatus};
 use neighbours::{
     mailbox::{Mailbox, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE},
-    network::{Peer, PeerError, Received, Role},
     vision::{Areas, Picture, Ready, VisionError, picture::Part, request},
 };
 use plant::{
     CellDescription,
     camera::{Analysis, Face, Subject},
 };
+use sessions::network::{Peer, PeerError, Received, Role};
 
 pub use self::fault::{Fault, Kind};
 use crate::{Error, Reconnect, cli::VisionArguments, connect, connect_again};

@@ -1,4 +1,4 @@
-//! The Active Pedestal (VI.7, IX.3) as a separate system: the data of its mailboxes, and both ends of them.
+//! The Active Pedestal (VI.7, IX.3) as a separate system: the data of its mailboxes, and its end of them.
 //!
 //! ```text
 //!   PedestalCommand --CommandLayout--> Pedestal from RCS Command --> System: pedestal, hand and table process
@@ -7,7 +7,7 @@
 //!                   <--TableLayout---- Pedestal Table to RCS Status      <-- the rotary table, for Diagnostics
 //! ```
 //!
-//! [`Agent`] is the controller's end. [`System`] is the pedestal's: the same three processes that the controller steps
+//! The crate `sessions` has the controller's end (`pedestal::Agent`). [`System`] is the pedestal's: the same three processes that the controller steps
 //! itself if the pedestal is in its own process. What the agent receives is an input of the next tick
 //! ([`interfaces::OutsidePedestal`]), so that boards, logs and replays do not depend on the network.
 //!
@@ -17,7 +17,6 @@
 //! All integers have four bytes, `cycle-cnt` eight, as in the controller (CHOSEN: the manual gives no widths). So the
 //! mailboxes can hold every command, and a run is bit-identical whichever process runs its pedestal.
 
-mod agent;
 pub mod cell;
 pub mod command;
 pub mod gripper;
@@ -27,7 +26,6 @@ pub mod table;
 #[cfg(test)]
 mod tests;
 
-pub use agent::{Agent, Remark};
 pub use system::System;
 
 use interfaces::{Decided, Header};

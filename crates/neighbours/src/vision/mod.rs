@@ -16,17 +16,15 @@
 //! 984-986): input "ready", because the response area is empty, and output "not ready", because no vision system is
 //! connected yet. Vision establishes communications when it writes its mailbox the first time.
 //!
-//! [`Port`] does the work of E-move's READ-VISION-DATA and WRITE-VISION-REQUEST (IV.4.4). E-move is independent of it:
+//! The crate `sessions` has the controller's end: its `vision::Port` does the work of E-move's READ-VISION-DATA and WRITE-VISION-REQUEST (IV.4.4). E-move is independent of it:
 //! it reads the response as part of its device inputs, which are logged.
 
 pub mod areas;
 pub mod picture;
-mod port;
 pub mod request;
 
 pub use areas::{Areas, Ready};
 pub use picture::Picture;
-pub use port::{Port, Remark};
 
 use crate::{fields::FieldError, layout::LayoutError};
 

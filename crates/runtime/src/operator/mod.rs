@@ -25,7 +25,6 @@ mod written;
 
 use std::path::{self, Path};
 
-use ::operator::Event;
 use closed_loop::workstation::SimulatedWorkstation;
 use interfaces::{
     CommonMemory, OperatorInputs,
@@ -38,6 +37,7 @@ use neighbours::workstation::{
 use plant::Joystick;
 use rcs_core::tick::Tick;
 use serde::Serialize;
+use sessions::operator::Event;
 use taskdata::load::{
     BlockNumber, Store,
     job::{TablePanel, Workstation},

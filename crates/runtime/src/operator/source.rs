@@ -2,10 +2,10 @@
 
 use std::{collections::VecDeque, fs, path::Path};
 
-use ::operator::{Entrance, Event, Given, Listener};
 use executive::memory::{RunName, operator_socket};
 use rcs_core::tick::Tick;
 use record::{Attachment, Log, OperatorLine, Part};
+use sessions::operator::{Entrance, Event, Given, Listener};
 use taskdata::load::Source;
 
 use super::request::QUESTIONS;

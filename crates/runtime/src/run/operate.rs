@@ -2,12 +2,12 @@
 
 use std::path::{Component, Path};
 
-use ::operator::Event;
 use closed_loop::workstation::orders;
 use diagnostics::JOBS;
 use os_io::files;
 use rcs_core::tick::Tick;
 use record::OperatorLine;
+use sessions::operator::Event;
 use taskdata::load::{
     Job, Source,
     job::{JobLine, Step, Workstation},

@@ -10,7 +10,7 @@ use executive::{
     rest::RestWatch,
     runner::Runner,
 };
-use neighbours::network::Role;
+use sessions::network::Role;
 
 use super::Run;
 use crate::{

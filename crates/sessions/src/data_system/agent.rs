@@ -1,0 +1,290 @@
+//! The controller's side of a Data System in another process.
+//!
+//! It runs on a separate thread, which may wait for the disk and the network. A command goes into the mailbox, and the
+//! status that answers it is received with the pulse of the same exchange, or of a later one. Updates are kept on the
+//! disk until they are answered ([`Outbox`]). Updates that an earlier run could not send follow the next STARTUP,
+//! before Task gets its status, so that the data base gets all updates in their order.
+//!
+//! On the line the agent numbers the commands itself, because updates sent after STARTUP have no number of Task:
+//!
+//! | command sent                             | command-id#     | status that answers it                              |
+//! |------------------------------------------|-----------------|-----------------------------------------------------|
+//! | another command than before              | the next number | one with this number, written afterwards            |
+//! | the same, because it has no answer yet   | the same        | one to any of its repetitions: they are one command |
+//! | the same, because Task commands it again | the next number | one with this number: a repeated answer counts once |
+//!
+//! A server that does not answer within the time limit of the clock counts as silent, and so does one whose answer is
+//! not a valid status. Task then gets no answer, and repeats the command (V.4.1).
+
+use std::{
+    fmt, thread,
+    time::{Duration, Instant},
+};
+
+use neighbours::{
+    data_system::{
+        Answer,
+        command::{self, DML, Transaction},
+        status::{Refusal, ServerStatus, Status, StatusError, Summary},
+    },
+    fields::successor,
+    mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, MailboxError},
+};
+
+use super::outbox::Outbox;
+use crate::network::{Endpoint, NetEvent, Presence, StopHandle, clock::answer_limit};
+
+/// Time between two checks for the answer of the server.
+const PAUSE: Duration = Duration::from_millis(5);
+
+/// A remark about the Data System for the log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remark {
+    /// It has connected or disconnected, or a connection was refused.
+    Network(NetEvent),
+    /// Its status cannot be read; reported once for each time a command is sent.
+    Garbled(StatusError),
+    /// It is connected, but does not answer.
+    Silent {
+        /// command-id# of the unanswered command.
+        command_id: u16,
+        /// Time waited.
+        patience: Duration,
+    },
+}
+
+impl Remark {
+    /// Stable short name of its kind.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::Network(event) => event.code(),
+            Self::Garbled(_) => "data-system.garbled",
+            Self::Silent { .. } => "data-system.silent",
+        }
+    }
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Network(event) => event.fmt(f),
+            Self::Garbled(why) => {
+                write!(
+                    f,
+                    "{DATA_SYSTEM_STATUS} cannot be read, the Data System counts as not answering: {why}"
+                )
+            }
+            Self::Silent { command_id, patience } => write!(
+                f,
+                "the Data System has not answered command {command_id} for {} s",
+                patience.as_secs_f64()
+            ),
+        }
+    }
+}
+
+/// The controller's side.
+pub struct Agent {
+    endpoint: Endpoint,
+    outbox: Outbox,
+    /// Time limit for an answer.
+    patience: Duration,
+    exchanges: u64,
+    /// command-id# of the command that was sent last; 0 before the first.
+    command_id: u16,
+    /// The last command has no answer yet.
+    open: bool,
+    /// Mailgram number of the status in the mailbox when the command was first sent: that status answers an earlier
+    /// command.
+    before: u16,
+    remarks: Vec<Remark>,
+}
+
+impl Agent {
+    /// Works with an endpoint, and keeps updates in an outbox. The time limit for an answer is that of the network for
+    /// a pulse: 10 s on the 40 ms grid, 60 s in fast clock.
+    #[must_use]
+    pub fn new(endpoint: Endpoint, outbox: Outbox) -> Self {
+        let patience = answer_limit(endpoint.clock());
+        Self {
+            endpoint,
+            outbox,
+            patience,
+            exchanges: 0,
+            command_id: 0,
+            open: false,
+            before: 0,
+            remarks: Vec::new(),
+        }
+    }
+
+    /// Sets the time limit for an answer.
+    #[must_use]
+    pub const fn with_patience(mut self, patience: Duration) -> Self {
+        self.patience = patience;
+        self
+    }
+
+    /// A handle with which another thread ends all waiting for the rest of the run; then there are no answers.
+    #[must_use]
+    pub fn stop_handle(&self) -> StopHandle {
+        self.endpoint.stop_handle()
+    }
+
+    /// The remarks since the last call.
+    pub fn remarks(&mut self) -> Vec<Remark> {
+        std::mem::take(&mut self.remarks)
+    }
+
+    /// Called between commands: checks whether a server is connected.
+    pub fn idle(&mut self) {
+        self.exchange();
+    }
+
+    /// Execute a command; `None` if there is no answer. The answer has Task's number of the command.
+    pub fn execute(&mut self, bytes: &[u8]) -> Option<Answer> {
+        let (command_id, transaction) = match command::decode(bytes) {
+            Ok(received) => (received.command_id, received.transaction),
+            Err(error) => return Some(refused(error.to_string())),
+        };
+        let answer = match transaction {
+            Transaction::Abort | Transaction::Initiate => self.ask(bytes)?,
+            Transaction::Startup => self.start_up(bytes)?,
+            Transaction::Dml => self.update(bytes)?,
+        };
+        Some(Answer { status: Status { command_id, ..answer.status }, ..answer })
+    }
+
+    /// Executes STARTUP, then sends the stored updates.
+    fn start_up(&mut self, bytes: &[u8]) -> Option<Answer> {
+        let answer = self.ask(bytes)?;
+        if answer.status.summary != Summary::Done {
+            return Some(answer);
+        }
+        // A refused update of an earlier run is reported, but does not prevent this run from starting.
+        let told = self.tell_all()?;
+        let why =
+            told.filter(|told| told.status.summary != Summary::Done).map_or(String::new(), |told| told.why);
+        Some(Answer { why, ..answer })
+    }
+
+    /// Stores an update, then sends all stored updates.
+    fn update(&mut self, bytes: &[u8]) -> Option<Answer> {
+        let kept = bytes.try_into().map_err(|_| format!("{DML} bytes were expected, found {}", bytes.len()));
+        let kept: Result<_, String> =
+            kept.and_then(|bytes: &[u8; DML]| self.outbox.keep(bytes).map_err(|error| error.to_string()));
+        match kept {
+            Ok(_) => self.tell_all()?,
+            Err(why) => Some(refused(why)),
+        }
+    }
+
+    /// Send all stored updates, the oldest first. Returns the last answer, if there were any updates; `None` if an
+    /// update is not answered.
+    #[expect(clippy::option_option, reason = "no answer differs from nothing to tell")]
+    fn tell_all(&mut self) -> Option<Option<Answer>> {
+        let pending = match self.outbox.pending() {
+            Ok(pending) => pending,
+            Err(error) => return Some(Some(refused(error.to_string()))),
+        };
+        let mut last = None;
+        for kept in pending {
+            let mut bytes = kept.command;
+            command::number(&mut bytes, kept.number);
+            let answer = self.ask(&bytes)?;
+            match answer.status.summary {
+                // The Data System may accept it later.
+                Summary::None | Summary::Refused(Refusal::Sequence | Refusal::Store) => {
+                    return Some(Some(answer));
+                }
+                Summary::Done | Summary::Refused(_) => {
+                    if let Err(error) = self.outbox.strike_out(kept.number) {
+                        return Some(Some(refused(error.to_string())));
+                    }
+                }
+            }
+            last = Some(answer);
+        }
+        Some(last)
+    }
+
+    fn exchange(&mut self) -> Presence {
+        self.exchanges += 1;
+        let presence = self.endpoint.exchange(self.exchanges);
+        if presence.new {
+            // Another server counts its mailgrams from the beginning.
+            self.before = 0;
+        }
+        self.remarks.extend(std::iter::from_fn(|| self.endpoint.event()).map(Remark::Network));
+        presence
+    }
+
+    /// Send a command and wait for its status; `None` if no Data System is connected, if there is no answer, or if the
+    /// run is to end.
+    fn ask(&mut self, bytes: &[u8]) -> Option<Answer> {
+        if let Err(error) = self.send(bytes) {
+            return Some(refused(error.to_string()));
+        }
+        let (sent, mut garbled) = (Instant::now(), false);
+        loop {
+            if !self.exchange().connected {
+                return None;
+            }
+            match self.written() {
+                Some(Ok(status))
+                    if status.command_id == self.command_id && status.summary != Summary::None =>
+                {
+                    self.open = false;
+                    return Some(Answer { status, why: String::new() });
+                }
+                Some(Err(why)) if !garbled => {
+                    garbled = true;
+                    self.remarks.push(Remark::Garbled(why));
+                }
+                _ => {}
+            }
+            if self.endpoint.is_interrupted() {
+                return None;
+            }
+            if sent.elapsed() >= self.patience {
+                let (command_id, patience) = (self.command_id, self.patience);
+                self.remarks.push(Remark::Silent { command_id, patience });
+                return None;
+            }
+            thread::sleep(PAUSE);
+        }
+    }
+
+    /// Write a command into the mailbox, with the next number; a repetition of an unanswered command keeps its
+    /// number.
+    fn send(&mut self, bytes: &[u8]) -> Result<(), MailboxError> {
+        let mut bytes = bytes.to_vec();
+        command::identify(&mut bytes, self.command_id);
+        if !self.open || self.endpoint.outgoing(DATA_SYSTEM_COMMAND).data() != bytes {
+            self.command_id = successor(self.command_id);
+            command::identify(&mut bytes, self.command_id);
+            self.before = self.endpoint.incoming(DATA_SYSTEM_STATUS).mailgram();
+        }
+        self.endpoint.outgoing(DATA_SYSTEM_COMMAND).write(&bytes)?;
+        self.open = true;
+        Ok(())
+    }
+
+    /// The status that has been written since the command was sent.
+    fn written(&self) -> Option<Result<Status, StatusError>> {
+        let mailbox = self.endpoint.incoming(DATA_SYSTEM_STATUS);
+        let fresh = mailbox.mailgram() != 0 && mailbox.mailgram() != self.before;
+        fresh.then(|| Status::decode(mailbox.data()))
+    }
+}
+
+/// The answer to a command that the controller itself refuses.
+fn refused(why: String) -> Answer {
+    let summary = Summary::Refused(Refusal::Store);
+    Answer { status: Status { command_id: 0, server: ServerStatus::Idle, summary }, why }
+}
+
+#[cfg(test)]
+mod tests;

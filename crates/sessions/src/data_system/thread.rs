@@ -1,0 +1,241 @@
+//! The keeper of a Data System on a separate thread: the disk must not delay a tick.
+//!
+//! A run in fast clock waits for the thread when an answer is due, so that its ticks are the same in every run; a run on
+//! the 40 ms grid takes the answer when it has come. A run that has ended does not wait for a server in another process,
+//! which may not answer for a long time.
+
+use std::{
+    sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
+    thread::{self, JoinHandle},
+    time::{Duration, Instant},
+};
+
+use neighbours::data_system::{Answer, Item, Keeper, Records as _, Reply, Server};
+
+use super::{
+    agent::{Agent, Remark},
+    store::Store,
+};
+use crate::network::StopHandle;
+
+/// A run that waits for the server considers it dead after this time, which is long for a disk. An agent has its own
+/// time limit.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Time between two checks for a server while no command is in progress.
+const IDLE: Duration = Duration::from_millis(500);
+
+/// Whether a run waits for the server.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// The tick waits for an answer that is due: for runs in fast clock.
+    Wait,
+    /// The answer takes effect in the tick in which it has come: for runs on the grid.
+    Poll,
+}
+
+/// A request to the thread.
+enum Request {
+    /// The command of this number.
+    Execute(u16, Vec<u8>),
+    Items,
+    /// Check for a server in another process.
+    Look,
+}
+
+/// A response of the thread.
+enum Response {
+    /// The answer to the command of this number.
+    Executed(u16, Answer),
+    /// The command of this number has no answer.
+    Silent(u16),
+    Items(rusqlite::Result<Vec<Item>>),
+    /// The thread has checked for a server in another process.
+    Looked,
+}
+
+/// The server that the thread asks.
+enum Place {
+    /// In this process.
+    Here(Box<Server<Store>>),
+    /// In another process.
+    Elsewhere(Box<Agent>),
+}
+
+impl Place {
+    fn respond(&mut self, request: Request) -> Response {
+        match (&mut *self, request) {
+            (Self::Here(server), Request::Execute(id, bytes)) => {
+                Response::Executed(id, server.execute(&bytes))
+            }
+            (Self::Here(server), Request::Items) => Response::Items(server.records().items()),
+            (Self::Elsewhere(agent), Request::Execute(id, bytes)) => {
+                agent.execute(&bytes).map_or(Response::Silent(id), |answer| Response::Executed(id, answer))
+            }
+            // The items are available only in the process that keeps them.
+            (Self::Elsewhere(_), Request::Items) => Response::Items(Ok(Vec::new())),
+            (_, Request::Look) => {
+                self.idle();
+                Response::Looked
+            }
+        }
+    }
+
+    /// Work to do while there are no requests.
+    fn idle(&mut self) {
+        if let Self::Elsewhere(agent) = self {
+            agent.idle();
+        }
+    }
+
+    /// The remarks since the last call.
+    fn remarks(&mut self) -> Vec<Remark> {
+        match self {
+            Self::Here(_) => Vec::new(),
+            Self::Elsewhere(agent) => agent.remarks(),
+        }
+    }
+}
+
+/// The thread of a server.
+#[derive(Debug)]
+pub struct Threaded {
+    pace: Pace,
+    remarks: Receiver<Remark>,
+    /// Ends the wait for a server in another process; `None` if the server is in this process.
+    stop_handle: Option<StopHandle>,
+    requests: Option<Sender<Request>>,
+    responses: Receiver<Response>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Threaded {
+    /// A server in this process.
+    pub fn here(store: Store, pace: Pace) -> Self {
+        Self::with(Place::Here(Box::new(Server::new(store))), pace)
+    }
+
+    /// A server in another process.
+    pub fn elsewhere(agent: Agent, pace: Pace) -> Self {
+        let stop_handle = Some(agent.stop_handle());
+        let mut threaded = Self::with(Place::Elsewhere(Box::new(agent)), pace);
+        threaded.stop_handle = stop_handle;
+        threaded
+    }
+
+    fn with(mut place: Place, pace: Pace) -> Self {
+        let (requests, incoming) = channel::<Request>();
+        let (outgoing, responses) = channel();
+        let (tell, remarks) = channel();
+        let thread = thread::spawn(move || {
+            loop {
+                let response = match incoming.recv_timeout(IDLE) {
+                    Ok(request) => Some(place.respond(request)),
+                    Err(RecvTimeoutError::Timeout) => {
+                        place.idle();
+                        None
+                    }
+                    Err(RecvTimeoutError::Disconnected) => return,
+                };
+                // Before the answer, so that a tick that has waited for the answer has the remarks as well.
+                let told = place.remarks().into_iter().all(|remark| tell.send(remark).is_ok());
+                if !told || response.is_some_and(|response| outgoing.send(response).is_err()) {
+                    return;
+                }
+            }
+        });
+        Self { pace, remarks, stop_handle: None, requests: Some(requests), responses, thread: Some(thread) }
+    }
+
+    /// Check for a server in another process, and wait for the result if the run waits for answers. Otherwise the thread
+    /// reports a server that connected last before the first tick only after [`IDLE`], which is many ticks in fast
+    /// clock.
+    pub fn look(&self) {
+        if self.pace == Pace::Poll || self.stop_handle.is_none() || !self.send(Request::Look) {
+            return;
+        }
+        while !matches!(self.responses.recv(), Ok(Response::Looked) | Err(_)) {}
+    }
+
+    /// Remarks about a server in another process since the last call.
+    pub fn remarks(&self) -> Vec<Remark> {
+        self.remarks.try_iter().collect()
+    }
+
+    fn send(&self, request: Request) -> bool {
+        self.requests.as_ref().is_some_and(|requests| requests.send(request).is_ok())
+    }
+
+    /// The next response of the thread; `None` if there is none yet.
+    fn response(&self) -> Result<Option<Response>, Dead> {
+        match self.pace {
+            Pace::Poll => match self.responses.try_recv() {
+                Ok(response) => Ok(Some(response)),
+                Err(TryRecvError::Empty) => Ok(None),
+                Err(TryRecvError::Disconnected) => Err(Dead),
+            },
+            Pace::Wait if self.stop_handle.is_some() => self.responses.recv().map(Some).map_err(|_| Dead),
+            Pace::Wait => self.responses.recv_timeout(PATIENCE).map(Some).map_err(|_| Dead),
+        }
+    }
+}
+
+/// The thread has ended and does not answer.
+struct Dead;
+
+impl Keeper for Threaded {
+    fn execute(&mut self, id: u16, bytes: &[u8]) -> bool {
+        self.send(Request::Execute(id, bytes.to_vec()))
+    }
+
+    fn reply(&mut self, id: u16) -> Reply {
+        loop {
+            match self.response() {
+                Ok(Some(Response::Executed(of, answer))) if of == id => return Reply::Answer(answer),
+                Ok(Some(Response::Silent(of))) if of == id => return Reply::Silent,
+                // An answer to an earlier command is too late.
+                Ok(Some(_)) => {}
+                Ok(None) => return Reply::Pending,
+                Err(Dead) => return Reply::Dead,
+            }
+        }
+    }
+
+    fn items(&mut self) -> Result<Vec<Item>, String> {
+        if self.stop_handle.is_some() {
+            // The thread may be waiting for that process.
+            return Ok(Vec::new());
+        }
+        if !self.send(Request::Items) {
+            return Err("the Data System has ended".to_owned());
+        }
+        loop {
+            match self.responses.recv_timeout(PATIENCE) {
+                Ok(Response::Items(items)) => return items.map_err(|error| error.to_string()),
+                Ok(Response::Executed(..) | Response::Silent(_) | Response::Looked) => {}
+                Err(_) => return Err("the Data System does not answer".to_owned()),
+            }
+        }
+    }
+}
+
+impl Drop for Threaded {
+    fn drop(&mut self) {
+        if let Some(stop_handle) = &self.stop_handle {
+            // Updates that are not answered yet stay in the outbox.
+            stop_handle.stop();
+        }
+        // Closing the channel of requests ends the thread, which closes the database, so that no journal is left.
+        self.requests = None;
+        let Some(thread) = self.thread.take() else { return };
+        let ended = Instant::now();
+        // A disk could block the thread indefinitely; the end of a run must not depend on it.
+        while !thread.is_finished() && ended.elapsed() < PATIENCE {
+            thread::sleep(Duration::from_millis(1));
+        }
+        if thread.is_finished() {
+            // The thread returns nothing, and a panic in it was reported.
+            let _ = thread.join();
+        }
+    }
+}

@@ -1,0 +1,349 @@
+//! The messages for clients: channels, the newest message of each, and a queue per client.
+//!
+//! A client that subscribes receives the newest message of the channel at once, with the present time, even if that
+//! message was sent only once, at the start of the run. For transforms it receives those of all links.
+
+use std::{
+    collections::{BTreeMap, VecDeque},
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+};
+
+use record::{Tap, tap::Channel};
+
+use crate::live::{
+    frames::{self, Frames},
+    protocol,
+};
+
+/// Greatest number of messages in a client's queue.
+pub const QUEUE: usize = 4096;
+/// Greatest number of bytes in a client's queue; a single longer message is accepted.
+pub const QUEUE_BYTES: usize = 8 << 20;
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The channels and messages of a run or a log. Clones share the same feed.
+#[derive(Clone, Debug, Default)]
+pub struct Feed(Arc<Mutex<Inner>>);
+
+#[derive(Debug, Default)]
+struct Inner {
+    channels: BTreeMap<u16, Known>,
+    /// Time of the newest message, ns.
+    now: u64,
+    queues: Vec<Arc<Queue>>,
+    is_over: bool,
+}
+
+/// A channel.
+#[derive(Debug)]
+struct Known {
+    /// Text of its advertisement.
+    advertised: String,
+    newest: Newest,
+}
+
+/// The newest data of a channel, which a new subscriber receives.
+#[derive(Debug)]
+enum Newest {
+    Nothing,
+    Message(Arc<[u8]>),
+    Frames(Frames),
+}
+
+impl Newest {
+    fn message(&self) -> Option<Arc<[u8]>> {
+        match self {
+            Self::Nothing => None,
+            Self::Message(data) => Some(Arc::clone(data)),
+            Self::Frames(frames) => Some(frames.message().into()).filter(|data: &Arc<[u8]>| !data.is_empty()),
+        }
+    }
+}
+
+impl Feed {
+    /// The tap that the log writes to. Dropping it ends the feed.
+    #[must_use]
+    pub fn tap(&self) -> Box<dyn Tap> {
+        Box::new(Tapped(self.clone()))
+    }
+
+    /// Adds a client; returns its queue and the channels to advertise to it first.
+    #[must_use]
+    pub fn join(&self) -> (Arc<Queue>, String) {
+        let mut inner = lock(&self.0);
+        let queue = Arc::new(Queue::default());
+        lock(&queue.0).is_over = inner.is_over;
+        inner.queues.push(Arc::clone(&queue));
+        (queue, protocol::advertise(inner.channels.values().map(|known| known.advertised.as_str())))
+    }
+
+    /// Removes a client that has disconnected.
+    pub fn leave(&self, queue: &Arc<Queue>) {
+        lock(&self.0).queues.retain(|known| !Arc::ptr_eq(known, queue));
+    }
+
+    /// Returns true if a channel with this number exists.
+    #[must_use]
+    pub fn has(&self, channel: u16) -> bool {
+        lock(&self.0).channels.contains_key(&channel)
+    }
+
+    /// Sends the messages of a channel to a client from now on, beginning with the newest one.
+    pub fn subscribe(&self, queue: &Queue, channel: u16, subscription: u32) {
+        let inner = lock(&self.0);
+        let mut waiting = lock(&queue.0);
+        waiting.subscriptions.insert(channel, subscription);
+        if let Some(data) = inner.channels.get(&channel).and_then(|known| known.newest.message()) {
+            waiting.first.push_back(Item::Message { subscription, time: inner.now, data });
+        }
+    }
+
+    /// Number of clients.
+    #[must_use]
+    pub fn viewers(&self) -> usize {
+        lock(&self.0).queues.len()
+    }
+
+    /// Returns true if a client has subscribed to a channel.
+    #[must_use]
+    pub fn is_watched(&self) -> bool {
+        lock(&self.0).queues.iter().any(|queue| !lock(&queue.0).subscriptions.is_empty())
+    }
+
+    /// Returns true if the feed has ended.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        lock(&self.0).is_over
+    }
+
+    /// Ends the feed.
+    pub fn finish(&self) {
+        let mut inner = lock(&self.0);
+        inner.is_over = true;
+        inner.queues.iter().for_each(|queue| lock(&queue.0).is_over = true);
+    }
+}
+
+/// The tap of a feed.
+struct Tapped(Feed);
+
+impl Tap for Tapped {
+    fn channel(&mut self, id: u16, channel: &Channel<'_>) {
+        let advertised = protocol::channel(id, channel);
+        let mut inner = lock(&self.0.0);
+        // The next log of a run has the same channels.
+        if inner.channels.get(&id).is_some_and(|known| known.advertised == advertised) {
+            return;
+        }
+        let text: Arc<str> = protocol::advertise([advertised.as_str()].into_iter()).into();
+        for queue in &inner.queues {
+            lock(&queue.0).first.push_back(Item::Text(Arc::clone(&text)));
+        }
+        let is_frames = channel.schema_name == frames::SCHEMA;
+        let newest = if is_frames { Newest::Frames(Frames::default()) } else { Newest::Nothing };
+        inner.channels.insert(id, Known { advertised, newest });
+    }
+
+    fn message(&mut self, channel: u16, time: u64, data: &[u8]) {
+        let data: Arc<[u8]> = data.into();
+        let mut inner = lock(&self.0.0);
+        let is_new = time > inner.now;
+        inner.now = inner.now.max(time);
+        match inner.channels.get_mut(&channel).map(|known| &mut known.newest) {
+            Some(Newest::Frames(frames)) => frames.add(&data),
+            Some(newest) => *newest = Newest::Message(Arc::clone(&data)),
+            None => return,
+        }
+        for queue in &inner.queues {
+            let mut waiting = lock(&queue.0);
+            if is_new {
+                waiting.push(Item::Time(time));
+            }
+            if let Some(subscription) = waiting.subscriptions.get(&channel).copied() {
+                waiting.push(Item::Message { subscription, time, data: Arc::clone(&data) });
+            }
+        }
+    }
+}
+
+impl Drop for Tapped {
+    fn drop(&mut self) {
+        self.0.finish();
+    }
+}
+
+/// An item of a client's queue.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Item {
+    /// A text message of the protocol.
+    Text(Arc<str>),
+    /// The present time, ns.
+    Time(u64),
+    /// A message of a channel.
+    Message {
+        /// The client's number of the subscription.
+        subscription: u32,
+        /// Time of the message, ns.
+        time: u64,
+        /// The message as in the log.
+        data: Arc<[u8]>,
+    },
+}
+
+impl Item {
+    fn bytes(&self) -> usize {
+        match self {
+            Self::Message { data, .. } => data.len(),
+            Self::Text(_) | Self::Time(_) => 0,
+        }
+    }
+
+    fn is_of(&self, wanted: u32) -> bool {
+        matches!(self, Self::Message { subscription, .. } if *subscription == wanted)
+    }
+}
+
+/// The queue of a client.
+#[derive(Debug, Default)]
+pub struct Queue(Mutex<Waiting>);
+
+#[derive(Debug, Default)]
+struct Waiting {
+    /// The client's subscription numbers by channel.
+    subscriptions: BTreeMap<u16, u32>,
+    /// Items that are never dropped: new channels, and one message per subscription.
+    first: VecDeque<Item>,
+    /// Items that can be dropped, the oldest first.
+    later: VecDeque<Item>,
+    /// Number of bytes in `later`.
+    bytes: usize,
+    dropped: u64,
+    is_over: bool,
+}
+
+impl Waiting {
+    fn push(&mut self, item: Item) {
+        let bytes = item.bytes();
+        while self.later.len() >= QUEUE || (self.bytes > 0 && self.bytes.saturating_add(bytes) > QUEUE_BYTES)
+        {
+            let Some(oldest) = self.later.pop_front() else { break };
+            self.bytes = self.bytes.saturating_sub(oldest.bytes());
+            self.dropped = self.dropped.saturating_add(u64::from(matches!(oldest, Item::Message { .. })));
+        }
+        self.bytes = self.bytes.saturating_add(bytes);
+        self.later.push_back(item);
+    }
+}
+
+impl Queue {
+    /// Takes the next item.
+    #[must_use]
+    pub fn pop(&self) -> Option<Item> {
+        let mut waiting = lock(&self.0);
+        let item = waiting.first.pop_front();
+        item.or_else(|| {
+            let item = waiting.later.pop_front()?;
+            waiting.bytes = waiting.bytes.saturating_sub(item.bytes());
+            Some(item)
+        })
+    }
+
+    /// Stops sending the messages of a channel, and removes those in the queue.
+    pub fn unsubscribe(&self, channel: u16) {
+        let mut waiting = lock(&self.0);
+        let Some(subscription) = waiting.subscriptions.remove(&channel) else { return };
+        waiting.first.retain(|item| !item.is_of(subscription));
+        waiting.later.retain(|item| !item.is_of(subscription));
+        waiting.bytes = waiting.later.iter().map(Item::bytes).sum();
+    }
+
+    /// Number of messages dropped so far.
+    #[must_use]
+    pub fn dropped(&self) -> u64 {
+        lock(&self.0).dropped
+    }
+
+    /// Returns true if the feed is over and the queue is empty.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        let waiting = lock(&self.0);
+        waiting.is_over && waiting.first.is_empty() && waiting.later.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: Channel<'static> = Channel {
+        topic: "/robot_description",
+        encoding: "cdr",
+        schema_name: "std_msgs/msg/String",
+        schema_encoding: "ros2msg",
+        schema: b"string data",
+    };
+
+    fn all(queue: &Queue) -> Vec<Item> {
+        std::iter::from_fn(|| queue.pop()).collect()
+    }
+
+    fn message(subscription: u32, time: u64, data: &[u8]) -> Item {
+        Item::Message { subscription, time, data: data.into() }
+    }
+
+    #[test]
+    fn a_subscriber_gets_the_newest_message_at_once_and_the_rest_with_their_time() {
+        let feed = Feed::default();
+        let mut tap = feed.tap();
+        tap.channel(1, &TEXT);
+        tap.channel(2, &Channel { topic: "/other", ..TEXT });
+        tap.message(1, 10, b"once");
+        tap.message(2, 50, b"later");
+        let (queue, channels) = feed.join();
+        assert!(channels.contains("/robot_description") && channels.contains("/other"), "{channels}");
+        assert!(!feed.is_watched());
+        feed.subscribe(&queue, 1, 7);
+        assert!(feed.is_watched());
+        assert_eq!(all(&queue), [message(7, 50, b"once")]);
+        tap.message(2, 90, b"not subscribed");
+        tap.message(1, 90, b"again");
+        assert_eq!(all(&queue), [Item::Time(90), message(7, 90, b"again")]);
+        tap.channel(3, &TEXT);
+        assert!(matches!(&all(&queue)[..], [Item::Text(text)] if text.contains("\"id\":3")));
+        queue.unsubscribe(1);
+        tap.message(1, 90, b"gone");
+        assert_eq!(all(&queue), []);
+        drop(tap);
+        assert!(queue.is_over());
+        assert!(feed.join().0.is_over());
+    }
+
+    #[test]
+    fn a_full_queue_drops_the_oldest_and_counts_but_keeps_what_comes_once() {
+        let feed = Feed::default();
+        let mut tap = feed.tap();
+        tap.channel(1, &TEXT);
+        tap.channel(2, &TEXT);
+        tap.message(1, 1, b"once");
+        let (queue, _) = feed.join();
+        feed.subscribe(&queue, 1, 1);
+        feed.subscribe(&queue, 2, 2);
+        for number in 0..u64::try_from(QUEUE).unwrap() + 100 {
+            tap.message(2, 1, &number.to_le_bytes());
+        }
+        assert_eq!(queue.dropped(), 100);
+        let left = all(&queue);
+        assert_eq!((left.len(), &left[0]), (QUEUE + 1, &message(1, 1, b"once")));
+        assert_eq!(left[1], message(2, 1, &100_u64.to_le_bytes()));
+        let large = vec![0; QUEUE_BYTES / 4];
+        (0..6).for_each(|_| tap.message(2, 1, &large));
+        assert_eq!((queue.dropped(), all(&queue).len()), (102, 4));
+        let huge = vec![0; QUEUE_BYTES * 2];
+        tap.message(2, 1, &large);
+        tap.message(2, 1, &huge);
+        assert_eq!((queue.dropped(), all(&queue).len()), (103, 1));
+    }
+}

@@ -1,0 +1,36 @@
+//! The live view: the messages of a log, sent over WebSocket to Foxglove and Lichtblick.
+//!
+//! ```text
+//!  tick ──ring──> writer of the log ──Tap──> Feed ──bounded queue──> client's thread ──> viewer
+//! ```
+//!
+//! * [`protocol`]: the messages of both subprotocols, to and from bytes;
+//! * [`commands`]: requests of a client to the run;
+//! * [`session`]: the session of one client, without I/O;
+//! * [`feed`]: channels, the newest message of each, and a queue per client;
+//! * [`server`]: listens on this machine, with one thread per client.
+//!
+//! The run never waits for a client. A full queue drops its oldest messages and counts them. A client that reads nothing
+//! for five seconds is disconnected, with the reason; one that reads slowly stays.
+
+#![cfg_attr(
+    not(test),
+    deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)
+)]
+
+mod client;
+pub mod commands;
+mod connection;
+pub mod feed;
+mod frames;
+pub mod origin;
+mod outgoing;
+pub mod protocol;
+pub mod server;
+pub mod session;
+mod silence;
+
+pub use feed::Feed;
+pub use origin::Origin;
+pub use protocol::NoRandom;
+pub use server::{Options, Port, Server};

@@ -1,0 +1,273 @@
+//! A server on this machine for viewers.
+
+use std::{
+    io::{self, Write as _},
+    net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+        mpsc::Sender,
+    },
+    thread::{self, JoinHandle},
+    time::{Duration, Instant},
+};
+
+use crate::operator::Name;
+use tungstenite::{
+    accept_hdr_with_config,
+    handshake::server::{Callback, ErrorResponse, Request, Response},
+    http::{HeaderMap, HeaderValue, StatusCode, header},
+    protocol::WebSocketConfig,
+};
+
+use crate::live::{
+    client::Client,
+    commands::{Access, Knob},
+    connection::Connection,
+    feed::Feed,
+    origin::Origin,
+    protocol::{SUBPROTOCOLS, ServerInfo},
+};
+
+/// Default port of the viewers.
+pub const PORT: u16 = 8765;
+/// Greatest number of connected clients.
+pub const CLIENTS: usize = 16;
+/// Greatest length of a client's message, bytes.
+pub const MESSAGE: usize = 64 * 1024;
+/// Time after which a client that reads nothing is disconnected.
+pub const PATIENCE: Duration = Duration::from_secs(5);
+/// Time limit of a handshake.
+const HANDSHAKE: Duration = Duration::from_secs(3);
+/// Time at the end in which clients can still read.
+const LAST: Duration = Duration::from_secs(2);
+/// Pause after a connection that could not be accepted.
+const AGAIN: Duration = Duration::from_millis(100);
+
+/// Receives a sentence for each client that the server disconnects, with the name of the client and the reason.
+pub type Notices = Sender<String>;
+
+/// Options of the server.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Origins of web pages that may connect, besides Foxglove's.
+    pub origins: Vec<Origin>,
+    /// The first message to clients.
+    pub info: ServerInfo,
+    /// Time after which a client that reads nothing is disconnected.
+    pub patience: Duration,
+    /// The velocity knob; `None` if there is none.
+    pub knob: Option<Knob>,
+    /// Access for requests; `None` if the run accepts none.
+    pub access: Option<Access>,
+    /// Receives the reasons of disconnects; `None` if nobody wants to know.
+    pub notices: Option<Notices>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let (info, origins) = (ServerInfo::default(), Vec::new());
+        Self { origins, info, patience: PATIENCE, knob: None, access: None, notices: None }
+    }
+}
+
+/// A bound port on 127.0.0.1. Clients that connect wait until a [`Server`] starts.
+#[derive(Debug)]
+pub struct Port(TcpListener);
+
+impl Port {
+    /// Binds a port; 0 chooses a free one.
+    ///
+    /// # Errors
+    /// The error of the operating system if the port is not available.
+    pub fn take(port: u16) -> io::Result<Self> {
+        TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map(Self)
+    }
+}
+
+/// Serves a feed until it is dropped. Clients can then read the rest for at most two seconds.
+#[derive(Debug)]
+pub struct Server {
+    address: SocketAddr,
+    feed: Feed,
+    stop: Arc<AtomicBool>,
+    open: Arc<AtomicUsize>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Server {
+    /// Serves the clients that connect to a [`Port`]. The threads inherit the priority of the caller.
+    ///
+    /// # Errors
+    /// The error of the operating system if the thread cannot start.
+    pub fn start(port: Port, mut options: Options, feed: Feed) -> io::Result<Self> {
+        let info = &mut options.info;
+        info.capabilities.push("time");
+        if options.knob.is_some() {
+            info.capabilities.extend(["parameters", "parametersSubscribe"]);
+        }
+        if options.access.is_some() {
+            info.capabilities.push("services");
+            info.supported_encodings.push("json");
+        }
+        let Port(listener) = port;
+        let address = listener.local_addr()?;
+        let (stop, open) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
+        let accept = Accept {
+            listener,
+            options: Arc::new(options),
+            feed: feed.clone(),
+            stop: stop.clone(),
+            open: open.clone(),
+            clients: 0,
+        };
+        let thread = thread::Builder::new().name("live".into()).spawn(move || accept.run())?;
+        Ok(Self { address, feed, stop, open, thread: Some(thread) })
+    }
+
+    /// The address on which the server listens.
+    #[must_use]
+    pub const fn address(&self) -> SocketAddr {
+        self.address
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.feed.finish();
+        self.stop.store(true, Ordering::Relaxed);
+        // The thread checks `stop` at the next connection.
+        if TcpStream::connect(self.address).is_ok() {
+            let _ = self.thread.take().map(JoinHandle::join);
+        }
+        let until = Instant::now() + LAST;
+        while self.open.load(Ordering::Acquire) > 0 && Instant::now() < until {
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+/// The thread that accepts clients.
+struct Accept {
+    listener: TcpListener,
+    options: Arc<Options>,
+    feed: Feed,
+    stop: Arc<AtomicBool>,
+    open: Arc<AtomicUsize>,
+    /// Number of clients so far.
+    clients: u64,
+}
+
+impl Accept {
+    fn run(mut self) {
+        loop {
+            let accepted = self.listener.accept();
+            if self.stop.load(Ordering::Relaxed) {
+                return;
+            }
+            match accepted {
+                Ok((stream, _)) => self.admit(stream),
+                // The client has already disconnected, or no more files can be opened: the server continues in both
+                // cases.
+                Err(_) => thread::sleep(AGAIN),
+            }
+        }
+    }
+
+    fn admit(&mut self, stream: TcpStream) {
+        if self.open.load(Ordering::Acquire) >= CLIENTS {
+            return refuse(stream);
+        }
+        self.open.fetch_add(1, Ordering::AcqRel);
+        self.clients = self.clients.saturating_add(1);
+        let Ok(name) = format!("viewer-{}", self.clients).parse() else { return };
+        let (options, feed, open) = (self.options.clone(), self.feed.clone(), Open(self.open.clone()));
+        // If the thread cannot start, the connection is closed.
+        let _ = thread::Builder::new().name("live client".into()).spawn(move || {
+            let _open = open;
+            serve(stream, &options, feed, name);
+        });
+    }
+}
+
+/// Counts an open connection until it is dropped.
+struct Open(Arc<AtomicUsize>);
+
+impl Drop for Open {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::AcqRel);
+    }
+}
+
+/// Refuses a client because too many are connected.
+fn refuse(mut stream: TcpStream) {
+    let why = format!("{CLIENTS} viewers are connected: close one first\n");
+    let head = "HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nContent-Type: text/plain";
+    let answer = format!("{head}\r\nContent-Length: {}\r\n\r\n{why}", why.len());
+    // The answer is small and usually fits; otherwise the client gets none.
+    if stream.set_nonblocking(true).is_ok() {
+        let _ = stream.write(answer.as_bytes());
+    }
+}
+
+fn serve(stream: TcpStream, options: &Options, feed: Feed, name: Name) {
+    let Ok(connection) = Connection::new(stream, HANDSHAKE) else { return };
+    let limits = WebSocketConfig::default()
+        .read_buffer_size(16 * 1024)
+        .max_message_size(Some(MESSAGE))
+        .max_frame_size(Some(MESSAGE));
+    let Ok(socket) = accept_hdr_with_config(connection, Handshake(&options.origins), Some(limits)) else {
+        return;
+    };
+    let (queue, channels) = feed.join();
+    Client::new(socket, feed, queue, options, name).run(vec![options.info.encode(), channels]);
+}
+
+/// Checks the origin of a client, and chooses the subprotocol.
+struct Handshake<'a>(&'a [Origin]);
+
+impl Callback for Handshake<'_> {
+    fn on_request(self, request: &Request, mut response: Response) -> Result<Response, ErrorResponse> {
+        let agreed = check_origin(request.headers(), self.0).and_then(|()| agree(request.headers()));
+        match agreed {
+            Ok(subprotocol) => {
+                let agreed = HeaderValue::from_static(subprotocol);
+                response.headers_mut().insert(header::SEC_WEBSOCKET_PROTOCOL, agreed);
+                Ok(response)
+            }
+            Err((status, why)) => {
+                let mut response = ErrorResponse::new(Some(why));
+                *response.status_mut() = status;
+                Err(response)
+            }
+        }
+    }
+}
+
+/// Checks the origin header: pages in a browser always send one, programs do not.
+fn check_origin(headers: &HeaderMap, origins: &[Origin]) -> Result<(), (StatusCode, String)> {
+    let foxglove = Origin::foxglove();
+    let is_allowed =
+        |origin: &&HeaderValue| origins.iter().chain([&foxglove]).any(|known| known.is(origin.as_bytes()));
+    match headers.get_all(header::ORIGIN).iter().find(|origin| !is_allowed(origin)) {
+        None => Ok(()),
+        Some(origin) => {
+            let origin = origin.to_str().unwrap_or("bytes that are no text");
+            let why = format!(
+                "pages of {origin} may not connect; to allow them, start with --live-origin ORIGIN\n"
+            );
+            Err((StatusCode::FORBIDDEN, why))
+        }
+    }
+}
+
+/// The preferred subprotocol among those that the client offers.
+fn agree(headers: &HeaderMap) -> Result<&'static str, (StatusCode, String)> {
+    let asked = headers.get_all(header::SEC_WEBSOCKET_PROTOCOL).iter();
+    let asked: Vec<&str> =
+        asked.filter_map(|text| text.to_str().ok()).flat_map(|text| text.split(',')).map(str::trim).collect();
+    SUBPROTOCOLS.into_iter().find(|known| asked.contains(known)).ok_or_else(|| {
+        let why = format!("one of the subprotocols {} was expected\n", SUBPROTOCOLS.join(", "));
+        (StatusCode::BAD_REQUEST, why)
+    })
+}

@@ -1,0 +1,490 @@
+//! The session of one client, without I/O: its requests and the actions that follow.
+//!
+//! The answer to an invalid message is a status, and nothing changes; after too many, the client is disconnected.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use crate::live::{
+    commands::{Knob, SERVICES, Service, Token},
+    protocol::{self, Parameter, Request, ServiceCall, StatusLevel, Subscription},
+};
+
+/// Greatest number of subscriptions of a client.
+pub const SUBSCRIPTIONS: usize = 512;
+/// Number of invalid messages after which a client is disconnected.
+pub const MISTAKES: u32 = 32;
+/// The parameter for the velocity knob, 0 to 1000.
+pub const VELOCITY: &str = "/operator/velocity";
+/// The parameter for the token. Its value shows only whether the token was accepted.
+pub const TOKEN: &str = "/operator/token";
+/// Knob position for full speed.
+const FULL: u16 = 1000;
+/// Number of characters of a client's message that the answer quotes.
+const QUOTED: usize = 60;
+/// Answer to a request if the run accepts none.
+const NO_REQUESTS: &str =
+    "this run accepts no requests of viewers: it needs --clock real and an operator (docs/operator.md)";
+/// Answer to a request without a valid token.
+const NO_TOKEN: &str = "the token that the run has printed was expected";
+
+/// An action that follows from a client's message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Send a text message.
+    Text(String),
+    /// Send a binary message.
+    Bytes(Vec<u8>),
+    /// Send the messages of a channel, beginning with the newest one.
+    Subscribe {
+        /// The channel.
+        channel: u16,
+        /// The client's number of the subscription.
+        subscription: u32,
+    },
+    /// Stop sending the messages of a channel.
+    Unsubscribe {
+        /// The channel.
+        channel: u16,
+    },
+    /// Send a request to the run, and pass its answer to [`Session::answered`].
+    Ask {
+        /// The line for the operator's socket.
+        line: String,
+        /// The client's request that the answer belongs to.
+        reply: Reply,
+    },
+    /// Disconnect the client, with this reason.
+    Close(String),
+}
+
+/// A client's request that waits for an answer of the run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reply {
+    /// A call of a service.
+    Call {
+        /// Number of the service.
+        service: u32,
+        /// The client's number of the call.
+        call: u32,
+    },
+    /// A change of the knob.
+    Knob {
+        /// The new position.
+        velocity: u16,
+        /// The client's identifier of the request.
+        id: Option<String>,
+    },
+}
+
+/// What a session may do.
+#[derive(Clone, Debug, Default)]
+pub struct Rights {
+    /// The velocity knob; `None` if a log is played.
+    pub knob: Option<Knob>,
+    /// The token that a request must contain; `None` if the run accepts no requests.
+    pub token: Option<Token>,
+}
+
+/// The state of one client's session.
+#[derive(Debug, Default)]
+pub struct Session {
+    rights: Rights,
+    /// Channels by the client's subscription numbers.
+    subscriptions: BTreeMap<u32, u16>,
+    /// True if the client has set the token as a parameter.
+    has_token: bool,
+    /// The knob position sent last; `None` if the client has not subscribed to it.
+    knob: Option<u16>,
+    mistakes: u32,
+}
+
+/// The decoded payload of a service call.
+#[derive(Deserialize)]
+struct Payload {
+    #[serde(default)]
+    token: String,
+    #[serde(default)]
+    line: String,
+}
+
+impl Session {
+    /// The session of a new client.
+    #[must_use]
+    pub fn new(rights: Rights) -> Self {
+        Self { rights, ..Self::default() }
+    }
+
+    /// The first message to the client, which advertises services.
+    #[must_use]
+    pub fn services(&self) -> Option<String> {
+        self.rights.token.as_ref()?;
+        let services: Vec<Value> =
+            (1..).zip(SERVICES).map(|(number, service)| service.advertised(number)).collect();
+        Some(protocol::advertise_services(&services))
+    }
+
+    /// Handles a text message. `is_known` returns true if a channel with the given number exists.
+    pub fn text(&mut self, text: &str, is_known: impl Fn(u16) -> bool) -> Vec<Action> {
+        match serde_json::from_str(text) {
+            Ok(Request::Subscribe { subscriptions }) => {
+                subscriptions.into_iter().flat_map(|wanted| self.subscribe(wanted, &is_known)).collect()
+            }
+            Ok(Request::Unsubscribe { subscription_ids }) => {
+                subscription_ids.into_iter().flat_map(|id| self.unsubscribe(id)).collect()
+            }
+            Ok(Request::GetParameters { parameter_names, id }) => {
+                vec![Action::Text(self.parameters(&parameter_names, id.as_deref()))]
+            }
+            Ok(Request::SetParameters { parameters, id }) => self.set(&parameters, id.as_deref()),
+            Ok(Request::SubscribeParameterUpdates { parameter_names }) => {
+                if is_wanted(&parameter_names, VELOCITY) {
+                    self.knob = self.rights.knob.as_ref().map(Knob::get);
+                }
+                Vec::new()
+            }
+            Ok(Request::UnsubscribeParameterUpdates { parameter_names }) => {
+                self.knob = self.knob.filter(|_| !is_wanted(&parameter_names, VELOCITY));
+                Vec::new()
+            }
+            Err(error) => self.wrong(&format!("{error}, in {}", quoted(text))),
+        }
+    }
+
+    /// Handles a binary message.
+    pub fn binary(&mut self, bytes: &[u8]) -> Vec<Action> {
+        match (ServiceCall::read(bytes), bytes.first()) {
+            (Some(call), _) => self.call(&call),
+            (None, Some(code)) => {
+                self.wrong(&format!("a call of a service was expected; found operation code {code}"))
+            }
+            (None, None) => self.wrong("a call of a service was expected; found no byte"),
+        }
+    }
+
+    /// Handles the run's answer to a request.
+    #[must_use]
+    pub fn answered(&mut self, reply: Reply, verdict: Result<String, String>) -> Vec<Action> {
+        match (reply, verdict) {
+            (Reply::Call { service, call }, Ok(answer)) => {
+                vec![Action::Bytes(protocol::service_response(service, call, &json!({ "answer": answer })))]
+            }
+            (Reply::Call { service, call }, Err(why)) => {
+                vec![Action::Text(protocol::service_failure(service, call, &why))]
+            }
+            (Reply::Knob { velocity, id: Some(id) }, Ok(_)) => {
+                let value = json!(velocity);
+                let parameter = Parameter { name: VELOCITY.to_owned(), value };
+                vec![Action::Text(protocol::parameter_values(&[parameter], Some(&id)))]
+            }
+            (Reply::Knob { id: None, .. }, Ok(_)) => Vec::new(),
+            (Reply::Knob { velocity, .. }, Err(why)) => {
+                let why = format!("the velocity knob was not turned to {velocity}: {why}");
+                vec![Action::Text(protocol::status(StatusLevel::Error, &why, None))]
+            }
+        }
+    }
+
+    /// The message to send if the knob has moved since the last one.
+    pub fn knob(&mut self) -> Option<String> {
+        let (seen, now) = (self.knob?, self.rights.knob.as_ref()?.get());
+        self.knob = Some(now);
+        (seen != now).then(|| self.parameters(&[VELOCITY.to_owned()], None))
+    }
+
+    /// The message with the parameters of the given names; an empty list means all.
+    fn parameters(&self, names: &[String], id: Option<&str>) -> String {
+        let knob = self.rights.knob.as_ref().map(|knob| (VELOCITY, json!(knob.get())));
+        let accepted = if self.has_token { "accepted" } else { "" };
+        let token = self.rights.token.as_ref().map(|_| (TOKEN, json!(accepted)));
+        let all = knob.into_iter().chain(token).filter(|(name, _)| is_wanted(names, name));
+        let parameters: Vec<Parameter> =
+            all.map(|(name, value)| Parameter { name: name.to_owned(), value }).collect();
+        protocol::parameter_values(&parameters, id)
+    }
+
+    fn set(&mut self, parameters: &[Parameter], id: Option<&str>) -> Vec<Action> {
+        parameters.iter().flat_map(|parameter| self.set_one(parameter, id)).collect()
+    }
+
+    fn set_one(&mut self, Parameter { name, value }: &Parameter, id: Option<&str>) -> Vec<Action> {
+        let Some(token) = &self.rights.token else { return self.wrong(NO_REQUESTS) };
+        match name.as_str() {
+            TOKEN if value.as_str().is_some_and(|given| token.is(given)) => {
+                self.has_token = true;
+                id.map(|id| Action::Text(self.parameters(&[TOKEN.to_owned()], Some(id))))
+                    .into_iter()
+                    .collect()
+            }
+            TOKEN => self.wrong(NO_TOKEN),
+            VELOCITY if !self.has_token => {
+                self.wrong(&format!("{NO_TOKEN}: set it as the parameter {TOKEN} first"))
+            }
+            VELOCITY => match knob(value) {
+                Some(velocity) => {
+                    let reply = Reply::Knob { velocity, id: id.map(str::to_owned) };
+                    vec![Action::Ask { line: format!("joystick velocity {velocity}"), reply }]
+                }
+                None => self.wrong(&format!("{VELOCITY} is a whole number from 0 to {FULL}")),
+            },
+            _ => self.wrong(&format!("{VELOCITY} or {TOKEN} was expected; found {}", quoted(name))),
+        }
+    }
+
+    fn call(&mut self, asked: &ServiceCall) -> Vec<Action> {
+        let (service, call) = (asked.service, asked.call);
+        match self.line(asked) {
+            Ok(line) => vec![Action::Ask { line, reply: Reply::Call { service, call } }],
+            Err(why) => {
+                let answer = Action::Text(protocol::service_failure(service, call, &why));
+                [answer].into_iter().chain(self.counted(&why)).collect()
+            }
+        }
+    }
+
+    /// The line for the run that a call stands for, or why the call is refused.
+    fn line(&self, asked: &ServiceCall) -> Result<String, String> {
+        let token = self.rights.token.as_ref().ok_or(NO_REQUESTS)?;
+        let wanted =
+            Service::of(asked.service).ok_or_else(|| format!("there is no service {}", asked.service))?;
+        if asked.encoding != "json" {
+            return Err("a request in JSON was expected".to_owned());
+        }
+        let payload = serde_json::from_slice(&asked.payload);
+        let Payload { token: given, line } =
+            payload.map_err(|_| "an object with the field `token` was expected".to_owned())?;
+        if !token.is(&given) {
+            return Err(format!("{NO_TOKEN} in the field `token`"));
+        }
+        Ok(wanted.line.map_or(line, str::to_owned))
+    }
+
+    fn subscribe(&mut self, wanted: Subscription, is_known: impl Fn(u16) -> bool) -> Vec<Action> {
+        let Subscription { id, channel_id } = wanted;
+        let known = u16::try_from(channel_id).ok().filter(|channel| is_known(*channel));
+        let Some(channel) = known else {
+            return self
+                .wrong(&format!("there is no channel {channel_id}: subscribe to one that is advertised"));
+        };
+        if self.subscriptions.contains_key(&id) {
+            return self
+                .wrong(&format!("subscription {id} is in use: unsubscribe first, or take another id"));
+        }
+        if self.subscriptions.values().any(|subscribed| *subscribed == channel) {
+            return self.wrong(&format!(
+                "channel {channel} is subscribed already: a client subscribes to a channel once"
+            ));
+        }
+        if self.subscriptions.len() >= SUBSCRIPTIONS {
+            return self.wrong(&format!("a client has {SUBSCRIPTIONS} subscriptions at most"));
+        }
+        self.subscriptions.insert(id, channel);
+        vec![Action::Subscribe { channel, subscription: id }]
+    }
+
+    fn unsubscribe(&mut self, id: u32) -> Vec<Action> {
+        match self.subscriptions.remove(&id) {
+            Some(channel) => vec![Action::Unsubscribe { channel }],
+            None => self.wrong(&format!("there is no subscription {id}")),
+        }
+    }
+
+    /// Reports an invalid message to the client.
+    fn wrong(&mut self, why: &str) -> Vec<Action> {
+        let status = Action::Text(protocol::status(StatusLevel::Error, why, None));
+        self.counted(why).map_or_else(|| vec![status], |close| vec![close])
+    }
+
+    /// Counts an invalid message; returns the action to disconnect after too many.
+    fn counted(&mut self, why: &str) -> Option<Action> {
+        self.mistakes = self.mistakes.saturating_add(1);
+        let close = || Action::Close(format!("{MISTAKES} wrong messages, at last: {why}"));
+        (self.mistakes >= MISTAKES).then(close)
+    }
+}
+
+/// Returns true if a list of names contains `name`, or is empty.
+fn is_wanted(names: &[String], name: &str) -> bool {
+    names.is_empty() || names.iter().any(|wanted| wanted == name)
+}
+
+/// Parses a knob position; viewers may send it as a decimal number.
+fn knob(value: &Value) -> Option<u16> {
+    let number = value.as_f64()?;
+    (0..=FULL).find(|velocity| f64::from(*velocity) == number)
+}
+
+/// The first [`QUOTED`] characters of a client's message, without control characters.
+fn quoted(text: &str) -> String {
+    let plain = |c: char| if c.is_control() { ' ' } else { c };
+    let start: String = text.chars().take(QUOTED).map(plain).collect();
+    if start.len() < text.len() { format!("{start} ...") } else { start }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn status_of(actions: &[Action]) -> String {
+        let [Action::Text(text)] = actions else { panic!("one status was expected, found {actions:?}") };
+        let status: Value = serde_json::from_str(text).unwrap();
+        assert_eq!((&status["op"], &status["level"]), (&json!("status"), &json!(2)));
+        status["message"].as_str().unwrap().to_owned()
+    }
+
+    fn subscribe(session: &mut Session, id: u64, channel: u64) -> Vec<Action> {
+        let text = json!({ "op": "subscribe", "subscriptions": [{ "id": id, "channelId": channel }] });
+        session.text(&text.to_string(), |channel| (1..=600).contains(&channel))
+    }
+
+    #[test]
+    fn a_channel_is_subscribed_once_and_let_go() {
+        let mut session = Session::default();
+        assert_eq!(subscribe(&mut session, 7, 1), [Action::Subscribe { channel: 1, subscription: 7 }]);
+        assert!(status_of(&subscribe(&mut session, 7, 2)).contains("subscription 7 is in use"));
+        assert!(status_of(&subscribe(&mut session, 8, 1)).contains("channel 1 is subscribed already"));
+        let end =
+            |session: &mut Session| session.text(r#"{"op":"unsubscribe","subscriptionIds":[7]}"#, |_| true);
+        assert_eq!(end(&mut session), [Action::Unsubscribe { channel: 1 }]);
+        assert!(status_of(&end(&mut session)).contains("no subscription 7"));
+        assert_eq!(subscribe(&mut session, 7, 1).len(), 1);
+    }
+
+    #[test]
+    fn channels_that_are_not_there_are_refused() {
+        let mut session = Session::default();
+        for channel in [0, 601, 65_537, u64::MAX] {
+            assert!(status_of(&subscribe(&mut session, 1, channel)).contains("there is no channel"));
+        }
+    }
+
+    #[test]
+    fn subscriptions_are_bounded() {
+        let mut session = Session::default();
+        for number in 1..=512 {
+            assert!(matches!(subscribe(&mut session, number, number)[..], [Action::Subscribe { .. }]));
+        }
+        assert!(status_of(&subscribe(&mut session, 513, 513)).contains("512 subscriptions at most"));
+    }
+
+    #[test]
+    fn what_is_no_message_is_answered_and_ends_the_session_at_last() {
+        let mut session = Session::default();
+        let wrong = ["", "{", "[]", "null", r#"{"op":1}"#, r#"{"op":"fly"}"#, "{\"op\":\"subscribe\"}\u{7}"];
+        for text in wrong {
+            assert!(!status_of(&session.text(text, |_| true)).is_empty(), "{text}");
+        }
+        status_of(&session.binary(&[]));
+        assert!(status_of(&session.binary(&[99, 1])).contains("operation code 99"));
+        let deep = "[".repeat(60_000);
+        status_of(&session.text(&deep, |_| true));
+        let rest = (10..MISTAKES).map(|_| session.binary(&[9])).last().unwrap();
+        assert!(matches!(&rest[..], [Action::Close(why)] if why.contains("32 wrong messages")), "{rest:?}");
+    }
+
+    const SECRET: &str = "/operator/token";
+
+    fn permitted() -> (Session, String, Knob) {
+        let (token, knob) = (Token::random().unwrap(), Knob::default());
+        knob.set(1000);
+        let word = token.reveal().to_owned();
+        (Session::new(Rights { knob: Some(knob.clone()), token: Some(token) }), word, knob)
+    }
+
+    fn call(session: &mut Session, service: u32, payload: &Value) -> Vec<Action> {
+        let head =
+            [2_u32.to_le_bytes()[0]].into_iter().chain(service.to_le_bytes()).chain(5_u32.to_le_bytes());
+        let bytes = head.chain(4_u32.to_le_bytes()).chain(*b"json").chain(payload.to_string().into_bytes());
+        session.binary(&bytes.collect::<Vec<_>>())
+    }
+
+    fn failure_of(actions: &[Action]) -> String {
+        let [Action::Text(text)] = actions else { panic!("a failure was expected, found {actions:?}") };
+        let failure: Value = serde_json::from_str(text).unwrap();
+        assert_eq!((&failure["op"], &failure["callId"]), (&json!("serviceCallFailure"), &json!(5)));
+        failure["message"].as_str().unwrap().to_owned()
+    }
+
+    #[test]
+    fn a_call_needs_the_token() {
+        let (mut session, token, _) = permitted();
+        assert!(session.services().unwrap().contains("/operator/pause"));
+        for payload in [json!({}), json!({ "token": "" }), json!({ "token": "0".repeat(32) })] {
+            assert!(failure_of(&call(&mut session, 4, &payload)).contains("in the field `token`"));
+        }
+        for payload in [json!([1]), json!(null), json!({ "token": 1 })] {
+            assert!(failure_of(&call(&mut session, 4, &payload)).contains("an object"), "{payload}");
+        }
+        assert!(failure_of(&call(&mut session, 99, &json!({ "token": token }))).contains("no service 99"));
+        let reply = Reply::Call { service: 4, call: 5 };
+        let asked = call(&mut session, 4, &json!({ "token": token, "line": "estop" }));
+        assert_eq!(asked, [Action::Ask { line: "PAUSE".into(), reply: reply.clone() }]);
+        let asked = call(&mut session, 9, &json!({ "token": token, "line": "job go" }));
+        assert!(matches!(&asked[..], [Action::Ask { line, .. }] if line == "job go"));
+        assert!(failure_of(&session.answered(reply.clone(), Err("no".into()))).contains("no"));
+        let answer = session.answered(reply, Ok("tick 7".into()));
+        assert!(
+            matches!(&answer[..], [Action::Bytes(bytes)] if bytes.ends_with(b"json{\"answer\":\"tick 7\"}"))
+        );
+    }
+
+    #[test]
+    fn a_run_without_operators_takes_no_calls() {
+        let mut session = Session::new(Rights { knob: Some(Knob::default()), token: None });
+        assert_eq!(session.services(), None);
+        assert!(failure_of(&call(&mut session, 4, &json!({ "token": "" }))).contains("accepts no requests"));
+        assert!(status_of(&set(&mut session, VELOCITY, json!(5))).contains("accepts no requests"));
+    }
+
+    fn set(session: &mut Session, name: &str, value: Value) -> Vec<Action> {
+        let text =
+            json!({ "op": "setParameters", "parameters": [{ "name": name, "value": value }], "id": "a" });
+        session.text(&text.to_string(), |_| true)
+    }
+
+    #[test]
+    fn the_knob_is_turned_by_a_client_with_the_token() {
+        let (mut session, token, knob) = permitted();
+        assert!(status_of(&set(&mut session, VELOCITY, json!(5))).contains("set it as the parameter"));
+        assert!(status_of(&set(&mut session, SECRET, json!("wrong"))).contains("the token"));
+        assert!(status_of(&set(&mut session, "/x", json!(1))).contains("found /x"));
+        let [Action::Text(accepted)] = &set(&mut session, SECRET, json!(token))[..] else { panic!() };
+        assert!(accepted.contains("\"accepted\"") && !accepted.contains(&token), "{accepted}");
+        let asked = set(&mut session, VELOCITY, json!(500.0));
+        let reply = Reply::Knob { velocity: 500, id: Some("a".into()) };
+        assert_eq!(asked, [Action::Ask { line: "joystick velocity 500".into(), reply: reply.clone() }]);
+        for wrong in [json!(1001), json!(-1), json!(0.5), json!("500"), json!(null)] {
+            assert!(status_of(&set(&mut session, VELOCITY, wrong)).contains("from 0 to 1000"));
+        }
+        let [Action::Text(set)] = &session.answered(reply, Ok(String::new()))[..] else { panic!() };
+        assert!(set.contains("500") && set.contains("\"id\":\"a\""), "{set}");
+        assert_eq!(session.knob(), None);
+        session.text(r#"{"op":"subscribeParameterUpdates","parameterNames":[]}"#, |_| true);
+        assert_eq!(session.knob(), None);
+        knob.set(500);
+        assert!(session.knob().unwrap().contains("500"));
+        assert_eq!(session.knob(), None);
+        let text = json!({ "op": "getParameters", "parameterNames": [], "id": "b" }).to_string();
+        let [Action::Text(values)] = &session.text(&text, |_| true)[..] else { panic!() };
+        let values: Value = serde_json::from_str(values).unwrap();
+        assert_eq!(values["parameters"][0], json!({ "name": VELOCITY, "value": 500 }));
+        session.text(r#"{"op":"unsubscribeParameterUpdates","parameterNames":[]}"#, |_| true);
+        knob.set(7);
+        assert_eq!(session.knob(), None);
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_message_panics(text: String, bytes: Vec<u8>, known: bool) {
+            let mut session = Session::default();
+            session.text(&text, |_| known);
+            session.binary(&bytes);
+            let (mut session, _, _) = permitted();
+            let call: Vec<u8> = [2].into_iter().chain(bytes).collect();
+            session.binary(&call);
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! The tick's side of the mailboxes of one neighbour.
+//!
+//! [`Endpoint::exchange`] copies, once a tick, the mailboxes that the controller has written to the network's side, and
+//! those that the neighbour has written back. On the 40 ms grid it takes a lock only if it is free, and otherwise tries
+//! again in the next tick; it does not wait and does not allocate. In fast clock it waits for the neighbour's answer to
+//! the pulse of the tick.
+//!
+//! A neighbour connects and disconnects at any time. When it connects, the mailboxes that it writes are
+//! initialized (IX), and all that it reads are sent.
+
+use std::{
+    fmt, io,
+    sync::{
+        Arc, Mutex, PoisonError, TryLockError,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{Receiver, Sender, channel},
+    },
+    time::Duration,
+};
+
+use super::{
+    ClockKind, NetEvent, Role,
+    shared::{EndpointHandle, Shared, initialized, locked},
+};
+use neighbours::mailbox::{Mailbox, Place};
+
+/// Time between two checks for an interruption while a tick waits for a neighbour.
+const LOOK: Duration = Duration::from_millis(50);
+/// How long the end of a run waits until its last session has sent the disconnect reason.
+const CLOSING_LIMIT: Duration = Duration::from_secs(2);
+
+/// The tick's side.
+pub struct Endpoint {
+    shared: Arc<Shared>,
+    outgoing: Vec<Mailbox>,
+    incoming: Vec<Mailbox>,
+    /// Number of the last session that the tick has seen.
+    session: u32,
+    events: (Sender<NetEvent>, Receiver<NetEvent>),
+    /// Set when the run is to end: the tick then no longer waits for a neighbour.
+    interrupted: Arc<AtomicBool>,
+}
+
+/// Result of an exchange.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Presence {
+    /// The neighbour is connected.
+    pub connected: bool,
+    /// It has connected since the last exchange: its mailboxes were initialized.
+    pub new: bool,
+    /// It has been connected at some time, if only between two exchanges.
+    pub was_connected: bool,
+}
+
+impl Endpoint {
+    /// The mailboxes of a neighbour, initialized; it is not connected yet.
+    ///
+    /// # Errors
+    /// If the system has no descriptor left.
+    pub fn new(role: Role, clock: ClockKind) -> io::Result<Self> {
+        Ok(Self {
+            shared: Arc::new(Shared::new(role, clock)?),
+            outgoing: initialized(role.from_controller()),
+            incoming: initialized(role.to_controller()),
+            session: 0,
+            events: channel(),
+            interrupted: Arc::default(),
+        })
+    }
+
+    /// Do not wait for the neighbour once `interrupted` is set: an exchange then takes the mailboxes that have arrived
+    /// so far.
+    #[must_use]
+    pub fn until(mut self, interrupted: Arc<AtomicBool>) -> Self {
+        self.interrupted = interrupted;
+        self
+    }
+
+    /// True if the run is to end.
+    #[must_use]
+    pub fn is_interrupted(&self) -> bool {
+        self.interrupted.load(Ordering::Relaxed)
+    }
+
+    /// The network's side.
+    #[must_use]
+    pub fn handle(&self) -> EndpointHandle {
+        EndpointHandle { shared: Arc::clone(&self.shared), events: self.events.0.clone() }
+    }
+
+    /// A handle that stops the endpoint from another thread.
+    #[must_use]
+    pub fn stop_handle(&self) -> StopHandle {
+        StopHandle { shared: Arc::clone(&self.shared) }
+    }
+
+    /// The clock of the run.
+    #[must_use]
+    pub fn clock(&self) -> ClockKind {
+        self.shared.clock
+    }
+
+    /// The neighbour of this endpoint.
+    #[must_use]
+    pub fn role(&self) -> Role {
+        self.shared.role
+    }
+
+    /// A mailbox to the neighbour, for writing.
+    ///
+    /// # Panics
+    /// If the neighbour has no such mailbox.
+    pub fn outgoing(&mut self, place: Place) -> &mut Mailbox {
+        let mailbox = self.outgoing.iter_mut().find(|mailbox| mailbox.place() == place);
+        mailbox.unwrap_or_else(|| panic!("{place} does not go to {}", self.shared.role))
+    }
+
+    /// A mailbox from the neighbour, as it was at the last exchange.
+    ///
+    /// # Panics
+    /// If the neighbour has no such mailbox.
+    #[must_use]
+    pub fn incoming(&self, place: Place) -> &Mailbox {
+        let mailbox = self.incoming.iter().find(|mailbox| mailbox.place() == place);
+        mailbox.unwrap_or_else(|| panic!("{place} does not come from {}", self.shared.role))
+    }
+
+    /// The next event since the last call, the oldest first.
+    pub fn event(&self) -> Option<NetEvent> {
+        self.events.1.try_recv().ok()
+    }
+
+    /// Call once per tick: pass the written mailboxes to the network, and take those that have arrived. In fast clock
+    /// this waits for a connected neighbour.
+    pub fn exchange(&mut self, tick: u64) -> Presence {
+        let session = self.shared.session.load(Ordering::Acquire);
+        let waits = self.shared.clock == ClockKind::Fast && session != 0;
+        for (ours, shared) in self.outgoing.iter().zip(&self.shared.outgoing) {
+            with(shared, waits, |theirs| {
+                if theirs != ours {
+                    theirs.clone_from(ours);
+                }
+            });
+        }
+        self.shared.pulse.store(tick, Ordering::Release);
+        self.shared.wake();
+        let answered = waits && self.wait(tick, session);
+        let new = session != 0 && session != self.session;
+        self.session = session;
+        for (ours, shared) in self.incoming.iter_mut().zip(&self.shared.incoming) {
+            with(shared, waits, |theirs| {
+                if theirs != ours {
+                    ours.clone_from(theirs);
+                }
+            });
+        }
+        let now = self.shared.session.load(Ordering::Acquire);
+        if now != session && now != 0 {
+            // A session that has begun meanwhile counts from the next tick on.
+            self.incoming.iter_mut().for_each(Mailbox::initialize);
+        }
+        // A neighbour that has answered the pulse counts as connected, even if it has disconnected since, so
+        // that a run ends in the same tick every time. After an interruption, when the tick has not waited for
+        // the answer, the session decides.
+        let asked = waits && !self.is_interrupted();
+        let connected = answered || (!asked && session != 0 && now == session);
+        let connected = connected && !self.shared.is_over();
+        Presence { connected, new, was_connected: self.shared.sessions.load(Ordering::Acquire) != 0 }
+    }
+
+    /// Wait until the neighbour has answered the pulse or has disconnected, the endpoint was stopped, or the run is to
+    /// end; returns true if it has answered. A neighbour that does not answer in time loses its session.
+    fn wait(&self, tick: u64, session: u32) -> bool {
+        let mut answered = locked(&self.shared.answered);
+        while *answered < tick
+            && self.shared.session.load(Ordering::Acquire) == session
+            && !self.shared.is_over()
+            && !self.is_interrupted()
+        {
+            // A signal does not wake this thread: check for an interruption at intervals.
+            let look = self.shared.changed.wait_timeout(answered, LOOK);
+            (answered, _) = look.unwrap_or_else(PoisonError::into_inner);
+        }
+        *answered >= tick
+    }
+}
+
+/// Use a shared mailbox; if it is locked and the tick does not wait, skip it in this tick.
+fn with(shared: &Mutex<Mailbox>, waits: bool, look: impl FnOnce(&mut Mailbox)) {
+    if waits {
+        look(&mut locked(shared));
+        return;
+    }
+    match shared.try_lock() {
+        Ok(mut mailbox) => look(&mut mailbox),
+        Err(TryLockError::Poisoned(poisoned)) => look(&mut poisoned.into_inner()),
+        Err(TryLockError::WouldBlock) => {}
+    }
+}
+
+impl Drop for Endpoint {
+    fn drop(&mut self) {
+        self.shared.end();
+        // Wait until the session has sent the disconnect reason.
+        let connected = |_: &mut u64| self.shared.session.load(Ordering::Acquire) != 0;
+        let answered = locked(&self.shared.answered);
+        drop(self.shared.changed.wait_timeout_while(answered, CLOSING_LIMIT, connected));
+    }
+}
+
+/// Stops an endpoint, even while a thread waits in it: its neighbour counts as disconnected, and no other is admitted.
+#[derive(Clone)]
+pub struct StopHandle {
+    shared: Arc<Shared>,
+}
+
+impl StopHandle {
+    /// Stop the endpoint.
+    pub fn stop(&self) {
+        self.shared.end();
+    }
+}
+
+impl fmt::Debug for StopHandle {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("StopHandle").field("role", &self.shared.role).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

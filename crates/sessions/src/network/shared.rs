@@ -1,0 +1,258 @@
+//! The mailboxes of one neighbour, which the tick and the threads of the network share, and the network's side of them.
+//!
+//! [`EndpointHandle`] stores mailboxes that arrive, [`Link`] collects those to send. The tick's side is an
+//! [`Endpoint`](super::Endpoint).
+
+use std::{
+    fmt, io,
+    os::fd::{AsFd, BorrowedFd, OwnedFd},
+    sync::{
+        Arc, Condvar, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering},
+        mpsc::Sender,
+    },
+};
+
+use rustix::event::{EventfdFlags, eventfd};
+
+use super::{ClockKind, Disconnect, NetEvent, Role};
+use neighbours::mailbox::{Mailbox, MailboxError, Place};
+
+/// Disconnect reason when the run has ended.
+pub const OVER: &str = "the run is over";
+
+/// State that both sides share.
+pub(super) struct Shared {
+    pub role: Role,
+    pub clock: ClockKind,
+    /// Written by the tick.
+    pub outgoing: Vec<Mutex<Mailbox>>,
+    /// Written by the neighbour.
+    pub incoming: Vec<Mutex<Mailbox>>,
+    /// Number of the session; 0 while there is none.
+    pub session: AtomicU32,
+    /// Number of sessions so far.
+    pub sessions: AtomicU32,
+    /// The latest tick whose mailboxes were written.
+    pub pulse: AtomicU64,
+    /// The last pulse that the neighbour has answered. In a mutex, because a tick may wait for a change of it.
+    pub answered: Mutex<u64>,
+    /// Notified when `answered`, `session` or `over` changes.
+    pub changed: Condvar,
+    /// The run is over: no other session begins.
+    pub over: AtomicBool,
+    /// Event descriptor that wakes the thread of the session.
+    wake: OwnedFd,
+}
+
+/// Lock a mutex, also after a panic in another thread: the data behind the locks of the network are always consistent.
+pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Initialized mailboxes.
+pub(super) fn initialized(places: &[Place]) -> Vec<Mailbox> {
+    places.iter().map(|&place| Mailbox::initialized(place)).collect()
+}
+
+impl Shared {
+    pub fn new(role: Role, clock: ClockKind) -> io::Result<Self> {
+        let mailboxes = |places| initialized(places).into_iter().map(Mutex::new).collect();
+        Ok(Self {
+            role,
+            clock,
+            outgoing: mailboxes(role.from_controller()),
+            incoming: mailboxes(role.to_controller()),
+            session: AtomicU32::new(0),
+            sessions: AtomicU32::new(0),
+            pulse: AtomicU64::new(0),
+            answered: Mutex::new(0),
+            changed: Condvar::new(),
+            over: AtomicBool::new(false),
+            wake: eventfd(0, EventfdFlags::CLOEXEC | EventfdFlags::NONBLOCK)?,
+        })
+    }
+
+    /// Wake the thread of the session, if there is one. Does not block or allocate.
+    pub fn wake(&self) {
+        // The write fails only if the counter is full, and then the thread wakes anyway.
+        let _ = rustix::io::write(&self.wake, &1_u64.to_ne_bytes());
+    }
+
+    /// End the session, and accept no other.
+    pub fn end(&self) {
+        // A tick that waits checks the flag under this lock.
+        let answered = locked(&self.answered);
+        self.over.store(true, Ordering::Release);
+        self.changed.notify_all();
+        drop(answered);
+        self.wake();
+    }
+
+    pub fn is_over(&self) -> bool {
+        self.over.load(Ordering::Acquire)
+    }
+}
+
+/// The network's side of the mailboxes.
+#[derive(Clone)]
+pub struct EndpointHandle {
+    pub(super) shared: Arc<Shared>,
+    pub(super) events: Sender<NetEvent>,
+}
+
+impl fmt::Debug for EndpointHandle {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("EndpointHandle").field("role", &self.shared.role).finish_non_exhaustive()
+    }
+}
+
+/// Why a neighbour gets no session.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AttachError {
+    /// It has a session already.
+    #[error("{0} is connected already")]
+    Occupied(Role),
+    /// The run is over.
+    #[error("{OVER}")]
+    Over,
+}
+
+impl EndpointHandle {
+    /// The neighbour of the endpoint.
+    #[must_use]
+    pub fn role(&self) -> Role {
+        self.shared.role
+    }
+
+    /// The clock of the controller.
+    #[must_use]
+    pub fn clock(&self) -> ClockKind {
+        self.shared.clock
+    }
+
+    /// True if the neighbour is connected.
+    #[must_use]
+    pub fn is_connected(&self) -> bool {
+        self.shared.session.load(Ordering::Acquire) != 0
+    }
+
+    /// True if the neighbour has been connected at some time.
+    #[must_use]
+    pub fn was_connected(&self) -> bool {
+        self.shared.sessions.load(Ordering::Acquire) != 0
+    }
+
+    /// Tell the controller what happened.
+    pub(super) fn tell(&self, event: NetEvent) {
+        // This fails only after the run has ended, when nothing reads events.
+        let _ = self.events.send(event);
+    }
+
+    /// Begin a session: the mailboxes that the neighbour writes are initialized (IX).
+    ///
+    /// # Errors
+    /// [`AttachError`].
+    pub(super) fn attach(&self) -> Result<Link, AttachError> {
+        let mut answered = locked(&self.shared.answered);
+        if self.shared.is_over() {
+            return Err(AttachError::Over);
+        }
+        if self.is_connected() {
+            return Err(AttachError::Occupied(self.shared.role));
+        }
+        for mailbox in &self.shared.incoming {
+            locked(mailbox).initialize();
+        }
+        *answered = 0;
+        // Read before the session is stored: a tick that sees the session waits for the answer to its own pulse,
+        // which must still be sent.
+        let pulse = self.shared.pulse.load(Ordering::Acquire);
+        let number = self.shared.sessions.fetch_add(1, Ordering::AcqRel).wrapping_add(1).max(1);
+        self.shared.session.store(number, Ordering::Release);
+        self.shared.changed.notify_all();
+        drop(answered);
+        self.tell(NetEvent::Connected(self.shared.role));
+        let sent = initialized(self.shared.role.from_controller());
+        // Send the present contents of the mailboxes at once.
+        self.shared.wake();
+        Ok(Link { handle: self.clone(), sent, pulse })
+    }
+
+    /// End the session.
+    pub(crate) fn detach(&self, why: Disconnect) {
+        // Before the change, so that a tick that sees no session also finds the reason.
+        self.tell(NetEvent::Disconnected(self.shared.role, why));
+        let _answered = locked(&self.shared.answered);
+        self.shared.session.store(0, Ordering::Release);
+        self.shared.changed.notify_all();
+    }
+
+    /// Store a mailbox that has come from the neighbour; `used` is the used part of its bytes.
+    ///
+    /// # Errors
+    /// [`MailboxError`] if the mailbox cannot hold it.
+    ///
+    /// # Panics
+    /// If the neighbour does not write this mailbox: its session refuses such mailgrams.
+    pub(crate) fn deliver(&self, place: Place, used: &[u8]) -> Result<(), MailboxError> {
+        let at = self.shared.role.to_controller().iter().position(|own| *own == place);
+        locked(&self.shared.incoming[at.expect("a session takes its neighbour's mailboxes only")])
+            .receive(used)
+    }
+
+    /// Record that the neighbour has answered all pulses up to that of `tick`.
+    pub(super) fn answer(&self, tick: u64) {
+        let mut answered = locked(&self.shared.answered);
+        *answered = tick.max(*answered);
+        self.shared.changed.notify_all();
+    }
+}
+
+/// What the session sends to the neighbour.
+pub(super) enum Outgoing<'a> {
+    /// A mailbox that has changed.
+    Mailbox(&'a Mailbox),
+    /// The pulse of a tick.
+    Pulse(u64),
+}
+
+/// State of a session: the mailboxes and the pulse that were sent last.
+pub(super) struct Link {
+    pub handle: EndpointHandle,
+    sent: Vec<Mailbox>,
+    pulse: u64,
+}
+
+impl Link {
+    /// Descriptor that is readable when there is something to send or the run is over.
+    pub fn wake(&self) -> BorrowedFd<'_> {
+        self.handle.shared.wake.as_fd()
+    }
+
+    /// True if the run is over.
+    pub fn is_over(&self) -> bool {
+        self.handle.shared.is_over()
+    }
+
+    /// Send what is new: mailboxes, then the pulse.
+    pub fn collect(&mut self, mut send: impl FnMut(Outgoing<'_>)) {
+        let shared = &self.handle.shared;
+        // If this fails, the thread only wakes once more than necessary.
+        let _ = rustix::io::read(&shared.wake, &mut [0; 8]);
+        // The pulse first: the mailboxes, read after it, hold all that its tick has written.
+        let tick = shared.pulse.load(Ordering::Acquire);
+        for (mailbox, sent) in shared.outgoing.iter().zip(&mut self.sent) {
+            let mailbox = locked(mailbox);
+            if *mailbox != *sent {
+                sent.clone_from(&mailbox);
+                drop(mailbox);
+                send(Outgoing::Mailbox(sent));
+            }
+        }
+        if tick != self.pulse {
+            self.pulse = tick;
+            send(Outgoing::Pulse(tick));
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! The client's side of a session: a console or a script.
+
+use std::{
+    any::Any,
+    io::{self, Read as _, Write as _},
+    os::unix::net::UnixStream,
+    path::Path,
+    thread,
+    time::{Duration, Instant},
+};
+
+use crate::operator::{
+    clock::{Estimate, RunTime},
+    protocol::{self, Answer, Lines, Name, PATIENCE, ProtocolError, TEXT},
+};
+
+/// Time between two signs of life, well below the time after which a run ends motion by hand.
+pub const ALIVE: Duration = Duration::from_millis(100);
+
+/// Time limit for the answer to a load, which the run gives when all boards have checked the block.
+const LOAD_PATIENCE: Duration = Duration::from_secs(15);
+
+/// Errors of a session with a run.
+#[derive(Debug, thiserror::Error)]
+pub enum ClientError {
+    /// The run does not accept operators.
+    #[error(
+        "no operator can connect to the run: {0}; it must run on the 40 ms grid, with --operator owner, as the same user"
+    )]
+    Unreachable(#[source] io::Error),
+    /// The connection has broken.
+    #[error("the connection to the run is lost: {0}")]
+    Lost(#[from] io::Error),
+    /// The run has ended the session.
+    #[error("the run has ended the session")]
+    Ended,
+    /// The run has refused or ended the session, with a reason.
+    #[error("the run has ended the session: {0}")]
+    Refused(String),
+    /// The answer does not follow the protocol: the other side is not a run.
+    #[error(transparent)]
+    Protocol(#[from] ProtocolError),
+    /// The run has not answered in time.
+    #[error(
+        "the run has not answered within {} s (a load: {} s): the request is void, unless it is a stop",
+        PATIENCE.as_secs(),
+        LOAD_PATIENCE.as_secs()
+    )]
+    Silent,
+    /// The line is empty, too long, or has characters that are not printable.
+    #[error("a line of 1 to {TEXT} printable bytes was expected, found {found}")]
+    Line {
+        /// Length found, bytes.
+        found: usize,
+    },
+}
+
+/// A session with a run.
+#[derive(Debug)]
+pub struct Client {
+    stream: UnixStream,
+    lines: Lines,
+    number: u32,
+    run: String,
+    /// Name of the session; empty before the greeting.
+    name: String,
+    clock: Estimate,
+    /// Keeps the transport of the stream to another machine open; dropped after the stream.
+    _carrier: Option<Box<dyn Any + Send>>,
+}
+
+impl Client {
+    /// Begins a session under a name.
+    ///
+    /// # Errors
+    /// [`ClientError`] if the run cannot be reached or refuses the session.
+    pub fn connect(path: &Path, name: &Name) -> Result<Self, ClientError> {
+        Self::begin(UnixStream::connect(path).map_err(ClientError::Unreachable)?, None, name)
+    }
+
+    /// Begins a session over a stream to a remote run, and keeps its transport `carrier` open until the session ends.
+    ///
+    /// # Errors
+    /// [`ClientError`] if the run cannot be reached or refuses the session.
+    pub fn over(stream: UnixStream, carrier: impl Any + Send, name: &Name) -> Result<Self, ClientError> {
+        Self::begin(stream, Some(Box::new(carrier)), name)
+    }
+
+    fn begin(
+        stream: UnixStream,
+        carrier: Option<Box<dyn Any + Send>>,
+        name: &Name,
+    ) -> Result<Self, ClientError> {
+        stream.set_write_timeout(Some(PATIENCE))?;
+        let mut client = Self {
+            stream,
+            lines: Lines::default(),
+            number: 0,
+            run: String::new(),
+            name: String::new(),
+            clock: Estimate::new(RunTime::default(), Instant::now()),
+            _carrier: carrier,
+        };
+        // A run that refuses at once can already have closed the connection; its reason can still be read.
+        let sent = client.write(&format!("hello {name}\n"));
+        let said = client.wait_for_line(Instant::now() + PATIENCE);
+        let line = said.map_err(|error| sent.err().unwrap_or(error))?;
+        let Some(greeting) = protocol::greeting(&line) else {
+            let Answer { verdict, .. } = protocol::answer(&line)?;
+            return Err(ClientError::Refused(verdict.err().unwrap_or(line)));
+        };
+        client.clock = Estimate::new(greeting.time, Instant::now());
+        (client.run, client.name) = (greeting.run, greeting.name.to_string());
+        Ok(client)
+    }
+
+    /// Name of the run.
+    #[must_use]
+    pub fn run(&self) -> &str {
+        &self.run
+    }
+
+    /// Name of the session, which no other session of the run has: the requested name, with a number if it was taken.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Sends a request; returns its number, which the answer repeats. The run carries it out within [`PATIENCE`] or
+    /// discards it.
+    ///
+    /// # Errors
+    /// [`ClientError`] if the line is invalid or the connection is lost.
+    pub fn send(&mut self, line: &str) -> Result<u32, ClientError> {
+        self.send_within(PATIENCE, line)
+    }
+
+    /// Like [`Client::send`], for a request that is discarded unless the run carries it out within the time `left`.
+    ///
+    /// # Errors
+    /// As [`Client::send`].
+    pub fn send_within(&mut self, left: Duration, line: &str) -> Result<u32, ClientError> {
+        let line = line.trim();
+        if line.is_empty() || line.len() > TEXT || line.chars().any(char::is_control) {
+            return Err(ClientError::Line { found: line.len() });
+        }
+        self.number = self.number.wrapping_add(1);
+        let RunTime(limit) = self.clock.at(Instant::now()).after(left);
+        self.write(&format!("{} @{limit} {line}\n", self.number))?;
+        Ok(self.number)
+    }
+
+    /// Sends an empty line, which shows that the operator is still present. A session that commands motion by hand must
+    /// send something every [`SILENCE`](protocol::SILENCE), or the run ends the motion.
+    ///
+    /// # Errors
+    /// [`ClientError`] if the connection is lost.
+    pub fn keep_alive(&mut self) -> Result<(), ClientError> {
+        self.write("\n")
+    }
+
+    /// Stays connected for a time, and shows meanwhile that the operator is still present.
+    ///
+    /// # Errors
+    /// [`ClientError`] if the connection is lost.
+    pub fn stay(&mut self, time: Duration) -> Result<(), ClientError> {
+        let end = Instant::now() + time;
+        while Instant::now() < end {
+            self.keep_alive()?;
+            thread::sleep(ALIVE.min(end.saturating_duration_since(Instant::now())));
+        }
+        Ok(())
+    }
+
+    /// Returns an answer if one has arrived. Does not wait.
+    ///
+    /// # Errors
+    /// [`ClientError`] if the connection is lost or the run has ended.
+    pub fn poll(&mut self) -> Result<Option<Answer>, ClientError> {
+        self.stream.set_nonblocking(true)?;
+        let read = self.read();
+        self.stream.set_nonblocking(false)?;
+        match (self.lines.next_line()?, read) {
+            (Some(line), _) => self.answer(&line).map(Some),
+            (None, Ok(true)) => Ok(None),
+            (None, Ok(false)) => Err(ClientError::Ended),
+            (None, Err(error)) if error.kind() == io::ErrorKind::WouldBlock => Ok(None),
+            (None, Err(error)) => Err(error.into()),
+        }
+    }
+
+    /// Sends a request and waits for its answer.
+    ///
+    /// # Errors
+    /// [`ClientError`] if there is no answer. A refusal by the run is not an error; it is the inner result.
+    pub fn ask(&mut self, line: &str) -> Result<Result<String, String>, ClientError> {
+        self.ask_within(PATIENCE, line)
+    }
+
+    /// Like [`Client::ask`], for a request that is discarded unless the run carries it out within the time `left`.
+    ///
+    /// # Errors
+    /// As [`Client::ask`].
+    pub fn ask_within(&mut self, left: Duration, line: &str) -> Result<Result<String, String>, ClientError> {
+        let number = self.send_within(left, line)?;
+        let patience = if line.trim_start().starts_with("load ") { LOAD_PATIENCE } else { PATIENCE };
+        let deadline = Instant::now() + patience;
+        loop {
+            let line = self.wait_for_line(deadline)?;
+            let answer = self.answer(&line)?;
+            if answer.number == number {
+                return Ok(answer.verdict);
+            }
+        }
+    }
+
+    fn answer(&mut self, line: &str) -> Result<Answer, ClientError> {
+        match protocol::answer(line)? {
+            // Requests are numbered from 1.
+            Answer { number: 0, verdict: Err(why), .. } => Err(ClientError::Refused(why)),
+            answer => {
+                self.clock.hear(answer.time, Instant::now());
+                Ok(answer)
+            }
+        }
+    }
+
+    fn write(&mut self, line: &str) -> Result<(), ClientError> {
+        Ok(self.stream.write_all(line.as_bytes())?)
+    }
+
+    /// Reads the bytes that have arrived; returns false at the end of the session.
+    fn read(&mut self) -> io::Result<bool> {
+        let mut bytes = [0; 512];
+        let count = self.stream.read(&mut bytes)?;
+        self.lines.push(bytes.get(..count).unwrap_or_default());
+        Ok(count > 0)
+    }
+
+    fn wait_for_line(&mut self, deadline: Instant) -> Result<String, ClientError> {
+        loop {
+            if let Some(line) = self.lines.next_line()? {
+                return Ok(line);
+            }
+            let left = deadline.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Err(ClientError::Silent);
+            }
+            self.stream.set_read_timeout(Some(left.min(ALIVE)))?;
+            match self.read() {
+                Ok(true) => {}
+                Ok(false) => return Err(ClientError::Ended),
+                Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
+                    // Not before the greeting, since the first line is the name.
+                    if !self.name.is_empty() {
+                        // The next read reports the end of the session, with its reason.
+                        let _ = self.keep_alive();
+                    }
+                }
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+}

@@ -1,0 +1,382 @@
+//! The run's side of the sessions.
+
+use std::{
+    fs, io,
+    io::Read as _,
+    os::unix::{
+        fs::PermissionsExt as _,
+        net::{UnixListener, UnixStream},
+    },
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering},
+        mpsc::{Receiver, SyncSender, sync_channel},
+    },
+    thread,
+    time::Duration,
+};
+
+use rustix::{
+    event::{PollFd, PollFlags, Timespec, poll},
+    net::{SendFlags, send, sockopt},
+    process::geteuid,
+};
+
+use crate::operator::{
+    clock::{RunClock, RunTime},
+    protocol::{self, Answer, Event, Greeting, Lines, Name, ProtocolError, Request, SILENCE},
+};
+
+/// Greatest number of open sessions.
+const SESSIONS: usize = 8;
+/// Number of events that can wait for the next tick. A session that sends more is blocked.
+const QUEUE: usize = 64;
+/// Time limit for the first line of a session, which contains its name.
+const HELLO: Duration = Duration::from_secs(2);
+
+/// An event of a session, as delivered to the run.
+#[derive(Debug)]
+pub struct Given {
+    /// Name of the session.
+    pub source: Name,
+    /// The event.
+    pub event: Event,
+    /// The request, if the event is one.
+    request: Option<Received>,
+}
+
+/// A request as a session has received it.
+#[derive(Debug)]
+struct Received {
+    number: u32,
+    limit: Option<RunTime>,
+    /// Stream of its session, for the answer.
+    stream: Arc<UnixStream>,
+    clock: RunClock,
+}
+
+impl Given {
+    /// Answers the request, if the event is one. Does not wait: a session that does not read its answers is ended.
+    pub fn answer(self, verdict: Result<String, String>) {
+        let Some(Received { number, stream, clock, .. }) = self.request else { return };
+        let line = format!("{}\n", Answer { number, time: clock.now(), verdict });
+        if say(&stream, &line).is_err() {
+            end(&stream);
+        }
+    }
+
+    /// Marks a request as late if nobody waits for it at this moment.
+    #[must_use]
+    pub fn judged(mut self) -> Self {
+        if let (Event::Line(text), Some(received)) = (&self.event, &self.request) {
+            let Received { number, limit, stream, clock } = received;
+            let request = Request { number: *number, limit: *limit, text };
+            if let Some(late) = request.late(clock.now(), is_open(stream)) {
+                self.event = Event::Late(late, text.clone());
+            }
+        }
+        self
+    }
+}
+
+/// False if the other end of a stream is closed, also while lines of it have not been read yet.
+fn is_open(stream: &UnixStream) -> bool {
+    let mut ends = [PollFd::new(stream, PollFlags::RDHUP)];
+    let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
+    // An interrupted call says nothing: the session reports its end itself.
+    let polled = poll(&mut ends, Some(&at_once));
+    let [end] = ends;
+    polled.is_err() || !end.revents().intersects(PollFlags::RDHUP | PollFlags::HUP | PollFlags::ERR)
+}
+
+/// Accepts operators of a run until it is dropped.
+pub struct Listener {
+    path: PathBuf,
+    events: Receiver<Given>,
+    sessions: Arc<Sessions>,
+}
+
+/// The streams of the open sessions.
+type Streams = Mutex<Vec<Arc<UnixStream>>>;
+
+impl Listener {
+    /// Listens at a path, with access for this user only. Its directory must belong to this user alone.
+    ///
+    /// # Errors
+    /// The error of the operating system if the socket or the thread cannot be created.
+    pub fn start(path: &Path, run: &str) -> io::Result<Self> {
+        let socket = UnixListener::bind(path)?;
+        fs::set_permissions(path, fs::Permissions::from_mode(0o600))?;
+        let (sender, events) = sync_channel(QUEUE);
+        let sessions = Arc::new(Sessions {
+            run: run.to_owned(),
+            clock: RunClock::start(),
+            names: Mutex::default(),
+            sender,
+            stop: AtomicBool::new(false),
+            streams: Streams::default(),
+            open: AtomicUsize::new(0),
+            entered: AtomicU32::new(0),
+        });
+        let admitting = Arc::clone(&sessions);
+        thread::Builder::new().name("operators".into()).spawn(move || admitting.accept(&socket))?;
+        Ok(Self { path: path.to_owned(), events, sessions })
+    }
+
+    /// The entrance for operators from a network.
+    #[must_use]
+    pub fn entrance(&self) -> Entrance {
+        Entrance { sessions: Arc::clone(&self.sessions) }
+    }
+
+    /// Returns the next event if there is one. A request that comes too late for its sender is marked as such. Does not
+    /// wait.
+    #[must_use]
+    pub fn try_next(&self) -> Option<Given> {
+        self.events.try_recv().ok().map(Given::judged)
+    }
+
+    /// Path of the socket.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Drop for Listener {
+    fn drop(&mut self) {
+        self.sessions.stop.store(true, Ordering::Relaxed);
+        lock(&self.sessions.streams).iter().for_each(|stream| end(stream));
+        // The thread checks `stop` at the next connection.
+        let _ = UnixStream::connect(&self.path);
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+fn lock(streams: &Streams) -> std::sync::MutexGuard<'_, Vec<Arc<UnixStream>>> {
+    streams.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Sends a line completely without waiting, or fails.
+fn say(stream: &UnixStream, line: &str) -> io::Result<()> {
+    let sent = send(stream, line.as_bytes(), SendFlags::DONTWAIT | SendFlags::NOSIGNAL)?;
+    if sent == line.len() { Ok(()) } else { Err(io::ErrorKind::WriteZero.into()) }
+}
+
+/// Ends reading and writing; the stream may already be closed.
+fn end(stream: &UnixStream) {
+    let _ = stream.shutdown(std::net::Shutdown::Both);
+}
+
+/// Opens sessions for operators that were authenticated by other means than their user, for example by a certificate.
+#[derive(Clone)]
+pub struct Entrance {
+    sessions: Arc<Sessions>,
+}
+
+impl Entrance {
+    /// Begins a session and returns the other end of its stream. The run sees its name with the prefix `netN.`, N
+    /// counted from 1, so that it is known as a session from the network.
+    ///
+    /// # Errors
+    /// The error of the operating system, or an error if the run is over.
+    pub fn enter(&self) -> io::Result<UnixStream> {
+        if self.sessions.stop.load(Ordering::Relaxed) {
+            return Err(io::Error::other("the run is over"));
+        }
+        let (ours, theirs) = UnixStream::pair()?;
+        let number = self.sessions.entered.fetch_add(1, Ordering::Relaxed).wrapping_add(1);
+        self.sessions.admit(Arc::new(ours), format!("net{number}."))?;
+        Ok(theirs)
+    }
+}
+
+/// The sessions of a run.
+struct Sessions {
+    run: String,
+    clock: RunClock,
+    /// Names of the sessions that have begun, until the run has been told of their end.
+    names: Mutex<Vec<Name>>,
+    sender: SyncSender<Given>,
+    stop: AtomicBool,
+    streams: Streams,
+    /// Number of open sessions.
+    open: AtomicUsize,
+    /// Number of sessions begun through an entrance.
+    entered: AtomicU32,
+}
+
+impl Sessions {
+    /// Accepts sessions; runs in its own thread.
+    fn accept(self: Arc<Self>, socket: &UnixListener) {
+        for stream in socket.incoming() {
+            if self.stop.load(Ordering::Relaxed) {
+                return;
+            }
+            // A client that disconnects early must not stop the listener.
+            let Ok(stream) = stream else {
+                thread::sleep(SILENCE);
+                continue;
+            };
+            // If the thread cannot start, the session is closed.
+            let stream = Arc::new(stream);
+            let _ = match check_user(&stream) {
+                Ok(()) => self.admit(stream, String::new()),
+                Err(why) => say(&stream, &refusal(&why.to_string())),
+            };
+        }
+    }
+
+    fn admit(self: &Arc<Self>, stream: Arc<UnixStream>, origin: String) -> io::Result<()> {
+        if self.open.load(Ordering::Relaxed) >= SESSIONS {
+            let why = format!("{SESSIONS} operators are connected: end another session first");
+            return say(&stream, &refusal(&why));
+        }
+        let session =
+            Session { stream: stream.clone(), lines: Lines::default(), sessions: Arc::clone(self), origin };
+        self.open.fetch_add(1, Ordering::Relaxed);
+        lock(&self.streams).push(stream.clone());
+        let sessions = Arc::clone(self);
+        let thread = thread::Builder::new().name("operator".into()).spawn(move || {
+            session.run();
+            lock(&sessions.streams).retain(|open| !Arc::ptr_eq(open, &stream));
+            sessions.open.fetch_sub(1, Ordering::Relaxed);
+        });
+        thread.map(|_| ()).inspect_err(|_| {
+            self.open.fetch_sub(1, Ordering::Relaxed);
+        })
+    }
+}
+
+impl Sessions {
+    /// Gives a session the name that it asks for, with a number if another session has it.
+    fn take_name(&self, asked: Name) -> Name {
+        let mut names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
+        let name = asked.unlike(|name| names.contains(name));
+        names.push(name.clone());
+        name
+    }
+
+    fn free_name(&self, name: &Name) {
+        self.names.lock().unwrap_or_else(PoisonError::into_inner).retain(|taken| taken != name);
+    }
+}
+
+/// An answer with number 0, which belongs to no request.
+fn refusal(why: &str) -> String {
+    format!("{}\n", Answer { number: 0, time: RunTime::default(), verdict: Err(why.to_owned()) })
+}
+
+/// Refuses sessions of other users.
+fn check_user(stream: &UnixStream) -> io::Result<()> {
+    let (expected, found) = (geteuid(), sockopt::socket_peercred(stream)?.uid);
+    if expected == found {
+        return Ok(());
+    }
+    let why = format!("user {} was expected, found user {}", expected.as_raw(), found.as_raw());
+    Err(io::Error::new(io::ErrorKind::PermissionDenied, why))
+}
+
+/// A session, which runs in its own thread.
+struct Session {
+    stream: Arc<UnixStream>,
+    lines: Lines,
+    sessions: Arc<Sessions>,
+    /// Prefix of the session's name.
+    origin: String,
+}
+
+/// Why a session ends.
+enum End {
+    /// The client or the run has ended the session.
+    Closed,
+    /// The client has violated the protocol.
+    Wrong(ProtocolError),
+}
+
+impl From<ProtocolError> for End {
+    fn from(error: ProtocolError) -> Self {
+        Self::Wrong(error)
+    }
+}
+
+impl Session {
+    fn run(mut self) {
+        let Err(end_of_session) = self.greet().and_then(|name| {
+            let ended = self.give(&name, Event::Connected, None).and_then(|()| {
+                let ended = self.welcome(&name).and_then(|()| self.listen(&name));
+                let _ = self.give(&name, Event::Disconnected, None);
+                ended
+            });
+            // The run learns of the end before another session can have the name.
+            self.sessions.free_name(&name);
+            ended
+        });
+        if let End::Wrong(why) = end_of_session {
+            // The client may already have disconnected.
+            let _ = say(&self.stream, &refusal(&why.to_string()));
+        }
+        end(&self.stream);
+    }
+
+    fn greet(&mut self) -> Result<Name, End> {
+        let limit = self.stream.set_read_timeout(Some(HELLO));
+        limit.map_err(|_| End::Closed)?;
+        let line = self.line(|| Err(End::Wrong(ProtocolError::NoHello(String::new()))))?;
+        let name = protocol::hello(&line)?.from(&self.origin);
+        Ok(self.sessions.take_name(name))
+    }
+
+    fn welcome(&self, name: &Name) -> Result<(), End> {
+        let Sessions { run, clock, .. } = &*self.sessions;
+        let greeting = Greeting { run: run.clone(), name: name.clone(), time: clock.now() };
+        say(&self.stream, &format!("{greeting}\n")).map_err(|_| End::Closed)
+    }
+
+    fn listen(&mut self, name: &Name) -> Result<std::convert::Infallible, End> {
+        self.stream.set_read_timeout(Some(SILENCE)).map_err(|_| End::Closed)?;
+        let mut is_silent = false;
+        loop {
+            let (sender, name_again) = (self.sessions.sender.clone(), name.clone());
+            let line = self.line(|| {
+                if is_silent {
+                    return Ok(());
+                }
+                is_silent = true;
+                let given = Given { source: name_again.clone(), event: Event::Silent, request: None };
+                sender.send(given).map_err(|_| End::Closed)
+            })?;
+            is_silent = false;
+            if let Some(Request { number, limit, text }) = protocol::request(&line)? {
+                let (stream, clock) = (self.stream.clone(), self.sessions.clock);
+                let received = Received { number, limit, stream, clock };
+                self.give(name, Event::Line(text.to_owned()), Some(received))?;
+            }
+        }
+    }
+
+    /// Reads the next line. Calls `silent` whenever nothing has arrived within the time limit.
+    fn line(&mut self, mut silent: impl FnMut() -> Result<(), End>) -> Result<String, End> {
+        let mut bytes = [0; 512];
+        loop {
+            if let Some(line) = self.lines.next_line()? {
+                return Ok(line);
+            }
+            match (&*self.stream).read(&mut bytes) {
+                Ok(0) => return Err(End::Closed),
+                Ok(count) => self.lines.push(bytes.get(..count).unwrap_or_default()),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
+                    silent()?;
+                }
+                Err(_) => return Err(End::Closed),
+            }
+        }
+    }
+
+    fn give(&self, name: &Name, event: Event, request: Option<Received>) -> Result<(), End> {
+        let given = Given { source: name.clone(), event, request };
+        self.sessions.sender.send(given).map_err(|_| End::Closed)
+    }
+}

@@ -1,0 +1,351 @@
+//! Tests a server and its clients over real sockets: who may connect, what is refused, who is disconnected.
+
+use std::{
+    io::{ErrorKind, Read, Write},
+    net::{SocketAddr, TcpStream},
+    sync::mpsc::channel,
+    thread,
+    time::{Duration, Instant},
+};
+
+use record::{Tap, tap::Channel};
+use serde_json::{Value, json};
+use sessions::live::{Feed, Options, Port, Server, server::CLIENTS};
+use tungstenite::{
+    Error, Message, WebSocket,
+    client::IntoClientRequest,
+    http::{HeaderValue, header},
+    protocol::frame::coding::CloseCode,
+};
+
+const STRING: Channel<'static> = Channel {
+    topic: "/robot_description",
+    encoding: "cdr",
+    schema_name: "std_msgs/msg/String",
+    schema_encoding: "ros2msg",
+    schema: b"string data",
+};
+
+/// A server with one channel, number 1.
+fn serve(options: Options) -> (Server, Box<dyn Tap>) {
+    let feed = Feed::default();
+    let mut tap = feed.tap();
+    tap.channel(1, &STRING);
+    (Server::start(Port::take(0).unwrap(), options, feed).unwrap(), tap)
+}
+
+/// Tries a handshake; returns status and body of a refusal.
+fn try_connect(
+    address: SocketAddr,
+    origin: Option<&str>,
+    protocols: &str,
+) -> Result<WebSocket<TcpStream>, (u16, String)> {
+    let mut request = format!("ws://{address}").into_client_request().unwrap();
+    let headers = request.headers_mut();
+    if !protocols.is_empty() {
+        headers.insert(header::SEC_WEBSOCKET_PROTOCOL, HeaderValue::from_str(protocols).unwrap());
+    }
+    if let Some(origin) = origin {
+        headers.insert(header::ORIGIN, HeaderValue::from_str(origin).unwrap());
+    }
+    let stream = TcpStream::connect(address).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+    match tungstenite::client(request, stream) {
+        Ok((socket, response)) => {
+            let agreed = response.headers()[header::SEC_WEBSOCKET_PROTOCOL].to_str().unwrap().to_owned();
+            assert!(protocols.contains(&agreed), "{agreed} was not asked for");
+            Ok(socket)
+        }
+        Err(tungstenite::HandshakeError::Failure(Error::Http(response))) => {
+            let body = response.body().clone().unwrap_or_default();
+            Err((response.status().as_u16(), String::from_utf8_lossy(&body).into_owned()))
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// A client that has read the server's facts and the list of channels.
+fn connect(address: SocketAddr) -> WebSocket<TcpStream> {
+    let mut socket = try_connect(address, None, "foxglove.sdk.v1").unwrap();
+    assert_eq!(text(&mut socket)["op"], "serverInfo");
+    assert_eq!(text(&mut socket)["op"], "advertise");
+    socket
+}
+
+/// The next message except pings.
+fn next(socket: &mut WebSocket<TcpStream>) -> Result<Message, Error> {
+    loop {
+        let message = socket.read()?;
+        if !message.is_ping() {
+            return Ok(message);
+        }
+    }
+}
+
+fn text(socket: &mut WebSocket<TcpStream>) -> Value {
+    serde_json::from_str(next(socket).unwrap().to_text().unwrap()).unwrap()
+}
+
+fn say(socket: &mut WebSocket<TcpStream>, message: Value) {
+    socket.send(Message::text(message.to_string())).unwrap();
+}
+
+/// The close code that the server sends.
+fn close_code(socket: &mut WebSocket<TcpStream>) -> CloseCode {
+    loop {
+        match socket.read() {
+            Ok(Message::Close(frame)) => return frame.unwrap().code,
+            Ok(_) => {}
+            Err(error) => panic!("a close was expected: {error}"),
+        }
+    }
+}
+
+#[test]
+fn programs_and_listed_pages_may_connect_and_others_get_403() {
+    let origins = vec!["http://localhost:8080".parse().unwrap()];
+    let (server, _tap) = serve(Options { origins, ..Options::default() });
+    let with = |origin| try_connect(server.address(), origin, "foxglove.websocket.v1, foxglove.sdk.v1");
+    for good in [None, Some("https://app.foxglove.dev"), Some("http://localhost:8080")] {
+        assert!(with(good).is_ok(), "{good:?}");
+    }
+    for foreign in [
+        "https://evil.example",
+        "http://localhost:8081",
+        "http://localhost",
+        "https://app.foxglove.dev.evil.example",
+        "http://app.foxglove.dev",
+        "file://",
+        "null",
+        "",
+    ] {
+        let (status, body) = with(Some(foreign)).map(|_| ()).unwrap_err();
+        assert_eq!(status, 403, "{foreign}");
+        assert!(body.contains("--live-origin"), "{body}");
+    }
+}
+
+#[test]
+fn a_client_without_a_known_subprotocol_is_refused() {
+    let (server, _tap) = serve(Options::default());
+    for wrong in ["", "foxglove.websocket.v0", "graphql-ws"] {
+        let (status, body) = try_connect(server.address(), None, wrong).map(|_| ()).unwrap_err();
+        assert_eq!(status, 400, "{wrong}");
+        assert!(body.contains("foxglove.sdk.v1"), "{body}");
+    }
+}
+
+#[test]
+fn what_comes_once_is_sent_again_to_each_subscriber() {
+    let (server, mut tap) = serve(Options::default());
+    tap.message(1, 5, b"<robot/>");
+    for _ in 0..2 {
+        let mut socket = connect(server.address());
+        say(&mut socket, json!({ "op": "subscribe", "subscriptions": [{ "id": 9, "channelId": 1 }] }));
+        let Message::Binary(bytes) = next(&mut socket).unwrap() else { panic!("a message was expected") };
+        assert_eq!(&bytes[..], [&[1, 9, 0, 0, 0, 5, 0, 0, 0, 0, 0, 0, 0][..], b"<robot/>"].concat());
+    }
+    let mut socket = connect(server.address());
+    tap.message(1, 300, b"other");
+    let Message::Binary(bytes) = next(&mut socket).unwrap() else { panic!("the time was expected") };
+    assert_eq!(&bytes[..], [2, 44, 1, 0, 0, 0, 0, 0, 0]);
+    drop(tap);
+    assert_eq!(close_code(&mut socket), CloseCode::Away);
+}
+
+#[test]
+fn wrong_messages_are_answered_and_end_the_session_at_last() {
+    let (server, _tap) = serve(Options::default());
+    let mut socket = connect(server.address());
+    for wrong in [Message::text("{"), Message::binary(vec![77, 1, 2]), Message::text("{\"op\":\"fly\"}")] {
+        socket.send(wrong).unwrap();
+        let status = text(&mut socket);
+        assert_eq!((&status["op"], &status["level"]), (&json!("status"), &json!(2)), "{status}");
+    }
+    for _ in 0..40 {
+        // The server may already have closed the connection.
+        let _ = socket.send(Message::binary(vec![1]));
+    }
+    assert_eq!(close_code(&mut socket), CloseCode::Policy);
+}
+
+#[test]
+fn messages_that_are_too_long_and_frames_that_are_none_close_the_connection() {
+    let (server, _tap) = serve(Options::default());
+    let mut socket = connect(server.address());
+    // The server closes the connection before it has read all of the message.
+    let _ = socket.send(Message::text(" ".repeat(70_000)));
+    assert_eq!(close_code(&mut socket), CloseCode::Size);
+    // Reserved bits and codes, no mask, half a frame, text that is not UTF-8.
+    let frames: [&[u8]; 5] = [
+        &[0xff; 64],
+        &[0x81, 0x02, b'h', b'i'],
+        &[0x8f, 0x80, 0, 0, 0, 0],
+        &[0x81, 0xff],
+        &[0x81, 0x82, 0, 0, 0, 0, 0xff, 0xfe],
+    ];
+    for frame in frames {
+        let socket = connect(server.address());
+        let mut stream = socket.into_inner();
+        stream.write_all(frame).unwrap();
+        stream.shutdown(std::net::Shutdown::Write).unwrap();
+        ends(&mut stream);
+    }
+    connect(server.address());
+}
+
+/// Checks that the server ends a connection.
+fn ends(stream: &mut TcpStream) {
+    let mut rest = Vec::new();
+    if let Err(error) = stream.read_to_end(&mut rest) {
+        assert_eq!(error.kind(), ErrorKind::ConnectionReset, "{error}");
+    }
+}
+
+#[test]
+fn what_is_no_handshake_ends_the_connection() {
+    let (server, _tap) = serve(Options::default());
+    for wrong in [
+        "GET / HTTP/1.1\r\n\r\n",
+        "POST / HTTP/1.1\r\nUpgrade: websocket\r\n\r\n",
+        "\0\u{1}\u{2}\r\n\r\n",
+        "x",
+    ] {
+        let mut stream = TcpStream::connect(server.address()).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+        stream.write_all(wrong.as_bytes()).unwrap();
+        ends(&mut stream);
+    }
+    let mut endless = TcpStream::connect(server.address()).unwrap();
+    let sent = (0..).take(1000).try_for_each(|_| endless.write_all(&[b'a'; 4096]));
+    assert!(sent.is_err(), "four megabytes of a handshake were taken");
+    connect(server.address());
+}
+
+#[test]
+fn clients_are_counted_and_one_more_is_told_so() {
+    let (server, _tap) = serve(Options::default());
+    let mut clients: Vec<_> = (0..CLIENTS).map(|_| connect(server.address())).collect();
+    let (status, body) = try_connect(server.address(), None, "foxglove.sdk.v1").map(|_| ()).unwrap_err();
+    assert_eq!(status, 503);
+    assert!(body.contains("16 viewers are connected"), "{body}");
+    clients.pop().unwrap().close(None).unwrap();
+    let until = Instant::now() + Duration::from_secs(10);
+    while try_connect(server.address(), None, "foxglove.sdk.v1").is_err() {
+        assert!(Instant::now() < until, "the place of a client that has left is not free");
+        thread::sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
+fn clients_that_take_nothing_are_disconnected_and_others_stay() {
+    let patience = Duration::from_millis(400);
+    let (server, mut tap) = serve(Options { patience, ..Options::default() });
+    let mut reader = connect(server.address());
+    let subscribe = json!({ "op": "subscribe", "subscriptions": [{ "id": 1, "channelId": 1 }] });
+    say(&mut reader, subscribe.clone());
+    let mut silent: Vec<_> = (0..10).map(|_| connect(server.address())).collect();
+    // Half of these clients subscribe to nothing.
+    silent.iter_mut().skip(5).for_each(|socket| say(socket, subscribe.clone()));
+    let reading = thread::spawn(move || {
+        let is_message = |message: &Message| message.is_binary() && message.len() > 9;
+        std::iter::from_fn(|| next(&mut reader).ok()).filter(is_message).count()
+    });
+    let message = vec![7; 100_000];
+    let begin = Instant::now();
+    let mut longest = Duration::ZERO;
+    for time in 1..=100 {
+        let before = Instant::now();
+        tap.message(1, time, &message);
+        longest = longest.max(before.elapsed());
+        thread::sleep(Duration::from_millis(20));
+    }
+    let sent = begin.elapsed();
+    drop(tap);
+    assert_eq!(reading.join().unwrap(), 100, "the client that reads gets all");
+    for socket in silent {
+        let mut stream = socket.into_inner();
+        ends(&mut stream);
+    }
+    assert!(longest < sent / 2, "a message took {longest:?} to be handed over");
+}
+
+/// A connection that reads at most 100 kB/s.
+struct Slow(TcpStream);
+
+impl Read for Slow {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        thread::sleep(Duration::from_millis(100));
+        let length = buffer.len().min(10_000);
+        self.0.read(&mut buffer[..length])
+    }
+}
+
+impl Write for Slow {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.0.flush()
+    }
+}
+
+/// The meshes of a run have 1.1 MB. Before the pings went between their pieces, the answer came after all of them.
+#[test]
+fn a_viewer_that_reads_slowly_receives_large_messages_and_stays() {
+    let (sender, notices) = channel();
+    let patience = Duration::from_secs(1);
+    let (server, mut tap) = serve(Options { patience, notices: Some(sender), ..Options::default() });
+    let large = vec![7; 400_000];
+    tap.message(1, 1, &large);
+    let mut request = format!("ws://{}", server.address()).into_client_request().unwrap();
+    request.headers_mut().insert(header::SEC_WEBSOCKET_PROTOCOL, HeaderValue::from_static("foxglove.sdk.v1"));
+    let stream = TcpStream::connect(server.address()).unwrap();
+    let (mut socket, _) = tungstenite::client(request, Slow(stream)).unwrap();
+    let subscribe = json!({ "op": "subscribe", "subscriptions": [{ "id": 1, "channelId": 1 }] });
+    socket.send(Message::text(subscribe.to_string())).unwrap();
+    let reading = thread::spawn(move || {
+        let mut lengths = Vec::new();
+        loop {
+            match socket.read().unwrap() {
+                Message::Binary(bytes) if bytes.len() > 9 => lengths.push(bytes.len()),
+                Message::Close(frame) => return (lengths, frame.unwrap().code),
+                _ => {}
+            }
+        }
+    });
+    for time in 2..=60 {
+        thread::sleep(Duration::from_millis(100));
+        tap.message(1, time, &[1; 1000]);
+    }
+    drop(tap);
+    let (lengths, code) = reading.join().unwrap();
+    assert_eq!((lengths[0], lengths.len(), code), (13 + large.len(), 60, CloseCode::Away));
+    assert_eq!(notices.try_iter().collect::<Vec<_>>(), [""; 0]);
+    drop(server);
+}
+
+#[test]
+fn a_viewer_that_stops_reading_is_told_why_it_is_disconnected() {
+    let (sender, notices) = channel();
+    let patience = Duration::from_millis(400);
+    let (server, mut tap) = serve(Options { patience, notices: Some(sender), ..Options::default() });
+    let mut socket = connect(server.address());
+    say(&mut socket, json!({ "op": "subscribe", "subscriptions": [{ "id": 1, "channelId": 1 }] }));
+    for time in 0..200 {
+        tap.message(1, time, &[7; 100_000]);
+    }
+    let notice = notices.recv_timeout(Duration::from_secs(20)).unwrap();
+    assert!(notice.starts_with("viewer-1 is disconnected: the viewer has read nothing for 0."), "{notice}");
+    // It reads again.
+    let reason = loop {
+        match socket.read() {
+            Ok(Message::Close(frame)) => break frame.unwrap(),
+            Ok(_) => {}
+            Err(error) => panic!("a reason was expected: {error}"),
+        }
+    };
+    assert_eq!(reason.code, CloseCode::Policy);
+    assert!(reason.reason.contains("has read nothing for"), "{}", reason.reason);
+}

@@ -1,0 +1,255 @@
+//! Tests sessions over a real socket, with correct and with hostile clients.
+
+use std::{
+    io::{Read as _, Write as _},
+    os::unix::{fs::PermissionsExt as _, net::UnixStream},
+    path::PathBuf,
+    time::{Duration, Instant},
+};
+
+use sessions::operator::{Client, ClientError, Event, Given, Late, Listener, Name};
+use tempfile::TempDir;
+
+struct Bench {
+    _directory: TempDir,
+    path: PathBuf,
+    listener: Listener,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("socket");
+        let listener = Listener::start(&path, "linkbar-1").unwrap();
+        Self { _directory: directory, path, listener }
+    }
+
+    fn client(&self, name: &str) -> Client {
+        Client::connect(&self.path, &name.parse().unwrap()).unwrap()
+    }
+
+    /// Waits up to two seconds for the next event.
+    fn next(&self) -> Given {
+        let started = Instant::now();
+        loop {
+            if let Some(given) = self.listener.try_next() {
+                return given;
+            }
+            assert!(started.elapsed() < Duration::from_secs(2), "no event has come");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    fn expect(&self, name: &str, event: Event) -> Given {
+        let given = self.next();
+        assert_eq!((given.source.as_str(), &given.event), (name, &event));
+        given
+    }
+
+    /// The run's answer, after its greeting, to a client that violates the protocol.
+    fn said_to(&self, bytes: &[u8]) -> String {
+        let mut stream = UnixStream::connect(&self.path).unwrap();
+        stream.write_all(bytes).unwrap();
+        let mut said = String::new();
+        stream.set_read_timeout(Some(Duration::from_secs(4))).unwrap();
+        stream.read_to_string(&mut said).unwrap();
+        said
+    }
+}
+
+#[test]
+fn a_request_reaches_the_run_and_its_answer_comes_back() {
+    let bench = Bench::new();
+    let mut client = bench.client("console");
+    assert_eq!(client.run(), "linkbar-1");
+    bench.expect("console", Event::Connected);
+    let first = client.send("stop").unwrap();
+    let second = client.send("go").unwrap();
+    bench.expect("console", Event::Line("stop".into())).answer(Ok("tick 7".into()));
+    bench.expect("console", Event::Line("go".into())).answer(Err("no".into()));
+    let mut answers = Vec::new();
+    while answers.len() < 2 {
+        answers.extend(client.poll().unwrap());
+    }
+    let found: Vec<_> = answers.into_iter().map(|answer| (answer.number, answer.verdict)).collect();
+    assert_eq!(found, [(first, Ok("tick 7".into())), (second, Err("no".into()))]);
+    drop(client);
+    bench.expect("console", Event::Disconnected);
+}
+
+#[test]
+fn a_session_that_says_nothing_is_told_once_until_it_speaks_again() {
+    let bench = Bench::new();
+    let mut client = bench.client("console");
+    bench.expect("console", Event::Connected);
+    bench.expect("console", Event::Silent);
+    std::thread::sleep(Duration::from_millis(600));
+    assert!(bench.listener.try_next().is_none(), "once");
+    client.keep_alive().unwrap();
+    bench.expect("console", Event::Silent);
+}
+
+#[test]
+fn what_breaks_the_protocol_ends_its_session_and_no_other() {
+    let bench = Bench::new();
+    let mut good = bench.client("good");
+    bench.expect("good", Event::Connected);
+    let long = [&b"hello x\n7 "[..], &[b'x'; 300], b"\n"].concat();
+    for (bytes, why) in [
+        (&b"stop\n"[..], "hello NAME was expected"),
+        (b"hello a b\n", "the name of an operator"),
+        (b"\xff\xfe\n", "printable UTF-8 was expected"),
+        (b"hello x\nstop\n", "a number and a line were expected"),
+        (b"hello x\n1 (silent)\n", "a number and a line were expected"),
+        (&long, "a line of at most 260 bytes"),
+    ] {
+        let said = bench.said_to(bytes);
+        assert!(said.contains(why), "{said}");
+    }
+    // A session that never sends its name.
+    assert!(bench.said_to(b"").contains("hello NAME was expected"));
+    good.send("stop").unwrap();
+    loop {
+        let given = bench.next();
+        if given.source.as_str() == "good" && given.event == Event::Line("stop".into()) {
+            break;
+        }
+    }
+}
+
+#[test]
+fn sessions_with_one_name_get_different_ones() {
+    let bench = Bench::new();
+    let clients = ["send", "send", "send-2", "send"].map(|name| bench.client(name));
+    let names = ["send", "send-2", "send-2-2", "send-3"];
+    assert_eq!(clients.each_ref().map(Client::name), names);
+    for name in names {
+        bench.expect(name, Event::Connected);
+    }
+    let [first, ..] = clients;
+    drop(first);
+    // The name is free when the run has been told of the end.
+    loop {
+        let given = bench.next();
+        if given.event == Event::Disconnected {
+            assert_eq!(given.source.as_str(), "send");
+            break;
+        }
+    }
+    let started = Instant::now();
+    while bench.client("send").name() != "send" {
+        assert!(started.elapsed() < Duration::from_secs(2), "the name is free");
+    }
+}
+
+/// Takes events until the first that is a line.
+fn next_line(bench: &Bench) -> Event {
+    loop {
+        let event = bench.next().event;
+        if event.line().is_some() {
+            return event;
+        }
+    }
+}
+
+#[test]
+fn a_request_is_late_when_its_sender_has_given_up() {
+    let bench = Bench::new();
+    let mut client = bench.client("console");
+    client.send("PAUSE").unwrap();
+    // The run stands still for longer than the client waits.
+    std::thread::sleep(Duration::from_millis(1300));
+    assert_eq!(next_line(&bench), Event::Late(Late::GivenUp, "PAUSE".into()));
+    client.send_within(Duration::from_secs(9), "PAUSE").unwrap();
+    std::thread::sleep(Duration::from_millis(1300));
+    assert_eq!(next_line(&bench), Event::Line("PAUSE".into()), "this one waits longer");
+    client.send_within(Duration::from_secs(3600), "PAUSE").unwrap();
+    assert_eq!(next_line(&bench), Event::Late(Late::Unlimited, "PAUSE".into()));
+}
+
+#[test]
+fn requests_of_a_session_that_has_ended_are_late() {
+    let bench = Bench::new();
+    let mut stream = UnixStream::connect(&bench.path).unwrap();
+    // More lines than the queue to the run holds, so that the session itself has not read them all.
+    let lines: String = (1..=100).map(|number| format!("{number} @5000 PAUSE\n")).collect();
+    stream.write_all(format!("hello killed\n{lines}").as_bytes()).unwrap();
+    bench.expect("killed", Event::Connected);
+    drop(stream);
+    for _ in 1..=100 {
+        assert_eq!(next_line(&bench), Event::Late(Late::Ended, "PAUSE".into()));
+    }
+    bench.expect("killed", Event::Disconnected);
+}
+
+#[test]
+fn a_client_that_waits_shows_that_it_is_there() {
+    let bench = Bench::new();
+    let mut client = bench.client("console");
+    bench.expect("console", Event::Connected);
+    std::thread::scope(|scope| {
+        scope.spawn(|| client.ask("stop"));
+        let asked = bench.expect("console", Event::Line("stop".into()));
+        std::thread::sleep(Duration::from_millis(600));
+        asked.answer(Ok(String::new()));
+    });
+    std::thread::scope(|scope| {
+        scope.spawn(|| client.stay(Duration::from_millis(600)));
+    });
+    let rest: Vec<Event> =
+        std::iter::from_fn(|| bench.listener.try_next()).map(|given| given.event).collect();
+    assert_eq!(rest, [], "it was never silent");
+}
+
+#[test]
+fn a_client_that_takes_no_answers_does_not_hold_the_run_up() {
+    let bench = Bench::new();
+    let mut stream = UnixStream::connect(&bench.path).unwrap();
+    stream.write_all(b"hello deaf\n").unwrap();
+    bench.expect("deaf", Event::Connected);
+    let started = Instant::now();
+    loop {
+        // The session may already have been ended.
+        let _ = stream.write_all(b"1 stop\n");
+        let given = bench.next();
+        if given.event == Event::Disconnected {
+            break;
+        }
+        let before = Instant::now();
+        assert!(matches!(given.event, Event::Late(Late::Unlimited, _)), "{given:?}");
+        given.answer(Err("x".repeat(2000)));
+        assert!(before.elapsed() < Duration::from_millis(500));
+        assert!(started.elapsed() < Duration::from_secs(60), "its session ends");
+    }
+}
+
+#[test]
+fn there_is_room_for_eight_and_a_ninth_is_told() {
+    let bench = Bench::new();
+    let mut clients: Vec<_> = (0..8).map(|number| bench.client(&format!("c{number}"))).collect();
+    let name: Name = "ninth".parse().unwrap();
+    let refused = Client::connect(&bench.path, &name).unwrap_err();
+    assert!(matches!(&refused, ClientError::Refused(why) if why.contains("8 operators")), "{refused}");
+    clients.pop();
+    let started = Instant::now();
+    while Client::connect(&bench.path, &name).is_err() {
+        assert!(started.elapsed() < Duration::from_secs(2), "its place is free");
+    }
+}
+
+#[test]
+fn a_run_that_ends_ends_its_sessions_and_its_socket() {
+    let bench = Bench::new();
+    let mut client = bench.client("console");
+    let mode = std::fs::metadata(&bench.path).unwrap().permissions().mode();
+    assert_eq!(mode & 0o777, 0o600);
+    let path = bench.path.clone();
+    drop(bench);
+    let started = Instant::now();
+    while client.poll().is_ok() {
+        assert!(started.elapsed() < Duration::from_secs(2), "the session ends");
+    }
+    assert!(!path.exists());
+    let gone = Client::connect(&path, &"console".parse().unwrap()).unwrap_err();
+    assert!(gone.to_string().contains("--operator owner"), "{gone}");
+}
