@@ -1,6 +1,6 @@
 //! The data of one tick that the screens show.
 
-use executive::failure;
+use closed_loop::failure;
 use interfaces::{CommonMemory, ExternalInputs, Fault, ProcessId};
 use rcs_core::tick::{TICK_S, Tick};
 

@@ -1,9 +1,7 @@
 //! The history of a run, stored by change: rows, commands, reports, failures, re-starts, messages.
 
-use executive::{
-    failure::{Failure, Watch},
-    histogram::Histogram,
-};
+use closed_loop::failure::{Failure, Watch};
+use executive::histogram::Histogram;
 use interfaces::{Decided, Fault, ProcessId};
 use levels::ladder::{Ladder, PROCESS_COUNT};
 use rcs_core::name::Name16;

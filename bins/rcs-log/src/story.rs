@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use executive::failure::{Failure, Watch};
+use closed_loop::failure::{Failure, Watch};
 use interfaces::{CommonMemory, ExternalInputs, hws::HwsReport};
 use levels::ladder::Ladder;
 use rcs_core::{plain::from_bytes, tick::Tick};

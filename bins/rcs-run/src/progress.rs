@@ -6,7 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use executive::failure;
+use closed_loop::failure;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use interfaces::{CommonMemory, HwsCommand};
 use levels::ladder::ProcessId;

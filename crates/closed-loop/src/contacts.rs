@@ -10,7 +10,7 @@
 
 use std::{collections::BTreeMap, fmt};
 
-use executive::failure::Failure;
+use crate::failure::Failure;
 use geometry::units::Point;
 use interfaces::{CommonMemory, StatusReport, emove::EmoveVerb, subtask::SubtaskVerb};
 use os_io::text::amount;

@@ -15,21 +15,22 @@
 //! `rcs-run run` puts clock, log, boards, robots and neighbours around it; `rcs-run campaign` forks it.
 
 pub mod contacts;
+pub mod course;
+pub mod failure;
 pub mod generations;
 mod given;
 mod line;
 mod player;
 mod present;
+pub mod rest;
 pub mod truth;
 pub mod workstation;
 
 use std::sync::Arc;
 
+use crate::course::{Course, Levels};
+use counting_alloc::Section;
 use depc::Plate;
-use executive::{
-    alloc::Section,
-    course::{Course, Levels},
-};
 use interfaces::{
     CommonMemory, DeviceInputs, DeviceOutputs, ExternalInputs, Header, HwsCommand, device::LinkBytes,
 };

@@ -9,7 +9,7 @@
 
 use std::convert::Infallible;
 
-use executive::course::Levels;
+use crate::course::Levels;
 use interfaces::HwsCommand;
 use neighbours::{
     mailbox::{HWSC_COMMAND, Mailbox},

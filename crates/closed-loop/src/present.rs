@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use executive::course::Levels;
+use crate::course::Levels;
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::{Ladder, ProcessId};
 use rcs_core::tick::Tick;

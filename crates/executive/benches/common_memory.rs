@@ -10,8 +10,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+use closed_loop::course::Course;
 use executive::{
-    course::Course,
     memory::{
         Attached, Publisher, RunName,
         layout::{Pulse, SERVICES},

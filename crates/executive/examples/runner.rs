@@ -2,7 +2,8 @@
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 
-use executive::{alloc::Counting, course::Course, runner::Runner};
+use closed_loop::course::Course;
+use executive::{alloc::Counting, runner::Runner};
 use interfaces::ExternalInputs;
 use levels::ladder::Ladder;
 use taskdata::files::TaskData;

@@ -12,9 +12,9 @@ use interfaces::CommonMemory;
 
 use crate::{
     clock::SLOT,
-    rest::{AT_LAST, RestWatch},
     timing::{Stage, StageTimes},
 };
+use closed_loop::rest::{AT_LAST, RestWatch};
 
 /// Number of consecutive ticks, one second, that must be on time before a holding robot continues.
 pub const PUNCTUAL: u32 = 25;
@@ -201,7 +201,7 @@ impl Overruns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rest::AT_REST;
+    use closed_loop::rest::AT_REST;
     use std::thread;
 
     const LATE: Duration = Duration::from_millis(95);

@@ -9,11 +9,11 @@ use interfaces::ExternalInputs;
 
 use crate::{
     alloc::{self, Section},
-    course::{Course, Levels},
     histogram::Histogram,
     memory::{Publisher, cell::CellView, layout::Pulse},
     timing::{Stage, StageTimes},
 };
+use closed_loop::course::{Course, Levels};
 
 /// Runs a course.
 pub struct Runner<L> {

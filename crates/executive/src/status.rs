@@ -9,7 +9,8 @@ use os_io::text::amount;
 use rcs_core::tick::TICK_S;
 use serde::Serialize;
 
-use crate::{failure::command, memory::layout::Pulse};
+use crate::memory::layout::Pulse;
+use closed_loop::failure::command;
 
 /// Status of a process.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

@@ -15,13 +15,13 @@ use std::{
     time::Duration,
 };
 
+use closed_loop::course::{Course, Levels};
 use executive::{
     alloc::Counting,
     boards::{
         Board, BoardData, Checked, Coordinator, Fingerprint, Lost, Member, MemberError,
         coordinator::BoardEvent, lost::How, member::MemberEnd, pulse::RunCard,
     },
-    course::{Course, Levels},
     memory::{self, RunName},
     runner::Runner,
 };

@@ -9,9 +9,9 @@ mod common;
 
 use std::convert::Infallible;
 
+use closed_loop::course::{Course, Levels};
 use executive::{
     alloc::{self, Counting, Section},
-    course::{Course, Levels},
     memory::{Attached, Publisher, RunName},
     runner::Runner,
 };

@@ -6,9 +6,9 @@ use std::{
     time::Duration,
 };
 
+use closed_loop::course::Levels;
 use executive::{
     boards::{Board, Coordinator, Fingerprint, Lost, SplitError, coordinator::BoardEvent, pulse::RunCard},
-    course::Levels,
     memory::{RunName, SET_UP_LIMIT, within_limit},
 };
 use interfaces::{CommonMemory, ExternalInputs};

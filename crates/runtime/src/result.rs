@@ -7,11 +7,11 @@ mod timing;
 
 use std::{collections::BTreeMap, path::PathBuf};
 
+use closed_loop::failure::Failure;
 use closed_loop::{
     contacts::{Collision, NearMiss},
     truth::TruthResult,
 };
-use executive::failure::Failure;
 use neighbours::workstation::player::Retry;
 use plant::PartState;
 use serde::Serialize;

@@ -12,12 +12,11 @@ use std::{path::PathBuf, sync::atomic::Ordering, time::Instant};
 
 use ::neighbours::workstation::player;
 use closed_loop::{ClosedLoop, Given, RobotInputs};
+use closed_loop::{failure::Failure, rest::RestWatch};
 use depc::Plate;
 use executive::{
     boards::Lost,
-    failure::Failure,
     memory::{Announced, Mirror, RunName},
-    rest::RestWatch,
     runner::Runner,
     timing::Stage,
 };

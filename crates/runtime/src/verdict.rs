@@ -1,7 +1,7 @@
 //! How a run ended, and the reason, from which the last line on standard error and the exit status follow.
 
 use ::neighbours::workstation::player::{JobFailure, Workstation as _};
-use executive::failure::{self, Failure};
+use closed_loop::failure::{self, Failure};
 use interfaces::{ExternalInputs, t3i::LinkFault};
 use levels::{ladder::Ladder, prim::state::RESTART_TICKS};
 use rcs_core::tick::Tick;

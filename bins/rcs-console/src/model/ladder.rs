@@ -1,6 +1,6 @@
 //! The ladder (VI.6): a line per process and per neighbour, with command, status and row.
 
-use executive::failure;
+use closed_loop::failure;
 use interfaces::{CommonMemory, Header, ProcessId, Said, device::VisionStatus, for_each_process};
 use levels::ladder::Ladder;
 use rcs_core::{handshake::Lower, table::Row, tick::TICK_S};

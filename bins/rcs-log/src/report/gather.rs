@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use executive::failure;
+use closed_loop::failure;
 use geometry::pose::WireFrame;
 use interfaces::{
     CommonMemory,

@@ -1,6 +1,6 @@
 //! The history of every process in a run: changes of its commands, rows and reports.
 
-use executive::failure;
+use closed_loop::failure;
 use interfaces::{Decided, Header};
 use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{

@@ -18,7 +18,7 @@ use std::{
     process::ExitCode,
 };
 
-use executive::failure::{self, Failure};
+use closed_loop::failure::{self, Failure};
 use levels::ladder::{Ladder, ProcessId};
 use rcs_core::tick::{TICK_S, Tick};
 use record::{

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use executive::failure;
+use closed_loop::failure;
 use interfaces::Decided;
 use levels::ladder::{Ladder, ProcessId};
 use rcs_core::tick::Tick;

@@ -6,8 +6,8 @@ mod judgement;
 
 use std::sync::Arc;
 
+use closed_loop::failure;
 use closed_loop::truth::Confirmation;
-use executive::failure;
 use interfaces::HwsCommand;
 use levels::ladder::{Ladder, ProcessId};
 use neighbours::workstation::player::pause;

@@ -30,7 +30,7 @@ pub mod tolerance;
 
 use std::fmt;
 
-use executive::failure::Failure;
+use crate::failure::Failure;
 use interfaces::{CommonMemory, HwsCommand, StatusReport, Unconfirmed, hws::HwsReport, prim::PrimReport};
 use plant::Cell;
 use rcs_core::tick::Tick;

@@ -11,7 +11,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use executive::failure::Failure;
+use crate::failure::Failure;
 use geometry::units::Length;
 use interfaces::{
     HwsCommand,

@@ -24,7 +24,6 @@ use super::{
     },
 };
 use crate::{
-    course::Levels,
     histogram::Histogram,
     memory::{
         self, RunName, SharedMemoryError,
@@ -32,6 +31,7 @@ use crate::{
         runs::{self, RunNode},
     },
 };
+use closed_loop::course::Levels;
 
 /// Name of board 0 among the nodes of a run.
 pub const BOARD_0: &str = "board-0";

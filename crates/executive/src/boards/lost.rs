@@ -9,7 +9,8 @@ use rcs_core::{
 };
 
 use super::Board;
-use crate::{failure, memory::SharedMemoryError};
+use crate::memory::SharedMemoryError;
+use closed_loop::failure;
 
 /// Time without a stamp after which a board is lost (docs/design/handshake.md "Lost board"); the same time applies with
 /// the fast clock.

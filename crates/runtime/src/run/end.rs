@@ -1,6 +1,6 @@
 //! The end of a run: the robot ramps to rest before.
 
-use executive::{failure::Failure, rest::AT_LAST};
+use closed_loop::{failure::Failure, rest::AT_LAST};
 use interfaces::CommonMemory;
 use rcs_core::{digest::Digest, tick::Tick};
 

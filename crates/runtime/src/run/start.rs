@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use closed_loop::ClosedLoop;
+use closed_loop::rest::RestWatch;
 use depc::host::{PATIENCE_TICKS, RESTART_TICKS};
 use diagnostics::FAULTS;
 use executive::{
     memory::{Announced, Mirror, Publisher, RunName, SET_UP_LIMIT, SharedMemoryError, within_limit},
-    rest::RestWatch,
     runner::Runner,
 };
 use sessions::network::Role;

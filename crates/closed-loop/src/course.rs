@@ -5,7 +5,7 @@
 //! first sign of a failure.
 //!
 //! A [`Course`] reads no clock and does not allocate after its creation. It can be cloned: the copy continues from the
-//! same tick. [`Runner`](crate::runner::Runner) times a course and publishes it; `rcs-run campaign` forks it.
+//! same tick. The `Runner` of the crate `executive` times a course and publishes it; `rcs-run campaign` forks it.
 
 use std::convert::Infallible;
 
