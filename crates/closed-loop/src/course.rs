@@ -7,22 +7,20 @@
 //! A [`Course`] reads no clock and does not allocate after its creation. It can be cloned: the copy continues from the
 //! same tick. The `Runner` of the crate `executive` times a course and publishes it; `rcs-run campaign` forks it.
 
-use std::convert::Infallible;
-
 use interfaces::{CommonMemory, ExternalInputs};
-use levels::ladder::{Ladder, ProcessId};
+use levels::ladder::ProcessId;
 use rcs_core::{Plain, digest::Digest, tick::Tick};
-use taskdata::files::TaskData;
 
 use crate::failure::Watch;
 
-/// A ladder of control processes that can be stepped: [`Ladder`], or one of a test.
+/// A ladder of control processes that can be stepped: [`Present`](crate::Present), those of several boards, or one of a
+/// test.
 pub trait Levels<Data: ?Sized> {
     /// Error of a tick that could not be finished.
     type Error;
 
     /// One tick of all processes: read `before` and `external`, and write all of `after`; call `observe` after each
-    /// stage, as [`Ladder::step_observed`] does. Time outside of the stages counts as the executive's.
+    /// stage, as [`Ladder::step_observed`](levels::ladder::Ladder::step_observed) does. Time outside of the stages counts as the executive's.
     ///
     /// # Errors
     /// If processes that run elsewhere did not take part. The caller must then run no further tick.
@@ -54,31 +52,6 @@ pub trait Levels<Data: ?Sized> {
     /// Heap allocations in ticks by processes that run elsewhere.
     fn allocations(&self) -> u64 {
         0
-    }
-}
-
-impl Levels<TaskData<'_>> for Ladder {
-    type Error = Infallible;
-
-    fn step(
-        &mut self,
-        tick: Tick,
-        before: &CommonMemory,
-        external: &ExternalInputs,
-        data: &TaskData<'_>,
-        after: &mut CommonMemory,
-        observe: &mut dyn FnMut(Option<ProcessId>),
-    ) -> Result<(), Infallible> {
-        self.step_observed(ProcessId::ALL, tick, before, external, data, after, observe);
-        Ok(())
-    }
-
-    fn shadow(&self) -> Option<Box<Self>> {
-        Some(Box::new(self.clone()))
-    }
-
-    fn copy_to(&self, shadow: &mut Self) {
-        shadow.clone_from(self);
     }
 }
 

@@ -60,4 +60,13 @@ impl Levels<TaskData<'_>> for Present {
         self.ladder.step_observed(&self.processes, tick, before, external, data, after, observe);
         Ok(())
     }
+
+    fn shadow(&self) -> Option<Box<Self>> {
+        Some(Box::new(self.clone()))
+    }
+
+    fn copy_to(&self, shadow: &mut Self) {
+        shadow.ladder.clone_from(&self.ladder);
+        shadow.processes.clone_from(&self.processes);
+    }
 }

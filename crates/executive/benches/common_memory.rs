@@ -10,7 +10,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use closed_loop::course::Course;
+use closed_loop::{Present, course::Course};
 use executive::{
     memory::{
         Attached, Publisher, RunName,
@@ -20,7 +20,7 @@ use executive::{
 };
 use iceoryx2::prelude::*;
 use interfaces::{CommonMemory, ExternalInputs};
-use levels::ladder::{Ladder, PROCESS_COUNT};
+use levels::ladder::PROCESS_COUNT;
 use rcs_core::tick::Tick;
 use taskdata::files::TaskData;
 
@@ -89,7 +89,7 @@ fn bare() {
 /// A tick of a ladder without a command: the controller's part and the bookkeeping.
 fn ticks() {
     let (external, data) = (ExternalInputs::default(), TaskData::default());
-    let (mut course, mut alone) = (Course::new(Ladder::default()), Runner::new(None));
+    let (mut course, mut alone) = (Course::new(Present::default()), Runner::new(None));
     measure("tick, not published", 1, || {
         let Ok(()) = alone.step(&mut course, &external, &data, 0);
     });

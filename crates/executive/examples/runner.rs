@@ -2,17 +2,16 @@
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 
-use closed_loop::course::Course;
+use closed_loop::{Present, course::Course};
 use executive::{alloc::Counting, runner::Runner};
 use interfaces::ExternalInputs;
-use levels::ladder::Ladder;
 use taskdata::files::TaskData;
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
 fn main() {
-    let (mut course, mut runner) = (Course::new(Ladder::default()), Runner::new(None));
+    let (mut course, mut runner) = (Course::new(Present::default()), Runner::new(None));
     for _ in 0..100 {
         let Ok(()) = runner.step(&mut course, &ExternalInputs::default(), &TaskData::default(), 0);
     }

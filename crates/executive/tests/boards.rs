@@ -15,7 +15,10 @@ use std::{
     time::Duration,
 };
 
-use closed_loop::course::{Course, Levels};
+use closed_loop::{
+    Present,
+    course::{Course, Levels},
+};
 use executive::{
     alloc::Counting,
     boards::{
@@ -26,7 +29,6 @@ use executive::{
     runner::Runner,
 };
 use interfaces::{ExternalInputs, HwsCommand, device::single_step};
-use levels::ladder::Ladder;
 use rcs_core::{Plain as _, digest::Digest, name::Name16, tick::Tick};
 use taskdata::{files::TaskData, load::Store};
 
@@ -127,7 +129,7 @@ fn board<'s>(
 fn four_boards_compute_the_bits_of_one_and_allocate_nothing() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     const TICKS: u64 = 1500;
-    let Played { course: one, .. } = play(Ladder::default(), TICKS, |_| ());
+    let Played { course: one, .. } = play(Present::default(), TICKS, |_| ());
     let name = RunName::unique("bits");
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
@@ -140,7 +142,7 @@ fn four_boards_compute_the_bits_of_one_and_allocate_nothing() {
         assert_eq!(error, None);
         assert_eq!(split.digest(), one.digest());
         assert_ne!(one.digest(), Digest::new());
-        assert_eq!(*split.levels().states(), one.levels().state());
+        assert_eq!(*split.levels().states(), one.levels().ladder().state());
         // All threads of this process are counted together, so each figure is that of all boards.
         assert_eq!(runner.allocations(), Some(0));
         for figures in split.levels().figures() {
@@ -268,7 +270,7 @@ fn a_board_that_is_replaced_goes_on_as_one_whose_processes_were_restarted() {
         let restarted = restarted.expect("a board left");
         assert!((433..=434).contains(&restarted.0));
 
-        let mut one = Course::new(Ladder::default());
+        let mut one = Course::new(Present::default());
         for tick in (1..=TICKS).map(Tick) {
             if tick == restarted {
                 Board::Two.processes().for_each(|process| one.levels_mut().restart(process));

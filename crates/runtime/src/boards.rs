@@ -6,13 +6,13 @@ use std::{
     time::Duration,
 };
 
-use closed_loop::course::Levels;
+use closed_loop::{Present, course::Levels};
 use executive::{
     boards::{Board, Coordinator, Fingerprint, Lost, SplitError, coordinator::BoardEvent, pulse::RunCard},
     memory::{RunName, SET_UP_LIMIT, within_limit},
 };
 use interfaces::{CommonMemory, ExternalInputs};
-use levels::ladder::{Ladder, LadderState, ProcessId};
+use levels::ladder::{LadderState, ProcessId};
 use os_io::shell;
 use rcs_core::tick::Tick;
 use taskdata::{
@@ -33,7 +33,7 @@ const STARTING: Duration = Duration::from_secs(60);
 /// Executes the control processes.
 pub enum Controller {
     /// All of them in this process.
-    One(Box<Ladder>),
+    One(Box<Present>),
     /// Boards in processes of their own.
     Split(Box<Coordinator>),
 }
@@ -51,8 +51,8 @@ impl Levels<TaskData<'_>> for Controller {
         observe: &mut dyn FnMut(Option<ProcessId>),
     ) -> Result<(), Lost> {
         match self {
-            Self::One(ladder) => {
-                ladder.step_observed(ProcessId::ALL, tick, before, external, data, after, observe);
+            Self::One(present) => {
+                let Ok(()) = present.step(tick, before, external, data, after, observe);
                 Ok(())
             }
             Self::Split(coordinator) => coordinator.step(tick, before, external, data, after, observe),
@@ -62,14 +62,14 @@ impl Levels<TaskData<'_>> for Controller {
     /// Board 0 has no processes to warm up; the other boards wake with the pulse and not before it.
     fn shadow(&self) -> Option<Box<Self>> {
         match self {
-            Self::One(ladder) => Some(Box::new(Self::One(ladder.clone()))),
+            Self::One(present) => present.shadow().map(Self::One).map(Box::new),
             Self::Split(_) => None,
         }
     }
 
     fn copy_to(&self, shadow: &mut Self) {
-        if let (Self::One(ladder), Self::One(shadow)) = (self, shadow) {
-            shadow.as_mut().clone_from(ladder);
+        if let (Self::One(present), Self::One(shadow)) = (self, shadow) {
+            present.copy_to(shadow);
         }
     }
 
@@ -149,7 +149,7 @@ impl Controller {
     #[must_use]
     pub fn state(&self) -> LadderState {
         match self {
-            Self::One(ladder) => ladder.state(),
+            Self::One(present) => present.ladder().state(),
             Self::Split(coordinator) => *coordinator.states(),
         }
     }
