@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn a_robot_with_egm_is_behind_the_link_or_this_program_itself() {
-        shipped::carry();
+        cli_pages::shipped::carry();
         let cli = |arguments: &[&str]| Cli::try_parse_from(["rcs-cell"].iter().chain(arguments));
         assert!(cli(&["--link", "x", "--egm", "6510,slack=20"]).is_ok());
         assert!(cli(&["--emulate", "egm:6510,gain=10,loss=5"]).is_ok());
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_period_is_a_multiple_of_ten_milliseconds() {
-        shipped::carry();
+        cli_pages::shipped::carry();
         let cli = |period| Cli::try_parse_from(["rcs-cell", "--link", "x", "--period", period]);
         assert_eq!(cli("20").map(|cli| cli.period.period_us()).ok(), Some(20_000));
         assert_eq!(cli("19.76").map(|cli| cli.period).ok(), Some(Limits::APPENDIX));

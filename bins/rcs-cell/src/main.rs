@@ -41,7 +41,7 @@ const FAILED: u8 = 1;
 const UNUSABLE: u8 = 2;
 
 fn main() -> ExitCode {
-    shipped::carry();
+    cli_pages::shipped::carry();
     let cli: Cli = cli_pages::parse();
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGHUP] {

@@ -8,7 +8,7 @@ use rcs_console::{cli::Cli, once, terminal};
 const UNUSABLE: u8 = 2;
 
 fn main() -> ExitCode {
-    shipped::carry();
+    cli_pages::shipped::carry();
     let cli: Cli = cli_pages::parse();
     let ended = match cli.once {
         Some(screen) => once::print(&cli, screen),

@@ -209,7 +209,7 @@ enum Error {
 }
 
 fn main() -> ExitCode {
-    shipped::carry();
+    cli_pages::shipped::carry();
     let cli: Cli = cli_pages::parse();
     let outcome = match cli.command {
         Command::Info(arguments) => info::info(&arguments),

@@ -98,7 +98,7 @@ impl Error {
 }
 
 fn main() -> ExitCode {
-    shipped::carry();
+    cli_pages::shipped::carry();
     let cli: Cli = cli_pages::parse();
     let outcome = match cli.command {
         Command::Workstation(arguments) => workstation::play(&arguments),

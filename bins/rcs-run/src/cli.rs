@@ -583,7 +583,7 @@ mod tests {
 
     #[test]
     fn a_board_is_one_that_has_processes() {
-        shipped::carry();
+        cli_pages::shipped::carry();
         let board = |number| {
             let command = Cli::try_parse_from(["rcs-run", "board", number, "--run", "x", "linkbar"])?.command;
             let Some(Command::Board(arguments)) = command else { panic!("board was asked for") };

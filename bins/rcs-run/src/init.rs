@@ -13,8 +13,8 @@ use crate::{cli::InitArguments, error::Error};
 /// [`Error::Write`] if a file exists already, or cannot be written.
 pub fn init(arguments: &InitArguments) -> Result<ExitCode, Error> {
     let directory = &arguments.directory;
-    let count =
-        shipped::write(directory).map_err(|source| Error::Write { path: directory.clone(), source })?;
+    let count = cli_pages::shipped::write(directory)
+        .map_err(|source| Error::Write { path: directory.clone(), source })?;
     let is_here = directory.as_os_str() == ".";
     let data = if is_here { "data".into() } else { directory.join("data") };
     let data = shell::path(data);

@@ -47,7 +47,7 @@ use os_io::{console::stderr_drawn, stderr_line};
 static ALLOCATOR: executive::alloc::Counting = executive::alloc::Counting;
 
 fn main() -> ExitCode {
-    shipped::carry();
+    cli_pages::shipped::carry();
     let cli: Cli = cli_pages::parse();
     let outcome =
         memory_fault::explain().and_then(|()| memory_fault::survive_file_limit()).and_then(|()| execute(cli));

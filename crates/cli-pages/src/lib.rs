@@ -1,8 +1,12 @@
-//! Version, manual pages, shell completions and reference page of a program, from its definition of the command line.
+//! What every program does before it begins.
+//!
+//! From its definition of the command line follow version, manual pages, shell completions and reference page;
+//! [`shipped`] has the data that it carries.
 
 #![forbid(unsafe_code)]
 
 mod markdown;
+pub mod shipped;
 mod values;
 
 use std::{

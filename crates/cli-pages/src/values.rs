@@ -20,8 +20,8 @@ const CELL: &str = "cell.toml";
 /// The default data directory.
 #[must_use]
 pub fn default_data() -> PathBuf {
-    let name = PathBuf::from(shipped::default_data());
-    shipped::data_directory(&name).unwrap_or(name)
+    let name = PathBuf::from(crate::shipped::default_data());
+    crate::shipped::data_directory(&name).unwrap_or(name)
 }
 
 /// The option `--data` with its default, flattened into the arguments of each command that needs data.
@@ -57,12 +57,12 @@ impl From<PathBuf> for DataArgument {
 #[must_use]
 pub fn data_directory() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|named| {
-        let built_in = shipped::BUILT_IN;
+        let built_in = crate::shipped::BUILT_IN;
         let none = || {
             let named = named.display();
             format!("there is no task data directory {named}; {built_in} names the data of the program")
         };
-        let directory = shipped::data_directory(&named).ok_or_else(none)?;
+        let directory = crate::shipped::data_directory(&named).ok_or_else(none)?;
         let inside = named.join("data");
         if !named.join(CELL).is_file() && inside.join(CELL).is_file() {
             let (named, inside) = (named.display(), inside.display());
@@ -75,7 +75,7 @@ pub fn data_directory() -> impl TypedValueParser<Value = PathBuf> {
 /// A fault file: a name in the data directory, or a path; if nothing has that path, a built-in file of that path.
 #[must_use]
 pub fn fault_file() -> impl TypedValueParser<Value = PathBuf> {
-    with_names(PathBufValueParser::new().map(shipped::resolve), || names(&FAULTS))
+    with_names(PathBufValueParser::new().map(crate::shipped::resolve), || names(&FAULTS))
 }
 
 /// A job: a name in the data directory, or a path.

@@ -29,7 +29,6 @@ pub mod workstation;
 use std::sync::Arc;
 
 use crate::course::{Course, Levels};
-use counting_alloc::Section;
 use depc::Plate;
 use interfaces::{
     CommonMemory, DeviceInputs, DeviceOutputs, ExternalInputs, Header, HwsCommand, device::LinkBytes,
@@ -38,6 +37,7 @@ use neighbours::{
     data_system::{ANSWER_TICKS, DataSystem, InMemory},
     workstation::{Gate, TaskState},
 };
+use os_io::alloc::Section;
 use plant::{Cell, CellEvent};
 use rcs_core::{digest::Digest, tick::Tick};
 use taskdata::{

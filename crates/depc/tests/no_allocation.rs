@@ -2,7 +2,6 @@
 //!
 //! This file has only one test, because everything in it runs on the counting allocator.
 
-use counting_alloc::{Counting, Section, allocations, is_installed};
 use depc::link::LinkBytes;
 use depc::{
     Limits, Plate,
@@ -13,6 +12,7 @@ use depc::{
     wire::{DataCommand, NO_FUNCTION},
 };
 use geometry::kinematics::{HOME_JOINTS, Joints, T3};
+use os_io::alloc::{Counting, Section, allocations, is_installed};
 use rcs_core::tick::Tick;
 
 #[global_allocator]

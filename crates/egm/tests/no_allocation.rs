@@ -1,11 +1,11 @@
 //! Checks with a counting allocator that handling a message does not allocate.
 
-use counting_alloc::{Counting, Section, allocations, is_installed};
 use egm::{
     Host, Limits, Pose,
     host::Settings,
     message::{Header, MOST_BYTES, MciState, MessageType, Motion, MotorState, RapidState, Robot, WirePose},
 };
+use os_io::alloc::{Counting, Section, allocations, is_installed};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;

@@ -21,4 +21,4 @@ pub mod serial;
 pub mod status;
 pub mod timing;
 
-pub use counting_alloc as alloc;
+pub use os_io::alloc;

@@ -1,12 +1,13 @@
-//! Standard output, standard error and files for the programs of this project.
+//! Standard output, standard error, files and the allocator for the programs of this project.
 //!
 //! A terminal can be closed, a pipe can lose its reader, a disk can be full. In these cases `println!` and `eprintln!`
 //! panic, and a panic would end a run in the middle of a motion. All programs write through [`console`], which does not
 //! panic; clippy denies the macros of the standard library elsewhere. Everything that reads a file named by a person
-//! uses [`files`].
+//! uses [`files`]. [`alloc`] counts what is allocated in sections of a program.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
+pub mod alloc;
 pub mod carried;
 pub mod console;
 pub mod files;

@@ -37,7 +37,7 @@
 //!   its axis and holds a tool as the vise does a part ([`drum`]);
 //! * parts on trays, ledge and floor are rigid bodies of rapier, with contacts stiff enough for gaps of a millimetre.
 //!
-//! [`fault`] injects faults into the data between the cell and the controller.
+//! [`look`] makes meshes of the cell for viewers, and [`fault`] injects faults into the data between the cell and the controller.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
@@ -62,6 +62,7 @@ pub mod image;
 pub mod jaws;
 pub mod joystick;
 pub mod linkage;
+pub mod look;
 pub mod noise;
 pub mod part;
 pub mod pedestal;

@@ -11,6 +11,7 @@ mod grip;
 mod hydraulics;
 mod lines;
 mod linkbar;
+mod look;
 mod numbers;
 mod pedestal;
 mod quick_change;

@@ -90,7 +90,7 @@ impl Vision {
         }
         let answered = self.answer.echo == self.taken && self.answer.status != VisionStatus::Busy;
         let seen = self.seen.take_if(|_| answered)?;
-        Some(look::camera::draw(&self.camera, &seen, &self.answer))
+        Some(plant::look::camera::draw(&self.camera, &seen, &self.answer))
     }
 }
 
@@ -116,7 +116,7 @@ impl Log {
         let model = CellModel {
             urdf: setup.cell.urdf_with(&coming),
             models: models(setup, &coming),
-            names: look::labels(&setup.description).into_iter().map(name).collect(),
+            names: plant::look::labels(&setup.description).into_iter().map(name).collect(),
             links: links.collect(),
             fixed: fixed.collect(),
             joints: joints.collect(),
@@ -261,12 +261,12 @@ fn touch(contact: &Contact, collides: bool) -> Touch {
 
 /// The shapes of all bodies, including the parts that will be delivered.
 fn models(setup: &Setup, coming: &[&str]) -> Vec<Model> {
-    let models = look::models(&setup.description, &setup.cell.part_kinds(coming));
-    let file = |model: look::Model| Model { glb: model.glb(), name: model.name, frame: model.frame };
+    let models = plant::look::models(&setup.description, &setup.cell.part_kinds(coming));
+    let file = |model: plant::look::Model| Model { glb: model.glb(), name: model.name, frame: model.frame };
     models.into_iter().map(file).collect()
 }
 
-fn name(label: look::Label) -> Name {
+fn name(label: plant::look::Label) -> Name {
     Name { text: label.text, frame: label.frame.to_owned(), position: label.position.map(metres) }
 }
 

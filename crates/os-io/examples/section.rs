@@ -1,9 +1,9 @@
 //! Two loops of a tick: one keeps its buffer, the other makes a new one each time, and is found out.
-//! `cargo run --release -p counting-alloc --example section`.
+//! `cargo run --release -p os-io --example section`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 
-use counting_alloc::{Counting, Section, allocations};
+use os_io::alloc::{Counting, Section, allocations};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;

@@ -1,18 +1,18 @@
 //! Draws what the wrist camera saw, with the answer of the vision system, as a small picture.
 //!
-//! The picture shows the faces that vision evaluated ([`plant::camera::Subject`]), tool Y to the left and tool Z up.
+//! The picture shows the faces that vision evaluated ([`crate::camera::Subject`]), tool Y to the left and tool Z up.
 //! The outline of the part in the answer is green if vision recognised it and yellow if not. A cross marks the centroid
 //! that vision answered, with a line in the direction of the fingers' motion. A red border: vision saw nothing.
 
-use geometry::frame::Vector;
-use interfaces::device::{VisionResponse, VisionStatus};
-use plant::{
+use crate::{
     camera::{Face, Subject, subject::RASTER},
     convert::inches,
     description::Camera,
 };
+use geometry::frame::Vector;
+use interfaces::device::{VisionResponse, VisionStatus};
 
-use crate::png::Picture;
+use crate::look::png::Picture;
 
 /// Width and height of the picture, pixels.
 const SIZE: usize = 160;
@@ -125,8 +125,8 @@ fn cross(canvas: &mut Canvas, subject: &Subject, answer: &VisionResponse, colour
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::CellDescription;
     use geometry::frame::Frame;
-    use plant::CellDescription;
 
     /// A bar 590 mm before the camera, an inch to the left.
     fn bar() -> Subject {
@@ -135,7 +135,7 @@ mod tests {
     }
 
     fn picture(subjects: &[Subject], answer: &VisionResponse) -> Vec<u8> {
-        let cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
+        let cell = CellDescription::from_toml(include_str!("../../../../data/cell.toml")).unwrap();
         draw(&cell.camera, subjects, answer)
     }
 
@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn what_is_on_the_left_of_the_tool_is_on_the_left() {
-        let camera = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap().camera;
+        let camera = CellDescription::from_toml(include_str!("../../../../data/cell.toml")).unwrap().camera;
         let widest = camera.view / inches(camera.reference_range_mm / 1000.0);
         let canvas = Canvas { pixels: vec![0; SIZE * SIZE], widest };
         let [x, y] = canvas.place(&Vector::new(inches(0.605), 5.25, 0.0));

@@ -2,10 +2,10 @@
 //!
 //! The mesh of a block contains the block's own box. All other meshes are out of the arm's reach.
 
+use crate::{CellDescription, description::Kind, scene::Block};
 use geometry::frame::{Frame, Vector};
-use plant::{CellDescription, description::Kind, scene::Block};
 
-use crate::{
+use crate::look::{
     Model, arm, machine,
     material::Material::{
         Blue, Bright, Charcoal, Concrete, Cream, Green, Light, Maple, Orange, PaleBlue, Petrol, Red, Rubber,

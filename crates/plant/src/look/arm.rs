@@ -1,17 +1,17 @@
 //! Meshes of the T3: base column, turret, upper arm, forearm, wrist.
 //!
-//! Each mesh covers the cylinder that the collision model uses for its link ([`plant::bodies`]); hydraulics, hoses and
+//! Each mesh covers the cylinder that the collision model uses for its link ([`crate::bodies`]); hydraulics, hoses and
 //! bolts lie outside it.
 
 use core::f64::consts::TAU;
 
+use crate::{CellDescription, bodies::turret, scene::Block};
 use geometry::{
     frame::{Frame, Rotation, Vector},
     kinematics::T3,
 };
-use plant::{CellDescription, bodies::turret, scene::Block};
 
-use crate::{
+use crate::look::{
     Model,
     material::Material::{Bright, Charcoal, Cream, Orange, Rubber, Steel, Yellow},
     mesh::{Mesh, ROUND, SMALL, count, rounded},

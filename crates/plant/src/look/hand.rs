@@ -5,14 +5,14 @@
 
 use core::f64::consts::TAU;
 
-use geometry::kinematics::T3;
-use plant::{
+use crate::{
     CellDescription,
     bodies::{CAMERA, body_boxes, palm},
     description::Gripper,
 };
+use geometry::kinematics::T3;
 
-use crate::{
+use crate::look::{
     Model,
     material::{
         Material,

@@ -1,8 +1,8 @@
-//! Writes the meshes of the cell as GLB files: `cargo run --release -p look --example models -- DIRECTORY`.
+//! Writes the meshes of the cell as GLB files: `cargo run --release -p plant --example models -- DIRECTORY`.
 
 use std::{env, error::Error, fs, io::Write as _, path::PathBuf};
 
-use plant::CellDescription;
+use plant::{CellDescription, look};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let directory = PathBuf::from(env::args().nth(1).ok_or("a directory was expected")?);

@@ -6,7 +6,7 @@ use std::{collections::BTreeMap, fmt::Write as _};
 
 use geometry::frame::Vector;
 
-use crate::{material::Material, mesh::Mesh};
+use crate::look::{material::Material, mesh::Mesh};
 
 /// Metres per inch.
 const INCH: f64 = 0.0254;

@@ -1,7 +1,5 @@
 //! The data that comes with the programs: forms, jobs, cell description, faults, robots.
 
-#![forbid(unsafe_code)]
-
 use std::{
     fs, io,
     path::{Path, PathBuf},

@@ -9,7 +9,6 @@
 //! It does nothing but count and hand over to the system's allocator.
 
 #![allow(unsafe_code, reason = "GlobalAlloc is an unsafe trait; every call is passed on unchanged")]
-#![warn(missing_docs)]
 
 use std::{
     alloc::{GlobalAlloc, Layout, System},
@@ -30,9 +29,9 @@ thread_local! {
 ///
 /// ```
 /// #[global_allocator]
-/// static ALLOCATOR: counting_alloc::Counting = counting_alloc::Counting;
+/// static ALLOCATOR: os_io::alloc::Counting = os_io::alloc::Counting;
 /// # fn main() {
-/// assert!(counting_alloc::is_installed());
+/// assert!(os_io::alloc::is_installed());
 /// # }
 /// ```
 pub struct Counting;

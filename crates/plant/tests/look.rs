@@ -6,7 +6,7 @@ use geometry::{
     frame::{Frame, Vector},
     kinematics::T3,
 };
-use look::{Model, models, parts};
+use plant::look::{Model, models, parts};
 use plant::{
     Cell, CellDescription, Placement, WorkstationAction, bodies,
     clearance::Body,
@@ -195,7 +195,7 @@ fn each_look_belongs_to_a_link_and_has_closed_surfaces() {
         let open = edges.values().filter(|ways| **ways != 0).count();
         assert_eq!(open, 0, "piece {at} near {:?} is open", solid.low);
     }
-    for label in look::labels(&description) {
+    for label in plant::look::labels(&description) {
         assert!(frames.contains_key(label.frame), "{label:?}");
     }
 }

@@ -1,11 +1,11 @@
 //! Meshes of parts and tools: the bodies of the collision model, coloured by kind.
 
-use plant::{
+use crate::{
     description::PartType,
     solid::{Family, along},
 };
 
-use crate::{
+use crate::look::{
     material::{
         Material,
         Material::{Brass, Bright, Gold, Green, Red, Steel, Violet},

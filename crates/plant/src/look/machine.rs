@@ -2,12 +2,12 @@
 
 use core::f64::consts::TAU;
 
-use plant::{
+use crate::{
     CellDescription,
     scene::{Block, jaw_blocks, vise_frame},
 };
 
-use crate::{
+use crate::look::{
     Model,
     material::Material::{Bright, Charcoal, Gold, Green, Light, Petrol, Red, Rubber, Steel, White, Yellow},
     mesh::{Mesh, ROUND, SMALL, count},

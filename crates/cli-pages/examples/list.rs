@@ -1,8 +1,9 @@
 //! Lists the files that the programs carry, and reads one of them as a program does that was installed.
-//! `cargo run --release -p shipped --example list`.
+//! `cargo run --release -p cli-pages --example list`.
 
 use std::path::Path;
 
+use cli_pages::shipped;
 use os_io::{files, stdout_line};
 
 fn main() -> std::io::Result<()> {

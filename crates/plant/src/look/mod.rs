@@ -1,13 +1,10 @@
 //! Visual meshes of the cell: one for each link, generated from the description of the cell.
 //!
 //! [`models`] makes parametric solids, which become glTF files. They are for display only: the physics has its own
-//! bodies ([`plant::bodies`], [`plant::scene`]). Each mesh covers the bodies of its link, so that contacts of the
+//! bodies ([`crate::bodies`], [`crate::scene`]). Each mesh covers the bodies of its link, so that contacts of the
 //! physics show no gap. [`labels`] lists the names to display, [`camera`] draws what vision saw.
 //!
 //! The same description gives the same bytes. Lengths are inches; [`glb`] converts to metres.
-
-#![forbid(unsafe_code)]
-#![warn(missing_docs)]
 
 pub mod arm;
 pub mod camera;
@@ -20,7 +17,7 @@ pub mod parts;
 pub mod png;
 pub mod room;
 
-use plant::{
+use crate::{
     CellDescription,
     description::PartType,
     scene::{Block, furniture},
