@@ -32,7 +32,7 @@ pub struct DataArgument {
     #[arg(
         long,
         value_name = "DIR",
-        default_value = shipped::default_data(),
+        default_value = crate::shipped::default_data(),
         hide_default_value = true,
         value_parser = data_directory()
     )]
