@@ -12,6 +12,9 @@
 //!   reload()      ──► task data that the job has loaded      unless a command is executed
 //! ```
 //!
+//! The cell is that of the simulation, whose contacts, places and confirmations are judged, or the ideal one
+//! ([`ideal`]): a [`World`].
+//!
 //! `rcs-run run` puts clock, log, boards, robots and neighbours around it; `rcs-run campaign` forks it.
 
 pub mod contacts;
@@ -19,12 +22,15 @@ pub mod course;
 pub mod failure;
 pub mod generations;
 mod given;
+pub mod ideal;
 mod line;
 mod player;
 mod present;
 pub mod rest;
+mod simulated;
 pub mod truth;
 pub mod workstation;
+mod world;
 
 use std::sync::Arc;
 
@@ -38,60 +44,42 @@ use neighbours::{
     workstation::{Gate, TaskState},
 };
 use os_io::alloc::Section;
-use plant::{Cell, CellEvent};
 use rcs_core::{digest::Digest, tick::Tick};
 use taskdata::{
     files::TaskData,
     load::{Store, job::Reload},
 };
 
-use self::{
-    contacts::{ContactCheck, ContactEvent},
-    generations::Generations,
-    given::combined,
-    truth::{Confirmation, Scene, TruthCheck, placement::PlacementCheck},
-    workstation::SimulatedWorkstation,
-};
+use self::{generations::Generations, given::combined, workstation::SimulatedWorkstation};
 pub use self::{
     given::{Given, RobotInputs},
     line::RobotLine,
     player::{CommandBox, Commander, JobPlayer},
     present::Present,
+    simulated::Settled,
+    world::{Turn, World},
 };
 
 /// A run between two ticks. A copy continues from the same state.
 #[derive(Clone)]
-pub struct ClosedLoop<L = Present> {
+pub struct ClosedLoop<L = Present, W: World = SimulatedWorkstation> {
     course: Course<L>,
     generations: Generations,
     /// External inputs of the last tick.
     external: ExternalInputs,
     /// Device words of the next tick.
     inputs: DeviceInputs,
-    line: RobotLine,
     gate: Gate,
     /// The Data System; `None` if it is elsewhere.
     books: Option<DataSystem<InMemory>>,
-    contacts: ContactCheck,
-    placement: PlacementCheck,
-    truth: TruthCheck,
+    /// The line to the robot, and the judges of what happens in the cell.
+    checks: W::Checks,
     /// The cell and the other equipment of the workstation.
-    pub workstation: SimulatedWorkstation,
-}
-
-/// What has happened in the cell in a tick.
-#[derive(Debug, Default)]
-pub struct Settled {
-    /// Events of the cell. Its contacts are in `contacts`, if they must not be.
-    pub events: Vec<CellEvent>,
-    /// Collisions that have begun or ended.
-    pub contacts: Vec<ContactEvent>,
-    /// Confirmations that are not true.
-    pub untrue: Vec<Confirmation>,
+    pub workstation: W,
 }
 
 /// What a source of commands, or an operator, sees and changes after a tick.
-pub struct Desk<'a> {
+pub struct Desk<'a, W = SimulatedWorkstation> {
     /// The tick.
     pub tick: Tick,
     /// Common memory after the tick.
@@ -101,27 +89,24 @@ pub struct Desk<'a> {
     /// Task's end of the mailboxes; its status box has the status of this tick.
     pub gate: &'a mut Gate,
     /// The cell and the other equipment of the workstation.
-    pub workstation: &'a mut SimulatedWorkstation,
+    pub workstation: &'a mut W,
     /// The task data.
     pub generations: &'a Generations,
 }
 
-impl<L> ClosedLoop<L> {
-    /// A run before its first tick: control processes, task data with the reloads of the job, and the cell.
+impl<L, W: World> ClosedLoop<L, W> {
+    /// A run before its first tick: control processes, task data with the reloads of the job, and a world.
     #[must_use]
-    pub fn new(levels: L, store: Arc<Store>, reloads: Arc<Vec<Reload>>, cell: Cell) -> Self {
+    pub fn in_world(levels: L, store: Arc<Store>, reloads: Arc<Vec<Reload>>, world: W) -> Self {
         Self {
             course: Course::new(levels),
             generations: Generations::new(store, reloads),
             external: ExternalInputs::default(),
-            inputs: cell.inputs(),
-            line: RobotLine::default(),
+            inputs: world.inputs(),
             gate: Gate::default(),
             books: Some(DataSystem::in_memory(ANSWER_TICKS)),
-            contacts: ContactCheck::new(cell.description().contact.clone()),
-            placement: PlacementCheck::new(cell.description()),
-            truth: TruthCheck::default(),
-            workstation: SimulatedWorkstation::new(cell),
+            checks: world.checks(),
+            workstation: world,
         }
     }
 
@@ -129,12 +114,6 @@ impl<L> ClosedLoop<L> {
     #[must_use]
     pub fn with_data_system_elsewhere(self) -> Self {
         Self { books: None, ..self }
-    }
-
-    /// Ignore distances of the robot to things that it does not touch, which saves time.
-    #[must_use]
-    pub fn without_near_misses(self) -> Self {
-        Self { contacts: self.contacts.without_near_misses(), ..self }
     }
 
     /// The external inputs of the next tick.
@@ -202,44 +181,20 @@ impl<L> ClosedLoop<L> {
     /// The second part of a tick: advance the cell, and judge what has happened in it. With a robot elsewhere the cell
     /// follows its position `moved`, as far as that is known, and confirmations are not judged: the cell is only a
     /// model of what is there.
-    pub fn settle(&mut self, moved: Option<&Plate>) -> Settled {
-        let tick = self.course.tick();
-        let mut settled = self.advance(tick, &self.outputs(), moved);
-        let Self { course, external, generations, workstation, truth, .. } = self;
-        let (memory, cell) = (course.memory(), &workstation.cell);
-        self.placement.look(tick, &external.hws, &memory.task.status, cell.description(), &cell.parts());
-        if !workstation.is_robot_elsewhere() {
-            truth.note_delivered(tick, workstation.delivered());
-            let (hws, data) = (&external.hws, &generations.current().view());
-            settled.untrue = truth.look(&Scene { tick, hws, memory, data, cell: &workstation.cell });
-        }
+    pub fn settle(&mut self, moved: Option<&Plate>) -> W::Settled {
+        let outputs = self.outputs();
+        let Self { course, external, generations, workstation, checks, .. } = self;
+        let (tick, memory) = (course.tick(), course.memory());
+        let (hws, data) = (&external.hws, &generations.current().view());
+        let settled;
+        (self.inputs, settled) =
+            workstation.settle(checks, &Turn { tick, hws, memory, data, outputs: &outputs, moved });
         settled
-    }
-
-    /// Advance the cell in `tick` without the controller: the robot gets no frame, and the valves keep their state.
-    pub fn coast(&mut self, tick: Tick, moved: Option<&Plate>) -> Settled {
-        let outputs = self.course.memory().device_outputs();
-        self.advance(tick, &DeviceOutputs { link_tx: LinkBytes::default(), ..outputs }, moved)
-    }
-
-    fn advance(&mut self, tick: Tick, outputs: &DeviceOutputs, moved: Option<&Plate>) -> Settled {
-        let Self { workstation, line, contacts, .. } = self;
-        self.inputs = match workstation.is_robot_elsewhere() {
-            true => workstation.cell.step_following(moved, outputs),
-            false => line.advance(tick, &mut workstation.cell, outputs),
-        };
-        let mut events = workstation.events(tick);
-        // The check selects the contacts that are events.
-        events.retain(|event| !matches!(event, CellEvent::Contact(_)));
-        let commands = contacts.commands(self.course.memory());
-        let contacts = contacts.look(tick, workstation.cell.contacts(), commands);
-        workstation.cell.watch_clearance(self.contacts.margin());
-        Settled { events, contacts, untrue: Vec::new() }
     }
 
     /// The third part of a tick: the Data System and the source of commands read the outputs of the tick. `command` is
     /// the source: it reads its status from the gate, and has the gate read its command. The next tick sees the result.
-    pub fn exchange<T>(&mut self, command: impl FnOnce(Desk<'_>) -> T) -> T {
+    pub fn exchange<T>(&mut self, command: impl FnOnce(Desk<'_, W>) -> T) -> T {
         let (tick, memory) = (self.course.tick(), self.course.memory());
         if let Some(books) = &mut self.books {
             books.step(tick, &memory.task.data_base);
@@ -247,12 +202,12 @@ impl<L> ClosedLoop<L> {
         self.gate.write(memory, task_state(&memory.task.header, tick));
         let result = command(self.desk());
         // Vision elsewhere has answered meanwhile.
-        self.inputs.vision = self.workstation.cell.inputs().vision;
+        self.inputs.vision = self.workstation.inputs().vision;
         result
     }
 
     /// What a source of commands, or an operator, sees and changes between two ticks.
-    pub const fn desk(&mut self) -> Desk<'_> {
+    pub const fn desk(&mut self) -> Desk<'_, W> {
         Desk {
             tick: self.course.tick(),
             memory: self.course.memory(),
@@ -270,11 +225,6 @@ impl<L> ClosedLoop<L> {
             self.generations.propose(number);
         }
         self.generations.advance(self.course.memory())
-    }
-
-    /// Note that a person has changed these parts after the last tick.
-    pub fn note_changed(&mut self, parts: Vec<u32>) {
-        self.truth.note_changed(self.course.tick().next(), parts);
     }
 
     /// The last tick.
@@ -350,35 +300,6 @@ impl<L> ClosedLoop<L> {
     /// The same, to take its refusals or to list its items.
     pub const fn books_mut(&mut self) -> Option<&mut DataSystem<InMemory>> {
         self.books.as_mut()
-    }
-
-    /// The line to the simulated robot controller.
-    #[must_use]
-    pub const fn line(&self) -> &RobotLine {
-        &self.line
-    }
-
-    /// The same, to give it faults.
-    pub const fn line_mut(&mut self) -> &mut RobotLine {
-        &mut self.line
-    }
-
-    /// The check of the robot's contacts.
-    #[must_use]
-    pub const fn contacts(&self) -> &ContactCheck {
-        &self.contacts
-    }
-
-    /// The check of the parts' places.
-    #[must_use]
-    pub const fn placement(&self) -> &PlacementCheck {
-        &self.placement
-    }
-
-    /// The judge of the confirmations of the control processes.
-    #[must_use]
-    pub const fn truth(&self) -> &TruthCheck {
-        &self.truth
     }
 }
 

@@ -22,26 +22,16 @@ use neighbours::{
 use rcs_core::tick::Tick;
 use taskdata::files::TaskData;
 
-use crate::{ClosedLoop, Given, Settled, workstation::SimulatedWorkstation};
+use crate::{ClosedLoop, Given, World, workstation::SimulatedWorkstation};
 
 /// Commands Task, and operates the workstation around the robot.
-pub trait Commander {
+pub trait Commander<W = SimulatedWorkstation> {
     /// Called once per tick: reads Task's status and returns the command to write into the mailbox, if any.
-    fn step(
-        &mut self,
-        tick: Tick,
-        status: &Status<'_>,
-        workstation: &mut SimulatedWorkstation,
-    ) -> Option<HwsCommand>;
+    fn step(&mut self, tick: Tick, status: &Status<'_>, workstation: &mut W) -> Option<HwsCommand>;
 }
 
-impl Commander for Hwsc {
-    fn step(
-        &mut self,
-        tick: Tick,
-        status: &Status<'_>,
-        workstation: &mut SimulatedWorkstation,
-    ) -> Option<HwsCommand> {
+impl<W: World> Commander<W> for Hwsc {
+    fn step(&mut self, tick: Tick, status: &Status<'_>, workstation: &mut W) -> Option<HwsCommand> {
         Self::step(self, tick, status, workstation);
         self.mailgram().copied()
     }
@@ -69,12 +59,12 @@ impl CommandBox {
     ///
     /// # Errors
     /// [`JobFailure::Refused`] if the status cannot be decoded or the command does not fit into the mailbox.
-    pub fn write(
+    pub fn write<W>(
         &mut self,
         tick: Tick,
         gate: &Gate,
-        workstation: &mut SimulatedWorkstation,
-        commander: &mut impl Commander,
+        workstation: &mut W,
+        commander: &mut impl Commander<W>,
     ) -> Result<(), JobFailure> {
         let status = status::decode(gate.status_box().data())
             .map_err(|error| JobFailure::Refused(error.to_string()))?;
@@ -91,7 +81,7 @@ impl CommandBox {
     }
 }
 
-impl<L> ClosedLoop<L>
+impl<L, W: World> ClosedLoop<L, W>
 where
     L: for<'a> Levels<TaskData<'a>, Error = Infallible>,
 {
@@ -103,8 +93,8 @@ where
     pub fn step(
         &mut self,
         command_box: &mut CommandBox,
-        commander: &mut impl Commander,
-    ) -> (Settled, Result<(), JobFailure>) {
+        commander: &mut impl Commander<W>,
+    ) -> (W::Settled, Result<(), JobFailure>) {
         let Ok(()) = self.decide(&Given::default());
         let settled = self.settle(None);
         let written = self.exchange(|desk| {
@@ -140,7 +130,7 @@ impl JobPlayer {
 
     /// Called once per tick: the emulator reads its status mailbox and writes its command mailbox. The caller then has
     /// the gate read it; the emulator learns from its status which commands the gate refuses.
-    pub fn write(&mut self, tick: Tick, gate: &Gate, workstation: &mut SimulatedWorkstation) -> Progress {
+    pub fn write<W: World>(&mut self, tick: Tick, gate: &Gate, workstation: &mut W) -> Progress {
         let written = self.command_box.write(tick, gate, workstation, &mut self.hwsc);
         self.progress(written)
     }
@@ -159,7 +149,7 @@ impl JobPlayer {
     }
 
     /// Run one tick of a loop that this player commands, without anything from outside.
-    pub fn step<L>(&mut self, closed: &mut ClosedLoop<L>) -> Progress
+    pub fn step<L, W: World>(&mut self, closed: &mut ClosedLoop<L, W>) -> Progress
     where
         L: for<'a> Levels<TaskData<'a>, Error = Infallible>,
     {

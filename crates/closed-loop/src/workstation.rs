@@ -115,14 +115,14 @@ impl SimulatedWorkstation {
     }
 
     /// Number of the first reload of task data that the job has requested since the last call of
-    /// [`SimulatedWorkstation::loads`].
+    /// [`World::loads`](crate::World::loads).
     #[must_use]
     pub fn first_load(&self) -> Option<u32> {
         self.state.loads.first().copied()
     }
 
     /// Numbers of the reloads of task data that the job has requested since the last call.
-    pub fn loads(&mut self) -> Vec<u32> {
+    pub(crate) fn take_loads(&mut self) -> Vec<u32> {
         std::mem::take(&mut self.state.loads)
     }
 

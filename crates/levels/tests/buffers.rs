@@ -1,18 +1,14 @@
 //! Variables of the interfaces (chapters V and VI) that are carried along: no scenario depends on them,
 //! people and programs that look on do.
 
-mod fingers;
-
-use fingers::Fingers;
 use interfaces::{
-    CommonMemory, EmoveOutputs, ExternalInputs, GripOutputs, T3iOutputs,
+    CommonMemory, EmoveOutputs, ExternalInputs, T3iOutputs,
     emove::{EmoveCommand, EmoveVerb},
-    grip::{GripCommand, GripReport, GripVerb},
     prim::PrimVerb,
     process::{Inputs, Process},
     t3i::{T3iCommand, T3iVerb},
 };
-use levels::{emove::Emove, grip::Grip, t3i::T3i};
+use levels::{emove::Emove, t3i::T3i};
 use rcs_core::tick::Tick;
 use taskdata::files::TaskData;
 
@@ -49,36 +45,4 @@ fn e_move_passes_the_feedback_pose_up_and_the_gripper_down() {
     }
     assert_eq!(outputs.status.reference_pose, Some(0x8300_0007));
     assert_eq!((outputs.prim.command, outputs.prim.end_effector_id), (PrimVerb::RobotInit, Some(2)));
-}
-
-#[test]
-fn grip_reports_how_fast_the_fingers_move() {
-    let (mut process, mut memory, mut outputs) =
-        (Grip::default(), CommonMemory::default(), GripOutputs::default());
-    let (mut external, mut fingers) = (ExternalInputs::default(), Fingers { opening: 2.0, force: 0.0 });
-    external.devices.quick_change.locked = true;
-    external.devices.quick_change.end_effector_id = 1;
-    let mut fastest = 0;
-    for tick in 1..600 {
-        if tick == 400 {
-            assert!(outputs.status.initialized, "the gripper calibrates at the start");
-            memory.emove.grip = GripCommand {
-                number: 1,
-                command: GripVerb::Position,
-                position: 100,
-                velocity: 100,
-                end_effector_id: Some(1),
-                ..GripCommand::default()
-            };
-        }
-        fingers.show(&mut external.devices.grip);
-        let inputs = Inputs { tick: Tick(tick), memory: &memory, external: &external, data: &() };
-        process.step(&inputs, &mut outputs);
-        fingers.advance(outputs.valves.bits);
-        if tick > 400 {
-            fastest = fastest.min(outputs.status.velocity);
-        }
-    }
-    assert_eq!((outputs.status.report, outputs.status.velocity), (GripReport::Done, 0));
-    assert!((-105..=-95).contains(&fastest), "1 in/s was commanded, {fastest} reported");
 }

@@ -119,27 +119,7 @@ impl<'a> State<'a> {
         };
         self.layout.jaws = self.room.jaws(self.layout.program, jaws);
         if jaws == Jaws::Closed {
-            self.clamp();
-        }
-    }
-
-    /// Closes the jaws on the part between them; a part that nothing else holds moves to its seat.
-    fn clamp(&mut self) {
-        let opened = Layout { jaws: self.room.jaws(self.layout.program, Jaws::Open), ..self.layout.clone() };
-        if let Some(index) = self.room.in_vise(&opened)
-            && let Some(part) = self.layout.parts.get_mut(index)
-            && let Some((seat, gap)) = self.room.vise_seat(self.layout.program, part)
-        {
-            part.frame = seat;
-            self.layout.jaws = gap;
-        } else if let Some(held) = &self.layout.held {
-            let there = Placed { frame: self.robot.tool().compose(&held.frame), ..held.clone() };
-            let held = Layout { parts: vec![there.clone()], ..opened };
-            if self.room.in_vise(&held).is_some()
-                && let Some((_, gap)) = self.room.vise_seat(self.layout.program, &there)
-            {
-                self.layout.jaws = gap;
-            }
+            self.room.clamp(&mut self.layout, &self.robot.tool());
         }
     }
 
@@ -154,7 +134,7 @@ impl<'a> State<'a> {
             self.lacking.push(*part);
         }
         if self.room.in_vise(&self.layout).is_some() {
-            self.clamp();
+            self.room.clamp(&mut self.layout, &self.robot.tool());
         }
     }
 

@@ -20,6 +20,11 @@ use crate::{
 /// Least depth of a contact, in: resting parts penetrate less.
 pub const LEAST_DEPTH: f64 = 0.001;
 
+/// Least overlap of a new part with a body that blocks it, m.
+const OVERLAP: Real = 1e-4;
+/// Bodies whose centres are nearer than this to each other overlap, m.
+const SAME_PLACE: Real = 1e-3;
+
 /// A body that can collide, metres.
 #[derive(Clone, Debug)]
 pub struct Body {
@@ -58,6 +63,15 @@ impl Body {
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         self.id() == other.id() && self.pose == other.pose && self.aabb == other.aabb
+    }
+
+    /// True if they overlap, so that one cannot be put where the other is.
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        // Round shapes inside each other have no separating direction, and no depth.
+        let same = (self.pose.translation - other.pose.translation).length() < SAME_PLACE;
+        let contact = query::contact(&self.pose, &*self.shape, &other.pose, &*other.shape, 0.0);
+        same || matches!(contact, Ok(Some(contact)) if contact.dist < -OVERLAP)
     }
 
     /// True if they are neighbours in the chain of the arm, or the same link.

@@ -17,6 +17,7 @@ use rapier3d_f64::math::Real;
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    cell::WorkstationError,
     convert::{metres, newtons},
     description::{Drum as Description, Kind},
     scene::Block,
@@ -38,6 +39,14 @@ pub struct Entering {
     pub aside: f64,
     /// Angle of its axis to the drum's, radians.
     pub angle: f64,
+}
+
+impl Entering {
+    /// The error of fingers that cannot close on a tool that is here.
+    pub(crate) fn not_in_place(self, tool: String) -> WorkstationError {
+        let distance = libm::hypot(self.left, self.aside);
+        WorkstationError::NotInPlace { tool, distance, degrees: self.angle.to_degrees() }
+    }
 }
 
 /// The tool in the drum or in front of it.

@@ -21,7 +21,6 @@ use crate::{
     noise::Noise,
     scene::{PALM, groups},
     sensor::Analog,
-    squeeze::Pads,
 };
 
 /// Fingers farther than this from a blocking part are free, in.
@@ -156,6 +155,27 @@ impl Air {
     }
 }
 
+impl Description {
+    /// Read the sensors of fingers; `beams` has a bit for each interrupted light beam.
+    pub fn read(&self, air: &Air, noise: &mut Noise, beams: u8) -> GripSensors {
+        let sensors = &self.sensors;
+        let analog = |offset, scale| Analog { offset, scale, noise: sensors.noise };
+        let potentiometer =
+            analog(sensors.potentiometer_offset, sensors.potentiometer_scale).counts(air.opening(), noise);
+        if sensors.strain_scales == [0.0; 2] {
+            return GripSensors { potentiometer, ..GripSensors::default() };
+        }
+        let [left_offset, right_offset] = sensors.strain_offsets;
+        let [left_scale, right_scale] = sensors.strain_scales;
+        GripSensors {
+            potentiometer,
+            strain_left: analog(left_offset, left_scale).counts(air.force(), noise),
+            strain_right: analog(right_offset, right_scale).counts(air.force(), noise),
+            beams,
+        }
+    }
+}
+
 /// The gripper's bodies, air and hold.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Gripper {
@@ -223,14 +243,6 @@ impl Gripper {
     #[must_use]
     pub fn finger_rests(&self) -> [Pose; 2] {
         self.fingers.map(|finger| finger_rest(&self.description, finger.side, self.air.opening()))
-    }
-
-    /// The pads in the tool frame.
-    #[must_use]
-    pub fn pads(&self) -> Pads {
-        let [length, _, width] = self.description.fingers.map(metres);
-        let groove = self.description.groove.map(metres);
-        Pads { x: [-length, 0.0], z: [-width / 2.0, width / 2.0], groove }
     }
 
     /// From now on the fingers sleep while nothing moves them: their springs are not computed then. They wake when the
@@ -395,34 +407,7 @@ impl Gripper {
 
     /// Read the sensors; `beams` has a bit for each interrupted light beam.
     pub fn sensors(&self, noise: &mut Noise, beams: u8) -> GripSensors {
-        let sensors = &self.description.sensors;
-        let analog = |offset, scale| Analog { offset, scale, noise: sensors.noise };
-        let potentiometer = analog(sensors.potentiometer_offset, sensors.potentiometer_scale)
-            .counts(self.air.opening(), noise);
-        if sensors.strain_scales == [0.0; 2] {
-            return GripSensors { potentiometer, ..GripSensors::default() };
-        }
-        let [left_offset, right_offset] = sensors.strain_offsets;
-        let [left_scale, right_scale] = sensors.strain_scales;
-        GripSensors {
-            potentiometer,
-            strain_left: analog(left_offset, left_scale).counts(self.air.force(), noise),
-            strain_right: analog(right_offset, right_scale).counts(self.air.force(), noise),
-            beams,
-        }
-    }
-
-    /// The light beams in the tool frame: pairs of end points on the pads, metres. ASSUMED: two columns of four, 0.5 in
-    /// to either side of the middle of a finger, 0.10 to 1.20 in behind the tips.
-    pub fn beams(&self) -> impl Iterator<Item = (Vector, Vector)> + use<> {
-        let half = metres(self.air.opening() / 2.0);
-        let columns = [metres(-0.5), metres(0.5)];
-        columns.into_iter().flat_map(move |z| {
-            [0.10, 0.30, 0.60, 1.20].map(move |behind| {
-                let x = -metres(behind);
-                (Vector::new(x, -half, z), Vector::new(x, half, z))
-            })
-        })
+        self.description.read(&self.air, noise, beams)
     }
 
     /// Coefficient of friction of the pads.

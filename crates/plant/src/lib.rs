@@ -46,6 +46,7 @@ pub mod arm;
 pub mod bodies;
 pub mod camera;
 pub mod cell;
+mod changer;
 pub mod clearance;
 pub mod convert;
 pub mod description;
@@ -55,9 +56,12 @@ pub mod finger;
 pub mod fingerprint;
 pub mod force;
 pub mod friction;
+mod grasp;
 pub mod gripper;
+mod hand;
 pub mod hold;
 pub mod holster;
+mod ideal;
 pub mod image;
 pub mod jaws;
 pub mod joystick;
@@ -83,6 +87,7 @@ pub use cell::{
     WorkstationAction, WorkstationError, part_link,
 };
 pub use description::CellDescription;
+pub use ideal::Ideal;
 pub use joystick::{BoxAction, BoxButton, Joystick};
 pub use part::PartState;
 pub use pedestal::{TableKey, TablePanel};

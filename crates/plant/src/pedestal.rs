@@ -14,7 +14,7 @@
 mod panel;
 
 use geometry::frame::{Frame, Vector as Inches, rotation_from_x_y};
-use interfaces::device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH};
+use interfaces::device::{GripSensors, MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH};
 use rapier3d_f64::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -150,6 +150,21 @@ impl Table {
         libm::round(self.position + self.offset) as i32
     }
 
+    /// Readings of the table, and those of the hand on it.
+    pub fn sensors(&self, hand: GripSensors, noise: &mut Noise) -> PedestalSensors {
+        PedestalSensors {
+            potentiometer: hand.potentiometer,
+            strain_left: hand.strain_left,
+            strain_right: hand.strain_right,
+            table_potentiometer: self.potentiometer(noise),
+            limit_plus: self.at_plus(),
+            limit_minus: self.at_minus(),
+            motor_echo: self.echo,
+            motor_moving: self.moving(),
+            motor_counter: self.counter(),
+        }
+    }
+
     fn potentiometer(&self, noise: &mut Noise) -> u16 {
         let table = &self.description;
         let (offset, scale) = (table.potentiometer_offset, table.potentiometer_scale);
@@ -212,17 +227,7 @@ impl Pedestal {
     /// Read all sensors.
     pub fn sensors(&self, noise: &mut Noise) -> PedestalSensors {
         let grip = self.hand.sensors(noise, 0);
-        PedestalSensors {
-            potentiometer: grip.potentiometer,
-            strain_left: grip.strain_left,
-            strain_right: grip.strain_right,
-            table_potentiometer: self.table.potentiometer(noise),
-            limit_plus: self.table.at_plus(),
-            limit_minus: self.table.at_minus(),
-            motor_echo: self.table.echo,
-            motor_moving: self.table.moving(),
-            motor_counter: self.table.counter(),
-        }
+        self.table.sensors(grip, noise)
     }
 }
 

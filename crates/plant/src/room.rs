@@ -61,6 +61,15 @@ pub struct Layout {
     pub hand: f64,
 }
 
+/// The part in the closed jaws of the vise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clamped {
+    /// A part of the layout, by its index.
+    Part(usize),
+    /// The part that the robot holds.
+    Held,
+}
+
 /// The cell.
 #[derive(Debug)]
 pub struct Room {
@@ -153,11 +162,39 @@ impl Room {
         })
     }
 
+    /// Close the jaws of the vise on the part between them: one that nothing else holds moves to its seat, to which the
+    /// robot has pushed it. `tool` is the tool frame of the robot. Returns what is in the jaws.
+    pub fn clamp(&self, layout: &mut Layout, tool: &Frame) -> Option<Clamped> {
+        layout.jaws = self.jaws(layout.program, Jaws::Open);
+        let index = self.in_vise(layout);
+        let held =
+            layout.held.as_ref().map(|held| Placed { frame: tool.compose(&held.frame), ..held.clone() });
+        let held_in_vise =
+            |held: &Placed| self.in_vise(&Layout { parts: vec![held.clone()], ..layout.clone() }).is_some();
+        let held = held.filter(|held| index.is_none() && held_in_vise(held));
+        layout.jaws = self.jaws(layout.program, Jaws::Closed);
+        if let Some((index, part)) = index.and_then(|index| Some((index, layout.parts.get_mut(index)?))) {
+            (part.frame, layout.jaws) = self.vise_seat(layout.program, part)?;
+            return Some(Clamped::Part(index));
+        }
+        (_, layout.jaws) = self.vise_seat(layout.program, &held?)?;
+        Some(Clamped::Held)
+    }
+
     /// The seat of the nest that contains a part; `None` if it is in no nest.
     #[must_use]
     pub fn nest_seat(&self, part: &Placed) -> Option<Frame> {
         let nests = self.cell.nest.iter().filter(|nest| nest.takes(&part.kind)).map(|nest| nest.frame());
         nests.into_iter().find(|seat| (seat.position - part.frame.position).norm() < IN_NEST)
+    }
+
+    /// The body that a part would overlap, if any.
+    #[must_use]
+    pub fn in_the_way(&self, part: &Placed, layout: &Layout) -> Option<String> {
+        let part = bodies::part(&part.kind, &to_pose(&part.frame));
+        let devices = self.devices(layout);
+        let other = self.standing.iter().chain(&devices).find(|other| part.overlaps(other))?;
+        Some(other.name.to_string())
     }
 
     /// Final frame of a part lowered from `above` along the unit vector `down`, among the fixed bodies. `None` if it

@@ -9,6 +9,7 @@ mod faults;
 mod fixtures;
 mod grip;
 mod hydraulics;
+mod ideal;
 mod lines;
 mod linkbar;
 mod look;

@@ -6,7 +6,7 @@ use plant::{CellEvent, WorkstationAction, WorkstationError};
 
 /// A bar upright in the vise: its middle at `position` in the fixture's frame, tilted to the front by `lean` degrees
 /// about the front edge of the ledge.
-fn upright(position: Vector, lean: f64) -> Frame {
+pub fn upright(position: Vector, lean: f64) -> Frame {
     let fixture = PFIX.to_frame().unwrap();
     let square = rotation_from_x_y(&Vector::x(), &Vector::y()).unwrap();
     let edge = Vector::new(0.0, 0.0, -3.25);

@@ -2,14 +2,13 @@
 //!
 //! A held part counts at its true position: it can move in the fingers.
 
-use super::{
-    Cell, CellEvent,
-    changing::{GripperPlace, ROBOT_HANDS},
-};
+use super::{Cell, CellEvent};
 use crate::{
     bodies,
+    changer::GripperPlace,
     clearance::{Body, Contact},
     convert::to_frame,
+    hand::ROBOT_HANDS,
 };
 
 impl Cell {
@@ -64,7 +63,7 @@ impl Cell {
         let mut worn = Vec::from(bodies::quick_change(&self.description, &tool));
         if let Some(hand) = self.changer.carried() {
             let opening = self.hand(hand).air.opening();
-            worn.extend(bodies::worn(&self.description, self.gripper_description(hand), &tool, opening));
+            worn.extend(bodies::worn(&self.description, hand.description(&self.description), &tool, opening));
         }
         worn
     }
@@ -95,7 +94,7 @@ impl Cell {
         });
         apart.flat_map(|hand| {
             let at = self.world.bodies[self.hand(hand).hand()].position();
-            bodies::stored(&self.description, self.gripper_description(hand), hand.link(), at)
+            bodies::stored(&self.description, hand.description(&self.description), hand.link(), at)
         })
     }
 

@@ -5,11 +5,12 @@
 
 use rapier3d_f64::prelude::*;
 
-use super::{Cell, WorkstationError, handling::HANDS};
+use super::{Cell, WorkstationError};
 use crate::{
     convert::{metres, on_the_side_of, to_pose},
     description::PartType,
     drum::{Entering, Pocketed},
+    hand::HANDS,
 };
 
 /// Tools farther than this from the drum are ignored, in.
@@ -108,12 +109,7 @@ impl Cell {
             let (pocketed, entering) = self.tool_at_drum().ok_or(WorkstationError::NothingToGrip)?;
             if !self.drum.can_grip(&entering) {
                 let tool = self.parts[pocketed.part].kind.name.clone();
-                let distance = libm::hypot(entering.left, entering.aside);
-                return Err(WorkstationError::NotInPlace {
-                    tool,
-                    distance,
-                    degrees: entering.angle.to_degrees(),
-                });
+                return Err(entering.not_in_place(tool));
             }
             self.drum.set_closed(true);
             self.lead_by_drum(&pocketed, true);

@@ -10,26 +10,22 @@
 //!   pedestal also holds pulls it out of the weaker of the two.
 
 use rapier3d_f64::prelude::*;
-use serde::{Deserialize, Serialize};
 
-use super::{Cell, CellEvent, changing::ROBOT_HANDS};
+use super::{Cell, CellEvent};
 use crate::{
-    convert::{inches, metres, on_the_side_of, to_pose},
+    convert::{inches, on_the_side_of, to_pose},
+    grasp::{self, Grasp},
     gripper::Gripper,
+    hand::{HANDS, Hand, ROBOT_HANDS},
     hold::{Clamp, Hold, Stiffness},
     jaws::Supply,
-    part::segment_meets_box,
     scene::{FINGER, HAND, JAW},
     squeeze::{Squeeze, squeeze},
     vise::Clamped,
 };
 
-/// Least force of a finger that holds a part, lb.
-const LEAST_FORCE: f64 = 0.25;
 /// Slide of a part in the fingers from which it is reported, in.
 const SLIP: f64 = 0.02;
-/// Greatest distance between a pad and a face that still counts as touching, m.
-const TOUCHING: Real = 1e-4;
 /// Ticks after which the vise reports a jaw that does not move (2 s).
 const JAW_PATIENCE: u32 = 50;
 /// Greatest penetration of a part into a clamping face at which it still counts as between the jaws, m.
@@ -39,69 +35,6 @@ const OUTSIDE: Real = 2e-3;
 const WELL: Real = 0.25;
 /// Stiffness of the springs between fingers and part: a bar sags by only 0.01 mm, and friction does not jolt it.
 const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
-
-/// A pair of fingers: one of the robot's grippers, or the pedestal's hand.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
-pub(super) enum Hand {
-    /// The parts gripper, end effector 1.
-    Parts,
-    /// The v-gripper, end effector 2.
-    V,
-    /// The tool gripper, end effector 3.
-    Tool,
-    /// The hand of the Active Pedestal.
-    Pedestal,
-}
-
-/// All hands.
-pub(super) const HANDS: [Hand; 4] = [Hand::Parts, Hand::V, Hand::Tool, Hand::Pedestal];
-
-impl Hand {
-    /// All but this one.
-    fn others(self) -> impl Iterator<Item = Self> {
-        HANDS.into_iter().filter(move |hand| *hand != self)
-    }
-
-    /// Index among the robot's grippers, from 0; `None` for the pedestal's hand.
-    pub(super) const fn slot(self) -> Option<usize> {
-        match self {
-            Self::Parts => Some(0),
-            Self::V => Some(1),
-            Self::Tool => Some(2),
-            Self::Pedestal => None,
-        }
-    }
-
-    /// `endeff-id#`, if it is a gripper of the robot.
-    pub(super) const fn end_effector_id(self) -> Option<u8> {
-        match self {
-            Self::Parts => Some(1),
-            Self::V => Some(2),
-            Self::Tool => Some(3),
-            Self::Pedestal => None,
-        }
-    }
-
-    /// Its URDF link name.
-    pub(super) const fn link(self) -> &'static str {
-        match self {
-            Self::Parts => "parts_gripper",
-            Self::V => "v_gripper",
-            Self::Tool => "tool_gripper",
-            Self::Pedestal => "pedestal_hand",
-        }
-    }
-
-    /// Its name in messages.
-    pub(super) const fn name(self) -> &'static str {
-        match self {
-            Self::Parts => "the fingers",
-            Self::V => "the v-gripper",
-            Self::Tool => "the tool gripper",
-            Self::Pedestal => "the pedestal's hand",
-        }
-    }
-}
 
 impl Cell {
     /// The gripper of a hand.
@@ -126,19 +59,12 @@ impl Cell {
         };
         let stop = between.as_ref().map(|(index, squeeze)| self.finger_stop(hand, *index, squeeze));
         let (gripper, world) = self.hand_at_work(hand);
-        if let (Some(stop), true) = (stop, gripper.hold.is_some())
-            && (stop - gripper.air.opening()).abs() > 1e-5
-            && gripper.air.force() >= LEAST_FORCE
-        {
-            // The two fingers are coupled: a part pushed off the middle spreads them, and they follow it back.
-            gripper.air.spread(stop);
-        }
-        gripper.air.advance(dt, supply, stop);
+        grasp::drive(&mut gripper.air, dt, supply, stop, gripper.hold.is_some());
         gripper.move_fingers(world);
         if hand != Hand::Pedestal {
             gripper.carry_fingers(world);
         }
-        self.update_grip(hand, between);
+        self.update_grip(hand, between, stop);
     }
 
     /// Width and faces of part `index` between the fingers of a hand.
@@ -146,31 +72,26 @@ impl Cell {
         let part = self.parts.get(index)?;
         let gripper = self.hand(hand);
         let tool = self.world.bodies[gripper.hand()].position();
-        squeeze(&tool.inv_mul(&part.pose(&self.world)), &part.solid(), &gripper.pads())
+        squeeze(
+            &tool.inv_mul(&part.pose(&self.world)),
+            &part.solid(),
+            &grasp::pads(hand.description(&self.description)),
+        )
     }
 
     /// The widest free part between the fingers of a hand, with its geometry.
     fn first_between_fingers(&self, of: Hand) -> Option<(usize, Squeeze)> {
         let hand = self.world.bodies[self.hand(of).hand()].translation();
-        let opening = metres(self.hand(of).air.opening());
-        let reach = 0.2;
-        let near =
-            self.parts.iter().enumerate().filter(|(_, part)| {
-                (part.pose(&self.world).translation - hand).length() < reach + part.radius()
-            });
-        near.filter_map(|(index, _)| Some((index, self.between_fingers(of, index)?)))
-            .filter(|(_, squeeze)| {
-                squeeze.width <= opening + TOUCHING && squeeze.centre.abs() < opening / 2.0
-            })
-            .max_by(|(_, a), (_, b)| a.width.total_cmp(&b.width))
+        let near = self.parts.iter().enumerate().filter(|(_, part)| {
+            grasp::is_near((part.pose(&self.world).translation - hand).length(), part.radius())
+        });
+        let between = near.filter_map(|(index, _)| Some((index, self.between_fingers(of, index)?)));
+        grasp::widest(self.hand(of).air.opening(), between)
     }
 
-    /// Opening at which a part stops the fingers, in. A free part is drawn to the middle; a part held elsewhere stops
-    /// the nearer finger, and with it the other, because the fingers are coupled.
+    /// Opening at which a part stops the fingers of a hand, in.
     fn finger_stop(&self, hand: Hand, index: usize, squeeze: &Squeeze) -> f64 {
-        let fast = self.hand(hand).hold.is_some() || self.is_held_elsewhere(hand, index);
-        let aside = if fast { 2.0 * squeeze.centre.abs() } else { 0.0 };
-        inches(squeeze.width + aside)
+        grasp::stop(squeeze, self.hand(hand).hold.is_some() || self.is_held_elsewhere(hand, index))
     }
 
     pub(super) fn is_clamped(&self, index: usize) -> bool {
@@ -226,24 +147,19 @@ impl Cell {
     }
 
     /// Grip, tighten, loosen or release, depending on force and geometry.
-    fn update_grip(&mut self, hand: Hand, between: Option<(usize, Squeeze)>) {
+    fn update_grip(&mut self, hand: Hand, between: Option<(usize, Squeeze)>, stop: Option<f64>) {
         let gripper = self.hand(hand);
-        let (force, opening) = (gripper.air.force(), gripper.air.opening());
         let clamp = Clamp { force: gripper.force(), friction: gripper.friction() };
-        match (gripper.hold.is_some(), between) {
-            (true, Some((_, squeeze))) if force >= LEAST_FORCE => {
+        match (grasp::decide(gripper.hold.is_some(), stop, &gripper.air), between) {
+            (Grasp::Keep, Some((_, squeeze))) => {
                 let (gripper, world) = self.hand_at_work(hand);
                 if let Some((_, hold)) = &mut gripper.hold {
                     hold.set_clamp(world, clamp, &squeeze);
                 }
             }
-            (true, between) => self.let_go(hand, between.is_none()),
-            (false, Some((index, squeeze)))
-                if force >= LEAST_FORCE && opening <= self.finger_stop(hand, index, &squeeze) + 1e-6 =>
-            {
-                self.take_hold(hand, index, &squeeze, clamp);
-            }
-            (false, _) => {}
+            (Grasp::Take, Some((index, squeeze))) => self.take_hold(hand, index, &squeeze, clamp),
+            (Grasp::Release, between) => self.let_go(hand, between.is_none()),
+            _ => {}
         }
     }
 
@@ -253,13 +169,7 @@ impl Cell {
         let (body, pose, load) = (part.body, part.pose(&self.world), part.load());
         let (gripper, world) = self.hand_at_work(hand);
         let pads = gripper.hand();
-        let flush = if fast {
-            world.bodies[pads].position().inv_mul(&pose)
-        } else {
-            let mut flush = squeeze.flush;
-            flush.translation.y = 0.0;
-            flush
-        };
+        let flush = if fast { world.bodies[pads].position().inv_mul(&pose) } else { grasp::drawn(squeeze) };
         let mut hold = Hold::new(world, pads, body, &flush, FINGER_STIFFNESS, load);
         hold.set_clamp(world, clamp, squeeze);
         gripper.hold = Some((index, hold));
@@ -429,16 +339,8 @@ impl Cell {
     pub(super) fn broken_beams(&self) -> u8 {
         let gripper = self.hand(Hand::Parts);
         let tool = gripper.loaded_tool(&self.world);
-        let near: Vec<(Pose, Vector)> = self
-            .parts
-            .iter()
-            .map(|part| (tool.inv_mul(&part.pose(&self.world)), part.half()))
-            .filter(|(pose, half)| pose.translation.length() < 0.2 + half.length())
-            .collect();
-        let broken = gripper
-            .beams()
-            .map(|(from, to)| near.iter().any(|(pose, half)| segment_meets_box(from, to, pose, *half)));
-        broken.enumerate().fold(0, |bits, (beam, is_broken)| bits | (u8::from(is_broken) << beam))
+        let parts = self.parts.iter().map(|part| (tool.inv_mul(&part.pose(&self.world)), part.half()));
+        grasp::broken_beams(gripper.air.opening(), parts)
     }
 
     /// Report a jaw that does not move.

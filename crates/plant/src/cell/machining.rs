@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// Greatest distance of a part from its seat in the vise (ASSUMED).
-const SEATED: Tolerance = Tolerance { inches: 0.03, degrees: 1.0 };
+pub(crate) const SEATED: Tolerance = Tolerance { inches: 0.03, degrees: 1.0 };
 /// A part farther than this from the seat of a nest is not in it, in.
 const IN_NEST: f64 = 1.0;
 
@@ -33,8 +33,8 @@ impl Cell {
         let clamped = self.vise.clamped.ok_or_else(not_clamped)?;
         let (index, step) = (clamped.part, clamped.step);
         let part = &self.parts[index];
-        check_part(from, part, next)?;
-        check_seat(part, self.vise_error(part), SEATED)?;
+        check_part(from, &part.kind, next)?;
+        check_seat(&part.kind, self.vise_error(part), SEATED)?;
         let here = self.vise.frame().inverse().compose(&part.frame(&self.world));
         let side = front(&here);
         if next.other_side && part.machined.contains(&side) {
@@ -71,12 +71,12 @@ impl Cell {
         let nothing = || WorkstationError::NothingThere { expected: from.into(), location: location.into() };
         let index = nearest.ok_or_else(nothing)?;
         let part = &self.parts[index];
-        check_part(from, part, next)?;
+        check_part(from, &part.kind, next)?;
         if self.is_had(index) {
             return Err(WorkstationError::InHand { part: from.into() });
         }
         let here = seat.inverse().compose(&part.frame(&self.world));
-        check_seat(part, (here.position.norm(), askew(&here, part.kind.shape)), allowed)?;
+        check_seat(&part.kind, (here.position.norm(), askew(&here, part.kind.shape)), allowed)?;
         self.parts[index].become_kind(&mut self.world, next, Inches::zeros());
         Ok(())
     }
@@ -90,16 +90,16 @@ impl Cell {
 }
 
 /// Check that a part is the expected one, and that the next one is not larger than it.
-fn check_part(from: &str, part: &Part, next: &PartType) -> Result<(), WorkstationError> {
-    if part.kind.name != from {
-        return Err(WorkstationError::WrongPart { expected: from.into(), found: part.kind.name.clone() });
+pub(crate) fn check_part(from: &str, part: &PartType, next: &PartType) -> Result<(), WorkstationError> {
+    if part.name != from {
+        return Err(WorkstationError::WrongPart { expected: from.into(), found: part.name.clone() });
     }
-    next.is_made_of(&part.kind)
+    next.is_made_of(part)
 }
 
 /// Check that the distance from the seat, inches and radians, is within the tolerance.
-fn check_seat(
-    part: &Part,
+pub(crate) fn check_seat(
+    part: &PartType,
     (distance, angle): (f64, f64),
     allowed: Tolerance,
 ) -> Result<(), WorkstationError> {
@@ -107,12 +107,12 @@ fn check_seat(
     if distance <= allowed.inches && degrees <= allowed.degrees {
         return Ok(());
     }
-    Err(WorkstationError::NotSeated { part: part.kind.name.clone(), distance, degrees, allowed })
+    Err(WorkstationError::NotSeated { part: part.name.clone(), distance, degrees, allowed })
 }
 
 /// Angle of a part from the nearest attitude that is equivalent to that of its seat, radians: by its faces for a box,
 /// by its axis for a cylinder.
-fn askew(here: &Frame, shape: Shape) -> f64 {
+pub(crate) fn askew(here: &Frame, shape: Shape) -> f64 {
     let off = |axis: Inches, own: Inches| libm::acos(axis.dot(&own).abs().min(1.0));
     match shape {
         Shape::Box => {

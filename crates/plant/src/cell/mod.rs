@@ -5,8 +5,8 @@ mod clearing;
 mod drumming;
 mod event;
 mod handling;
-mod machining;
-mod order;
+pub(crate) mod machining;
+pub(crate) mod order;
 mod outline;
 mod picture;
 mod placing;
@@ -28,9 +28,7 @@ use rapier3d_f64::prelude::*;
 use rcs_core::tick::{TICK_S, Tick};
 use serde::{Deserialize, Serialize};
 
-use changing::Changer;
 pub use event::{CellError, CellEvent};
-use handling::Hand;
 pub use picture::{Link, part_link};
 pub use sagging::Droop;
 pub use saving::{RestoreError, SaveError};
@@ -40,13 +38,13 @@ pub use workstation::{Placement, WorkstationAction, WorkstationError};
 use crate::{
     bodies,
     camera::{Analysis, Optics},
+    changer::Changer,
     clearance::{Body, Clearance},
     convert::{GRAVITY, to_frame, to_pose},
     description::{Actuators, CellDescription, Points},
     drum::Drum,
     fault::{Change, FaultPlan, Injector, Struck},
     gripper::Gripper,
-    jaws::Supply,
     joystick::Joystick,
     noise::{Noise, Stream},
     part::{Part, PartState},
@@ -294,16 +292,6 @@ impl Cell {
         self.after_tick();
         self.watch_droop();
         self.look(outputs);
-    }
-
-    /// Air supply of a gripper of the robot.
-    fn supply(&self, hand: Hand, outputs: &DeviceOutputs) -> Supply {
-        let speed = self.description.gripper.jaw_speed;
-        match hand {
-            Hand::V => Supply::of_jaws(&outputs.v_grip, speed),
-            Hand::Tool => Supply::of_jaws(&outputs.tool_grip, speed),
-            Hand::Parts | Hand::Pedestal => Supply::of_bits(outputs.grip.bits),
-        }
     }
 
     /// Once a tick: detect new contacts and fallen parts.

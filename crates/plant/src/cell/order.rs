@@ -9,7 +9,7 @@ use super::{WorkstationAction, WorkstationError};
 use crate::description::{CellDescription, Nest, PartType};
 
 /// Where a part can be put down.
-pub(super) enum Spot<'c> {
+pub(crate) enum Spot<'c> {
     /// In a nest.
     Nest(&'c Nest),
     /// On the floor of a tray, with this frame.
@@ -17,7 +17,7 @@ pub(super) enum Spot<'c> {
 }
 
 /// Where something can be machined.
-pub(super) enum Machine<'c> {
+pub(crate) enum Machine<'c> {
     /// In the vise.
     Vise,
     /// In a nest.
@@ -70,7 +70,7 @@ impl CellDescription {
     }
 
     /// The part with a name.
-    pub(super) fn kind(&self, name: &str) -> Result<&PartType, WorkstationError> {
+    pub(crate) fn kind(&self, name: &str) -> Result<&PartType, WorkstationError> {
         self.part(name).ok_or_else(|| WorkstationError::UnknownPart {
             name: name.into(),
             known: self.part.iter().map(|kind| kind.name.clone()).collect(),
@@ -78,7 +78,7 @@ impl CellDescription {
     }
 
     /// Where a part goes in a sector of a unit: a part that has nests goes only into a nest.
-    pub(super) fn spot(
+    pub(crate) fn spot(
         &self,
         kind: &PartType,
         unit: &str,
@@ -104,7 +104,7 @@ impl CellDescription {
     }
 
     /// Where a part is machined at a location.
-    pub(super) fn machine_at(&self, location: &str, part: &str) -> Result<Machine<'_>, WorkstationError> {
+    pub(crate) fn machine_at(&self, location: &str, part: &str) -> Result<Machine<'_>, WorkstationError> {
         if location == self.vise.location {
             return Ok(Machine::Vise);
         }
@@ -131,7 +131,7 @@ impl CellDescription {
 
 impl PartType {
     /// Check that this part can be machined from a blank: same shape, no size larger.
-    pub(super) fn is_made_of(&self, blank: &Self) -> Result<(), WorkstationError> {
+    pub(crate) fn is_made_of(&self, blank: &Self) -> Result<(), WorkstationError> {
         let larger = self.size.iter().zip(blank.size).any(|(new, old)| *new > old + 1e-9);
         if larger || self.shape != blank.shape {
             return Err(WorkstationError::TooLarge { from: blank.name.clone(), to: self.name.clone() });

@@ -7,8 +7,6 @@ use geometry::{
 
 use super::{
     Cell,
-    changing::ROBOT_HANDS,
-    handling::Hand,
     picture::{DARK, Link, Motion, Outline, STEEL, Urdf, link},
 };
 use crate::{
@@ -16,6 +14,7 @@ use crate::{
     convert::{metres, newtons, to_pose},
     description::Gripper,
     gripper::{EXPANSION_SPEED, body_opening},
+    hand::{Hand, ROBOT_HANDS},
 };
 
 /// Names of the links and the joints of a gripper's left and right finger.
@@ -111,7 +110,7 @@ impl Cell {
     }
 
     fn urdf_gripper(&self, urdf: &mut Urdf, hand: Hand) {
-        let (gripper, change) = (self.gripper_description(hand), &self.description.quick_change);
+        let (gripper, change) = (hand.description(&self.description), &self.description.quick_change);
         let name = hand.link();
         let at = |x: f64, y: f64| Frame { position: Inches::new(x, y, 0.0), rotation: Rotation::identity() };
         urdf.begin_link(name);

@@ -1,20 +1,17 @@
 //! Placing of parts, and reports of their positions.
 
 use geometry::frame::{Frame, Vector as Inches, rotation_by};
-use rapier3d_f64::{parry::query, prelude::*};
 
-use super::{Cell, Hand, Placement, WorkstationError, order::Spot};
+use super::{Cell, Placement, WorkstationError, order::Spot};
 use crate::{
+    bodies,
     convert::{inches, to_pose},
     description::{CellDescription, PartType},
+    hand::Hand,
+    noise::Noise,
     part::{Part, PartState},
-    solid::Solid,
 };
 
-/// Least overlap of a new part with a body that blocks it, m.
-const OVERLAP: Real = 1e-4;
-/// Bodies whose centres are nearer than this to each other overlap, m.
-const SAME_PLACE: Real = 1e-3;
 /// A part up to this height above a tray's floor counts as in the tray, in (ASSUMED: tall tools).
 const IN_TRAY: f64 = 10.0;
 /// A part whose centre is nearer than this to that of a nest's seat is in the nest, in.
@@ -42,6 +39,30 @@ impl CellDescription {
         let turned = place.turned(&rotation_by(&Inches::new(angle.to_radians(), 0.0, 0.0)));
         Ok(Frame { position: turned.position + Inches::new(x, y, up), ..turned })
     }
+
+    /// The frame of a part that is put down in a sector; `noise` draws a random place.
+    ///
+    /// # Errors
+    /// [`WorkstationError`] if the unit has no such place.
+    pub(crate) fn placed(
+        &self,
+        kind: &PartType,
+        unit: &str,
+        sector: u16,
+        placement: &Placement,
+        noise: &mut Noise,
+    ) -> Result<Frame, WorkstationError> {
+        let aside = match (*placement, self.spot(kind, unit, sector)?) {
+            (Placement::At { x, y, angle }, _) => [x, y, angle],
+            // A part in a nest has the frame of the nest's seat.
+            (Placement::Random, Spot::Nest(_)) => [0.0; 3],
+            (Placement::Random, Spot::Sector(_)) => {
+                let greatest = self.tray_shape.random_offset;
+                [noise.within(greatest), noise.within(greatest), noise.within(180.0)]
+            }
+        };
+        self.delivered(kind, unit, sector, aside)
+    }
 }
 
 impl Cell {
@@ -52,17 +73,7 @@ impl Cell {
         sector: u16,
         placement: &Placement,
     ) -> Result<Frame, WorkstationError> {
-        let aside = match (*placement, self.description.spot(kind, unit, sector)?) {
-            (Placement::At { x, y, angle }, _) => [x, y, angle],
-            // A part in a nest has the frame of the nest's seat.
-            (Placement::Random, Spot::Nest(_)) => [0.0; 3],
-            (Placement::Random, Spot::Sector(_)) => {
-                let greatest = self.description.tray_shape.random_offset;
-                let noise = &mut self.placement_noise;
-                [noise.within(greatest), noise.within(greatest), noise.within(180.0)]
-            }
-        };
-        self.description.delivered(kind, unit, sector, aside)
+        self.description.placed(kind, unit, sector, placement, &mut self.placement_noise)
     }
 
     /// Put a part into a sector, with the errors of delivery from the fault plan.
@@ -99,25 +110,15 @@ impl Cell {
 
     /// A body that a part at `frame` would overlap; the part `but` does not count.
     pub(super) fn in_the_way(&self, kind: &PartType, frame: &Frame, but: Option<u32>) -> Option<String> {
-        let pose = to_pose(frame);
-        let (shape, turn) = Solid::of(kind).shape();
-        let pose = pose * turn;
-        let overlaps = |other: &Pose, other_shape: &dyn rapier3d_f64::parry::shape::Shape| {
-            // Round shapes inside each other have no separating direction, and no depth.
-            let same = (pose.translation - other.translation).length() < SAME_PLACE;
-            let contact = query::contact(&pose, &*shape, other, other_shape, 0.0);
-            same || matches!(contact, Ok(Some(contact)) if contact.dist < -OVERLAP)
-        };
+        let part = bodies::part(kind, &to_pose(frame));
         let jaw = self.jaw_bodies();
-        let furniture =
-            self.obstacles.iter().chain(&jaw).find(|obstacle| overlaps(&obstacle.pose, &*obstacle.shape));
-        let parts = self.parts.iter().filter(|part| Some(part.id) != but).find(|part| {
-            let (shape, turn) = part.solid().shape();
-            overlaps(&(part.pose(&self.world) * turn), &*shape)
-        });
+        let furniture = self.obstacles.iter().chain(&jaw).find(|obstacle| part.overlaps(obstacle));
+        let parts = self.parts.iter().filter(|other| Some(other.id) != but);
+        let parts =
+            || parts.clone().find(|one| part.overlaps(&bodies::part(&one.kind, &one.pose(&self.world))));
         furniture
             .map(|obstacle| obstacle.name.to_string())
-            .or_else(|| parts.map(|part| part.kind.name.clone()))
+            .or_else(|| parts().map(|other| other.kind.name.clone()))
     }
 
     /// The report of a part.

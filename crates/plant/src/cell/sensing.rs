@@ -7,11 +7,12 @@ use interfaces::device::{
 use rapier3d_f64::prelude::*;
 use rcs_core::name::Name10;
 
-use super::{Cell, handling::Hand};
+use super::Cell;
 use crate::{
     camera::{Face, Subject},
     convert::{to_metres, to_pose},
     force,
+    hand::Hand,
     noise::{Noise, Stream},
     part::Part,
     sensor::resolver,

@@ -16,11 +16,11 @@ use rapier3d_f64::{
 };
 use rcs_core::tick::TICK_S;
 
-use super::{Cell, handling::Hand};
+use super::Cell;
 use crate::{
     clearance::Body,
     convert::{metres, to_pose},
-    jaws::Supply,
+    hand::Hand,
 };
 
 /// Distance to hand, fingers or held part, m, below which contact is possible in the next sub-step; twice the travel of
@@ -80,9 +80,9 @@ impl Cell {
         self.change_grippers(dt, &outputs.quick_change);
         self.pedestal.turn(&mut self.world, dt);
         if let Some(hand) = self.changer.mated() {
-            self.drive_fingers(dt, hand, self.supply(hand, outputs));
+            self.drive_fingers(dt, hand, hand.supply(&self.description, outputs));
         }
-        self.drive_fingers(dt, Hand::Pedestal, Supply::of_bits(outputs.pedestal_hand.bits));
+        self.drive_fingers(dt, Hand::Pedestal, Hand::Pedestal.supply(&self.description, outputs));
         self.drive_jaw(dt);
         self.rub_holds(dt);
         self.work_drum(dt);
@@ -97,7 +97,7 @@ impl Cell {
         let hand = self.changer.mated().filter(|_| most > 1);
         let carried = hand.map_or_else(Vec::new, |hand| self.carried_by(hand));
         let around = self.around(&carried);
-        let flow = hand.map_or(0.0, |hand| self.supply(hand, outputs).flow.abs());
+        let flow = hand.map_or(0.0, |hand| hand.supply(&self.description, outputs).flow.abs());
         let near = NEAR.max(SLACK + metres(flow / 2.0 * TICK_S));
         Stride { most, around, carried, tool: self.t3.arm().tool(), near }
     }
@@ -119,7 +119,7 @@ impl Cell {
 
     /// True if a device other than the arm and the free fingers of its hand moves or is about to move.
     fn something_works(&self, outputs: &DeviceOutputs) -> bool {
-        let pedestal = Supply::of_bits(outputs.pedestal_hand.bits);
+        let pedestal = Hand::Pedestal.supply(&self.description, outputs);
         self.vise.moving()
             || self.pedestal.table.moving()
             || !self.pedestal.hand.air.stands(&pedestal)
@@ -132,11 +132,13 @@ impl Cell {
     fn hangs_free(&self, body: RigidBodyHandle, outputs: &DeviceOutputs) -> bool {
         self.changer.mated().into_iter().chain([Hand::Pedestal]).any(|hand| {
             let gripper = self.hand(hand);
+            // The parts gripper may be about to take a part from the pedestal's hand: steps are small while it moves.
+            let works = if hand == Hand::Pedestal { Hand::Parts } else { hand };
             let Some((index, hold)) = &gripper.hold else { return false };
             let part = &self.parts[*index];
             (part.body == body || (hand == Hand::Pedestal && gripper.is_finger(body)))
                 && hold.sticks()
-                && gripper.air.stands(&self.supply(hand, outputs))
+                && gripper.air.stands(&works.supply(&self.description, outputs))
                 && !self.is_held_elsewhere(hand, *index)
                 && !self.world.contact_pairs_with(part.collider).any(ContactPair::has_any_active_contact)
         })

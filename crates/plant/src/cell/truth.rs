@@ -2,15 +2,13 @@
 
 use geometry::frame::{Frame, Vector as Inches};
 
-use super::{
-    Cell, WorkstationAction, WorkstationError,
-    changing::{GripperPlace, ROBOT_HANDS},
-    handling::Hand,
-};
+use super::{Cell, WorkstationAction, WorkstationError};
 use crate::{
+    changer::GripperPlace,
     convert::to_pose,
     description::{CellDescription, PartType},
     drum::Entering,
+    hand::{Hand, ROBOT_HANDS},
 };
 
 /// Fingers slower than this are at rest, in/s: those that press a part follow its sway.

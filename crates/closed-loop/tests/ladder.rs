@@ -1,28 +1,31 @@
-//! The ladder against the controller side of the DEPC link and a plain arm: MOV-TO-LOC from the workstation's
-//! command to the joints and back, in any order of the processes, with processes that are late or restarted.
-//!
-//! The arm here takes every set point at once; masses, lag and contacts belong to the cell's tests.
+//! The ladder in the ideal cell: MOV-TO-LOC from the workstation's command to the joints and back, in any order of the
+//! processes, with processes that are late or restarted.
 
-mod fingers;
 mod rig;
 
 use interfaces::{
-    CommonMemory, DataBaseCommand, ExternalInputs, Header, OutsidePedestal, Reason,
+    CommonMemory, DataBaseCommand, DeviceOutputs, ExternalInputs, GripOutputs, Header, OutsidePedestal,
+    Reason,
     device::single_step,
     emove::{Grasped, Located, PlacedObject},
+    grip::{GripCommand, GripReport, GripVerb},
     hws::{HwsReport, Ledger},
     operator::{BOARDS, Variable, Write, board_bit, process_bit},
     prim::{PrimReport, PrimVerb},
+    process::{Inputs, Process},
     subtask::Regrip,
 };
-use levels::ladder::{Ladder, LadderState, PROCESS_COUNT, ProcessId};
+use levels::{
+    grip::Grip,
+    ladder::{Ladder, LadderState, PROCESS_COUNT, ProcessId},
+};
 use proptest::prelude::*;
 use rcs_core::{
     Plain,
     plain::{Writer, from_bytes},
     tick::Tick,
 };
-use rig::{Rig, store};
+use rig::{Rig, ideal, store};
 
 const FINISHED: (HwsReport, Reason) = (HwsReport::Finished, Reason::None);
 
@@ -59,7 +62,7 @@ fn a_bad_command_is_refused_and_nothing_moves() {
     let mut rig = Rig::new();
     rig.command("PAUSE", "");
     assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
-    let joints = rig.arm.joints;
+    let joints = rig.command_of_servos();
     for (verb, location, reason) in [
         ("DANCE", "SAFE", Reason::UnknownCommand),
         ("MOVE", "NOWHERE", Reason::UnknownLocation),
@@ -72,7 +75,7 @@ fn a_bad_command_is_refused_and_nothing_moves() {
         rig.command(verb, location);
         assert_eq!(rig.finish(ProcessId::ALL, 100), (HwsReport::Error, reason), "{verb} {location}");
     }
-    assert_eq!(rig.arm.joints, joints);
+    assert_eq!(rig.command_of_servos(), joints);
 }
 
 /// docs/design/motion.md "Flying on": the goal after a through point takes a hop up and a hop down.
@@ -237,11 +240,11 @@ proptest! {
 
         rig.command("PAUSE", "");
         prop_assert_eq!(rig.finish(&order, 3000), FINISHED);
-        let joints = rig.arm.joints;
+        let joints = rig.command_of_servos();
         for _ in 0..50 {
             rig.step(&order);
         }
-        prop_assert_eq!(rig.arm.joints, joints, "a pausing robot moves");
+        prop_assert_eq!(rig.command_of_servos(), joints, "a pausing robot moves");
         if rig.at("SAFE") || rig.at("HOME") {
             rig.command("MOVE", "HOME");
             prop_assert_eq!(rig.finish(&order, 5000), FINISHED);
@@ -652,7 +655,9 @@ fn a_pedestal_of_another_system_is_adopted_and_lost_when_it_does_not_answer() {
         let before = CommonMemory { subtask: rig.before.subtask, ..station_before };
         let data = store().view();
         let tick = rig.tick.next();
-        station.step_in_order(&pedestal, tick, &before, &ExternalInputs::default(), &data, &mut sent);
+        let devices = rig.external.devices;
+        let external = ExternalInputs { devices, ..ExternalInputs::default() };
+        station.step_in_order(&pedestal, tick, &before, &external, &data, &mut sent);
         station_before = sent;
         let CommonMemory { mut pedestal, mut hand, mut table, .. } = sent;
         for header in [&mut pedestal.header, &mut hand.header, &mut table.header] {
@@ -680,4 +685,34 @@ fn a_pedestal_of_another_system_is_adopted_and_lost_when_it_does_not_answer() {
     }
     step(&mut outside, true);
     assert_eq!(outside.before.hand.header.stamp, outside.tick);
+}
+
+#[test]
+fn grip_reports_how_fast_the_fingers_move() {
+    let (mut process, mut memory, mut outputs) =
+        (Grip::default(), CommonMemory::default(), GripOutputs::default());
+    let (mut external, mut cell) = (ExternalInputs::default(), ideal());
+    let mut fastest = 0;
+    for tick in 1..600 {
+        if tick == 400 {
+            assert!(outputs.status.initialized, "the gripper calibrates at the start");
+            memory.emove.grip = GripCommand {
+                number: 1,
+                command: GripVerb::Position,
+                position: 100,
+                velocity: 100,
+                end_effector_id: Some(1),
+                ..GripCommand::default()
+            };
+        }
+        external.devices = cell.inputs();
+        let inputs = Inputs { tick: Tick(tick), memory: &memory, external: &external, data: &() };
+        process.step(&inputs, &mut outputs);
+        cell.step(&DeviceOutputs { grip: outputs.valves, ..DeviceOutputs::default() });
+        if tick > 400 {
+            fastest = fastest.min(outputs.status.velocity);
+        }
+    }
+    assert_eq!((outputs.status.report, outputs.status.velocity), (GripReport::Done, 0));
+    assert!((-105..=-95).contains(&fastest), "1 in/s was commanded, {fastest} reported");
 }

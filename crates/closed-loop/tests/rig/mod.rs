@@ -1,100 +1,76 @@
-//! The ladder with the controller side of the DEPC link, a plain arm and fingers.
+//! The ladder in the ideal cell, a tick at a time, with its processes in any order.
 
 use std::{path::Path, sync::OnceLock};
 
-use depc::{Limits, Plate, controller};
-use geometry::{
-    frame::Frame,
-    kinematics::{HOME_JOINTS, Joints, T3},
-};
+use geometry::{frame::Frame, kinematics::Joints};
 use interfaces::{
-    CommonMemory, ExternalInputs, HwsCommand, Reason,
-    device::{LinkBytes, RESOLVER_COUNTS},
-    hws::HwsReport,
+    CommonMemory, DeviceInputs, ExternalInputs, HwsCommand, Reason, device::JoystickBox, hws::HwsReport,
 };
 use levels::ladder::{Ladder, ProcessId};
+use plant::{CellDescription, Ideal, Key, WorkstationAction, room::Room};
 use rcs_core::{Plain, digest::Digest, name::Name16, tick::Tick};
 use taskdata::load::Store;
 
-use crate::fingers::Fingers;
+fn data() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))
+}
 
 pub fn store() -> &'static Store {
     static STORE: OnceLock<Store> = OnceLock::new();
-    STORE.get_or_init(|| match Store::load(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))) {
+    STORE.get_or_init(|| match Store::load(data()) {
         Ok((store, _)) => store,
         Err(report) => panic!("{report}"),
     })
 }
 
-/// Joints that follow every accepted set point at once.
-pub struct PlainArm {
-    pub joints: Joints,
-    pub plate: Plate,
+/// The ideal cell before its first tick.
+pub fn ideal() -> Ideal {
+    static IDEAL: OnceLock<Ideal> = OnceLock::new();
+    let new = || {
+        let cell = CellDescription::load(&data().join("cell.toml")).expect("the cell is shipped");
+        Ideal::new(&Room::new(&cell), 1).expect("the cell is sound")
+    };
+    IDEAL.get_or_init(new).clone()
 }
 
-impl controller::Robot for PlainArm {
-    fn present(&mut self) -> Plate {
-        self.plate
-    }
-
-    fn accept(&mut self, goal: &Plate) -> Result<(), controller::Refusal> {
-        self.joints = controller::joints_for(&T3, goal, &self.joints)?;
-        self.plate = *goal;
-        Ok(())
-    }
-}
-
-/// The controller, the link and the arm, a tick at a time.
+/// The processes and the cell.
 pub struct Rig {
     pub ladder: Ladder,
     pub before: CommonMemory,
     pub external: ExternalInputs,
     pub tick: Tick,
-    controller: controller::Controller,
-    pub arm: PlainArm,
-    pub fingers: Fingers,
-    /// Gripper on the quick change.
+    cell: Ideal,
+    /// Gripper that the id pins read.
     pub gripper: u8,
     pub digest: Digest,
-    pub warnings: u32,
+    pub warnings: usize,
 }
 
 impl Rig {
     pub fn new() -> Self {
-        let plate =
-            Plate::from_tool(&T3.forward(&HOME_JOINTS), &T3, &Plate::default()).expect("HOME has words");
+        let cell = ideal();
         let mut rig = Self {
             ladder: Ladder::default(),
             before: CommonMemory::default(),
             external: ExternalInputs::default(),
             tick: Tick::BEFORE_START,
-            controller: controller::Controller::new(Limits::NBS),
-            arm: PlainArm { joints: HOME_JOINTS, plate },
-            fingers: Fingers { opening: 2.0, force: 0.0 },
             gripper: 1,
             digest: Digest::new(),
             warnings: 0,
+            cell,
         };
-        rig.sense(LinkBytes::default());
+        rig.sense(rig.cell.inputs());
         // A process that starts adopts the command it finds; the workstation speaks once Task listens.
         rig.step(ProcessId::ALL);
         rig
     }
 
-    /// Device words for the next tick.
-    pub fn sense(&mut self, rx: LinkBytes) {
+    /// Device words for the next tick. The test is at the joystick box.
+    fn sense(&mut self, inputs: DeviceInputs) {
         let devices = &mut self.external.devices;
-        devices.link_rx = rx;
-        devices.link_ready = true;
-        for (count, angle) in devices.resolvers.counts.iter_mut().zip(self.arm.joints) {
-            let turns = (angle / std::f64::consts::TAU).rem_euclid(1.0);
-            *count = (turns * f64::from(RESOLVER_COUNTS)).round() as u32 % RESOLVER_COUNTS;
-        }
-        devices.resolvers.valid = true;
-        devices.quick_change.locked = true;
+        let joystick = JoystickBox { velocity: inputs.joystick.velocity, ..devices.joystick };
+        *devices = DeviceInputs { joystick, ..inputs };
         devices.quick_change.end_effector_id = self.gripper;
-        devices.joystick.velocity = 1000;
-        self.fingers.show(&mut devices.grip);
     }
 
     /// One tick with the given processes in the given order.
@@ -106,21 +82,18 @@ impl Rig {
         let mut scratch = vec![0; CommonMemory::SIZE];
         self.digest.add_record(&after, &mut scratch);
         self.before = after;
+        let inputs = self.cell.step(&after.device_outputs());
+        self.sense(inputs);
+        for _ in self.cell.warnings() {
+            self.warnings += 1;
+            // The operator answers every warning.
+            self.cell.workstation(&WorkstationAction::T3(Key::Enter)).expect("a warning waits for ENTER");
+        }
+    }
 
-        let outputs = after.device_outputs();
-        self.fingers.advance(outputs.grip.bits);
-        let inputs = controller::ControllerInputs {
-            rx: outputs.link_tx,
-            cts: true,
-            board: true,
-            start: self.controller.state() == controller::ControllerState::Off,
-            // The operator answers every warning with ENTER.
-            enter: self.controller.state() == controller::ControllerState::Warning,
-            ..Default::default()
-        };
-        self.warnings += u32::from(inputs.enter);
-        let answer = self.controller.step(&inputs, &mut self.arm);
-        self.sense(answer.tx);
+    /// Joints to which the servos are told to go.
+    pub fn command_of_servos(&self) -> Joints {
+        self.cell.t3().arm().command()
     }
 
     pub fn command(&mut self, verb: &str, destination: &str) {
@@ -150,7 +123,7 @@ impl Rig {
     pub fn at(&self, location: &str) -> bool {
         let name = Name16::new(location).unwrap();
         let goal: Frame = store().view().resolve_location(&name, None, None::<&Name16>).unwrap().frame;
-        let distance = T3.forward(&self.arm.joints).distance(&goal);
+        let distance = self.cell.t3().arm().tool().distance(&goal);
         distance.inches < 0.02 && distance.radians < 0.002
     }
 }

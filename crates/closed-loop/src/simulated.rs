@@ -1,0 +1,151 @@
+//! The simulated cell as a world: its line, and the judges of contacts, places and confirmations.
+
+use std::sync::Arc;
+
+use depc::Plate;
+use interfaces::{DeviceInputs, DeviceOutputs, device::LinkBytes};
+use plant::{Cell, CellEvent};
+use rcs_core::tick::Tick;
+use taskdata::load::{Store, job::Reload};
+
+use crate::{
+    ClosedLoop, RobotLine, Turn, World,
+    contacts::{Commands, ContactCheck, ContactEvent},
+    truth::{Confirmation, Scene, TruthCheck, placement::PlacementCheck},
+    workstation::SimulatedWorkstation,
+};
+
+/// What has happened in the cell in a tick.
+#[derive(Debug, Default)]
+pub struct Settled {
+    /// Events of the cell. Its contacts are in `contacts`, if they must not be.
+    pub events: Vec<CellEvent>,
+    /// Collisions that have begun or ended.
+    pub contacts: Vec<ContactEvent>,
+    /// Confirmations that are not true.
+    pub untrue: Vec<Confirmation>,
+}
+
+/// The line to the simulated robot controller, and the judges of the cell.
+#[derive(Clone)]
+pub struct Checks {
+    line: RobotLine,
+    contacts: ContactCheck,
+    placement: PlacementCheck,
+    truth: TruthCheck,
+}
+
+impl World for SimulatedWorkstation {
+    type Checks = Checks;
+    type Settled = Settled;
+
+    fn checks(&self) -> Checks {
+        let description = self.cell.description();
+        Checks {
+            line: RobotLine::default(),
+            contacts: ContactCheck::new(description.contact.clone()),
+            placement: PlacementCheck::new(description),
+            truth: TruthCheck::default(),
+        }
+    }
+
+    fn inputs(&self) -> DeviceInputs {
+        self.cell.inputs()
+    }
+
+    fn settle(&mut self, checks: &mut Checks, turn: &Turn<'_>) -> (DeviceInputs, Settled) {
+        let &Turn { tick, hws, memory, data, outputs, moved } = turn;
+        let commands = checks.contacts.commands(memory);
+        let (inputs, mut settled) = advance(self, checks, tick, commands, outputs, moved);
+        let Checks { placement, truth, .. } = checks;
+        placement.look(tick, hws, &memory.task.status, self.cell.description(), &self.cell.parts());
+        if !self.is_robot_elsewhere() {
+            truth.note_delivered(tick, self.delivered());
+            settled.untrue = truth.look(&Scene { tick, hws, memory, data, cell: &self.cell });
+        }
+        (inputs, settled)
+    }
+
+    fn loads(&mut self) -> Vec<u32> {
+        self.take_loads()
+    }
+}
+
+fn advance(
+    workstation: &mut SimulatedWorkstation,
+    Checks { line, contacts, .. }: &mut Checks,
+    tick: Tick,
+    commands: Commands,
+    outputs: &DeviceOutputs,
+    moved: Option<&Plate>,
+) -> (DeviceInputs, Settled) {
+    let inputs = match workstation.is_robot_elsewhere() {
+        true => workstation.cell.step_following(moved, outputs),
+        false => line.advance(tick, &mut workstation.cell, outputs),
+    };
+    let mut events = workstation.events(tick);
+    // The check selects the contacts that are events.
+    events.retain(|event| !matches!(event, CellEvent::Contact(_)));
+    let begun = contacts.look(tick, workstation.cell.contacts(), commands);
+    workstation.cell.watch_clearance(contacts.margin());
+    (inputs, Settled { events, contacts: begun, untrue: Vec::new() })
+}
+
+impl<L> ClosedLoop<L> {
+    /// A run in the simulated cell before its first tick.
+    #[must_use]
+    pub fn new(levels: L, store: Arc<Store>, reloads: Arc<Vec<Reload>>, cell: Cell) -> Self {
+        Self::in_world(levels, store, reloads, SimulatedWorkstation::new(cell))
+    }
+
+    /// Ignore distances of the robot to things that it does not touch, which saves time.
+    #[must_use]
+    pub fn without_near_misses(mut self) -> Self {
+        self.checks.contacts = self.checks.contacts.without_near_misses();
+        self
+    }
+
+    /// Advance the cell in `tick` without the controller: the robot gets no frame, and the valves keep their state.
+    pub fn coast(&mut self, tick: Tick, moved: Option<&Plate>) -> Settled {
+        let outputs = DeviceOutputs { link_tx: LinkBytes::default(), ..self.memory().device_outputs() };
+        let Self { course, workstation, checks, .. } = self;
+        let commands = checks.contacts.commands(course.memory());
+        let settled;
+        (self.inputs, settled) = advance(workstation, checks, tick, commands, &outputs, moved);
+        settled
+    }
+
+    /// Note that a person has changed these parts after the last tick.
+    pub fn note_changed(&mut self, parts: Vec<u32>) {
+        self.checks.truth.note_changed(self.course.tick().next(), parts);
+    }
+
+    /// The line to the simulated robot controller.
+    #[must_use]
+    pub const fn line(&self) -> &RobotLine {
+        &self.checks.line
+    }
+
+    /// The same, to give it faults.
+    pub const fn line_mut(&mut self) -> &mut RobotLine {
+        &mut self.checks.line
+    }
+
+    /// The check of the robot's contacts.
+    #[must_use]
+    pub const fn contacts(&self) -> &ContactCheck {
+        &self.checks.contacts
+    }
+
+    /// The check of the parts' places.
+    #[must_use]
+    pub const fn placement(&self) -> &PlacementCheck {
+        &self.checks.placement
+    }
+
+    /// The judge of the confirmations of the control processes.
+    #[must_use]
+    pub const fn truth(&self) -> &TruthCheck {
+        &self.checks.truth
+    }
+}

@@ -1,0 +1,44 @@
+//! What stands at the other end of the controller's wires.
+
+use depc::Plate;
+use interfaces::{CommonMemory, DeviceInputs, DeviceOutputs, HwsCommand};
+use neighbours::workstation::player::Workstation;
+use rcs_core::tick::Tick;
+use taskdata::files::TaskData;
+
+/// A cell with the other equipment of its workstation, and the judges of what happens there.
+pub trait World: Workstation {
+    /// The line to the robot, and the judges.
+    type Checks: Clone;
+    /// What has happened in a tick.
+    type Settled;
+
+    /// Judges that have seen nothing yet.
+    fn checks(&self) -> Self::Checks;
+
+    /// The device words of the next tick.
+    fn inputs(&self) -> DeviceInputs;
+
+    /// Advance by a tick, and judge what has happened. Returns the device words of the next tick, too.
+    fn settle(&mut self, checks: &mut Self::Checks, turn: &Turn<'_>) -> (DeviceInputs, Self::Settled);
+
+    /// Numbers of the reloads of task data that the job has requested since the last call.
+    fn loads(&mut self) -> Vec<u32>;
+}
+
+/// A tick whose processes have run.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn<'a> {
+    /// The tick.
+    pub tick: Tick,
+    /// The command that Task has read.
+    pub hws: &'a HwsCommand,
+    /// Common memory after the tick.
+    pub memory: &'a CommonMemory,
+    /// The task data of the tick.
+    pub data: &'a TaskData<'a>,
+    /// What the controller writes to its devices.
+    pub outputs: &'a DeviceOutputs,
+    /// Position of a robot elsewhere, as far as it is known.
+    pub moved: Option<&'a Plate>,
+}

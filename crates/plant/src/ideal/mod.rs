@@ -1,0 +1,194 @@
+//! The ideal cell: the devices of the cell without physics, noise, delay and fault.
+//!
+//! It consists of the same parts as [`crate::Cell`] (robot controller, arm, air of the fingers, quick change, rotary
+//! table, tool drum, analysis of pictures), and of the geometry of [`Room`] instead of bodies. So it says what the
+//! control processes do if everything goes as planned:
+//!
+//! | device | differs from the cell |
+//! |---|---|
+//! | arm | stiff: the tool is where the joints have it |
+//! | fingers | stop at the part between them; a part in them does not slide |
+//! | part that is released | is in its nest, or on what is under it, at once; with nothing under it, it stays there |
+//! | camera | nothing hides a part |
+//! | force sensor | feels the drum and its strike plate, nothing else |
+//! | vise and machines | work at once |
+//! | robot | pushes no part: one that lies in the vise goes to its seat when the jaws close |
+
+mod drumming;
+mod grasping;
+mod sensing;
+mod workstation;
+
+use std::sync::Arc;
+
+use depc::{Limits, controller::Warning};
+use geometry::frame::Frame;
+use interfaces::device::{DeviceInputs, DeviceOutputs};
+use rcs_core::tick::TICK_S;
+
+use self::{
+    drumming::Press,
+    grasping::{Fingers, Hold},
+};
+use crate::{
+    camera::{Analysis, Optics},
+    cell::CellError,
+    changer::Changer,
+    description::{Actuators, CellDescription},
+    drum::Drum,
+    hand::{HANDS, Hand, ROBOT_HANDS},
+    joystick::Joystick,
+    noise::{Noise, Stream},
+    pedestal::{Table, hand_frame},
+    resolver_box::ResolverBox,
+    room::{Layout, Placed, Room},
+    t3::{Message, StepInputs, T3Controller},
+    vise::Jaws,
+};
+
+/// The ideal cell. A copy shares the fixed bodies, and continues from the same state.
+#[derive(Clone, Debug)]
+pub struct Ideal {
+    room: Arc<Room>,
+    t3: T3Controller,
+    changer: Changer,
+    /// In the order of [`HANDS`].
+    fingers: [Fingers; 4],
+    table: Table,
+    drum: Drum,
+    presses: Vec<Press>,
+    optics: Optics,
+    analysis: Analysis,
+    joystick: Joystick,
+    resolver_box: ResolverBox,
+    parts: Vec<Placed>,
+    /// Index of the selected program of the vise.
+    program: usize,
+    /// Distance of the inner faces of the vise's jaws, in.
+    jaws: f64,
+    /// Index of the part in the closed jaws.
+    clamped: Option<usize>,
+    placement_noise: Noise,
+    /// For sensors, whose noise is zero.
+    noise: Noise,
+    inputs: DeviceInputs,
+}
+
+impl Ideal {
+    /// The ideal cell of a room. The seed determines the random places of parts, as in [`crate::Cell::new`].
+    ///
+    /// # Errors
+    /// [`CellError`] if the arm cannot take its start position.
+    pub fn new(room: &Room, seed: u64) -> Result<Self, CellError> {
+        let cell = room.cell().without_noise();
+        let actuators = Actuators::from(&cell.robot);
+        let t3 = T3Controller::started(Limits::NBS, &actuators, &cell.robot.start_joints(), seed)?;
+        let room = Room::new(&cell);
+        let mut ideal = Self {
+            t3,
+            changer: Changer::new(&cell),
+            fingers: HANDS.map(|hand| Fingers::new(hand.description(&cell))),
+            table: Table::new(&cell.pedestal.table),
+            drum: Drum::new(cell.drum.pose.frame().unwrap_or_else(Frame::identity), &cell.drum),
+            presses: Vec::new(),
+            optics: Optics::new(&cell.camera),
+            analysis: Analysis::new(&cell.camera, seed),
+            joystick: Joystick::default(),
+            resolver_box: ResolverBox::default(),
+            parts: Vec::new(),
+            program: 0,
+            jaws: room.jaws(0, Jaws::Open),
+            clamped: None,
+            placement_noise: Noise::new(seed, Stream::Placement),
+            noise: Noise::new(seed, Stream::Gripper),
+            inputs: DeviceInputs::default(),
+            room: Arc::new(room),
+        };
+        ideal.inputs = ideal.sense(Default::default(), false);
+        Ok(ideal)
+    }
+
+    /// The description of the cell, without noise and delay.
+    #[must_use]
+    pub fn description(&self) -> &CellDescription {
+        self.room.cell()
+    }
+
+    /// The sensor words after the last tick.
+    #[must_use]
+    pub const fn inputs(&self) -> DeviceInputs {
+        self.inputs
+    }
+
+    /// The T3 controller with its arm.
+    #[must_use]
+    pub const fn t3(&self) -> &T3Controller {
+        &self.t3
+    }
+
+    /// The warnings with which the robot controller has stopped since the last call.
+    pub fn warnings(&mut self) -> Vec<Warning> {
+        let warning = |message| if let Message::Warning(warning) = message { Some(warning) } else { None };
+        self.t3.messages().into_iter().filter_map(warning).collect()
+    }
+
+    /// Advance by one tick of 40 ms with the controller's outputs of the last one.
+    pub fn step(&mut self, outputs: &DeviceOutputs) -> DeviceInputs {
+        let sent = self.t3.step(&StepInputs { rx: outputs.link_tx, cts: true });
+        self.t3.advance(TICK_S, &[]);
+        self.table.order(&outputs.pedestal_table);
+        self.table.advance(TICK_S);
+        let tool = self.tool();
+        if let Some(hand) = self.changer.advance(TICK_S, &tool, &outputs.quick_change).parted {
+            self.release(hand);
+            self.fingers_mut(hand).air.cut();
+        }
+        self.carry();
+        for hand in self.changer.mated().into_iter().chain([Hand::Pedestal]) {
+            self.drive(hand, hand.supply(self.room.cell(), outputs));
+        }
+        self.work_drum();
+        self.look(&outputs.vision);
+        self.inputs = self.sense(sent.tx, sent.dtr);
+        self.inputs
+    }
+
+    /// The tool frame of the arm, in.
+    fn tool(&self) -> Frame {
+        self.t3.arm().tool()
+    }
+
+    /// The frame of the fingertips of a hand, world, in; `None` for a gripper that is on no holster and not on the robot.
+    fn frame(&self, hand: Hand) -> Option<Frame> {
+        match hand {
+            Hand::Pedestal => Some(hand_frame(&self.room.cell().pedestal, self.table.angle())),
+            _ => self.changer.frame(hand, &self.tool()),
+        }
+    }
+
+    /// The part in the robot's fingers.
+    fn held(&self) -> Option<Hold> {
+        ROBOT_HANDS.into_iter().find_map(|hand| self.fingers(hand).hold)
+    }
+
+    /// The positions of everything that a job moves.
+    #[must_use]
+    pub fn layout(&self) -> Layout {
+        let worn = self.changer.carried();
+        let engaged = self.changer.mated().filter(|mated| Some(*mated) != worn);
+        let held = self.held();
+        let is_held = |index: usize| held.is_some_and(|hold| hold.part == index);
+        let others = self.parts.iter().enumerate().filter(|(index, _)| !is_held(*index));
+        Layout {
+            gripper: worn.and_then(Hand::end_effector_id),
+            engaged: engaged.and_then(Hand::end_effector_id),
+            opening: worn.map_or(0.0, |hand| self.fingers(hand).air.opening()),
+            held: held.and_then(|hold| Some(Placed { frame: hold.at, ..self.parts.get(hold.part)?.clone() })),
+            parts: others.map(|(_, part)| part.clone()).collect(),
+            program: self.program,
+            jaws: self.jaws,
+            table: self.table.angle(),
+            hand: self.fingers(Hand::Pedestal).air.opening(),
+        }
+    }
+}
