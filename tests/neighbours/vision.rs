@@ -180,7 +180,7 @@ fn vision_with_another_cell_description_ends_and_says_why() {
         .expect("rcs-neighbour can be started");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("the cell description of the run was expected"), "{said}");
+    assert!(said.contains("name the data of the run with --data"), "{said}");
     let ended = controller.end();
     assert!(ended.said.contains("vision does not answer"), "{}", ended.said);
 }

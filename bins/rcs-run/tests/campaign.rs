@@ -173,6 +173,18 @@ fn false_confirmations_under_lost_pressure_stay_away() {
     }
 }
 
+/// A person leads the empty robot past an object of which no picture is taken, and pushes it; and takes the robot while the
+/// jaws hold a tool, which is lost, so that they close on.
+#[test]
+fn false_confirmations_after_a_jog_stay_away() {
+    for (at, jog) in [("11734", "jog:-96:36:-165"), ("16317", "jog:-62:-3:-337")] {
+        let campaign = json(&["campaign", "shift", "--at", at, "--interrupt", jog, "--json"]);
+        let branch = &campaign["branches"][0];
+        assert!(branch["judged"].as_u64().expect("it is counted") > 0, "{jog}: {branch}");
+        assert!(!branch["untrue"].to_string().contains("\"false\""), "{jog}: {branch}");
+    }
+}
+
 /// A part is taken away before its picture. The command fails, which is true, and continues when the part is back.
 #[test]
 fn a_true_error_goes_on_after_its_remedy() {

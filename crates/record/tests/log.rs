@@ -448,7 +448,10 @@ fn a_replay_goes_on_after_a_gap() {
         .map(|tick| (tick.tick, tick.gap))
         .collect();
     assert_eq!(gaps, [(Tick(65), 5)]);
-    assert!(log.lines().any(|line| line.tick == Tick(65) && line.text.starts_with("5 ticks are missing")));
+    assert!(
+        log.lines()
+            .any(|line| line.tick == Tick(65) && line.text.starts_with("missing before this tick: 5 ticks"))
+    );
     let report = replay(&path).unwrap();
     assert!(report.is_same(), "{:?}", report.first_difference);
     assert_eq!((report.ticks, report.skipped), (194, 6));

@@ -209,7 +209,7 @@ fn the_monitor_finds_a_world_that_is_unlike_what_a_command_says() {
     let planted = branch.clone();
     let result = judged(&facility, &parent, &planted, "none");
     assert_eq!(result.verdict, Verdict::Hurt);
-    assert_eq!(result.reason, "MOVE is finished, but 1 parts in the cell, not 0");
+    assert_eq!(result.reason, "MOVE is finished, but 1 part in the cell, not 0");
 }
 
 /// The arm jumps when the pressure comes back, and the clevis slides in the fingers, which no sensor shows. REFIXTURE does
