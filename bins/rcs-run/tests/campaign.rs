@@ -177,8 +177,12 @@ fn false_confirmations_under_lost_pressure_stay_away() {
 /// jaws hold a tool, which is lost, so that they close on.
 #[test]
 fn false_confirmations_after_a_jog_stay_away() {
-    for (at, jog) in [("11734", "jog:-96:36:-165"), ("16317", "jog:-62:-3:-337")] {
-        let campaign = json(&["campaign", "shift", "--at", at, "--interrupt", jog, "--json"]);
+    for (job, at, jog) in [
+        ("shift", "11734", "jog:-96:36:-165"),
+        ("shift", "16317", "jog:-62:-3:-337"),
+        ("tool-change", "2494", "jog:2:5:6"),
+    ] {
+        let campaign = json(&["campaign", job, "--at", at, "--interrupt", jog, "--json"]);
         let branch = &campaign["branches"][0];
         assert!(branch["judged"].as_u64().expect("it is counted") > 0, "{jog}: {branch}");
         assert!(!branch["untrue"].to_string().contains("\"false\""), "{jog}: {branch}");

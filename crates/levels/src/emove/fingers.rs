@@ -119,10 +119,10 @@ impl State {
         if have_closed || self.is_around_placed() {
             self.beliefs.seat = Seat::NotKnown;
         }
-        let Beliefs { place, way, .. } = self.beliefs;
+        let Beliefs { place, way, drum, .. } = self.beliefs;
         let ends = [place, way.map(|way| way.to), way.map(|way| way.from)];
-        let near = ends.into_iter().flatten().find(|at| may_push(&at.pose, memory));
-        self.beliefs.disturbed = near.or(self.beliefs.disturbed);
+        let near = || ends.into_iter().flatten().find(|at| may_push(&at.pose, memory));
+        self.beliefs.disturbed = drum.or_else(near).or(self.beliefs.disturbed);
     }
 
     /// Is the robot still where it has released an object, or on its way from there to its next place?

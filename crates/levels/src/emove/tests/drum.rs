@@ -2,7 +2,7 @@
 
 use geometry::frame::{Frame, Vector};
 use interfaces::{
-    Reason, StatusReport,
+    Reason, StatusReport, Unconfirmed,
     emove::EmoveVerb::{self, AcquireTool, InsertTool, MovToLoc, Pause, Release, ReleaseTool, RemoveTool},
     grip::Felt,
     jaws::JawsReport,
@@ -529,6 +529,26 @@ fn a_robot_that_is_led_away_from_the_drum_and_back_goes_on() {
     bench.world.joystick = false;
     assert_eq!(bench.pause(), DONE);
     assert_eq!(run(&mut bench, InsertTool), DONE);
+}
+
+#[test]
+fn tool_in_the_drum_beside_which_a_person_has_led_the_robot_has_no_confirmed_place_in_the_fingers() {
+    for (led, unconfirmed) in [(false, Unconfirmed::GraspForce), (true, Unconfirmed::PartInFingers)] {
+        let mut bench = empty();
+        interrupt(&mut bench, AcquireTool, "ACQ-SLIDE", moved(frame_of("TOOL-TRNS"), &["ACQ-STRIKE"]));
+        bench.world.joystick = led;
+        bench.steps(5);
+        bench.world.joystick = false;
+        assert_eq!(bench.pause(), DONE);
+        bench.world.log.clear();
+        bench.command(AcquireTool, "CUTTER", 1, "TOOL-TRNS", 3);
+        while !bench.log().iter().any(|order| order.contains("ACQ-SLIDE")) {
+            bench.step();
+        }
+        bench.world.object = Some(SIZE);
+        assert_eq!(bench.finish(), DONE, "led: {led}");
+        assert_eq!(bench.memory.emove.status.unconfirmed, unconfirmed, "led: {led}");
+    }
 }
 
 #[test]
