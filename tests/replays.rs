@@ -1,6 +1,6 @@
 //! Whatever a run met, its log replays: jobs with random seeds and random faults on the line, cut off after random ticks.
 //!
-//! An ordinary test run tries a few; `RCS_REPLAYS=100` tries so many, as `.ci/run` does, and `RCS_REPLAYS_FROM=N` begins with
+//! An ordinary test run tries a few; `RCS_REPLAYS=30` tries so many, as `.ci/run` does, and `RCS_REPLAYS_FROM=N` begins with
 //! seed N. A failure names its seed, with which it happens again.
 
 use std::{
