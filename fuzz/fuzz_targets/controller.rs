@@ -10,9 +10,9 @@ use depc::{
     controller::{Controller, ControllerInputs, ControllerState, Refusal, Robot, joints_for},
     wire::DataCommand,
 };
-use libfuzzer_sys::fuzz_target;
 use geometry::kinematics::{HOME_JOINTS, Joints, T3};
 use interfaces::device::LinkBytes;
+use libfuzzer_sys::fuzz_target;
 
 const HOME: Plate = Plate { words: [0, -6293, -636, -9000, 13500, 0] };
 

@@ -130,7 +130,7 @@ fuzz_target!(|data: &[u8]| {
         }
         if mailbox.place() == HWSC_COMMAND {
             let command = *gate.command();
-            if gate.read(mailbox).is_some() {
+            if gate.read(mailbox, &neighbours::workstation::Unchecked).is_some() {
                 assert_eq!(*gate.command(), command);
             }
         }

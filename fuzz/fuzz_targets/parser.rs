@@ -10,8 +10,8 @@ use depc::{
     receive::{Command, CommandReceiver, Reply, ReplyReceiver},
     wire::{DataCommand, Report},
 };
-use libfuzzer_sys::fuzz_target;
 use interfaces::device::LinkBytes;
+use libfuzzer_sys::fuzz_target;
 
 const HOME: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
 
