@@ -37,7 +37,7 @@ pub struct Turn<'a> {
     pub memory: &'a CommonMemory,
     /// The task data of the tick.
     pub data: &'a TaskData<'a>,
-    /// What the controller writes to its devices.
+    /// Outputs of the controller to its devices.
     pub outputs: &'a DeviceOutputs,
     /// Position of a robot elsewhere, as far as it is known.
     pub moved: Option<&'a Plate>,

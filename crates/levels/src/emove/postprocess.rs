@@ -315,10 +315,10 @@ impl State {
         }
     }
 
-    /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), whatever was
-    /// done before, and E-PAUSE keeps it until the processes below pause again; another command that was given up for it ends in an error and is not resumed
-    /// (docs/design/ownership.md "Joystick box"). A link that fails while E-PAUSE stands is no failure of it:
-    /// the reason stands beside `done`.
+    /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), whatever was done
+    /// before, and E-PAUSE keeps it until the processes below pause again. Another command that was given up for it
+    /// ends in an error and is not resumed (docs/design/ownership.md "Joystick box"). A link that fails while E-PAUSE
+    /// stands is no failure of it: the reason stands beside `done`.
     fn outcome(&self, inputs: &Inputs<'_, TaskData<'_>>) -> (StatusReport, Reason) {
         let execution = &self.execution;
         let prim = &inputs.memory.prim;

@@ -32,14 +32,14 @@ decision_table! {
         Start | Awaiting {
             6: motion: AtRest                                          => Pause     -> Pausing;
         }
-        Pausing | PausingAgain {
+        Pausing | PausingAgain | Resting {
             7:  prim: Pending | Executing                              => Wait;
         }
         /// The processes below are pausing.
         Pausing {
             8:  prim: Error                                            => RobotInit -> InitializingAgain;
         }
-        Pausing | PausingAgain {
+        Pausing | PausingAgain | Resting {
             9:  prim: Lost                                             => PassUp;
             10: prim: Joystick                                         => Manual    -> Led;
             11: prim: Done, tooling: Busy                              => Wait;
@@ -66,19 +66,15 @@ decision_table! {
         }
         /// The processes below pause again after the operator has given the robot back.
         Resting {
-            24: prim: Pending | Executing                              => Wait;
-            25: prim: Done, tooling: Busy                              => Wait;
-            26: prim: Done, tooling: Ready | RingFaulty | GripFaulty   => Finish    -> Standing;
-            27: prim: Error | Lost                                     => Finish    -> Standing;
-            28: prim: Joystick                                         => Manual    -> Led;
+            24: prim: Error                                            => Finish    -> Standing;
         }
         /// Prim is initializing a link that has failed while the robot paused.
         InitializingAgain {
-            29: work: Over                                             => Pause     -> PausingAgain;
+            25: work: Over                                             => Pause     -> PausingAgain;
         }
         /// The processes below are pausing once more.
         PausingAgain {
-            30: prim: Error                                            => PassUp;
+            26: prim: Error                                            => PassUp;
         }
     }
 }

@@ -311,7 +311,8 @@ fn the_operator_moves_the_robot_and_the_fingers() {
     bench.world.joystick = true;
     assert_eq!(bench.pause(), (StatusReport::JoystickOn, Reason::JoystickOn));
     bench.world.joystick = false;
-    bench.steps(5);
+    bench.steps(10);
+    assert_eq!(bench.memory.emove.status.report, StatusReport::Done);
     bench.dead.push("Prim");
     bench.steps(5);
     assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "done stays");
@@ -356,6 +357,10 @@ fn robot_given_back_by_the_operator_is_done_when_everything_rests() {
         assert_eq!(bench.memory.emove.status.report, StatusReport::JoystickOn, "after {again} ticks");
         ticks(&mut bench);
     }
+    let mut bench = led();
+    bench.spoil("PAUSE", Mishap::Prim(PrimReport::T3LinkErr, Reason::LinkError));
+    ticks(&mut bench);
+    assert_eq!(bench.memory.emove.status.reason, Reason::LinkError, "the reason stands beside it");
     let mut bench = led();
     bench.memory.prim.status.report = PrimReport::T3LinkErr;
     bench.dead.push("Prim");
