@@ -287,9 +287,12 @@ mod tests {
         let proof = Proof::unsensed(Unconfirmed::GraspForce);
         assert_eq!(ask(&mut execution, Act::Finish, proof), (3, 5, Act::Finish, 8));
         execution.finish();
-        assert_eq!((execution.outcome, execution.unconfirmed()), (Outcome::Done, Unconfirmed::GraspForce));
-        execution.course(Arrival::New);
-        assert_eq!(execution.unconfirmed(), Unconfirmed::None, "the next command has its own goal");
+        assert_eq!(
+            (execution.outcome, execution.report().unconfirmed),
+            (Outcome::Done, Unconfirmed::GraspForce)
+        );
+        execution.execute(Arrival::New);
+        assert_eq!(execution.report().unconfirmed, Unconfirmed::None, "the next command has its own goal");
     }
 
     #[test]
@@ -317,7 +320,7 @@ mod tests {
             (Evidence::PinsDiffer, 21, Reason::PinsFail),
         ] {
             let mut execution = Execution::default();
-            assert_eq!(execution.course(Arrival::New), Course::Begin);
+            assert_eq!(execution.execute(Arrival::New), Course::Begin);
             let mut tick = |action| ask(&mut execution, action, Proof::of(evidence));
             assert_eq!(tick(Act::Order), (3, 5, Act::Order, 8), "nothing is claimed yet");
             assert_eq!(tick(Act::Finish), (9, 2, Act::Wait, 7), "{evidence:?}");

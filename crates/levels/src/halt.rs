@@ -14,7 +14,14 @@
 //! command is accepted in the tick in which it comes.
 
 use interfaces::{Header, Reason};
-use rcs_core::{Actions, Plain, Variables, decision_table, handshake::Lower, tick::Tick};
+use rcs_core::{
+    Actions, Plain, Variables, decision_table,
+    handshake::Lower,
+    table::{Choice, Decision, Verdict},
+    tick::Tick,
+};
+
+use crate::execution::{Course, Ending, Execution, LastOrder};
 
 /// The command of a process, for [`HALT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -179,5 +186,88 @@ decision_table! {
     pub EFFECT: fn effect(Fired) -> Futile or () {
         1: order: None | New    => consult;
         2: order: Repeated      => Fail(NoEffect);
+    }
+}
+
+/// The actions of a process that commands others, for [`HALT`].
+pub trait Stopping: Ending {
+    /// A pause to the processes below.
+    const STOP: Self;
+
+    /// The action of HALT.
+    #[must_use]
+    fn of_halt(halting: Halting) -> Self {
+        match halting {
+            Halting::Stop | Halting::Abandon(_) => Self::STOP,
+            Halting::Wait => Self::WAIT,
+        }
+    }
+}
+
+/// The actions of a process that commands others, for [`EFFECT`].
+pub trait Commanding: Ending {
+    /// The action orders something of a process below that changes a state variable when it is carried out.
+    fn is_order(&self) -> bool;
+}
+
+impl Execution {
+    /// Consult [`HALT`], the table with this number, about what EXECUTE has said. What is to be done with the
+    /// tables: `Begin` in the tick in which a command is accepted or refused.
+    ///
+    /// # Errors
+    /// What HALT asks for: no other table is to be consulted.
+    pub fn halt(&mut self, number: u8, course: Course, replaced: &Replaced) -> Result<Course, Halting> {
+        self.waiting |= course == Course::Begin;
+        let intake = match course {
+            Course::Refuse => Intake::Adopted,
+            _ if self.waiting => Intake::Asked,
+            Course::Rest | Course::Begin | Course::Continue => Intake::Taken,
+        };
+        match halt(self.halt, &Replaced { intake, ..*replaced }) {
+            Verdict::Passed(()) if self.waiting => {
+                // A command can come into the middle of a stop that the joystick box has ended.
+                (self.waiting, self.halt, self.last_order) = (false, Halt::Clear, None);
+                Ok(Course::Begin)
+            }
+            Verdict::Passed(()) => Ok(course),
+            Verdict::Decided(decision) => {
+                self.halt = decision.next;
+                if let Halting::Abandon(reason) = decision.action {
+                    self.fail(reason);
+                }
+                // The header of a restarted process says that it was restarted.
+                if intake == Intake::Asked {
+                    self.rows.decide(&decision.of(number));
+                } else {
+                    self.rows.beside(&decision.of(number));
+                }
+                Err(decision.action)
+            }
+        }
+    }
+
+    /// Consult [`EFFECT`], the table with this number, about a row that fired: the row, or that of EFFECT. `variables`
+    /// are those of the command's table, as one number.
+    pub fn effect<Action: Commanding, Step>(
+        &mut self,
+        number: u8,
+        choice: Choice<Action, Step>,
+        variables: u64,
+    ) -> Choice<Action, Step> {
+        let this = LastOrder { table: choice.table, row: choice.row, variables };
+        let order = match choice.action.is_order() {
+            false => Order::None,
+            true if self.last_order == Some(this) => Order::Repeated,
+            true => Order::New,
+        };
+        match effect((), &Fired { order }) {
+            Verdict::Passed(()) => {
+                self.last_order = if order == Order::New { Some(this) } else { self.last_order };
+                choice
+            }
+            Verdict::Decided(Decision { row, action: Futile::Fail(reason), values, .. }) => {
+                Choice { table: number, row, action: Action::fail(reason), next: choice.next, values }
+            }
+        }
     }
 }

@@ -2,13 +2,7 @@
 //! consulted.
 
 use interfaces::{Basis, Consulted, Decided, Header};
-use rcs_core::{
-    Plain,
-    header::BESIDE,
-    name::Name16,
-    table::{Choice, Values},
-    tick::Tick,
-};
+use rcs_core::{Plain, header::BESIDE, name::Name16, table::Choice, tick::Tick};
 
 /// The rows of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -30,7 +24,8 @@ impl Rows {
     }
 
     /// A row has decided about the command. What has decided before in the same tick goes beside.
-    pub fn decide(&mut self, table: u8, row: u8, values: Values) {
+    pub fn decide<Action, Step>(&mut self, choice: &Choice<Action, Step>) {
+        let &Choice { table, row, values, .. } = choice;
         if let (Some(decided), Some(basis)) = (self.decided, self.basis)
             && basis.tick == self.tick
         {
@@ -76,17 +71,22 @@ impl Rows {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rcs_core::table::Values;
 
     const fn values(variables: u64) -> Values {
         Values { step: 1, variables }
+    }
+
+    const fn choice(table: u8, row: u8, variables: u64) -> Choice<(), ()> {
+        Choice { table, row, action: (), next: (), values: values(variables) }
     }
 
     #[test]
     fn a_row_keeps_its_tick_and_what_stands_beside_does_not() {
         let mut rows = Rows::default();
         rows.begin(Tick(4));
-        rows.beside(&Choice { table: 7, row: 2, action: (), next: (), values: values(9) });
-        rows.decide(3, 5, values(1));
+        rows.beside(&choice(7, 2, 9));
+        rows.decide(&choice(3, 5, 1));
         let header = rows.header(Tick(4), "moving");
         assert_eq!(header.fired(), Some(Decided { table: 3, row: 5 }));
         assert_eq!(
@@ -104,11 +104,11 @@ mod tests {
     fn the_last_row_of_a_tick_is_the_one_that_decided() {
         let mut rows = Rows::default();
         rows.begin(Tick(4));
-        rows.decide(3, 5, values(1));
+        rows.decide(&choice(3, 5, 1));
         rows.begin(Tick(6));
-        rows.decide(4, 1, values(2));
+        rows.decide(&choice(4, 1, 2));
         assert_eq!(rows.beside, [None; BESIDE], "the row of an earlier tick is not one of this");
-        rows.decide(9, 8, values(3));
+        rows.decide(&choice(9, 8, 3));
         let header = rows.header(Tick(6), "");
         assert_eq!(
             header.consulted(),
@@ -122,7 +122,7 @@ mod tests {
         let mut rows = Rows::default();
         rows.begin(Tick(1));
         for table in 1..=4 {
-            rows.beside(&Choice { table, row: table, action: (), next: (), values: values(0) });
+            rows.beside(&choice(table, table, 0));
         }
         assert_eq!((rows.row_of(3), rows.row_of(4)), (Some(3), None));
     }

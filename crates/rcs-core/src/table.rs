@@ -96,6 +96,24 @@
 //! list of all tables, the numbers of those that no command selects, and the function that consults the table
 //! of a command. An entry is `Verb: GOAL => table;`: a command without a goal does not compile. `a then b::c` consults
 //! two tables in turn.
+//!
+//! `others` lists the tables that no command selects, in the order of their numbers. `before` and `after` say in which
+//! order they are consulted, before the table of the command and about the row that fired. From this follows the
+//! function `decide`, and the order in its documentation.
+//!
+//! ```text
+//! others: EXECUTE, accept::ACCEPT, HALT, EFFECT, ordered::ORDERED, CONFIRM;
+//! before: EXECUTE, HALT, ACCEPT(request), ORDERED(orders -> situation.work);
+//! after: EFFECT, CONFIRM;
+//! ```
+//!
+//! | in `before` | meaning |
+//! |---|---|
+//! | `EXECUTE`, `HALT` | the tables of all processes, consulted by `Execution` |
+//! | `JOYSTICK by joystick` | consulted by this method of the process's state, which can withhold the command |
+//! | `ACCEPT(request)` | a row decides with the variables `seen.request`, or the next table is consulted |
+//! | `LINK(situation in link)` | the same, with the step `state.link` instead of that of the command |
+//! | `ORDERED(orders -> situation.work)` | what it passes on becomes `seen.situation.work` |
 
 mod values;
 
@@ -223,22 +241,10 @@ impl<Action, Step> Decision<Action, Step> {
     pub fn of(self, table: u8) -> Choice<Action, Step> {
         Choice { table, row: self.row, action: self.action, next: self.next, values: self.values }
     }
-}
 
-impl<Action, Step, Passed> Verdict<Action, Step, Passed> {
-    /// The decision as one of the table with this number, or what the table below makes of the value that was
-    /// passed.
-    pub fn then<Next: From<Step>>(
-        self,
-        table: u8,
-        below: impl FnOnce(Passed) -> Choice<Action, Next>,
-    ) -> Choice<Action, Next> {
-        match self {
-            Self::Decided(Decision { row, action, next, values }) => {
-                Choice { table, row, action, next: next.into(), values }
-            }
-            Self::Passed(value) => below(value),
-        }
+    /// The decision of a table with steps of its own, with the step of the command instead.
+    pub fn in_step<Other>(self, step: Other) -> Decision<Action, Other> {
+        Decision { row: self.row, action: self.action, next: step, values: self.values }
     }
 }
 

@@ -61,14 +61,14 @@ use interfaces::{
     operator::Write,
     process::{Inputs, Process},
 };
-use rcs_core::table::{Table, Variables as _, Verdict};
+use rcs_core::table::{Table, Verdict};
 use taskdata::files::TaskData;
 
 use self::{
     state::State,
-    tables::{Action, Seen, Step, Watch, attend::attend, number},
+    tables::{Action, Seen, attend::attend, number},
 };
-use crate::execution::{Course, Orders as _};
+use crate::execution::Course;
 
 /// The E-move process.
 #[derive(Clone, Debug, Default)]
@@ -94,28 +94,7 @@ impl<'d> Process<TaskData<'d>> for Emove {
     }
 
     fn decide(&mut self, seen: &Seen) -> Action {
-        let state = &mut self.state;
-        let course = state.execution.course(seen.arrival);
-        match state.execution.admit(course, &seen.replaced) {
-            Err(halting) => return Action::of_halt(halting),
-            Ok(Course::Refuse) => return Action::Wait,
-            Ok(Course::Rest) => {
-                let watch = Watch { outcome: state.execution.outcome, ..seen.watch };
-                if let Verdict::Decided(decision) = attend(state.step, &watch) {
-                    state.execution.rows.beside(&decision.of(number::ATTEND));
-                    return decision.action;
-                }
-            }
-            Ok(Course::Begin) => state.step = Step::first(seen.verb),
-            Ok(Course::Continue) => {}
-        }
-        let variables = seen.situation.code() | seen.progress;
-        let choice = state.execution.effective(tables::decide(state.step, seen), variables);
-        let goal = (tables::goal(seen.verb), seen.proof);
-        let choice = state.execution.confirm(number::CONFIRM, state.step, choice, goal);
-        state.execution.note(&choice);
-        state.step = choice.next;
-        choice.action
+        tables::decide(&mut self.state, &mut { *seen })
     }
 
     fn postprocess(
@@ -143,5 +122,25 @@ impl<'d> Process<TaskData<'d>> for Emove {
 
     fn state_mut(&mut self) -> &mut State {
         &mut self.state
+    }
+}
+
+impl State {
+    /// Consult ATTEND if EXECUTE leaves the command alone: the tables of the command are consulted if it passes.
+    ///
+    /// # Errors
+    /// The action of its row otherwise.
+    fn attend(&mut self, course: Course, seen: &mut Seen) -> Result<Course, Action> {
+        if course != Course::Rest {
+            return Ok(course);
+        }
+        seen.watch.outcome = self.execution.outcome;
+        match attend(self.step, &seen.watch) {
+            Verdict::Passed(()) => Ok(Course::Continue),
+            Verdict::Decided(decision) => {
+                self.execution.rows.beside(&decision.of(number::ATTEND));
+                Err(decision.action)
+            }
+        }
     }
 }

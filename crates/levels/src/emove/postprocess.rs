@@ -334,14 +334,17 @@ impl State {
                     self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
                 (StatusReport::Done, if below == Lower::Error { prim.status.reason } else { Reason::None })
             }
-            _ => execution.report(),
+            _ => {
+                let report = execution.report();
+                (report.outcome.report(), report.reason)
+            }
         }
     }
 
     /// Write the status to Subtask and the flags of the gripper processes.
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
         let (report, reason) = self.outcome(inputs);
-        outputs.header = self.execution.header(inputs.tick, self.step.text());
+        outputs.header = self.execution.rows.header(inputs.tick, self.step.text());
         outputs.dormant = Gripper::attached(inputs.memory).dormancy();
         outputs.beliefs = self.beliefs;
         outputs.nearest = self.surroundings.nearest;
@@ -350,7 +353,7 @@ impl State {
             report,
             reason,
             unconfirmed: if report == StatusReport::Done {
-                self.execution.unconfirmed()
+                self.execution.report().unconfirmed
             } else {
                 Unconfirmed::None
             },

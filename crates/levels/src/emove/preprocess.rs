@@ -76,7 +76,7 @@ impl State {
     /// Read the inputs of a tick.
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &EmoveOutputs) -> Seen {
         let command = &inputs.memory.subtask.emove;
-        let arrival = self.execution.observe(inputs.tick, command.number);
+        let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
         self.adopt(inputs, outputs);
         self.sense_neighbours(inputs);
         self.sense_way(inputs.memory, inputs.data);
@@ -85,7 +85,6 @@ impl State {
         let watch = self.sense_place(command, inputs);
         self.sense_exchange(inputs);
         self.sense_drum(inputs);
-        let asked = self.execution.asked(arrival);
         let replaced = self.replaced(&watch, inputs);
         let at_rest = replaced.below == Below::AtRest || replaced.joystick == BoxState::On;
         let request = if asked == Asked::Now && (at_rest || replaced.kind == Kind::Pause) {

@@ -109,18 +109,18 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
     /// A calibration goes on in the tick of a refusal, and while a command waits for it.
     fn decide(&mut self, seen: &Seen) -> Action {
         let state = &mut self.state;
-        let course = state.execution.course(seen.arrival);
+        let course = state.execution.execute(seen.arrival);
         if course == Course::Begin {
             state.step = Step::Start;
         }
-        let accepted = state.execution.accepts(&accept(state.step, &seen.request));
+        let accepted = state.execution.accepts(accept(state.step, &seen.request));
         let command = state.goal.command(course, accepted);
         let situation = Situation { command, ..seen.situation };
         match up_init(state.phase, &situation) {
             Verdict::Decided(decision) => {
                 state.phase = decision.next;
                 if accepted {
-                    state.execution.note(&decision.of(number::UP_INIT));
+                    state.execution.rows.decide(&decision.of(number::UP_INIT));
                 } else {
                     state.execution.rows.beside(&decision.of(number::UP_INIT));
                 }
@@ -130,7 +130,7 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
             Verdict::Passed(Duty::Refused) => Action::Refuse,
             Verdict::Passed(Duty::Command) => {
                 let choice = of_command(state.goal.verb, state.step, &situation);
-                state.execution.note(&choice);
+                state.execution.rows.decide(&choice);
                 state.step = choice.next;
                 choice.action
             }

@@ -122,7 +122,7 @@ impl State {
         let step = if self.is_calibrating() { self.phase.text() } else { self.step.text() };
         let known = matches!(self.phase, Phase::Valid | Phase::Adopting);
         GripOutputs {
-            header: execution.header(tick, step),
+            header: execution.rows.header(tick, step),
             status,
             calibration: self.calibration.filter(|_| known),
             valves: GripValves { bits: self.valves },

@@ -70,7 +70,7 @@ impl State {
     ) -> Seen {
         let command = S::command(inputs.memory);
         let (gripper, sensors) = S::sensors(&inputs.external.devices);
-        let arrival = self.observe((inputs.tick, command.number), gripper, outputs);
+        let (arrival, asked) = self.observe((inputs.tick, command.number), gripper, outputs);
         let goal = Goal::from(command);
         if arrival == Arrival::New {
             self.goal = goal;
@@ -84,7 +84,7 @@ impl State {
         Seen {
             arrival,
             request: Request {
-                asked: Asked::of(arrival),
+                asked,
                 verb: command.command,
                 addressee: addressee::<S>(command),
                 gripper,
@@ -108,14 +108,19 @@ impl State {
 
     /// Read the command number, and find out where the calibration begins with a process that starts or
     /// wakes: one that has written a calibration before a restart adopts it.
-    fn observe(&mut self, (tick, number): (Tick, u32), gripper: Gripper, outputs: &GripOutputs) -> Arrival {
+    fn observe(
+        &mut self,
+        (tick, number): (Tick, u32),
+        gripper: Gripper,
+        outputs: &GripOutputs,
+    ) -> (Arrival, Asked) {
         let woken = outputs.header.republished;
         if woken {
             self.execution.wake();
             (self.valves, self.sensed) = (0, None);
         }
         let starting = !self.execution.receiver.started;
-        let arrival = self.execution.observe(tick, number);
+        let (arrival, asked) = self.execution.observe(tick, number);
         if starting && self.phase != Phase::Valid {
             let attached = gripper == Gripper::Attached;
             self.phase = if let Some(calibration) = outputs.calibration {
@@ -130,7 +135,7 @@ impl State {
                 self.phase
             };
         }
-        arrival
+        (arrival, asked)
     }
 
     /// Take the readings of this tick.

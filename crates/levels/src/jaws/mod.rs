@@ -59,9 +59,8 @@ use rcs_core::table::Table;
 
 use self::{
     state::State,
-    tables::{Action, Seen, Step},
+    tables::{Action, Seen},
 };
-use crate::execution::Course;
 
 /// The process of a gripper that opens and closes.
 #[derive(Clone, Debug, Default)]
@@ -93,16 +92,7 @@ impl<K: JawsKind, Data: ?Sized> Process<Data> for Jaws<K> {
     }
 
     fn decide(&mut self, seen: &Seen) -> Action {
-        let state = &mut self.state;
-        match state.execution.course(seen.arrival) {
-            Course::Rest | Course::Refuse => return Action::Wait,
-            Course::Begin => state.step = Step::Start,
-            Course::Continue => {}
-        }
-        let choice = tables::decide(state.verb, state.step, seen);
-        state.execution.note(&choice);
-        state.step = choice.next;
-        choice.action
+        tables::decide(&mut self.state, &mut { *seen })
     }
 
     fn postprocess(
@@ -113,7 +103,7 @@ impl<K: JawsKind, Data: ?Sized> Process<Data> for Jaws<K> {
         outputs: &mut JawsOutputs,
     ) {
         let state = &mut self.state;
-        if state.execution.begins(seen.arrival) {
+        if state.execution.accepted(seen.request.asked) {
             state.size = seen.size;
         }
         state.act(action, seen);

@@ -65,6 +65,10 @@ impl State {
             status.felt = seen.felt;
             status.velocity = hundredths(seen.velocity);
         }
-        JawsOutputs { header: self.execution.header(tick, self.step.text()), status, valves: self.valves }
+        JawsOutputs {
+            header: self.execution.rows.header(tick, self.step.text()),
+            status,
+            valves: self.valves,
+        }
     }
 }

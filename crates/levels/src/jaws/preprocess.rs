@@ -12,7 +12,6 @@ use super::{
     state::{State, WINDOW},
     tables::{Addressee, Gripper, Motion, Request, Seen, Situation, Size, Stop},
 };
-use crate::execution::Asked;
 
 /// Counts of the potentiometer at opening 0. ASSUMED; all grippers use the same connections (III.3.7,
 /// III.3.8).
@@ -56,7 +55,7 @@ impl State {
             self.execution.wake();
             self.found = None;
         }
-        let arrival = self.execution.observe(inputs.tick, command.number);
+        let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
         if arrival == Arrival::New {
             (self.verb, self.since, self.found) = (command.command, inputs.tick, None);
         }
@@ -69,8 +68,9 @@ impl State {
         let motion = self.motion(&window, stop, inputs.tick);
         Seen {
             arrival,
+            verb: self.verb,
             request: Request {
-                asked: Asked::of(arrival),
+                asked,
                 verb: command.command,
                 addressee: addressee(command, &K::PARAMETERS),
                 gripper,

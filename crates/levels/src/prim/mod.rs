@@ -52,12 +52,13 @@ use taskdata::files::TaskData;
 use self::{
     state::State,
     tables::{
-        Action, Attendance, Kind, Seen, Step,
+        Action, Attendance, Kind, Seen,
         attend::{Attention, attend},
         link::LinkStep,
         number,
     },
 };
+use crate::execution::Course;
 
 /// The Prim process.
 #[derive(Clone, Debug, Default)]
@@ -83,30 +84,7 @@ impl<'d> Process<TaskData<'d>> for Prim {
     }
 
     fn decide(&mut self, seen: &Seen) -> Action {
-        let state = &mut self.state;
-        let attendance = Attendance {
-            course: state.execution.course(seen.arrival),
-            kind: Kind::of(seen.verb),
-            operator: seen.situation.operator,
-        };
-        let attention = attend(state.execution.outcome, &attendance);
-        state.execution.rows.beside(&attention.of(number::ATTEND));
-        state.execution.outcome = attention.next;
-        match attention.action {
-            Attention::Leave => return Action::Wait,
-            Attention::Halt => return Action::Halt,
-            Attention::Begin => {
-                (state.step, state.link) = (Step::first(seen.verb), LinkStep::Commanding);
-            }
-            Attention::Continue => {}
-            Attention::Resume => state.execution.reason = Reason::None,
-        }
-        let choice = tables::decide(state.step, &mut state.link, seen);
-        let goal = (tables::goal(seen.verb), seen.proof);
-        let choice = state.execution.confirm(number::CONFIRM, state.step, choice, goal);
-        state.execution.note(&choice);
-        state.step = choice.next;
-        choice.action
+        tables::decide(&mut self.state, &mut { *seen })
     }
 
     fn postprocess(
@@ -117,7 +95,7 @@ impl<'d> Process<TaskData<'d>> for Prim {
         outputs: &mut PrimOutputs,
     ) {
         let state = &mut self.state;
-        if state.execution.begins(seen.arrival) {
+        if state.execution.accepted(seen.request.asked) {
             state.begin(outputs);
         }
         state.act(action, seen, inputs, outputs);
@@ -131,5 +109,31 @@ impl<'d> Process<TaskData<'d>> for Prim {
 
     fn state_mut(&mut self) -> &mut State {
         &mut self.state
+    }
+}
+
+impl State {
+    /// Consult ATTEND, which decides in every tick whether the tables of the command are consulted.
+    ///
+    /// # Errors
+    /// The action if they are not.
+    fn attend(&mut self, course: Course, seen: &mut Seen) -> Result<Course, Action> {
+        let attendance = Attendance { course, kind: Kind::of(seen.verb), operator: seen.situation.operator };
+        let attention = attend(self.execution.outcome, &attendance);
+        self.execution.rows.beside(&attention.of(number::ATTEND));
+        self.execution.outcome = attention.next;
+        match attention.action {
+            Attention::Leave => Err(Action::Wait),
+            Attention::Halt => Err(Action::Halt),
+            Attention::Begin => {
+                self.link = LinkStep::Commanding;
+                Ok(Course::Begin)
+            }
+            Attention::Continue => Ok(Course::Continue),
+            Attention::Resume => {
+                self.execution.reason = Reason::None;
+                Ok(Course::Continue)
+            }
+        }
     }
 }

@@ -193,7 +193,7 @@ impl State {
         }
         let execution = &self.execution;
         let engaged = self.manual.engaged;
-        outputs.header = execution.header(inputs.tick, self.step.text());
+        outputs.header = execution.rows.header(inputs.tick, self.step.text());
         outputs.status = PrimStatus {
             echo: execution.receiver.echo,
             report: report(execution.outcome, execution.reason),

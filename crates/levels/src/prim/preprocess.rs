@@ -15,7 +15,7 @@ use interfaces::{
     process::Inputs,
     t3i::{Following, LinkFault, ReportCheck, T3iCommand, T3iReport, T3iStatus, T3iVerb},
 };
-use rcs_core::handshake::{Arrival, Lower, successor};
+use rcs_core::handshake::{Lower, successor};
 use taskdata::files::{MovtabId, SensorPara, TaskData, TrajParaId};
 
 use super::{
@@ -49,10 +49,9 @@ impl State {
             self.calibration.bias = outputs.bias;
         }
         let command = &inputs.memory.emove.prim;
-        let arrival = self.execution.observe(inputs.tick, command.number);
-        let request =
-            if arrival == Arrival::New { self.look_up(command, inputs) } else { Request::default() };
-        let verb = if arrival == Arrival::New { command.command } else { self.target.verb };
+        let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
+        let request = if asked == Asked::Now { self.look_up(command, inputs) } else { Request::default() };
+        let verb = if asked == Asked::Now { command.command } else { self.target.verb };
         let interface = self.interface(inputs, &outputs.t3i);
         let answered = matches!(interface, Interface::Ready | Interface::Finished);
         let feedback = Some(&t3i.frame_feedback).filter(|_| answered && t3i.link_running);

@@ -82,13 +82,13 @@ impl<Data: ?Sized> Process<Data> for QuickChange {
     /// The ring is watched in every tick, also in that of a refusal.
     fn decide(&mut self, seen: &Seen) -> Action {
         let state = &mut self.state;
-        if state.execution.course(seen.arrival) == Course::Begin {
+        if state.execution.execute(seen.arrival) == Course::Begin {
             state.step = Step::Start;
         }
-        let accepted = state.execution.accepts(&accept(state.step, &seen.request));
+        let accepted = state.execution.accepts(accept(state.step, &seen.request));
         let choice = of_command(state.command, state.step, &seen.situation);
         if accepted {
-            state.execution.note(&choice);
+            state.execution.rows.decide(&choice);
         } else {
             state.execution.rows.beside(&choice);
         }

@@ -28,7 +28,7 @@ impl State {
         };
         let (lock, unlock) = (action == Action::Lock, action == Action::Unlock);
         QuickChangeOutputs {
-            header: self.execution.header(tick, self.step.text()),
+            header: self.execution.rows.header(tick, self.step.text()),
             status: QuickChangeStatus {
                 echo: self.execution.receiver.echo,
                 report,

@@ -9,7 +9,6 @@ use super::{
     state::State,
     tables::{Clock, Id, Request, Seen, Situation},
 };
-use crate::execution::Asked;
 
 /// Ticks after which a ring that neither sensor sees is stuck (0.5 s): longer than it is on its way.
 pub(super) const STUCK_TICKS: u8 = 12;
@@ -30,7 +29,7 @@ impl State {
     ) -> Seen {
         let command = &inputs.memory.emove.quick_change;
         let may_go_on = !self.execution.receiver.started && outputs.valves.port;
-        let arrival = self.execution.observe(inputs.tick, command.number);
+        let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
         if arrival == Arrival::New {
             (self.command, self.since) = (command.command, inputs.tick);
         }
@@ -41,7 +40,7 @@ impl State {
         let late = inputs.tick.since(self.since) > TURN_TICKS;
         Seen {
             arrival,
-            request: Request { asked: Asked::of(arrival), verb: command.command },
+            request: Request { asked, verb: command.command },
             situation: Situation {
                 ring: self.ring,
                 id: self.read_id(sensors.end_effector_id),

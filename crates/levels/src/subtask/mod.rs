@@ -38,13 +38,13 @@ use interfaces::{
     process::{Inputs, Process},
     subtask::Regrip,
 };
-use rcs_core::table::{Table, Variables as _, Verdict};
+use rcs_core::table::{Table, Verdict};
 use taskdata::files::TaskData;
 
 use self::{
     state::State,
     tables::{
-        Action, Seen, Step,
+        Action, Seen,
         by_hand::{Manually, by_hand},
         number,
     },
@@ -74,19 +74,15 @@ impl<'d> Process<TaskData<'d>> for Subtask {
     }
 
     fn decide(&mut self, seen: &Seen) -> (Action, Option<Manually>) {
-        let State { execution, step, .. } = &mut self.state;
-        let input = (seen.arrival, &seen.replaced, seen.situation.code());
-        let goal = (number::CONFIRM, (tables::goal(seen.verb), seen.proof));
-        let first = Step::first(seen.verb);
-        let decided = execution.command(input, goal, first, step, |step| tables::decide(step, seen));
+        let action = tables::decide(&mut self.state, &mut { *seen });
         let manually = match by_hand((), &seen.manual) {
             Verdict::Passed(()) => None,
             Verdict::Decided(decision) => {
-                execution.rows.beside(&decision.of(number::BY_HAND));
+                self.state.execution.rows.beside(&decision.of(number::BY_HAND));
                 Some(decision.action)
             }
         };
-        (decided.unwrap_or(Action::Wait), manually)
+        (action, manually)
     }
 
     fn postprocess(

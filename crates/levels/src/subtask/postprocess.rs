@@ -193,15 +193,16 @@ impl State {
             // A link that fails while S-PAUSE stands is no failure of it.
             (StatusReport::Done, below.reason)
         } else {
-            execution.report()
+            let report = execution.report();
+            (report.outcome.report(), report.reason)
         };
-        outputs.header = execution.header(inputs.tick, self.step.text());
+        outputs.header = execution.rows.header(inputs.tick, self.step.text());
         outputs.status = SubtaskStatus {
             echo: execution.receiver.echo,
             report,
             reason,
             unconfirmed: if report == StatusReport::Done {
-                execution.unconfirmed()
+                execution.report().unconfirmed
             } else {
                 Unconfirmed::None
             },

@@ -36,8 +36,7 @@ impl State {
         self.adopt(inputs);
         let (emove, pedestal) = (self.emove(inputs), self.pedestal(inputs));
         self.sense_hand(&inputs.memory.pedestal.status, pedestal);
-        let arrival = self.execution.observe(inputs.tick, command.number);
-        let asked = self.execution.asked(arrival);
+        let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
         let request = if asked == Asked::Now { self.look_up(command, inputs) } else { Request::default() };
         let situation = self.situation(command, inputs);
         Seen {

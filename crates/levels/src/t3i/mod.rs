@@ -111,11 +111,11 @@ impl<Data: ?Sized> Process<Data> for T3i {
         state.step = choice.next;
         // The last row decides: that of RECEIVE if it refuses the command.
         if matches!(taken.action, Intake::Ignore | Intake::Refuse) {
-            state.rows.decide(choice.table, choice.row, choice.values);
-            state.rows.decide(number::RECEIVE, taken.row, taken.values);
+            state.rows.decide(&choice);
+            state.rows.decide(&taken.of(number::RECEIVE));
         } else {
             state.rows.beside(&taken.of(number::RECEIVE));
-            state.rows.decide(choice.table, choice.row, choice.values);
+            state.rows.decide(&choice);
         }
         choice.action
     }

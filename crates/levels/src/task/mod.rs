@@ -46,15 +46,12 @@ use taskdata::files::TaskData;
 use self::{
     state::State,
     tables::{
-        Action, Operator, Orders, Request, Seen, Step, Takeover,
+        Action, Operator, Seen, Takeover,
         joystick::{Control, joystick},
         number,
     },
 };
-use crate::{
-    execution::Course,
-    halt::{BoxState, Halting, Replaced},
-};
+use crate::{execution::Course, halt::BoxState};
 
 /// The Task process.
 #[derive(Clone, Debug, Default)]
@@ -80,33 +77,9 @@ impl<'d> Process<TaskData<'d>> for Task {
     }
 
     fn decide(&mut self, seen: &Seen) -> (Takeover, Action) {
-        let state = &mut self.state;
-        let course = state.execution.course(seen.arrival);
-        let operator = Operator { subtask: seen.orders.subtask, outcome: state.execution.outcome };
-        let takeover = match joystick(state.control, &operator) {
-            Verdict::Passed(takeover) => takeover,
-            Verdict::Decided(decision) => {
-                state.execution.note(&decision.of(number::JOYSTICK));
-                state.control = decision.next;
-                decision.action
-            }
-        };
-        let manual = state.control == Control::Manual;
-        let joystick = if manual { BoxState::On } else { BoxState::Off };
-        match state.execution.admit(course, &Replaced { joystick, ..seen.replaced }) {
-            Err(Halting::Stop | Halting::Abandon(_)) => return (takeover, Action::Pause),
-            Err(Halting::Wait) | Ok(Course::Rest | Course::Refuse) => return (takeover, Action::Wait),
-            Ok(Course::Begin) => state.step = Step::first(seen.plan.verb),
-            Ok(Course::Continue) => {}
-        }
-        let request = Request { control: state.control, ..seen.request };
-        let orders = Orders { takeover, ..seen.orders };
-        let choice = tables::decide(state.step, &Seen { request, orders, ..*seen });
-        let goal = (tables::goal(seen.plan.verb), seen.proof);
-        let choice = state.execution.confirm(number::CONFIRM, state.step, choice, goal);
-        state.execution.note(&choice);
-        state.step = choice.next;
-        (takeover, choice.action)
+        let mut seen = *seen;
+        let action = tables::decide(&mut self.state, &mut seen);
+        (seen.orders.takeover, action)
     }
 
     fn postprocess(
@@ -146,5 +119,30 @@ impl<'d> Process<TaskData<'d>> for Task {
 
     fn state_mut(&mut self) -> &mut State {
         &mut self.state
+    }
+}
+
+impl State {
+    /// Consult JOYSTICK, the table of every tick, whatever EXECUTE has said. HALT, ACCEPT and ORDERED ask for what it has
+    /// decided.
+    ///
+    /// # Errors
+    /// None: it withholds no command.
+    fn joystick(&mut self, course: Course, seen: &mut Seen) -> Result<Course, Action> {
+        let operator = Operator { subtask: seen.orders.subtask, outcome: self.execution.outcome };
+        seen.orders.takeover = match joystick(self.control, &operator) {
+            Verdict::Passed(takeover) => takeover,
+            Verdict::Decided(decision) => {
+                self.execution.rows.decide(&decision.of(number::JOYSTICK));
+                self.control = decision.next;
+                decision.action
+            }
+        };
+        seen.request.control = self.control;
+        seen.replaced.joystick = match self.control {
+            Control::Manual => BoxState::On,
+            Control::Automatic => BoxState::Off,
+        };
+        Ok(course)
     }
 }

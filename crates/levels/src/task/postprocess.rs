@@ -17,7 +17,7 @@ use super::{
     state::State,
     tables::{Action, Goal, Ordered, Seen, Takeover, joystick::Control},
 };
-use crate::execution::Outcome;
+use crate::execution::{Outcome, Report};
 
 impl State {
     /// Take over a command that was accepted, and give its poses new record numbers: T-POSE-1 source,
@@ -207,7 +207,7 @@ impl State {
     /// Write the status to the HWSC.
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
         let execution = &self.execution;
-        let (outcome, reason) = execution.end();
+        let Report { outcome, reason, unconfirmed } = execution.report();
         let (report, reason) = match (self.control, outcome) {
             (Control::Manual, _) => (HwsReport::JoystickOn, Reason::JoystickOn),
             (Control::Automatic, Outcome::Idle) => (HwsReport::Idle, reason),
@@ -222,14 +222,14 @@ impl State {
         let executing = Some(self.plan.verb).filter(|_| execution.outcome == Outcome::Executing);
         outputs.connection = self.data_system.connection(executing);
         outputs.beliefs = self.data_system.beliefs;
-        outputs.header = execution.header(inputs.tick, self.step.text());
+        outputs.header = execution.rows.header(inputs.tick, self.step.text());
         let finished = report == HwsReport::Finished;
         outputs.status = HwsStatus {
             echo: execution.receiver.echo,
             command: inputs.external.hws.command,
             report,
             reason,
-            unconfirmed: if finished { execution.unconfirmed() } else { Unconfirmed::None },
+            unconfirmed: if finished { unconfirmed } else { Unconfirmed::None },
         };
     }
 }

@@ -35,8 +35,7 @@ impl State {
         self.adopt(inputs);
         let data_base = &self.data_system.read(inputs.external);
         self.data_system.observe(data_base, inputs.tick);
-        let arrival = self.execution.observe(inputs.tick, command.number);
-        let asked = self.execution.asked(arrival);
+        let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
         let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
         self.data_system.hold(below.held.object(), ledger);
         self.note_support(inputs);
@@ -64,6 +63,7 @@ impl State {
                 joystick: BoxState::Off,
                 below: Below::of(subtask, pausing),
             },
+            verb: plan.verb,
             plan,
             request,
             orders: Orders { takeover: Takeover::None, ordered: self.ordered, subtask, data_base },

@@ -36,7 +36,6 @@ use interfaces::{
 use rcs_core::{
     Actions, Variables, commands,
     handshake::{Arrival, Lower},
-    table::Choice,
 };
 
 pub use self::drum::{AtDrum, Bias};
@@ -45,7 +44,6 @@ pub use self::variables::{
     Knowledge, Link, Load, Lock, Mate, Motion, Opening, Ordered, Pause, Reach, Readiness, Record, Ring, Shut,
     Sight, Spread, Target, ToolWork, Tooling, Tries, Vision, Whereabouts,
 };
-use self::{accept::accept, carried::carried, ordered::ordered};
 use super::{
     goals,
     relative::{Relative, RelativeMoves},
@@ -54,8 +52,8 @@ use super::{
 pub use crate::held::Held;
 use crate::{
     confirm::{CONFIRM, Proof},
-    execution::{Asked, EXECUTE, Ending, Orders as Commander, Outcome, Work},
-    halt::{BoxState, EFFECT, HALT, Replaced},
+    execution::{Asked, EXECUTE, Ending, Outcome, Work},
+    halt::{BoxState, Commanding, EFFECT, HALT, Replaced, Stopping},
 };
 
 /// What a new command needs, for [`accept::ACCEPT`].
@@ -209,6 +207,13 @@ pub struct Seen {
     pub situation: Situation,
 }
 
+impl Seen {
+    /// The state variables that an order is to change, for EFFECT.
+    pub(super) fn variables(&self) -> u64 {
+        rcs_core::table::Variables::code(&self.situation) | self.progress
+    }
+}
+
 /// What a row can ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
@@ -317,9 +322,11 @@ impl Ending for Action {
     }
 }
 
-impl Commander for Action {
+impl Stopping for Action {
     const STOP: Self = Self::StopRobot;
+}
 
+impl Commanding for Action {
     fn is_order(&self) -> bool {
         matches!(
             self,
@@ -348,6 +355,8 @@ commands! {
         others: EXECUTE, accept::ACCEPT, HALT, EFFECT, attend::ATTEND, search::SEARCH, resume::RESUME,
             drum::DRUM, carried::CARRIED, ordered::ORDERED, CONFIRM, returning::RETURN, track::TRACK,
             resume::STANCE;
+        before: EXECUTE, HALT, ATTEND by attend, ACCEPT(request), CARRIED(orders), ORDERED(orders -> situation.work);
+        after: EFFECT, CONFIRM;
         None | Pause: goals::REST           => e_pause::e_pause;
         MovToLoc: goals::PLACE              => motion::motion;
         MovToObj: goals::PLACE              => mov_to_obj::mov_to_obj then motion::motion;
@@ -365,14 +374,4 @@ commands! {
         AcquireTool: goals::HELD            => acquire_tool::acquire_tool;
         RemoveTool: goals::REMOVED          => remove_tool::remove_tool;
     }
-}
-
-/// Consult the tables in turn until a row decides.
-#[must_use]
-pub fn decide(step: Step, seen: &Seen) -> Choice<Action, Step> {
-    let of_command = |work| of_command(seen.verb, step, &Situation { work, ..seen.situation });
-    accept(step, &seen.request).then(number::ACCEPT, |()| {
-        carried(step, &seen.orders)
-            .then(number::CARRIED, |()| ordered(step, &seen.orders).then(number::ORDERED, of_command))
-    })
 }

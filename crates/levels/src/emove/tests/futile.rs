@@ -14,7 +14,8 @@ use crate::{
             qc_detach::{QcDetachStep, qc_detach},
         },
     },
-    execution::{Orders, Work},
+    execution::Work,
+    halt::Commanding as _,
 };
 
 /// All that the two tables ask for.

@@ -12,9 +12,8 @@ use interfaces::{
     grip::Felt,
     jaws::{JawsReport, JawsVerb},
 };
-use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival, table::Choice};
+use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
-use self::accept::accept;
 use super::goals;
 use crate::execution::{Asked, EXECUTE};
 
@@ -107,6 +106,8 @@ pub struct Situation {
 pub struct Seen {
     /// What the command buffer holds.
     pub arrival: Arrival,
+    /// The current command.
+    pub verb: JawsVerb,
     /// What a new command needs.
     pub request: Request,
     /// The state variables of the command's table.
@@ -147,14 +148,9 @@ commands! {
     /// Consult the table of a command.
     pub fn of_command(JawsVerb, Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT;
+        before: EXECUTE, ACCEPT(request);
         Grasp: goals::CLOSED            => air::air then grasp::grasp;
         Release | Pose: goals::OPENED   => air::air then release::release;
         None | Pause: goals::REST       => pause::pause;
     }
-}
-
-/// Consult the tables in turn until a row decides.
-#[must_use]
-pub fn decide(verb: JawsVerb, step: Step, seen: &Seen) -> Choice<Action, Step> {
-    accept(step, &seen.request).then(number::ACCEPT, |()| of_command(verb, step, &seen.situation))
 }

@@ -43,9 +43,8 @@ use rcs_core::table::Table;
 
 use self::{
     state::State,
-    tables::{Action, Seen, Step, number},
+    tables::{Action, Seen},
 };
-use crate::{execution::Course, halt::Halting};
 
 /// The pedestal process.
 #[derive(Clone, Debug, Default)]
@@ -71,21 +70,7 @@ impl<Data: ?Sized> Process<Data> for Pedestal {
     }
 
     fn decide(&mut self, seen: &Seen) -> Action {
-        let state = &mut self.state;
-        let verb = state.command.command;
-        let course = state.execution.course(seen.arrival);
-        match state.execution.admit(course, &seen.replaced) {
-            Err(Halting::Stop | Halting::Abandon(_)) => return Action::StopTable,
-            Err(Halting::Wait) | Ok(Course::Rest | Course::Refuse) => return Action::Wait,
-            Ok(Course::Begin) => state.step = Step::first(verb),
-            Ok(Course::Continue) => {}
-        }
-        let choice = tables::decide(verb, state.step, seen);
-        let goal = (tables::goal(verb), seen.proof);
-        let choice = state.execution.confirm(number::CONFIRM, state.step, choice, goal);
-        state.execution.note(&choice);
-        state.step = choice.next;
-        choice.action
+        tables::decide(&mut self.state, &mut { *seen })
     }
 
     fn postprocess(

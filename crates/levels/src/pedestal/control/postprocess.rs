@@ -15,7 +15,7 @@ use super::{
     state::State,
     tables::{Action, Ordered, Seen},
 };
-use crate::pedestal::table::report_of;
+use crate::{execution::Report, pedestal::table::report_of};
 
 impl State {
     /// Set the outputs that a row asks for.
@@ -80,10 +80,10 @@ impl State {
     /// Write the status to Subtask.
     pub(super) fn report<Data: ?Sized>(&self, inputs: &Inputs<'_, Data>, outputs: &mut PedestalOutputs) {
         let execution = &self.execution;
-        let (outcome, reason) = execution.end();
+        let Report { outcome, reason, .. } = execution.report();
         let hand = &inputs.memory.hand.status;
         let force = f64::midpoint(f64::from(hand.left_force), f64::from(hand.right_force));
-        outputs.header = execution.header(inputs.tick, self.step.text());
+        outputs.header = execution.rows.header(inputs.tick, self.step.text());
         outputs.status = PedestalStatus {
             cycle_echo: self.cycle,
             echo: execution.receiver.echo,

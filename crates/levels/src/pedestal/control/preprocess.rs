@@ -39,8 +39,7 @@ impl State {
         if !self.execution.receiver.started {
             self.gripped = outputs.status.gripped;
         }
-        let arrival = self.execution.observe(inputs.tick, command.number);
-        let asked = self.execution.asked(arrival);
+        let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
         if asked == Asked::Now {
             (self.command, self.ordered) = (*command, Ordered::Nothing);
         }
@@ -65,6 +64,7 @@ impl State {
         };
         Seen {
             arrival,
+            verb: self.command.command,
             replaced: Replaced {
                 intake: Intake::Taken,
                 kind: if command.command == PedestalVerb::Pause { Kind::Pause } else { Kind::Other },

@@ -92,18 +92,18 @@ impl<Data: ?Sized> Process<Data> for Table {
     /// A calibration goes on in the tick of a refusal, and while a command waits for it.
     fn decide(&mut self, seen: &Seen) -> Action {
         let state = &mut self.state;
-        let course = state.execution.course(seen.arrival);
+        let course = state.execution.execute(seen.arrival);
         if course == Course::Begin {
             state.step = Step::Start;
         }
-        let accepted = state.execution.accepts(&accept(state.step, &seen.request));
+        let accepted = state.execution.accepts(accept(state.step, &seen.request));
         let command = Command::of(course, accepted, state.command.command);
         let situation = Situation { command, ..seen.situation };
         match calibrate(state.phase, &situation) {
             Verdict::Decided(decision) => {
                 state.phase = decision.next;
                 if accepted {
-                    state.execution.note(&decision.of(number::CALIBRATE));
+                    state.execution.rows.decide(&decision.of(number::CALIBRATE));
                 } else {
                     state.execution.rows.beside(&decision.of(number::CALIBRATE));
                 }
@@ -112,7 +112,7 @@ impl<Data: ?Sized> Process<Data> for Table {
             Verdict::Passed(Duty::Nothing) => Action::Wait,
             Verdict::Passed(Duty::Command) => {
                 let choice = of_command(state.command.command, state.step, &situation);
-                state.execution.note(&choice);
+                state.execution.rows.decide(&choice);
                 state.step = choice.next;
                 choice.action
             }
@@ -127,7 +127,7 @@ impl<Data: ?Sized> Process<Data> for Table {
         outputs: &mut TableOutputs,
     ) {
         let (state, sensors) = (&mut self.state, &inputs.external.devices.pedestal);
-        if state.execution.begins(seen.arrival) {
+        if state.execution.accepted(seen.request.asked) {
             state.since = inputs.tick;
         }
         state.act(action, sensors, inputs.tick);

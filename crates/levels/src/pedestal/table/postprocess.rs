@@ -73,7 +73,7 @@ impl State {
         let adoptable = calibrated || self.phase == Phase::Adopting;
         let step = if self.is_calibrating() { self.phase.text() } else { self.step.text() };
         TableOutputs {
-            header: execution.header(tick, step),
+            header: execution.rows.header(tick, step),
             status: TableStatus {
                 echo: execution.receiver.echo,
                 report: report_of(execution.outcome, execution.reason),

@@ -16,7 +16,6 @@ use super::{
     state::State,
     tables::{Angle, Clock, Command, Counter, Motor, Phase, Request, Seen, Situation, Turned},
 };
-use crate::execution::Asked;
 
 /// Angle at the + limit, 0.1 degree (IV.1 step 3: the counter is set to zero there).
 pub const AT_LIMIT: i32 = 0;
@@ -48,7 +47,7 @@ impl State {
         let command = &inputs.memory.pedestal.table;
         let sensors = &inputs.external.devices.pedestal;
         let starting = !self.execution.receiver.started;
-        let arrival = self.execution.observe(inputs.tick, command.number);
+        let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
         if arrival == Arrival::New {
             self.command = *command;
         }
@@ -62,7 +61,7 @@ impl State {
         let late = arrival != Arrival::New && inputs.tick.since(self.since) > LIMIT_TICKS;
         Seen {
             arrival,
-            request: Request { asked: Asked::of(arrival), verb: command.command, angle: angle(command) },
+            request: Request { asked, verb: command.command, angle: angle(command) },
             situation: Situation {
                 command: Command::Nothing,
                 motor,

@@ -16,16 +16,8 @@ pub mod robot_init;
 
 use geometry::frame::Frame;
 use interfaces::{Reason, prim::PrimVerb, t3i::ReportCheck};
-use rcs_core::{
-    Actions, Plain, Variables, commands,
-    handshake::Arrival,
-    table::{Choice, Decision, Verdict},
-};
+use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
-use self::{
-    accept::accept,
-    link::{LinkStep, link},
-};
 use super::goals;
 use crate::{
     confirm::{CONFIRM, Proof},
@@ -360,6 +352,8 @@ commands! {
     pub fn of_command(PrimVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, attend::ATTEND, path_clock::PATH_CLOCK, record_pose::RECORD_POSE,
             link::LINK, CONFIRM;
+        before: EXECUTE, ATTEND by attend, ACCEPT(request), LINK(situation in link);
+        after: CONFIRM;
         None | Pause: goals::REST           => pause::pause;
         RobotInit: goals::POSITIONED        => robot_init::robot_init;
         GoThru: goals::PASSING              => go_thru::go_thru;
@@ -368,16 +362,4 @@ commands! {
         GoWhile: goals::POINT               => go_while::go_while then goto_pt::goto_pt;
         CalSensor: goals::CALIBRATED        => cal_sensor::cal_sensor;
     }
-}
-
-/// Consult the tables in turn until a row decides. `link_step` is the step of LINK.
-#[must_use]
-pub fn decide(step: Step, link_step: &mut LinkStep, seen: &Seen) -> Choice<Action, Step> {
-    accept(step, &seen.request).then(number::ACCEPT, |()| match link(*link_step, &seen.situation) {
-        Verdict::Decided(Decision { row, action, next, values }) => {
-            *link_step = next;
-            Choice { table: number::LINK, row, action, next: step, values }
-        }
-        Verdict::Passed(()) => of_command(seen.verb, step, &seen.situation),
-    })
 }

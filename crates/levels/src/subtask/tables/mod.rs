@@ -24,19 +24,18 @@ use interfaces::{Reason, emove::Seat, subtask::SubtaskVerb};
 use rcs_core::{
     Actions, Variables, commands,
     handshake::{Arrival, Lower},
-    table::Choice,
 };
 
+use self::by_hand::Manual;
 pub use self::variables::{
     Drum, Exchange, Flip, GripHeld, Gripper, Hand, Holster, Leaving, Named, Ordered, Part, Pedestal,
     PedestalData, PedestalHand, Robot, Turn, Vision, Where,
 };
-use self::{accept::accept, by_hand::Manual, hindrance::hindrance, ordered::ordered};
 use super::goals;
 use crate::{
     confirm::{CONFIRM, Proof},
-    execution::{Asked, EXECUTE, Ending, Orders as Commander, Work},
-    halt::{EFFECT, HALT, Replaced},
+    execution::{Asked, EXECUTE, Ending, Work},
+    halt::{Commanding, EFFECT, HALT, Replaced, Stopping},
     held::Held,
     places::Missing,
 };
@@ -142,6 +141,13 @@ pub struct Seen {
     pub situation: Situation,
 }
 
+impl Seen {
+    /// The state variables that an order is to change, for EFFECT.
+    pub(super) fn variables(&self) -> u64 {
+        rcs_core::table::Variables::code(&self.situation)
+    }
+}
+
 /// What a row can ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
@@ -219,9 +225,11 @@ impl Ending for Action {
     }
 }
 
-impl Commander for Action {
+impl Stopping for Action {
     const STOP: Self = Self::Pause;
+}
 
+impl Commanding for Action {
     fn is_order(&self) -> bool {
         !matches!(
             self,
@@ -235,6 +243,8 @@ commands! {
     pub fn of_command(SubtaskVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, EFFECT, hindrance::HINDRANCE, ordered::ORDERED, CONFIRM,
                 by_hand::BY_HAND;
+        before: EXECUTE, HALT, ACCEPT(request), HINDRANCE(hindrance), ORDERED(orders -> situation.work);
+        after: EFFECT, CONFIRM;
         None | Pause: goals::REST               => s_pause::s_pause;
         GetEndeff: goals::ATTACHED              => get_endeff::get_endeff;
         GetObject: goals::HELD                  => get_object::get_object;
@@ -249,14 +259,4 @@ commands! {
         AcquireTool: goals::ACQUIRED            => acquire_tool::acquire_tool;
         RemoveTool: goals::REMOVED              => remove_tool::remove_tool;
     }
-}
-
-/// Consult the tables in turn until a row decides.
-#[must_use]
-pub fn decide(step: Step, seen: &Seen) -> Choice<Action, Step> {
-    let of_command = |work| of_command(seen.verb, step, &Situation { work, ..seen.situation });
-    accept(step, &seen.request).then(number::ACCEPT, |()| {
-        hindrance(step, &seen.hindrance)
-            .then(number::HINDRANCE, |()| ordered(step, &seen.orders).then(number::ORDERED, of_command))
-    })
 }

@@ -22,11 +22,10 @@ use interfaces::{Reason, hws::Checked};
 use rcs_core::{
     Actions, Plain, Variables, commands,
     handshake::{Arrival, Lower},
-    table::Choice,
 };
 
+use self::joystick::Control;
 pub use self::variables::{DataBase, Drum, Ends, Goal, Ordered, Station, Tool, Update, Way, WayOut};
-use self::{accept::accept, joystick::Control, ordered::ordered};
 use super::{
     goals,
     ledger::{Part, Placed},
@@ -39,7 +38,7 @@ use super::{
 use crate::{
     confirm::{CONFIRM, Proof},
     execution::{Asked, EXECUTE, Ending, Outcome, Work},
-    halt::{HALT, Replaced},
+    halt::{HALT, Replaced, Stopping},
     held::Held,
     places::Missing,
 };
@@ -166,6 +165,8 @@ pub struct Seen {
     pub asked: Asked,
     /// What a new command replaces; [`joystick::JOYSTICK`] decides on `joystick`.
     pub replaced: Replaced,
+    /// Its verb, or that of the current one.
+    pub verb: TaskVerb,
     /// The new command looked up, or the current one.
     pub plan: Plan,
     /// What a new command needs; [`joystick::JOYSTICK`] decides on `control`.
@@ -257,10 +258,16 @@ impl Ending for Action {
     }
 }
 
+impl Stopping for Action {
+    const STOP: Self = Self::Pause;
+}
+
 commands! {
     /// Consult the table of a command.
     pub fn of_command(TaskVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, joystick::JOYSTICK, ordered::ORDERED, CONFIRM;
+        before: EXECUTE, JOYSTICK by joystick, HALT, ACCEPT(request), ORDERED(orders -> situation.work);
+        after: CONFIRM;
         None | Pause: goals::REST           => pause::pause;
         Transfer: goals::TRANSFERRED        => transfer::transfer;
         Move: goals::MOVED                  => mov::r#move;
@@ -274,14 +281,4 @@ commands! {
         Startup: goals::CONNECTED           => startup::startup;
         Shutdown: goals::DISCONNECTED       => shutdown::shutdown;
     }
-}
-
-/// Consult the tables of the current command in turn until a row decides.
-#[must_use]
-pub fn decide(step: Step, seen: &Seen) -> Choice<Action, Step> {
-    accept(step, &seen.request).then(number::ACCEPT, |()| {
-        ordered(step, &seen.orders).then(number::ORDERED, |work| {
-            of_command(seen.plan.verb, step, &Situation { work, ..seen.situation })
-        })
-    })
 }

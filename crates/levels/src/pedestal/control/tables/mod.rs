@@ -13,15 +13,13 @@ use interfaces::{Reason, pedestal::PedestalVerb};
 use rcs_core::{
     Actions, Plain, Variables, commands,
     handshake::{Arrival, Lower},
-    table::Choice,
 };
 
-use self::{accept::accept, ordered::ordered};
 use super::goals;
 use crate::{
     confirm::{CONFIRM, Proof},
     execution::{Asked, EXECUTE, Ending, Work},
-    halt::{HALT, Replaced},
+    halt::{HALT, Replaced, Stopping},
 };
 
 /// Can the table turn as a command asks?
@@ -134,6 +132,8 @@ pub struct Situation {
 pub struct Seen {
     /// What the command buffer holds.
     pub arrival: Arrival,
+    /// The current command.
+    pub verb: PedestalVerb,
     /// What a new command replaces.
     pub replaced: Replaced,
     /// What a new command needs.
@@ -187,22 +187,20 @@ impl Ending for Action {
     }
 }
 
+impl Stopping for Action {
+    const STOP: Self = Self::StopTable;
+}
+
 commands! {
     /// Consult the table of a command.
     pub fn of_command(PedestalVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, ordered::ORDERED, CONFIRM;
+        before: EXECUTE, HALT, ACCEPT(request), ORDERED(orders);
+        after: CONFIRM;
         None | Pause: goals::REST   => pause::pause;
         PreGrip: goals::READY       => pre_grip::pre_grip;
         Grip: goals::HELD           => grip::grip;
         Flip: goals::TURNED         => flip::flip;
         Release: goals::RELEASED    => release::release;
     }
-}
-
-/// Consult the tables in turn until a row decides.
-#[must_use]
-pub fn decide(verb: PedestalVerb, step: Step, seen: &Seen) -> Choice<Action, Step> {
-    accept(step, &seen.request).then(number::ACCEPT, |()| {
-        ordered(step, &seen.orders).then(number::ORDERED, |()| of_command(verb, step, &seen.situation))
-    })
 }

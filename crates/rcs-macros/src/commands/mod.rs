@@ -3,7 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use syn::{
-    Attribute, Ident, Path, Result, Token, Visibility, braced,
+    Attribute, Error, Ident, Path, Result, Token, Visibility, braced,
     ext::IdentExt as _,
     parenthesized,
     parse::{Parse, ParseStream},
@@ -11,10 +11,13 @@ use syn::{
     punctuated::Punctuated,
 };
 
+mod order;
+
+use self::order::Order;
 use crate::names;
 
 /// The list as written.
-struct Commands {
+pub struct Commands {
     attributes: Vec<Attribute>,
     vis: Visibility,
     decide: Ident,
@@ -24,8 +27,10 @@ struct Commands {
     verb: Path,
     situation: Path,
     action: Path,
-    /// Tables that the process consults itself.
+    /// Tables that no command selects, in the order of their numbers.
     others: Vec<Path>,
+    /// When they are consulted.
+    order: Option<Order>,
     entries: Vec<Entry>,
 }
 
@@ -68,11 +73,12 @@ impl Parse for Commands {
                     .collect();
             body.parse::<Token![;]>()?;
         }
+        let order = Order::parse(&body)?;
         let mut entries = Vec::new();
         while !body.is_empty() {
             entries.push(body.parse()?);
         }
-        Ok(Self { attributes, vis, decide, declared, step, verb, situation, action, others, entries })
+        Ok(Self { attributes, vis, decide, declared, step, verb, situation, action, others, order, entries })
     }
 }
 
@@ -151,6 +157,15 @@ impl Commands {
     fn tables(&self) -> Vec<Path> {
         let tables = self.entries.iter().flat_map(|entry| &entry.chain).map(static_of);
         once(self.others.iter().cloned().chain(tables))
+    }
+
+    /// The path of a table that no command selects, by its name.
+    fn other(&self, name: &Ident) -> Result<&Path> {
+        let is_it = |path: &&Path| path.segments.last().is_some_and(|last| last.ident == *name);
+        self.others
+            .iter()
+            .find(is_it)
+            .ok_or_else(|| Error::new(name.span(), format!("{name} is not in the list `others`")))
     }
 
     /// The enum of all steps.
@@ -263,7 +278,8 @@ impl Commands {
     }
 }
 
-/// The enum of all steps, the goals of the commands, the list of all tables, their numbers, and the function that consults the table of a command.
+/// The enum of all steps, the goals of the commands, the list of all tables, their numbers, the function that consults
+/// the table of a command, and the one that consults all tables in the declared order.
 pub fn expand(input: TokenStream) -> Result<TokenStream> {
     let commands: Commands = parse2(input)?;
     let Commands { attributes, vis, decide, step, verb, situation, action, others, .. } = &commands;
@@ -275,6 +291,7 @@ pub fn expand(input: TokenStream) -> Result<TokenStream> {
             format!("Of [`{}`](super::{}).", quote!(#name), quote!(#table).to_string().replace(' ', ""));
         quote!(#[doc = #doc] pub const #name: u8 = #number;)
     });
+    let order = commands.order.as_ref().map(|order| order.expand(&commands)).transpose()?;
     Ok(quote! {
         #steps
 
@@ -293,5 +310,7 @@ pub fn expand(input: TokenStream) -> Result<TokenStream> {
         ) -> ::rcs_core::table::Choice<#action, #step> {
             match verb { #( #arms, )* }
         }
+
+        #order
     })
 }

@@ -1,0 +1,371 @@
+//! The declared order of the tables of a process, and the function that consults them in this order.
+
+use proc_macro2::TokenStream;
+use quote::{quote, quote_spanned};
+use syn::{
+    Error, Ident, Path, Result, Token, parenthesized,
+    parse::{Parse, ParseStream},
+    punctuated::Punctuated,
+};
+
+use super::{Commands, beside};
+
+mod word {
+    syn::custom_keyword!(before);
+    syn::custom_keyword!(after);
+    syn::custom_keyword!(by);
+}
+
+/// `before: EXECUTE, HALT, ACCEPT(request), ORDERED(orders -> situation.work); after: EFFECT, CONFIRM;`
+pub struct Order {
+    /// Tables before that of the command.
+    before: Vec<Before>,
+    /// Tables about the row that fired.
+    after: Vec<Ident>,
+}
+
+/// A table that is consulted before that of the command.
+struct Before {
+    table: Ident,
+    how: How,
+}
+
+/// How it is consulted.
+enum How {
+    /// A table of all processes, by `Execution`.
+    Common,
+    /// `JOYSTICK by joystick`: by this method of the state of the process.
+    By(Ident),
+    /// `ORDERED(orders -> situation.work)`: a row decides with the variables of this field, or passes on.
+    Row(Row),
+}
+
+struct Row {
+    /// The field of `Seen` with its variables.
+    variables: Ident,
+    /// `in link`: the field of the state that is its step.
+    step: Option<Ident>,
+    /// The field of `Seen` that gets what it passes on.
+    passes: Option<(Ident, Ident)>,
+}
+
+impl Parse for Before {
+    fn parse(input: ParseStream<'_>) -> Result<Self> {
+        let table = input.parse()?;
+        if input.parse::<Option<word::by>>()?.is_some() {
+            return Ok(Self { table, how: How::By(input.parse()?) });
+        }
+        if !input.peek(syn::token::Paren) {
+            return Ok(Self { table, how: How::Common });
+        }
+        let field;
+        parenthesized!(field in input);
+        let variables = field.parse()?;
+        let step = if field.parse::<Option<Token![in]>>()?.is_some() { Some(field.parse()?) } else { None };
+        let passes = if field.parse::<Option<Token![->]>>()?.is_some() {
+            let of = field.parse()?;
+            field.parse::<Token![.]>()?;
+            Some((of, field.parse()?))
+        } else {
+            None
+        };
+        Ok(Self { table, how: How::Row(Row { variables, step, passes }) })
+    }
+}
+
+impl Order {
+    /// The order, if the list declares one.
+    pub fn parse(input: ParseStream<'_>) -> Result<Option<Self>> {
+        if input.parse::<Option<word::before>>()?.is_none() {
+            return Ok(None);
+        }
+        input.parse::<Token![:]>()?;
+        let before: Vec<Before> =
+            Punctuated::<Before, Token![,]>::parse_separated_nonempty(input)?.into_iter().collect();
+        input.parse::<Token![;]>()?;
+        let after = if input.parse::<Option<word::after>>()?.is_some() {
+            input.parse::<Token![:]>()?;
+            let after = Punctuated::<Ident, Token![,]>::parse_separated_nonempty(input)?;
+            input.parse::<Token![;]>()?;
+            after.into_iter().collect()
+        } else {
+            Vec::new()
+        };
+        let order = Self { before, after };
+        order.check()?;
+        Ok(Some(order))
+    }
+
+    /// EXECUTE comes first; what can keep the tables from being consulted comes before the tables.
+    fn check(&self) -> Result<()> {
+        let mut rows = false;
+        for (position, Before { table, how }) in self.before.iter().enumerate() {
+            let is_first = *table == "EXECUTE" && matches!(how, How::Common);
+            if (position == 0) != is_first {
+                return Err(Error::new(table.span(), "EXECUTE is consulted first, and once"));
+            }
+            match how {
+                How::Row(_) => rows = true,
+                How::Common if !is_first && *table != "HALT" => {
+                    let text = "`(FIELD)` or `by METHOD` is expected: only EXECUTE and HALT need neither";
+                    return Err(Error::new(table.span(), text));
+                }
+                How::Common | How::By(_) if rows => {
+                    let text =
+                        "a table that can withhold the command is consulted before those with rows about it";
+                    return Err(Error::new(table.span(), text));
+                }
+                How::Common | How::By(_) => {}
+            }
+        }
+        match self.after.iter().find(|table| **table != "EFFECT" && **table != "CONFIRM") {
+            Some(table) => Err(Error::new(table.span(), "only EFFECT and CONFIRM are consulted after a row")),
+            None => Ok(()),
+        }
+    }
+
+    /// The lines of the documentation that say what is consulted when.
+    fn documentation(&self, commands: &Commands) -> Result<Vec<String>> {
+        let mut lines = vec![
+            String::from("Consult the tables in the declared order until a row decides:"),
+            String::new(),
+        ];
+        let link = |table: &Ident| -> Result<String> {
+            let path = commands.other(table)?;
+            Ok(format!("[`{table}`]({})", quote!(#path).to_string().replace(' ', "")))
+        };
+        for Before { table, how } in &self.before {
+            let what = match how {
+                How::Common if *table == "EXECUTE" => String::from("is there a command to execute?"),
+                How::Common => String::from("have the processes below come to rest?"),
+                How::By(method) => format!("consulted by `State::{method}`"),
+                How::Row(Row { variables, step, passes }) => {
+                    let mut text = format!("about `{variables}`");
+                    if let Some(step) = step {
+                        text += &format!(", with the step `{step}` of its own");
+                    }
+                    if let Some((of, field)) = passes {
+                        text += &format!("; it passes `{of}.{field}` on");
+                    }
+                    text
+                }
+            };
+            lines.push(format!("1. {}: {what}", link(table)?));
+        }
+        lines.push(String::from("1. the table of the command, about `situation`"));
+        for table in &self.after {
+            let what =
+                if *table == "EFFECT" { "a row that gives an order" } else { "a row that reports done" };
+            lines.push(format!("1. {}: about {what}", link(table)?));
+        }
+        Ok(lines)
+    }
+
+    /// The function `decide`.
+    pub fn expand(&self, commands: &Commands) -> Result<TokenStream> {
+        let Commands { vis, decide: of_command, step, action, .. } = commands;
+        let documentation = self.documentation(commands)?;
+        let (mut gates, mut rows) = (Vec::new(), Vec::new());
+        for Before { table, how } in &self.before {
+            let path = commands.other(table)?;
+            match how {
+                How::Common if *table == "EXECUTE" => {}
+                How::Common => gates.push(quote! {
+                    let course = match state.execution.halt(number::#table, course, &seen.replaced) {
+                        Ok(course) => course,
+                        Err(halting) => return <#action as crate::halt::Stopping>::of_halt(halting),
+                    };
+                }),
+                How::By(method) => gates.push(quote_spanned! {method.span()=>
+                    let course = match state.#method(course, seen) {
+                        Ok(course) => course,
+                        Err(action) => return action,
+                    };
+                }),
+                How::Row(row) => rows.push(row.consult(table, path)),
+            }
+        }
+        let first = if commands.declared {
+            quote!(#step::first(seen.verb))
+        } else {
+            quote!(<#step as ::rcs_core::Plain>::ZERO)
+        };
+        let is_after = |name: &str| self.after.iter().any(|table| *table == name);
+        let (variables, effect) = if is_after("EFFECT") {
+            (
+                quote!(let variables = seen.variables();),
+                quote!(let choice = state.execution.effect(number::EFFECT, choice, variables);),
+            )
+        } else {
+            (TokenStream::new(), TokenStream::new())
+        };
+        let confirm = is_after("CONFIRM").then(|| {
+            quote! {
+                let goal = (goal(seen.verb), seen.proof);
+                let choice = state.execution.confirm(number::CONFIRM, state.step, choice, goal);
+            }
+        });
+        Ok(quote! {
+            #( #[doc = #documentation] )*
+            #vis fn decide(state: &mut super::state::State, seen: &mut Seen) -> #action {
+                #variables
+                let course = state.execution.execute(seen.arrival);
+                #( #gates )*
+                match course {
+                    crate::execution::Course::Rest | crate::execution::Course::Refuse => return #action::Wait,
+                    crate::execution::Course::Begin => state.step = #first,
+                    crate::execution::Course::Continue => {}
+                }
+                let choice = 'decided: {
+                    #( #rows )*
+                    #of_command(seen.verb, state.step, &seen.situation)
+                };
+                #effect
+                #confirm
+                state.execution.rows.decide(&choice);
+                state.step = choice.next;
+                choice.action
+            }
+        })
+    }
+}
+
+impl Row {
+    /// Leave with what a row decides, or note what it passes on.
+    fn consult(&self, table: &Ident, path: &Path) -> TokenStream {
+        let (function, variables) = (beside(path, str::to_lowercase), &self.variables);
+        let (step, decided) = match &self.step {
+            None => (quote!(state.step), quote!(break 'decided decision.of(number::#table))),
+            Some(own) => (
+                quote!(state.#own),
+                quote! {{
+                    state.#own = decision.next;
+                    break 'decided decision.in_step(state.step).of(number::#table)
+                }},
+            ),
+        };
+        let passed = match &self.passes {
+            None => quote!(::rcs_core::table::Verdict::Passed(()) => {}),
+            Some((of, field)) => {
+                quote!(::rcs_core::table::Verdict::Passed(value) => seen.#of.#field = value,)
+            }
+        };
+        quote! {
+            match #function(#step, &seen.#variables) {
+                ::rcs_core::table::Verdict::Decided(decision) => #decided,
+                #passed
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn expand(order: &str) -> Result<String> {
+        let list = format!(
+            "/// Consult the table of a command.
+             fn of_command(Verb, enum Step, Situation) -> Action {{
+                 others: EXECUTE, accept::ACCEPT, HALT, EFFECT, joystick::JOYSTICK, link::LINK, ordered::ORDERED, CONFIRM;
+                 {order}
+                 Pause: goals::REST => pause::pause;
+             }}"
+        );
+        crate::commands::expand(list.parse()?).map(|tokens| tokens.to_string())
+    }
+
+    /// What an order is refused with.
+    fn error(order: &str) -> String {
+        expand(order).expect_err(order).to_string()
+    }
+
+    /// Each text stands in the code, in this order.
+    fn assert_in_order(code: &str, texts: &[&str]) {
+        let mut rest = code;
+        for text in texts {
+            let at = rest.find(text).unwrap_or_else(|| panic!("{text} in {rest}"));
+            rest = &rest[at + text.len()..];
+        }
+    }
+
+    #[test]
+    fn declared_order_is_the_order_of_the_generated_code() {
+        let code = expand(
+            "before: EXECUTE, JOYSTICK by joystick, HALT, ACCEPT(request), LINK(situation in link),
+                     ORDERED(orders -> situation.work);
+             after: EFFECT, CONFIRM;",
+        )
+        .expect("the order is right");
+        let decide = &code[code.find("fn decide (").expect("the function is generated")..];
+        assert_in_order(
+            decide,
+            &[
+                "seen . variables ()",
+                "execution . execute (seen . arrival)",
+                "state . joystick (course , seen)",
+                "execution . halt (number :: HALT",
+                "Course :: Begin => state . step = Step :: first (seen . verb)",
+                "accept :: accept (state . step , & seen . request)",
+                "link :: link (state . link , & seen . situation)",
+                "state . link = decision . next",
+                "ordered :: ordered (state . step , & seen . orders)",
+                "seen . situation . work = value",
+                "of_command (seen . verb , state . step , & seen . situation)",
+                "execution . effect (number :: EFFECT",
+                "execution . confirm (number :: CONFIRM",
+                "state . step = choice . next",
+            ],
+        );
+    }
+
+    #[test]
+    fn documentation_lists_the_tables_in_their_order() {
+        let code = expand("before: EXECUTE, HALT, ORDERED(orders -> situation.work); after: CONFIRM;");
+        let texts = [
+            "[`EXECUTE`]",
+            "[`HALT`]",
+            "[`ORDERED`](ordered::ORDERED)",
+            "the table of the command",
+            "[`CONFIRM`]",
+        ];
+        let code = code.expect("the order is right");
+        assert_in_order(&code[code.find("declared order").expect("it has a comment")..], &texts);
+        assert!(!code.contains("execution . effect"), "EFFECT is not consulted");
+    }
+
+    #[test]
+    fn list_without_an_order_generates_no_function_decide() {
+        assert!(!expand("").expect("it is a list").contains("fn decide"));
+    }
+
+    #[test]
+    fn order_without_execute_first_is_an_error() {
+        for order in [
+            "before: HALT;",
+            "before: HALT, EXECUTE;",
+            "before: EXECUTE, EXECUTE;",
+            "before: EXECUTE(request);",
+        ] {
+            assert_eq!(error(order), "EXECUTE is consulted first, and once", "{order}");
+        }
+    }
+
+    #[test]
+    fn tables_that_withhold_the_command_come_before_rows_about_it() {
+        let text = "a table that can withhold the command is consulted before those with rows about it";
+        assert_eq!(error("before: EXECUTE, ACCEPT(request), HALT;"), text);
+        assert_eq!(error("before: EXECUTE, ACCEPT(request), JOYSTICK by joystick;"), text);
+    }
+
+    #[test]
+    fn unknown_and_misplaced_tables_are_errors() {
+        assert_eq!(error("before: EXECUTE, SEARCH(watch);"), "SEARCH is not in the list `others`");
+        let text = "`(FIELD)` or `by METHOD` is expected: only EXECUTE and HALT need neither";
+        assert_eq!(error("before: EXECUTE, ACCEPT;"), text);
+        assert_eq!(
+            error("before: EXECUTE; after: ACCEPT;"),
+            "only EFFECT and CONFIRM are consulted after a row"
+        );
+    }
+}
