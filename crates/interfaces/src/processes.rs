@@ -4,7 +4,10 @@
 //! the order of the digest, the ladder, the boards and their data exchange, shared memory, and the chains that explain
 //! a failure.
 
-use rcs_core::{Plain, handshake::Lower};
+use rcs_core::{
+    Plain,
+    handshake::{Answer, Lower},
+};
 
 use crate::{Header, Reason, Unconfirmed, t3i::LinkFault};
 
@@ -254,6 +257,34 @@ impl CommonMemory {
         }
     }
 }
+
+macro_rules! answers {
+    ($( $outputs:ty ),+) => { $(
+        impl Answer for $outputs {
+            fn header(&self) -> &Header {
+                &self.header
+            }
+
+            fn echo(&self) -> u32 {
+                self.status.echo
+            }
+
+            fn report(&self) -> Lower {
+                self.status.report.lower()
+            }
+        }
+    )+ };
+}
+answers!(
+    crate::SubtaskOutputs,
+    crate::EmoveOutputs,
+    crate::PrimOutputs,
+    crate::QuickChangeOutputs,
+    crate::GripOutputs,
+    crate::JawsOutputs,
+    crate::PedestalOutputs,
+    crate::TableOutputs
+);
 
 /// The status of a process, independent of its type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

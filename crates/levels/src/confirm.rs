@@ -288,11 +288,15 @@ mod tests {
         assert_eq!(ask(&mut execution, Act::Finish, proof), (3, 5, Act::Finish, 8));
         execution.finish();
         assert_eq!(
-            (execution.outcome, execution.report().unconfirmed),
+            (execution.outcome, execution.report(None).unconfirmed),
             (Outcome::Done, Unconfirmed::GraspForce)
         );
         execution.execute(Arrival::New);
-        assert_eq!(execution.report().unconfirmed, Unconfirmed::None, "the next command has its own goal");
+        assert_eq!(
+            execution.report(None).unconfirmed,
+            Unconfirmed::None,
+            "the next command has its own goal"
+        );
     }
 
     #[test]

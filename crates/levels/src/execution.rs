@@ -255,16 +255,22 @@ impl Execution {
         }
     }
 
-    /// What the process above is to see: a process that was restarted executes until what it had commanded is at rest.
+    /// What the process above is to see. A process that was restarted executes until what it had commanded is at rest.
+    ///
+    /// `standing` is the reason that the process below reports while the command is a PAUSE. A link that fails while a
+    /// PAUSE stands is no failure of it: the reason accompanies `done` (docs/design/link.md).
     #[must_use]
-    pub const fn report(&self) -> Report {
+    pub const fn report(&self, standing: Option<Reason>) -> Report {
         let Self { outcome, reason, .. } = *self;
-        match (outcome, self.halt) {
-            (Outcome::Error, Halt::Stopping) => {
+        match (outcome, self.halt, standing) {
+            (Outcome::Error, Halt::Stopping, _) => {
                 Report { outcome: Outcome::Executing, reason: Reason::None, unconfirmed: Unconfirmed::None }
             }
-            (Outcome::Done, _) => Report { outcome, reason, unconfirmed: self.unconfirmed },
-            (Outcome::Idle | Outcome::Executing | Outcome::Error | Outcome::Joystick, _) => {
+            (Outcome::Done, _, Some(below)) => {
+                Report { outcome, reason: below, unconfirmed: self.unconfirmed }
+            }
+            (Outcome::Done, _, None) => Report { outcome, reason, unconfirmed: self.unconfirmed },
+            (Outcome::Idle | Outcome::Executing | Outcome::Error | Outcome::Joystick, ..) => {
                 Report { outcome, reason, unconfirmed: Unconfirmed::None }
             }
         }
@@ -308,6 +314,17 @@ mod tests {
         assert_eq!((e.outcome, e.reason), (Outcome::Error, Reason::UnknownCommand));
         assert_eq!(e.rows.decided, Some(Decided { table: ACCEPT_NUMBER, row: 2 }));
         assert!(!e.accepted(Asked::Now));
+    }
+
+    #[test]
+    fn reason_from_below_accompanies_a_standing_pause_and_nothing_else() {
+        let mut e = Execution::default();
+        e.finish();
+        let report = |e: &Execution, standing| (e.report(standing).outcome, e.report(standing).reason);
+        assert_eq!(report(&e, None), (Outcome::Done, Reason::None));
+        assert_eq!(report(&e, Some(Reason::LinkOff)), (Outcome::Done, Reason::LinkOff));
+        e.fail(Reason::NotAtGoal);
+        assert_eq!(report(&e, Some(Reason::LinkOff)), (Outcome::Error, Reason::NotAtGoal));
     }
 
     #[test]

@@ -46,6 +46,18 @@ pub enum Lower {
     Lost,
 }
 
+/// The output buffers of a process, as its commander reads them.
+pub trait Answer {
+    /// Stamp and row.
+    fn header(&self) -> &Header;
+
+    /// Number of the command that the status is about.
+    fn echo(&self) -> u32;
+
+    /// The report of the status as a state variable of the process above.
+    fn report(&self) -> Lower;
+}
+
 /// The commander's side of one interface.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Commander {
@@ -88,6 +100,12 @@ impl Commander {
         self.started = true;
         self.sent = tick;
         self.number
+    }
+
+    /// Status of the process below: its report counts only if its echo is the last number sent.
+    #[must_use]
+    pub fn status_of(&self, tick: Tick, below: &impl Answer) -> Lower {
+        self.read(tick, below.header(), below.echo(), below.report())
     }
 
     /// Read the status of the process below: `report` counts only if `echo` is the last number sent.

@@ -103,7 +103,7 @@
 //!
 //! ```text
 //! others: EXECUTE, accept::ACCEPT, HALT, EFFECT, ordered::ORDERED, CONFIRM;
-//! before: EXECUTE, HALT, ACCEPT(request), ORDERED(orders -> situation.work);
+//! before: EXECUTE, HALT, ACCEPT(request), ORDERED(subordinates -> situation.work);
 //! after: EFFECT, CONFIRM;
 //! ```
 //!
@@ -113,7 +113,7 @@
 //! | `JOYSTICK by joystick` | consulted by this method of the process's state, which can withhold the command |
 //! | `ACCEPT(request)` | a row decides with the variables `seen.request`, or the next table is consulted |
 //! | `LINK(situation in link)` | the same, with the step `state.link` instead of that of the command |
-//! | `ORDERED(orders -> situation.work)` | what it passes on becomes `seen.situation.work` |
+//! | `ORDERED(subordinates -> situation.work)` | what it passes on becomes `seen.situation.work` |
 
 mod values;
 

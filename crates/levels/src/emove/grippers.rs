@@ -160,17 +160,14 @@ impl Grippers {
         if attached != self.to {
             return Lower::Lost;
         }
-        let grip = &memory.grip;
         let (commander, jaws) = match attached {
             Gripper::None => return Lower::Done,
-            Gripper::Parts => {
-                return self.parts.read(tick, &grip.header, grip.status.echo, grip.status.report.lower());
-            }
+            Gripper::Parts => return self.parts.status_of(tick, &memory.grip),
             Gripper::V => (&self.v, &memory.v_grip),
             Gripper::Tool => (&self.tool, &memory.tool_grip),
         };
         let report = jaws.status.report;
-        match commander.read(tick, &jaws.header, jaws.status.echo, report.lower()) {
+        match commander.status_of(tick, jaws) {
             // Fingers that are to be left alone may stand anywhere: on an object of another size, or moved by
             // hand.
             Lower::Error if self.order == FingerVerb::Pause && report == JawsReport::Stuck => Lower::Done,

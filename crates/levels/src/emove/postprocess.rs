@@ -141,7 +141,7 @@ impl State {
             Action::FailGrip => self.fail(self.grippers.fault(inputs.tick, inputs.memory), inputs, outputs),
             Action::FailRing => self.fail(self.ring_fault(inputs), inputs, outputs),
             Action::PassUp => {
-                self.execution.pass_up(seen.orders.prim, inputs.memory.prim.status.reason);
+                self.execution.pass_up(seen.subordinates.prim, inputs.memory.prim.status.reason);
             }
         }
     }
@@ -162,7 +162,7 @@ impl State {
     fn ring_fault(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Reason {
         let ring = &inputs.memory.quick_change;
         let report = ring.status.report;
-        match self.quick_change.read(inputs.tick, &ring.header, ring.status.echo, report.lower()) {
+        match self.quick_change.status_of(inputs.tick, ring) {
             Lower::Lost => Reason::NeighbourLost,
             _ if report == QuickChangeReport::Stuck => Reason::QuickChangeStuck,
             _ => Reason::QuickChangeFault,
@@ -317,33 +317,30 @@ impl State {
 
     /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), whatever was done
     /// before, and E-PAUSE keeps it until the processes below pause again. Another command that was given up for it
-    /// ends in an error and is not resumed (docs/design/ownership.md "Joystick box"). A link that fails while E-PAUSE
-    /// stands is no failure of it: the reason stands beside `done`.
-    fn outcome(&self, inputs: &Inputs<'_, TaskData<'_>>) -> (StatusReport, Reason) {
-        let execution = &self.execution;
+    /// ends in an error and is not resumed (docs/design/ownership.md "Joystick box").
+    fn outcome(&self, inputs: &Inputs<'_, TaskData<'_>>) -> (StatusReport, Reason, Unconfirmed) {
         let prim = &inputs.memory.prim;
         let taken =
             prim.status.report == PrimReport::JoystickOn && prim.header.stamp == inputs.tick.previous();
         let pauses = inputs.memory.subtask.emove.command == EmoveVerb::Pause;
-        match (taken, execution.outcome) {
-            (true, Outcome::Done | Outcome::Joystick) => (StatusReport::JoystickOn, Reason::JoystickOn),
-            (false, Outcome::Joystick) if pauses => (StatusReport::JoystickOn, Reason::JoystickOn),
-            (false, Outcome::Joystick) => (StatusReport::Error, Reason::JoystickOn),
-            (false, Outcome::Done) if pauses => {
-                let below =
-                    self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
-                (StatusReport::Done, if below == Lower::Error { prim.status.reason } else { Reason::None })
+        let has_failed = || self.prim.status_of(inputs.tick, prim) == Lower::Error;
+        let below = || if has_failed() { prim.status.reason } else { Reason::None };
+        let ended = self.execution.report(pauses.then(below));
+        match (taken, ended.outcome) {
+            (true, Outcome::Done | Outcome::Joystick) => {
+                (StatusReport::JoystickOn, Reason::JoystickOn, Unconfirmed::None)
             }
-            _ => {
-                let report = execution.report();
-                (report.outcome.report(), report.reason)
+            (false, Outcome::Joystick) if pauses => {
+                (StatusReport::JoystickOn, Reason::JoystickOn, Unconfirmed::None)
             }
+            (false, Outcome::Joystick) => (StatusReport::Error, Reason::JoystickOn, Unconfirmed::None),
+            _ => (ended.outcome.report(), ended.reason, ended.unconfirmed),
         }
     }
 
     /// Write the status to Subtask and the flags of the gripper processes.
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
-        let (report, reason) = self.outcome(inputs);
+        let (report, reason, unconfirmed) = self.outcome(inputs);
         outputs.header = self.execution.rows.header(inputs.tick, self.step.text());
         outputs.dormant = Gripper::attached(inputs.memory).dormancy();
         outputs.beliefs = self.beliefs;
@@ -352,11 +349,7 @@ impl State {
             echo: self.execution.receiver.echo,
             report,
             reason,
-            unconfirmed: if report == StatusReport::Done {
-                self.execution.report().unconfirmed
-            } else {
-                Unconfirmed::None
-            },
+            unconfirmed,
             reference_pose: inputs.memory.prim.status.sensor_pose,
             held: self.holding(inputs.memory),
             seat: self.beliefs.seat,

@@ -22,8 +22,8 @@ use super::{
     route::{near, same_location},
     state::State,
     tables::{
-        At, Contact, Holster, Initialization, Knowledge, Link, Load, Lock, Mate, Motion, Orders, Pause,
-        Readiness, Request, Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch,
+        At, Contact, Holster, Initialization, Knowledge, Link, Load, Lock, Mate, Motion, Pause, Readiness,
+        Request, Ring, Seen, Sight, Situation, Step, Subordinates, Tooling, Tries, Vision, Watch,
         e_pause::EPauseStep,
         number,
         search::{Look, search},
@@ -92,8 +92,8 @@ impl State {
         } else {
             Request::default()
         };
-        let orders = self.orders(command, inputs);
-        let situation = self.situation(command, &orders, inputs);
+        let subordinates = self.subordinates(command, inputs);
+        let situation = self.situation(command, &subordinates, inputs);
         let seen = Seen {
             arrival,
             verb: command.command,
@@ -102,7 +102,7 @@ impl State {
             progress: self.progress(),
             request,
             watch,
-            orders,
+            subordinates,
             proof: self.proof(command, &situation, inputs, outputs),
             situation,
         };
@@ -206,8 +206,7 @@ impl State {
         if pause != Pause::Standing {
             return Initialization::None;
         }
-        let prim = &inputs.memory.prim;
-        let below = self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
+        let below = self.prim.status_of(inputs.tick, &inputs.memory.prim);
         let ended = matches!(below, Lower::Done | Lower::Error);
         if inputs.external.operator.robot_init != self.robot_init {
             Initialization::Asked
@@ -219,11 +218,10 @@ impl State {
     }
 
     /// How the last order stands.
-    fn orders(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Orders {
+    fn subordinates(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Subordinates {
         let (tick, memory) = (inputs.tick, inputs.memory);
-        let prim = &memory.prim;
         let gripper = self.grippers.status(tick, memory);
-        Orders {
+        Subordinates {
             verb: command.command,
             load: match self.beliefs.held {
                 None if self.carrying && self.gripper_gone => Load::GripperGone,
@@ -232,11 +230,7 @@ impl State {
                 _ => Load::Kept,
             },
             ordered: self.ordered,
-            prim: if self.uses_prim {
-                self.prim.read(tick, &prim.header, prim.status.echo, prim.status.report.lower())
-            } else {
-                Lower::Done
-            },
+            prim: if self.uses_prim { self.prim.status_of(tick, &memory.prim) } else { Lower::Done },
             contact: match memory.prim.status.report {
                 PrimReport::DetectedErr => Contact::Met,
                 _ if self.undetected > PATIENCE => Contact::Missed,
@@ -253,11 +247,11 @@ impl State {
     fn situation(
         &self,
         command: &EmoveCommand,
-        orders: &Orders,
+        subordinates: &Subordinates,
         inputs: &Inputs<'_, TaskData<'_>>,
     ) -> Situation {
         let (tick, memory) = (inputs.tick, inputs.memory);
-        let &Orders { prim, opening, gripper, ring, .. } = orders;
+        let &Subordinates { prim, opening, gripper, ring, .. } = subordinates;
         Situation {
             work: Work::Busy,
             ahead: self.ahead(inputs.data),
@@ -319,8 +313,7 @@ impl State {
 
     /// What Quick Change has made of its last command.
     fn ring_order(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lower {
-        let ring = &inputs.memory.quick_change;
-        self.quick_change.read(inputs.tick, &ring.header, ring.status.echo, ring.status.report.lower())
+        self.quick_change.status_of(inputs.tick, &inputs.memory.quick_change)
     }
 
     /// Where the sensors see the locking ring.

@@ -73,9 +73,8 @@ impl State {
 
     /// What Prim makes of its command. A robot that has passed a through point flies on to it: it executes.
     pub(super) fn robot(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lower {
-        let (prim, order) = (&inputs.memory.prim, inputs.memory.emove.prim.command);
-        match self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower()) {
-            Lower::Done if order == PrimVerb::GoThru => Lower::Executing,
+        match self.prim.status_of(inputs.tick, &inputs.memory.prim) {
+            Lower::Done if inputs.memory.emove.prim.command == PrimVerb::GoThru => Lower::Executing,
             lower => lower,
         }
     }

@@ -97,7 +97,7 @@ impl State {
             Action::Finish => self.execution.finish(),
             Action::Fail(reason) => self.execution.fail(reason),
             Action::PassUp => {
-                self.execution.pass_up(seen.orders.emove, inputs.memory.emove.status.reason);
+                self.execution.pass_up(seen.subordinates.emove, inputs.memory.emove.status.reason);
             }
             Action::PassUpPedestal(reason) => {
                 // What hand or table report is more than that there was an error.
@@ -155,7 +155,7 @@ impl State {
     ) -> bool {
         match outputs.pedestal.command {
             PedestalVerb::None => false,
-            PedestalVerb::Pause => seen.orders.pedestal == Pedestal::Moving,
+            PedestalVerb::Pause => seen.subordinates.pedestal == Pedestal::Moving,
             PedestalVerb::PreGrip | PedestalVerb::Grip | PedestalVerb::Flip | PedestalVerb::Release => {
                 self.command_pedestal(PedestalVerb::Pause, 0, 0, 0, inputs, outputs);
                 true
@@ -182,30 +182,22 @@ impl State {
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut SubtaskOutputs) {
         let execution = &self.execution;
         let below = &inputs.memory.emove.status;
+        let pauses = inputs.memory.task.subtask.command == SubtaskVerb::Pause;
+        let ended = execution.report(pauses.then_some(below.reason));
         // The operator can take the robot at any time, also between two commands (V.4.1 PAUSE).
         let (report, reason) = if below.report == StatusReport::JoystickOn {
             (StatusReport::JoystickOn, Reason::JoystickOn)
         } else if execution.outcome == Outcome::Joystick {
             (StatusReport::Error, Reason::JoystickOn)
-        } else if execution.outcome == Outcome::Done
-            && inputs.memory.task.subtask.command == SubtaskVerb::Pause
-        {
-            // A link that fails while S-PAUSE stands is no failure of it.
-            (StatusReport::Done, below.reason)
         } else {
-            let report = execution.report();
-            (report.outcome.report(), report.reason)
+            (ended.outcome.report(), ended.reason)
         };
         outputs.header = execution.rows.header(inputs.tick, self.step.text());
         outputs.status = SubtaskStatus {
             echo: execution.receiver.echo,
             report,
             reason,
-            unconfirmed: if report == StatusReport::Done {
-                execution.report().unconfirmed
-            } else {
-                Unconfirmed::None
-            },
+            unconfirmed: if report == StatusReport::Done { ended.unconfirmed } else { Unconfirmed::None },
             reference_pose: below.reference_pose,
             held: below.held,
             seat: below.seat,

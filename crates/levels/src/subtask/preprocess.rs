@@ -18,8 +18,8 @@ use super::{
     pedestal_hand::{hand, pedestal_hand, turn},
     state::State,
     tables::{
-        Drum, Exchange, GripHeld, Gripper, Hindrance, Leaving, Named, Ordered, Orders, Pedestal,
-        PedestalData, Request, Robot, Seen, Situation, Vision, Where, by_hand::RobotThere,
+        Drum, Exchange, GripHeld, Gripper, Hindrance, Leaving, Named, Ordered, Pedestal, PedestalData,
+        Request, Robot, Seen, Situation, Subordinates, Vision, Where, by_hand::RobotThere,
     },
 };
 use crate::{
@@ -58,7 +58,7 @@ impl State {
                 inputs.memory,
                 inputs.data,
             ),
-            orders: Orders { ordered: self.ordered, emove, pedestal },
+            subordinates: Subordinates { ordered: self.ordered, emove, pedestal },
             proof: proof(command, &situation, &inputs.memory.emove.status, &inputs.memory.pedestal.status),
             situation,
         }
@@ -140,17 +140,17 @@ impl State {
 
     /// Status of E-move.
     fn emove(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lower {
-        let emove = &inputs.memory.emove;
-        self.emove.read(inputs.tick, &emove.header, emove.status.echo, emove.status.report.lower())
+        self.emove.status_of(inputs.tick, &inputs.memory.emove)
     }
 
     fn pedestal(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Pedestal {
         let pedestal = &inputs.memory.pedestal;
-        let status = &pedestal.status;
-        match self.pedestal.read(inputs.tick, &pedestal.header, status.echo, status.report.lower()) {
+        match self.pedestal.status_of(inputs.tick, pedestal) {
             Lower::Pending | Lower::Executing => Pedestal::Moving,
             Lower::Done => Pedestal::Done,
-            Lower::Error | Lower::Joystick if status.report == PedestalReport::CannotDo => Pedestal::Cannot,
+            Lower::Error | Lower::Joystick if pedestal.status.report == PedestalReport::CannotDo => {
+                Pedestal::Cannot
+            }
             Lower::Error | Lower::Joystick => Pedestal::Faulty,
             Lower::Lost => Pedestal::Silent,
         }

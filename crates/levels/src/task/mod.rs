@@ -79,7 +79,7 @@ impl<'d> Process<TaskData<'d>> for Task {
     fn decide(&mut self, seen: &Seen) -> (Takeover, Action) {
         let mut seen = *seen;
         let action = tables::decide(&mut self.state, &mut seen);
-        (seen.orders.takeover, action)
+        (seen.subordinates.takeover, action)
     }
 
     fn postprocess(
@@ -129,8 +129,8 @@ impl State {
     /// # Errors
     /// None: it withholds no command.
     fn joystick(&mut self, course: Course, seen: &mut Seen) -> Result<Course, Action> {
-        let operator = Operator { subtask: seen.orders.subtask, outcome: self.execution.outcome };
-        seen.orders.takeover = match joystick(self.control, &operator) {
+        let operator = Operator { subtask: seen.subordinates.subtask, outcome: self.execution.outcome };
+        seen.subordinates.takeover = match joystick(self.control, &operator) {
             Verdict::Passed(takeover) => takeover,
             Verdict::Decided(decision) => {
                 self.execution.rows.decide(&decision.of(number::JOYSTICK));

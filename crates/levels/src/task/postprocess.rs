@@ -120,7 +120,7 @@ impl State {
             Action::Finish => self.finish(inputs, outputs),
             Action::Fail(reason) => self.execution.fail(reason),
             Action::PassUp => {
-                self.execution.pass_up(seen.orders.subtask, inputs.memory.subtask.status.reason);
+                self.execution.pass_up(seen.subordinates.subtask, inputs.memory.subtask.status.reason);
             }
         }
     }
@@ -207,15 +207,13 @@ impl State {
     /// Write the status to the HWSC.
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
         let execution = &self.execution;
-        let Report { outcome, reason, unconfirmed } = execution.report();
+        let pauses = self.plan.verb == TaskVerb::Pause;
+        let Report { outcome, reason, unconfirmed } =
+            execution.report(pauses.then_some(inputs.memory.subtask.status.reason));
         let (report, reason) = match (self.control, outcome) {
             (Control::Manual, _) => (HwsReport::JoystickOn, Reason::JoystickOn),
             (Control::Automatic, Outcome::Idle) => (HwsReport::Idle, reason),
             (Control::Automatic, Outcome::Executing) => (HwsReport::Executing, reason),
-            // A link that fails while PAUSE stands is no failure of it.
-            (Control::Automatic, Outcome::Done) if self.plan.verb == TaskVerb::Pause => {
-                (HwsReport::Finished, inputs.memory.subtask.status.reason)
-            }
             (Control::Automatic, Outcome::Done) => (HwsReport::Finished, reason),
             (Control::Automatic, Outcome::Error | Outcome::Joystick) => (HwsReport::Error, reason),
         };

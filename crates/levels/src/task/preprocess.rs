@@ -16,7 +16,7 @@ use super::{
     state::State,
     support::Support,
     tables::{
-        Drum, Ends, Ordered, Orders, Request, Seen, Situation, Station, Takeover, Tool, Way,
+        Drum, Ends, Ordered, Request, Seen, Situation, Station, Subordinates, Takeover, Tool, Way,
         joystick::Control,
     },
 };
@@ -66,7 +66,12 @@ impl State {
             verb: plan.verb,
             plan,
             request,
-            orders: Orders { takeover: Takeover::None, ordered: self.ordered, subtask, data_base },
+            subordinates: Subordinates {
+                takeover: Takeover::None,
+                ordered: self.ordered,
+                subtask,
+                data_base,
+            },
             proof: proof(&plan, below, data_base),
             situation: self.situation(&plan, inputs),
         }
@@ -126,8 +131,7 @@ impl State {
 
     /// Status of Subtask.
     fn subtask(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lower {
-        let below = &inputs.memory.subtask;
-        self.subtask.read(inputs.tick, &below.header, below.status.echo, below.status.report.lower())
+        self.subtask.status_of(inputs.tick, &inputs.memory.subtask)
     }
 
     /// Set the state variables for a command.

@@ -16,7 +16,7 @@ mod word {
     syn::custom_keyword!(by);
 }
 
-/// `before: EXECUTE, HALT, ACCEPT(request), ORDERED(orders -> situation.work); after: EFFECT, CONFIRM;`
+/// `before: EXECUTE, HALT, ACCEPT(request), ORDERED(subordinates -> situation.work); after: EFFECT, CONFIRM;`
 pub struct Order {
     /// Tables before that of the command.
     before: Vec<Before>,
@@ -36,7 +36,7 @@ enum How {
     Common,
     /// `JOYSTICK by joystick`: by this method of the state of the process.
     By(Ident),
-    /// `ORDERED(orders -> situation.work)`: a row decides with the variables of this field, or passes on.
+    /// `ORDERED(subordinates -> situation.work)`: a row decides with the variables of this field, or passes on.
     Row(Row),
 }
 
@@ -293,7 +293,7 @@ mod tests {
     fn declared_order_is_the_order_of_the_generated_code() {
         let code = expand(
             "before: EXECUTE, JOYSTICK by joystick, HALT, ACCEPT(request), LINK(situation in link),
-                     ORDERED(orders -> situation.work);
+                     ORDERED(subordinates -> situation.work);
              after: EFFECT, CONFIRM;",
         )
         .expect("the order is right");
@@ -309,7 +309,7 @@ mod tests {
                 "accept :: accept (state . step , & seen . request)",
                 "link :: link (state . link , & seen . situation)",
                 "state . link = decision . next",
-                "ordered :: ordered (state . step , & seen . orders)",
+                "ordered :: ordered (state . step , & seen . subordinates)",
                 "seen . situation . work = value",
                 "of_command (seen . verb , state . step , & seen . situation)",
                 "execution . effect (number :: EFFECT",
@@ -321,7 +321,7 @@ mod tests {
 
     #[test]
     fn documentation_lists_the_tables_in_their_order() {
-        let code = expand("before: EXECUTE, HALT, ORDERED(orders -> situation.work); after: CONFIRM;");
+        let code = expand("before: EXECUTE, HALT, ORDERED(subordinates -> situation.work); after: CONFIRM;");
         let texts = [
             "[`EXECUTE`]",
             "[`HALT`]",

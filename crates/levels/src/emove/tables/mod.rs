@@ -106,7 +106,7 @@ pub struct Watch {
 
 /// What the command carries and how its last order stands, for [`carried::CARRIED`] and [`ordered::ORDERED`].
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Orders {
+pub struct Subordinates {
     /// The command.
     pub verb: EmoveVerb,
     /// Is still held what was held?
@@ -200,10 +200,10 @@ pub struct Seen {
     /// What goes on whatever the command.
     pub watch: Watch,
     /// How the last order of the command stands.
-    pub orders: Orders,
+    pub subordinates: Subordinates,
     /// The goal of the command, compared with the sensors.
     pub proof: Proof,
-    /// The state variables of the command's table; [`Orders`] decide on `work`.
+    /// The state variables of the command's table; [`Subordinates`] decide on `work`.
     pub situation: Situation,
 }
 
@@ -355,7 +355,7 @@ commands! {
         others: EXECUTE, accept::ACCEPT, HALT, EFFECT, attend::ATTEND, search::SEARCH, resume::RESUME,
             drum::DRUM, carried::CARRIED, ordered::ORDERED, CONFIRM, returning::RETURN, track::TRACK,
             resume::STANCE;
-        before: EXECUTE, HALT, ATTEND by attend, ACCEPT(request), CARRIED(orders), ORDERED(orders -> situation.work);
+        before: EXECUTE, HALT, ATTEND by attend, ACCEPT(request), CARRIED(subordinates), ORDERED(subordinates -> situation.work);
         after: EFFECT, CONFIRM;
         None | Pause: goals::REST           => e_pause::e_pause;
         MovToLoc: goals::PLACE              => motion::motion;

@@ -7,7 +7,7 @@ decision_table! {
     /// so does a failure of Prim while the ring turns or the fingers move in a holster, and one of fingers
     /// that open on the way. A contact of the held tool before the fingers of the drum means that the drum is
     /// occupied.
-    pub ORDERED: fn ordered(super::Orders) -> super::Action or crate::execution::Work {
+    pub ORDERED: fn ordered(super::Subordinates) -> super::Action or crate::execution::Work {
         1:  ordered: Nothing | All                                                 => consult(Over);
         2:  opening: Failed                                                        => FailGrip;
         3:  ordered: Nearing, prim: Error, contact: Met                            => Fail(DrumOccupied);

@@ -55,8 +55,8 @@ impl State {
                 self.execution.fail(reason);
             }
             Action::Fail(reason) => self.execution.fail(reason),
-            Action::PassUpHand => self.pass_up(seen.orders.hand, memory.hand.status.reason),
-            Action::PassUpTable => self.pass_up(seen.orders.table, memory.table.status.reason),
+            Action::PassUpHand => self.pass_up(seen.subordinates.hand, memory.hand.status.reason),
+            Action::PassUpTable => self.pass_up(seen.subordinates.table, memory.table.status.reason),
         }
     }
 
@@ -80,7 +80,7 @@ impl State {
     /// Write the status to Subtask.
     pub(super) fn report<Data: ?Sized>(&self, inputs: &Inputs<'_, Data>, outputs: &mut PedestalOutputs) {
         let execution = &self.execution;
-        let Report { outcome, reason, .. } = execution.report();
+        let Report { outcome, reason, .. } = execution.report(None);
         let hand = &inputs.memory.hand.status;
         let force = f64::midpoint(f64::from(hand.left_force), f64::from(hand.right_force));
         outputs.header = execution.rows.header(inputs.tick, self.step.text());

@@ -7,13 +7,13 @@ use interfaces::{
     pedestal::{PedestalVerb, TableVerb},
     process::Inputs,
 };
-use rcs_core::{handshake::Lower, tick::Tick};
+use rcs_core::handshake::Lower;
 
 use super::{
     goals::proof,
     orders::{angle, opening},
     state::State,
-    tables::{Calibration, Gripped, Object, Ordered, Orders, Request, Seen, Situation},
+    tables::{Calibration, Gripped, Object, Ordered, Request, Seen, Situation, Subordinates},
 };
 use crate::{
     execution::{Asked, Work},
@@ -43,7 +43,8 @@ impl State {
         if asked == Asked::Now {
             (self.command, self.ordered) = (*command, Ordered::Nothing);
         }
-        let (hand, table) = (self.hand(memory, tick), self.table(memory, tick));
+        let hand = self.hand.status_of(tick, &memory.hand);
+        let table = self.table.status_of(tick, &memory.table);
         // A hand that was told to open and has not, as one that was restarted meanwhile, still grips.
         if written.hand.command == GripVerb::OpenGrip && hand == Lower::Done {
             self.gripped = false;
@@ -79,20 +80,16 @@ impl State {
                 angle: angle(command, &memory.table.status),
                 opening: opening(command),
             },
-            orders: Orders { verb: self.command.command, ordered: self.ordered, hand, table, object },
+            subordinates: Subordinates {
+                verb: self.command.command,
+                ordered: self.ordered,
+                hand,
+                table,
+                object,
+            },
             proof: proof(&self.command, &situation, memory),
             situation,
         }
-    }
-
-    fn hand(&self, memory: &CommonMemory, tick: Tick) -> Lower {
-        let status = &memory.hand.status;
-        self.hand.read(tick, &memory.hand.header, status.echo, status.report.lower())
-    }
-
-    fn table(&self, memory: &CommonMemory, tick: Tick) -> Lower {
-        let status = &memory.table.status;
-        self.table.read(tick, &memory.table.header, status.echo, status.report.lower())
     }
 
     /// What the hand feels. Fingers that stand no wider than the grasp size have missed the object

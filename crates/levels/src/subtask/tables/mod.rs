@@ -72,7 +72,7 @@ pub struct Hindrance {
 
 /// How the last order of the command stands, for [`ordered::ORDERED`].
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Orders {
+pub struct Subordinates {
     /// The process that has it.
     pub ordered: Ordered,
     /// Status of E-move.
@@ -134,10 +134,10 @@ pub struct Seen {
     /// The order of a person to the pedestal.
     pub manual: Manual,
     /// How the last order of the command stands.
-    pub orders: Orders,
+    pub subordinates: Subordinates,
     /// The goal of the command, compared with the statuses from below.
     pub proof: Proof,
-    /// The state variables of the command's table; [`Orders`] decide on `work`.
+    /// The state variables of the command's table; [`Subordinates`] decide on `work`.
     pub situation: Situation,
 }
 
@@ -243,7 +243,7 @@ commands! {
     pub fn of_command(SubtaskVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, EFFECT, hindrance::HINDRANCE, ordered::ORDERED, CONFIRM,
                 by_hand::BY_HAND;
-        before: EXECUTE, HALT, ACCEPT(request), HINDRANCE(hindrance), ORDERED(orders -> situation.work);
+        before: EXECUTE, HALT, ACCEPT(request), HINDRANCE(hindrance), ORDERED(subordinates -> situation.work);
         after: EFFECT, CONFIRM;
         None | Pause: goals::REST               => s_pause::s_pause;
         GetEndeff: goals::ATTACHED              => get_endeff::get_endeff;

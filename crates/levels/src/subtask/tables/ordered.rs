@@ -5,7 +5,7 @@ use rcs_core::decision_table;
 decision_table! {
     /// ORDERED: E-move or the pedestal is busy with the last order, or it is done. A failure ends the
     /// command. A pause of both waits for a pedestal that moves; one that is silent cannot be waited for.
-    pub ORDERED: fn ordered(super::Orders) -> super::Action or crate::execution::Work {
+    pub ORDERED: fn ordered(super::Subordinates) -> super::Action or crate::execution::Work {
         1:  ordered: Nothing                                => consult(Over);
         2:  ordered: Emove, emove: Pending | Executing      => consult(Busy);
         3:  ordered: Emove, emove: Done                     => consult(Over);

@@ -110,7 +110,7 @@ pub struct Request {
 
 /// How the last order of the command stands, for [`ordered::ORDERED`].
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Orders {
+pub struct Subordinates {
     /// What is done about the joystick box.
     pub takeover: Takeover,
     /// The neighbour that has it.
@@ -172,7 +172,7 @@ pub struct Seen {
     /// What a new command needs; [`joystick::JOYSTICK`] decides on `control`.
     pub request: Request,
     /// How the last order of the command stands; [`joystick::JOYSTICK`] decides on `takeover`.
-    pub orders: Orders,
+    pub subordinates: Subordinates,
     /// The goal of the command, compared with the statuses from below.
     pub proof: Proof,
     /// The state variables of the command's table; [`ordered::ORDERED`] decides on `work`.
@@ -266,7 +266,7 @@ commands! {
     /// Consult the table of a command.
     pub fn of_command(TaskVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, joystick::JOYSTICK, ordered::ORDERED, CONFIRM;
-        before: EXECUTE, JOYSTICK by joystick, HALT, ACCEPT(request), ORDERED(orders -> situation.work);
+        before: EXECUTE, JOYSTICK by joystick, HALT, ACCEPT(request), ORDERED(subordinates -> situation.work);
         after: CONFIRM;
         None | Pause: goals::REST           => pause::pause;
         Transfer: goals::TRANSFERRED        => transfer::transfer;

@@ -5,7 +5,7 @@ use rcs_core::decision_table;
 decision_table! {
     /// ORDERED: Subtask or the Data System is busy with the last order, or it is done. A failure ends the
     /// command, and so does the operator who takes the robot. The Data System is asked again if it is late.
-    pub ORDERED: fn ordered(super::Orders) -> super::Action or crate::execution::Work {
+    pub ORDERED: fn ordered(super::Subordinates) -> super::Action or crate::execution::Work {
         1:  takeover: Interrupt                                 => PassUp;
         2:  ordered: Nothing                                    => consult(Over);
         3:  ordered: Subtask, subtask: Pending | Executing      => consult(Busy);

@@ -101,7 +101,7 @@ pub struct Request {
 
 /// How the orders of the command stand, for [`ordered::ORDERED`].
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Orders {
+pub struct Subordinates {
     /// The command.
     pub verb: PedestalVerb,
     /// The processes that have its orders.
@@ -139,7 +139,7 @@ pub struct Seen {
     /// What a new command needs.
     pub request: Request,
     /// How the orders of the command stand.
-    pub orders: Orders,
+    pub subordinates: Subordinates,
     /// The goal of the command, compared with the statuses of hand and table.
     pub proof: Proof,
     /// The state variables of the command's table.
@@ -195,7 +195,7 @@ commands! {
     /// Consult the table of a command.
     pub fn of_command(PedestalVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, ordered::ORDERED, CONFIRM;
-        before: EXECUTE, HALT, ACCEPT(request), ORDERED(orders);
+        before: EXECUTE, HALT, ACCEPT(request), ORDERED(subordinates);
         after: CONFIRM;
         None | Pause: goals::REST   => pause::pause;
         PreGrip: goals::READY       => pre_grip::pre_grip;

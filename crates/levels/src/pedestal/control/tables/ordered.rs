@@ -5,7 +5,7 @@ use rcs_core::decision_table;
 decision_table! {
     /// ORDERED: hand and table are waited for. A failure ends the command, and so does an object that comes
     /// loose in FLIP.
-    pub ORDERED: fn ordered(super::Orders) -> super::Action or () {
+    pub ORDERED: fn ordered(super::Subordinates) -> super::Action or () {
         1:  verb: Flip, object: Lost                                => Lose(HandLost);
         2:  ordered: Nothing                                        => consult;
         3:  ordered: Hand | Both, hand: Error | Joystick | Lost     => PassUpHand;
