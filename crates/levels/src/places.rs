@@ -3,12 +3,14 @@
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
     CommonMemory,
-    emove::{GoneTo, RobotPlace},
+    emove::{EmoveCommand, GoneTo, LocatedObject, PlacedObject, RobotPlace, Standing},
     pose_range,
-    subtask::LocationKind,
+    subtask::{LocationKind, SubtaskCommand},
 };
 use rcs_core::{Plain, name::Name10};
 use taskdata::files::{ArrayId, Location, LocptId, LookupError, Place, PoseId, Reference, TaskData};
+
+use crate::emove::route::same_location;
 
 /// Locations that the processes name themselves, because no command of the workstation controller does.
 pub mod named {
@@ -26,14 +28,68 @@ pub mod named {
     pub const MBD: &str = "UNIT";
 }
 
-/// The place that a command names by type and record numbers.
+/// What identifies a location in the task data: its records, and the sector of an array. The name alone does not
+/// identify a sector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LocationKey {
+    /// Record of LOCPT; null for a static array.
+    pub point: LocptId,
+    /// Record of ARRAY-TABLE; null unless the location is a sector.
+    pub array: ArrayId,
+    /// The sector, from 1, if it is one.
+    pub sector: Option<i32>,
+}
+
+impl LocationKey {
+    /// The location that a record of a buffer or of a state names.
+    pub fn of<'a, Record>(record: &'a Record) -> Self
+    where
+        Self: From<&'a Record>,
+    {
+        Self::from(record)
+    }
+
+    /// The place as task data know it; `kind` is the type of the location.
+    #[must_use]
+    pub const fn place(self, kind: LocationKind) -> Place {
+        Place { kind, locpt: self.point, array: self.array }
+    }
+
+    /// True if both are the same location, or sectors of the same array.
+    #[must_use]
+    pub fn has_location_of(self, other: Self) -> bool {
+        same_location(&self.place(LocationKind::Point), &other.place(LocationKind::Point))
+    }
+}
+
+macro_rules! location_keys {
+    ($( $record:ty: $point:ident, $array:ident, $sector:ident; )+) => { $(
+        impl From<&$record> for LocationKey {
+            fn from(record: &$record) -> Self {
+                Self {
+                    point: LocptId::from_option(record.$point),
+                    array: ArrayId::from_option(record.$array),
+                    sector: record.$sector,
+                }
+            }
+        }
+    )+ };
+}
+location_keys! {
+    SubtaskCommand: location_record, location_array, location_sector;
+    EmoveCommand: location_record, location_array, location_sector;
+    PlacedObject: record, array, sector;
+    LocatedObject: record, array, sector;
+    Standing: record, array, sector;
+    RobotPlace: record, array, sector;
+    crate::task::plan::Location: record, array, sector;
+    crate::subtask::aims::Aim: record, array, sector;
+}
+
+/// The place of a location point.
 #[must_use]
-pub const fn place_of(
-    kind: LocationKind,
-    location_record: Option<u32>,
-    location_array: Option<u32>,
-) -> Place {
-    Place { kind, locpt: LocptId::from_option(location_record), array: ArrayId::from_option(location_array) }
+pub const fn place_of(point: LocptId) -> Place {
+    Place { kind: LocationKind::Point, locpt: point, array: ArrayId::NULL }
 }
 
 /// The robot at a location, with the tool at a frame (world, inches).
@@ -62,8 +118,7 @@ pub fn pose_of(number: u32, memory: &CommonMemory, data: &TaskData<'_>) -> Optio
 
 /// True if a record of LOCPT is one of the MBD's.
 #[must_use]
-pub fn is_in_mbd(record: Option<u32>, data: &TaskData<'_>) -> bool {
-    let point = LocptId::from_option(record);
+pub fn is_in_mbd(point: LocptId, data: &TaskData<'_>) -> bool {
     let owner = data.owner_named(&Name10::clipped(named::MBD)).filter(|_| !point.is_null());
     owner.is_some_and(|owner| data.is_member(owner, Reference::location_point(point)))
 }

@@ -18,7 +18,7 @@ use levels::{
         way::is_same_pose,
     },
     execution::Asked,
-    places::{place_of, robot_at},
+    places::{LocationKey, robot_at},
 };
 use rcs_core::{
     name::Name16,
@@ -178,7 +178,7 @@ impl<'a> Walk<'a> {
     /// Parameters of the last motion to a view point.
     fn view_stop(&self) -> Option<TrajParaId> {
         let GoneTo::View(ObjectGrip { object, grip }) = self.place.gone_to else { return None };
-        let place = place_of(self.place.kind, self.place.record, self.place.array);
+        let place = LocationKey::of(&self.place).place(self.place.kind);
         Some(self.data.path(self.data.view_approach(&object, grip, &place)?).last()?.para)
     }
 

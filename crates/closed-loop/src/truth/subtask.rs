@@ -1,7 +1,7 @@
 //! Goals of Subtask's commands (V.3.1).
 
 use interfaces::subtask::{SubtaskCommand, SubtaskVerb};
-use levels::places::place_of;
+use levels::places::LocationKey;
 
 use super::{
     Scene,
@@ -11,7 +11,7 @@ use super::{
 /// What must be true when a command is finished.
 pub fn claims(command: &SubtaskCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let data = scene.data;
-    let place = place_of(command.location_kind, command.location_record, command.location_array);
+    let place = LocationKey::of(command).place(command.location_kind);
     let (object, base) = (command.object, pose(command.pose, scene));
     let goal = |grip: i32| grip_goal(data, base, object.as_ref(), grip, &place);
     let held = |grip: i32| holds(object, grip, Some(&place), scene);

@@ -24,7 +24,7 @@ use super::{
     tables::{Action, Fingers, Holster, Opening, Spread},
     whereabouts::{LOST_INCHES, LOST_RADIANS},
 };
-use crate::execution::Outcome;
+use crate::{execution::Outcome, places::LocationKey};
 
 /// Grip number of a holster object with the gripper on the robot; its approach size is the opening with which
 /// the gripper goes through the holster.
@@ -129,9 +129,7 @@ impl State {
     fn is_around_placed(&self) -> bool {
         let Beliefs { placed, way, .. } = &self.beliefs;
         let from = self.place().or_else(|| way.map(|way| way.from));
-        placed.zip(from).is_some_and(|(placed, at)| {
-            (placed.record, placed.array, placed.sector) == (at.record, at.array, at.sector)
-        })
+        placed.zip(from).is_some_and(|(placed, at)| LocationKey::of(&placed) == LocationKey::of(&at))
     }
 
     /// The seat of what the fingers are to close on. An object that may have been pushed, or that has slid before it was

@@ -33,7 +33,7 @@ use super::{
     track,
     way::{Flight, foot, route_of, segment},
 };
-use crate::places::{is_in_mbd, place_of};
+use crate::places::{LocationKey, is_in_mbd, place_of};
 
 /// A vise or the pedestal that closes on a part shifts the hand that holds it by this much at most, in: the part has
 /// 0.06 in of play in the vise (docs/cell.md "Budget"), and the fingers yield …
@@ -113,13 +113,13 @@ pub(super) fn parameters_at(at: &RobotPlace, data: &TaskData<'_>) -> Option<Traj
 /// May a part that has been brought to a place, or is gripped there, be clamped? A tray does not clamp what lies in its
 /// sectors. No sensor reads the vises, nor the pedestal's hand to the hundredth of an inch.
 fn clamps(at: &RobotPlace, data: &TaskData<'_>) -> bool {
-    let is_tray = at.sector.is_some() || is_in_mbd(at.record, data);
+    let is_tray = at.sector.is_some() || is_in_mbd(LocationKey::of(at).point, data);
     matches!(at.gone_to, GoneTo::Object(_) | GoneTo::Brought(_)) && !is_tray
 }
 
 /// A robot may go straight to a resting place: a location whose approach, as such, has no points.
 fn is_resting(id: LocptId, locpt: &Locpt, data: &TaskData<'_>) -> bool {
-    let at = place_of(LocationKind::Point, id.to_option(), None);
+    let at = place_of(id);
     let approach = data.approach_location(&at).map(|path| data.path(path));
     is_plain(&locpt.name, &at, data) && approach.is_some_and(|path| path.len() == 1)
 }

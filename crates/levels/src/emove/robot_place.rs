@@ -9,7 +9,7 @@ use interfaces::{
 };
 use taskdata::files::Place;
 
-use crate::places::place_of;
+use crate::places::LocationKey;
 
 /// What a command goes to.
 #[must_use]
@@ -65,14 +65,14 @@ pub const fn is_cut_off(memory: &CommonMemory) -> bool {
 
 /// The place as task data know it.
 #[must_use]
-pub const fn place(at: &RobotPlace) -> Place {
-    place_of(at.kind, at.record, at.array)
+pub fn place(at: &RobotPlace) -> Place {
+    LocationKey::of(at).place(at.kind)
 }
 
 /// The place that a command names.
 #[must_use]
-pub const fn place_named(command: &EmoveCommand) -> Place {
-    place_of(command.location_kind, command.location_record, command.location_array)
+pub fn place_named(command: &EmoveCommand) -> Place {
+    LocationKey::of(command).place(command.location_kind)
 }
 
 /// Where the robot stands, for the status.

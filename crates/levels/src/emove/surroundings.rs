@@ -1,7 +1,7 @@
 //! The known places nearest to a robot that is at no known place.
 
 use geometry::frame::Frame;
-use interfaces::{emove::NearPlace, subtask::LocationKind};
+use interfaces::emove::NearPlace;
 use rcs_core::{Plain, name::Name10};
 use taskdata::files::{LocptId, Place, TaskData};
 
@@ -32,7 +32,7 @@ impl Surroundings {
                 return;
             };
             self.looked = next.number();
-            if is_plain(&locpt.name, &place_of(LocationKind::Point, next.to_option(), None), data) {
+            if is_plain(&locpt.name, &place_of(next), data) {
                 self.insert(NearPlace::seen(locpt.name, &locpt.frame, present));
             }
         }

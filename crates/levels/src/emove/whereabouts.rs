@@ -36,7 +36,7 @@ impl State {
             let next = LocptId::new(self.searched.saturating_add(1));
             let Some(locpt) = data.locpt(next) else { return };
             self.searched = next.number();
-            let place = place_of(LocationKind::Point, next.to_option(), None);
+            let place = place_of(next);
             let plain = is_plain(&locpt.name, &place, data);
             if plain && near(&locpt.frame, present, LOST_INCHES, LOST_RADIANS) {
                 self.beliefs.place = Some(RobotPlace {

@@ -14,7 +14,7 @@ use rcs_core::{
 };
 use taskdata::files::{Location, LocptId, RefType, TaskData};
 
-use crate::places::{Missing, named, place_of};
+use crate::places::{LocationKey, Missing, named};
 
 /// Grip of a holster's object with which the gripper that is on the robot is put in (VII.7 by convention).
 const PUT_IN: i32 = 1;
@@ -120,7 +120,7 @@ impl Aim {
     /// A command to E-move with this aim, its number still 0.
     #[must_use]
     pub fn command(&self, verb: EmoveVerb, data: &TaskData<'_>) -> EmoveCommand {
-        let (object, place) = (self.object.as_ref(), place_of(self.kind, self.record, self.array));
+        let (object, place) = (self.object.as_ref(), LocationKey::of(self).place(self.kind));
         EmoveCommand {
             number: 0,
             command: verb,

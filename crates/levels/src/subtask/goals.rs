@@ -9,7 +9,6 @@ use interfaces::{
 
 use super::{
     pedestal_hand::pedestal_hand,
-    preprocess::site,
     tables::{Exchange, GripHeld, Gripper, PedestalHand, Situation, Where},
 };
 use crate::{
@@ -17,6 +16,7 @@ use crate::{
     emove::gripper::Gripper as Attached,
     goal::{AT_PLACE, Goal, Sensor},
     held::Held,
+    places::LocationKey,
 };
 
 /// Tolerance of a grasp, as E-move states it.
@@ -189,7 +189,7 @@ pub(crate) const fn is_free(held: Holding) -> Proof {
 /// The robot is at the location of a command.
 fn at(emove: &EmoveStatus, command: &SubtaskCommand) -> Proof {
     match emove.at {
-        Some(at) if (at.record, at.array, at.sector) == site(command) => Proof::at(emove.offset),
+        Some(at) if LocationKey::of(&at) == LocationKey::of(command) => Proof::at(emove.offset),
         Some(_) | None => Proof::of(Evidence::Elsewhere),
     }
 }

@@ -26,7 +26,7 @@ use crate::{
     execution::{Asked, Work},
     halt::{Above, Below, BoxState, Intake, Kind, Replaced},
     held::Held,
-    places::{Missing, place_of, pose_of},
+    places::{LocationKey, Missing, pose_of},
 };
 
 impl State {
@@ -195,13 +195,11 @@ pub(super) fn location_pose(command: &SubtaskCommand, inputs: &Inputs<'_, TaskDa
 
 /// Must vision find the object of a command? `is_at` is true if the last pictures were taken at its location.
 fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &TaskData<'_>) -> Vision {
-    let place = place_of(command.location_kind, command.location_record, command.location_array);
+    let location = LocationKey::of(command);
     let located = emove.located.is_some_and(|located| {
-        is_at
-            && Some(located.object) == command.object
-            && (located.record, located.array, located.sector) == site(command)
+        is_at && Some(located.object) == command.object && LocationKey::of(&located) == location
     });
-    let view = command.object.and_then(|object| data.view(&object, &place));
+    let view = command.object.and_then(|object| data.view(&object, &location.place(command.location_kind)));
     if !view.is_some_and(|(_, view)| view.enabled) {
         Vision::NotNeeded
     } else if located {
@@ -211,16 +209,11 @@ fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &Tas
     }
 }
 
-/// The location of a command: records and sector.
-pub(super) const fn site(command: &SubtaskCommand) -> (Option<u32>, Option<u32>, Option<i32>) {
-    (command.location_record, command.location_array, command.location_sector)
-}
-
 /// Does the robot stand at the object of a command?
 fn station(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     match emove.at {
         Some(at)
-            if at.grip == Some(command.source_grip) && (at.record, at.array, at.sector) == site(command) =>
+            if at.grip == Some(command.source_grip) && LocationKey::of(&at) == LocationKey::of(command) =>
         {
             Where::There
         }
@@ -233,7 +226,7 @@ fn placed(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     let what = (command.object, command.destination_grip);
     match emove.placed {
         Some(it)
-            if (Some(it.object), it.grip) == what && (it.record, it.array, it.sector) == site(command) =>
+            if (Some(it.object), it.grip) == what && LocationKey::of(&it) == LocationKey::of(command) =>
         {
             Where::There
         }

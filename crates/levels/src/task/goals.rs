@@ -14,6 +14,7 @@ use crate::{
     confirm::{Evidence, Proof},
     goal::{AT_PLACE, Goal, Sensor},
     held::Held,
+    places::LocationKey,
     subtask::goals::{force, is_free},
 };
 
@@ -178,23 +179,17 @@ pub(super) fn proof(plan: &Plan, below: &SubtaskStatus, data_base: DataBase) -> 
 
 /// The object was released at the destination.
 fn is_placed(plan: &Plan, below: &SubtaskStatus) -> bool {
-    let destination =
-        plan.destination.location.map(|location| (location.record, location.array, location.sector));
+    let destination = plan.destination.key();
     below.placed.is_some_and(|placed| {
-        plan.object == Some(placed.object)
-            && destination == Some((placed.record, placed.array, placed.sector))
+        plan.object == Some(placed.object) && destination == Some(LocationKey::of(&placed))
     })
 }
 
 /// The robot is at a location, if one is named.
 fn at(site: &Site, below: &SubtaskStatus) -> Proof {
-    let Some(location) = &site.location else { return Proof::HOLDS };
+    let Some(location) = site.key() else { return Proof::HOLDS };
     match below.at {
-        Some(at)
-            if (at.record, at.array, at.sector) == (location.record, location.array, location.sector) =>
-        {
-            Proof::at(below.offset)
-        }
+        Some(at) if LocationKey::of(&at) == location => Proof::at(below.offset),
         Some(_) | None => Proof::of(Evidence::Elsewhere),
     }
 }

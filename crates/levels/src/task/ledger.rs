@@ -15,6 +15,7 @@ use interfaces::{
 use rcs_core::{Plain, name::Name16};
 
 use super::plan::{Plan, Resumed, TaskVerb};
+use crate::places::LocationKey;
 
 /// Has the command placed its object already?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -66,16 +67,14 @@ pub fn placed(plan: &Plan, below: &SubtaskStatus, ledger: Option<&Ledger>) -> Pl
         ledger.map(|ledger| ledger.last),
         Some(SubtaskVerb::PlaceObj | SubtaskVerb::Position | SubtaskVerb::GotoEndpt)
     );
-    let destination =
-        plan.destination.location.map(|location| (location.record, location.array, location.sector));
+    let destination = plan.destination.key();
     let at_destination = below.placed.is_some_and(|placed| {
         plan.object == Some(placed.object)
             && plan.destination.grip == placed.grip
-            && destination == Some((placed.record, placed.array, placed.sector))
+            && destination == Some(LocationKey::of(&placed))
     });
-    let stands = |at: Standing| {
-        destination == Some((at.record, at.array, at.sector)) && at.grip == Some(plan.destination.grip)
-    };
+    let stands =
+        |at: Standing| destination == Some(LocationKey::of(&at)) && at.grip == Some(plan.destination.grip);
     match (at_destination && placing && plan.resumed != Resumed::Not, below.at.is_some_and(stands)) {
         (false, _) => Placed::Not,
         (true, true) => Placed::AtDestination,

@@ -12,7 +12,7 @@ use taskdata::files::TaskData;
 use super::tables::WayOut;
 use crate::{
     emove::route::same_location,
-    places::{Missing, is_in_mbd, named, place_of},
+    places::{LocationKey, Missing, is_in_mbd, named},
 };
 
 /// Commands of Task (V.4.1).
@@ -290,7 +290,7 @@ impl Plan {
         let Some(drum) = data.place_named::<10, 16>(&Name10::clipped(named::TOOL_TRNS), None) else {
             return WayOut::Leads;
         };
-        let to = place_of(end_at.kind, end_at.record, end_at.array);
+        let to = LocationKey::of(&end_at).place(end_at.kind);
         if same_location(&drum, &to) || data.trajectory(&drum, &to).is_some() {
             WayOut::Leads
         } else {
@@ -369,6 +369,12 @@ fn gripper(verb: TaskVerb, object: Option<&Name16>, data: &TaskData<'_>) -> (Opt
 }
 
 impl Site {
+    /// Its location, if the command names one.
+    #[must_use]
+    pub fn key(&self) -> Option<LocationKey> {
+        self.location.as_ref().map(LocationKey::of)
+    }
+
     /// Is the location near the tool drum?
     #[must_use]
     pub fn near_drum(&self) -> Near {
@@ -412,6 +418,6 @@ impl Location {
 
     /// True if the location is one of the MBD's.
     fn is_in_mbd(&self, data: &TaskData<'_>) -> bool {
-        is_in_mbd(self.record, data)
+        is_in_mbd(LocationKey::of(self).point, data)
     }
 }

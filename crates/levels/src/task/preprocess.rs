@@ -21,11 +21,10 @@ use super::{
     },
 };
 use crate::{
-    emove::route::same_location,
     execution::{Asked, Work},
     halt::{Above, Below, BoxState, Intake, Kind, Replaced},
     held::Held,
-    places::{is_in_mbd, named, place_of},
+    places::{LocationKey, is_in_mbd, named},
 };
 
 impl State {
@@ -124,7 +123,9 @@ impl State {
         let Some(placed) = memory.subtask.status.placed else { return };
         let goes_on = verb != TaskVerb::Position && !replaces;
         let waits = goes_on && is_taken(memory.task.ledger.as_ref(), &placed.object);
-        if !waits && self.data_system.follows(placed.object, is_in_mbd(placed.record, inputs.data)) {
+        if !waits
+            && self.data_system.follows(placed.object, is_in_mbd(LocationKey::of(&placed).point, inputs.data))
+        {
             self.data_system.owe_released(&placed);
         }
     }
@@ -213,12 +214,11 @@ fn station(at: Option<Name10>) -> Station {
 fn way(at: Option<Standing>, plan: &Plan, data: &TaskData<'_>) -> Way {
     let Some(at) = at else { return Way::NoStart };
     let Some(goal) = plan.position_site().location else { return Way::Here };
-    let from = place_of(goal.kind, at.record, at.array);
-    let to = place_of(goal.kind, goal.record, goal.array);
-    if same_location(&from, &to) {
+    let (from, to) = (LocationKey::of(&at), LocationKey::of(&goal));
+    if from.has_location_of(to) {
         // Between the sectors of a tray no trajectory is needed.
-        if (at.array, at.sector) == (goal.array, goal.sector) { Way::Here } else { Way::Leads }
-    } else if data.trajectory(&from, &to).is_some() {
+        if (from.array, from.sector) == (to.array, to.sector) { Way::Here } else { Way::Leads }
+    } else if data.trajectory(&from.place(goal.kind), &to.place(goal.kind)).is_some() {
         Way::Leads
     } else {
         Way::NoTrajectory

@@ -6,13 +6,13 @@ use interfaces::{
     emove::{Holding, ObjectGrip, Standing},
     hws::Confirmed,
     operator,
-    subtask::{LocationKind, SubtaskStatus},
+    subtask::SubtaskStatus,
 };
 use rcs_core::{Plain, name::Name10};
 use taskdata::files::{LocptId, Reference, TaskData};
 
 use super::plan::Plan;
-use crate::places::{named, place_of};
+use crate::places::{LocationKey, named, place_of};
 
 /// What keeps an object from falling when the gripper opens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -78,10 +78,8 @@ impl Support {
 
 /// An object has grip data of its own at the location point of a place: those for `$$$` say nothing of a fixture.
 fn has_place(object: &ObjectGrip, at: &Standing, data: &TaskData<'_>) -> bool {
-    let [here, anywhere] = [at.record, None].map(|record| {
-        let place = place_of(LocationKind::Point, record, None);
-        data.grip_loc(&object.object, object.grip, &place)
-    });
+    let [here, anywhere] = [LocationKey::of(at).point, LocptId::NULL]
+        .map(|point| data.grip_loc(&object.object, object.grip, &place_of(point)));
     here.is_some() && here != anywhere
 }
 

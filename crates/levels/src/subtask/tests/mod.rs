@@ -20,7 +20,7 @@ use self::{
     data::without,
 };
 use super::{Subtask, tables::TABLES};
-use crate::{coverage::Coverage, places::place_of};
+use crate::{coverage::Coverage, places::LocationKey};
 
 fn error(reason: Reason) -> (StatusReport, Reason) {
     (StatusReport::Error, reason)
@@ -410,7 +410,7 @@ fn an_object_is_found_by_vision_if_the_data_ask_for_it() {
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-VU", "LOCATE-OBJ", "MOV-TO-OBJ", "GRASP-OBJ"]);
     let (told, bar) = (bench.memory.task.subtask, Name16::new("BAR").unwrap());
-    let place = place_of(told.location_kind, told.location_record, told.location_array);
+    let place = LocationKey::of(&told).place(told.location_kind);
     for command in &bench.emove.received {
         assert_eq!(
             (command.location_kind, command.location_record),

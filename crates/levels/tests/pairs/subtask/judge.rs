@@ -6,7 +6,7 @@ use interfaces::{
     grip::GripVerb,
     subtask::{SubtaskCommand, SubtaskVerb},
 };
-use levels::{execution::Outcome, places::place_of};
+use levels::{execution::Outcome, places::LocationKey};
 
 use super::{Event, LATE, Mishap, Pair};
 use crate::{data::data, parts_gripper, robot, search::Wrong};
@@ -18,7 +18,7 @@ impl Pair {
             return false;
         };
         let base = pose.pose.to_frame().expect("commands have frames");
-        let place = place_of(command.location_kind, command.location_record, command.location_array);
+        let place = LocationKey::of(command).place(command.location_kind);
         let grip =
             command.object.and_then(|object| data().grip_movetable(&object, command.source_grip, &place));
         let goal = grip.map_or(base, |grip| data().moved(&base, grip));
