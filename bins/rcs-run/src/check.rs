@@ -96,7 +96,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     let checked = Checked::of(&arguments.data, &Flights::default());
     if let Some((path, cell)) = arguments.urdf.as_ref().zip(checked.cell.as_ref()) {
         check_output(path, Format::Urdf, [])
-            .and_then(|()| replace(path, cell.urdf().as_bytes()))
+            .and_then(|()| replace(path, cell.scene(&[]).urdf().as_bytes()))
             .map_err(|source| Error::Write { path: path.clone(), source })?;
     }
     let mut outcome = checked.outcome();

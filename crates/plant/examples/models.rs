@@ -2,15 +2,14 @@
 
 use std::{env, error::Error, fs, io::Write as _, path::PathBuf};
 
-use plant::{CellDescription, look};
+use plant::{CellDescription, scene::Scene};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let directory = PathBuf::from(env::args().nth(1).ok_or("a directory was expected")?);
     let cell = CellDescription::from_toml(&fs::read_to_string("data/cell.toml")?)?;
-    let parts: Vec<_> = cell.part.iter().map(|kind| (kind.name.clone(), kind)).collect();
     fs::create_dir_all(&directory)?;
     let mut out = std::io::stdout();
-    for model in look::models(&cell, &parts) {
+    for model in Scene::new(&cell, (1..).zip(&cell.part)).models() {
         let glb = model.glb();
         writeln!(
             out,

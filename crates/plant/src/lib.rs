@@ -37,7 +37,7 @@
 //!   its axis and holds a tool as the vise does a part ([`drum`]);
 //! * parts on trays, ledge and floor are rigid bodies of rapier, with contacts stiff enough for gaps of a millimetre.
 //!
-//! [`look`] makes meshes of the cell for viewers, and [`fault`] injects faults into the data between the cell and the controller.
+//! [`scene`] and [`look`] describe the cell for viewers, and [`fault`] injects faults into the data between the cell and the controller.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
@@ -83,7 +83,7 @@ pub mod vise;
 mod world;
 
 pub use cell::{
-    Cell, CellError, CellEvent, Droop, Holders, Link, Placement, RestoreError, RingState, SaveError,
+    Cell, CellError, CellEvent, Droop, Holders, LinkPose, Placement, RestoreError, RingState, SaveError,
     WorkstationAction, WorkstationError, part_link,
 };
 pub use description::CellDescription;

@@ -256,7 +256,7 @@ fn running_into_a_tray_is_reported() {
 fn every_link_that_moves_is_in_the_urdf() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
-    let urdf = rig.cell.urdf();
+    let urdf = rig.cell.scene(&[]).urdf();
     for link in rig.cell.links() {
         let child = format!("<child link=\"{}\"/>", link.name);
         let line = urdf

@@ -192,7 +192,7 @@ fn fingers_lift_a_cylinder_out_of_its_cradle() {
 fn cylinders_are_drawn_as_cylinders() {
     let mut rig = Rig::new(&description(), 1);
     place(&mut rig, "SHAFT_BH", "UNIT_2", 7).unwrap();
-    let urdf = rig.cell.urdf_with(&["ENDMILL-1", "LCLEVIS_BH"]);
+    let urdf = rig.cell.scene(&["ENDMILL-1", "LCLEVIS_BH"]).urdf();
     let part = |id: u32| {
         let start = urdf.find(&format!("<link name=\"part_{id}\">")).unwrap();
         urdf[start..].lines().nth(1).unwrap().to_owned()

@@ -1,17 +1,20 @@
 //! Tests the meshes of the shipped cell: they cover the collision bodies, are valid glTF, and are small.
 
-use std::{collections::BTreeMap, f64::consts::TAU};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    f64::consts::TAU,
+};
 
 use geometry::{
     frame::{Frame, Vector},
     kinematics::T3,
 };
-use plant::look::{Model, models, parts};
+use plant::look::Model;
 use plant::{
     Cell, CellDescription, Placement, WorkstationAction, bodies,
     clearance::Body,
     convert::{inches, to_frame},
-    scene::furniture,
+    scene::{Material, Scene, furniture},
 };
 use rapier3d_f64::prelude::{Pose, TypedShape};
 
@@ -142,7 +145,7 @@ fn looks_cover_all_that_collides() {
     let description = description();
     let cell = cell(&description);
     let frames = frames(&cell);
-    let solids = solids(&models(&description, &cell.part_kinds(&[])), &frames);
+    let solids = solids(&cell.scene(&[]).models(), &frames);
     let tool = T3.forward(&cell.joints());
     let grippers = &description.gripper;
     let metres = |name: &str| plant::convert::to_pose(&frames[name]);
@@ -155,8 +158,9 @@ fn looks_cover_all_that_collides() {
     let opening = description.pedestal.hand.initial_opening;
     bodies.extend(bodies::pedestal(&description, &frames["pedestal_hand"], opening));
     bodies.extend(bodies::movable_jaw(&description, &frames["movable_jaw"]));
-    for (link, kind) in cell.part_kinds(&[]) {
-        bodies.push(bodies::part(kind, &metres(&link)));
+    for part in cell.parts() {
+        let kind = description.part(&part.name).unwrap();
+        bodies.push(bodies::part(kind, &metres(&plant::part_link(part.id))));
     }
     assert!(bodies.len() > 90, "{}", bodies.len());
     let drawn = |point: &Vector| solids.iter().any(|solid| solid.winding(point) > 0.5);
@@ -173,7 +177,7 @@ fn each_look_belongs_to_a_link_and_has_closed_surfaces() {
     let description = description();
     let cell = cell(&description);
     let frames = frames(&cell);
-    let models = models(&description, &cell.part_kinds(&[]));
+    let models = cell.scene(&[]).models();
     for model in &models {
         assert!(frames.contains_key(&model.frame), "{} is no link", model.frame);
     }
@@ -195,7 +199,7 @@ fn each_look_belongs_to_a_link_and_has_closed_surfaces() {
         let open = edges.values().filter(|ways| **ways != 0).count();
         assert_eq!(open, 0, "piece {at} near {:?} is open", solid.low);
     }
-    for label in plant::look::labels(&description) {
+    for label in cell.scene(&[]).labels() {
         assert!(frames.contains_key(label.frame), "{label:?}");
     }
 }
@@ -214,7 +218,7 @@ fn parts_of(glb: &[u8]) -> (serde_json::Value, &[u8]) {
 #[test]
 fn files_are_gltf_with_y_up_and_unit_normals() {
     let description = description();
-    for model in models(&description, &[]) {
+    for model in Scene::new(&description, []).models() {
         let glb = model.glb();
         let (json, binary) = parts_of(&glb);
         assert_eq!(json["buffers"][0]["byteLength"], binary.len());
@@ -252,19 +256,36 @@ fn files_are_gltf_with_y_up_and_unit_normals() {
 #[test]
 fn looks_are_small_and_the_same_each_time() {
     let description = description();
-    let kinds: Vec<_> = description.part.iter().map(|kind| (kind.name.clone(), kind)).collect();
-    let made = models(&description, &kinds);
+    let scene = Scene::new(&description, (1..).zip(&description.part));
+    let made = scene.models();
     let triangles: usize = made.iter().map(|model| model.mesh.triangles()).sum();
     let bytes: usize = made.iter().map(|model| model.glb().len()).sum();
     assert!(triangles < 60_000 && bytes < 1_500_000, "{triangles} triangles, {bytes} bytes");
-    let again = models(&description, &kinds);
+    let again = scene.models();
     assert!(made.iter().zip(&again).all(|(a, b)| a.glb() == b.glb()));
+}
+
+#[test]
+fn the_shapes_of_a_link_have_colours_of_its_mesh() {
+    let description = description();
+    let scene = Scene::new(&description, (1..).zip(&description.part));
+    let models = scene.models();
+    let (groups, links): (Vec<&Model>, Vec<&Model>) = models.iter().partition(|model| model.frame == "world");
+    for link in scene.links() {
+        let own = links.iter().filter(|model| model.name == link.name);
+        let meshes: Vec<_> = if own.clone().count() > 0 { own.collect() } else { groups.iter().collect() };
+        let materials = meshes.iter().flat_map(|model| model.mesh.pieces()).map(|piece| piece.material);
+        let materials: BTreeSet<Material> = materials.collect();
+        for visual in &link.visuals {
+            assert!(materials.contains(&visual.colour), "{}: {:?}", link.name, visual.colour);
+        }
+    }
 }
 
 #[test]
 fn kinds_of_parts_differ_in_colour() {
     let description = description();
-    let colour = |name: &str| parts::colour(description.part(name).unwrap());
+    let colour = |name: &str| Material::of_part(description.part(name).unwrap());
     let kinds = ["LINKBAR1", "LCLEVIS", "SHAFT", "DRILL-2"].map(colour);
     for (i, kind) in kinds.iter().enumerate() {
         assert!(!kinds[..i].contains(kind), "{kind:?} twice");

@@ -33,7 +33,7 @@ fn numbers(text: &str) -> Vec<f64> {
 
 #[test]
 fn links_and_joints_are_one_tree_with_unique_names() {
-    let text = cell().urdf();
+    let text = cell().scene(&[]).urdf();
     let document = Document::parse(&text).expect("it is XML");
     assert!(document.root_element().has_tag_name("robot"));
     let links: Vec<&str> = named(&document, "link").map(|(name, _)| name).collect();
@@ -57,7 +57,7 @@ fn links_and_joints_are_one_tree_with_unique_names() {
 #[test]
 fn every_moving_joint_has_an_axis_and_limits_within_which_it_is() {
     let cell = cell();
-    let text = cell.urdf();
+    let text = cell.scene(&[]).urdf();
     let document = Document::parse(&text).expect("it is XML");
     let states: BTreeMap<&str, f64> = cell.joint_states().into_iter().collect();
     let mut moving = BTreeSet::new();
@@ -84,7 +84,7 @@ fn every_moving_joint_has_an_axis_and_limits_within_which_it_is() {
 
 #[test]
 fn everything_that_can_be_run_into_is_in_the_picture() {
-    let text = cell().urdf();
+    let text = cell().scene(&[]).urdf();
     let document = Document::parse(&text).expect("it is XML");
     let shapes = |link: &str| {
         let link = named(&document, "link").find(|(name, _)| *name == link);

@@ -113,10 +113,11 @@ impl Log {
             (Link { name: link.name, parent: link.parent.to_owned() }, place)
         });
         let joints = setup.cell.joint_states().into_iter().map(|(name, _)| name.to_owned());
+        let scene = setup.cell.scene(&coming);
         let model = CellModel {
-            urdf: setup.cell.urdf_with(&coming),
-            models: models(setup, &coming),
-            names: plant::look::labels(&setup.description).into_iter().map(name).collect(),
+            urdf: scene.urdf(),
+            models: scene.models().into_iter().map(model).collect(),
+            names: scene.labels().into_iter().map(name).collect(),
             links: links.collect(),
             fixed: fixed.collect(),
             joints: joints.collect(),
@@ -241,7 +242,7 @@ impl Log {
     }
 }
 
-fn transform(link: &plant::Link) -> Transform {
+fn transform(link: &plant::LinkPose) -> Transform {
     Transform { position: link.position, rotation: link.rotation }
 }
 
@@ -259,11 +260,8 @@ fn touch(contact: &Contact, collides: bool) -> Touch {
     }
 }
 
-/// The shapes of all bodies, including the parts that will be delivered.
-fn models(setup: &Setup, coming: &[&str]) -> Vec<Model> {
-    let models = plant::look::models(&setup.description, &setup.cell.part_kinds(coming));
-    let file = |model: plant::look::Model| Model { glb: model.glb(), name: model.name, frame: model.frame };
-    models.into_iter().map(file).collect()
+fn model(model: plant::look::Model) -> Model {
+    Model { glb: model.glb(), name: model.name, frame: model.frame }
 }
 
 fn name(label: plant::look::Label) -> Name {

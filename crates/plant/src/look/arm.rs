@@ -5,16 +5,18 @@
 
 use core::f64::consts::TAU;
 
-use crate::{CellDescription, bodies::turret, scene::Block};
+use crate::{
+    CellDescription,
+    bodies::turret,
+    look::mesh::{Mesh, ROUND, SMALL, count, rounded},
+    scene::{
+        Block,
+        Material::{Bright, Charcoal, Cream, Orange, Rubber, Steel, Yellow},
+    },
+};
 use geometry::{
     frame::{Frame, Rotation, Vector},
     kinematics::T3,
-};
-
-use crate::look::{
-    Model,
-    material::Material::{Bright, Charcoal, Cream, Orange, Rubber, Steel, Yellow},
-    mesh::{Mesh, ROUND, SMALL, count, rounded},
 };
 
 /// Distance of the mesh's surface from the collision body of a link, in: as thin as a coat of paint.
@@ -24,19 +26,19 @@ const CHEEK: f64 = 1.8;
 /// Gap between a fork and the part that turns in it, in.
 const PLAY: f64 = 0.4;
 
-/// The models of the arm's links.
+/// The mesh of a link of the arm, by its joint.
 #[must_use]
-pub fn models(cell: &CellDescription) -> Vec<Model> {
+pub fn mesh(joint: usize, cell: &CellDescription) -> Mesh {
     let (radius, half) = turret(cell);
     let robot = &cell.robot;
-    vec![
-        Model::new("turret", turret_mesh(radius, half)),
-        Model::new("upper_arm", upper_arm(radius, robot.upper_arm_radius)),
-        Model::new("forearm", forearm(robot.upper_arm_radius, robot.forearm_radius)),
-        Model::new("wrist_pitch", wrist_pitch(robot.forearm_radius, robot.wrist_radius)),
-        Model::new("wrist_yaw", wrist_yaw(robot.wrist_radius)),
-        Model::new("end_plate", end_plate(robot.wrist_radius)),
-    ]
+    match joint {
+        0 => turret_mesh(radius, half),
+        1 => upper_arm(radius, robot.upper_arm_radius),
+        2 => forearm(robot.upper_arm_radius, robot.forearm_radius),
+        3 => wrist_pitch(robot.forearm_radius, robot.wrist_radius),
+        4 => wrist_yaw(robot.wrist_radius),
+        _ => end_plate(robot.wrist_radius),
+    }
 }
 
 /// The column under the turret: the block of the description, with a flange at the bottom and a ring on top.

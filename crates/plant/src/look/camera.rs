@@ -11,8 +11,7 @@ use crate::{
 };
 use geometry::frame::Vector;
 use interfaces::device::{VisionResponse, VisionStatus};
-
-use crate::look::png::Picture;
+use png::{ColorType, Compression, Encoder, EncodingError};
 
 /// Width and height of the picture, pixels.
 const SIZE: usize = 160;
@@ -103,7 +102,22 @@ pub fn draw(camera: &Camera, subjects: &[Subject], answer: &VisionResponse) -> V
     let mut palette = vec![[0x22, 0x3A, 0x55]];
     palette.extend((0..GREYS).map(|grey| [60 + 18 * grey; 3]));
     palette.extend([[0x3C, 0xE0, 0x78], [0xFF, 0xC8, 0x2E], [0xE0, 0x3C, 0x3C]]);
-    Picture { width: SIZE, pixels: canvas.pixels }.png(&palette)
+    // Writing to a vector cannot fail.
+    png(&canvas.pixels, &palette).unwrap_or_default()
+}
+
+/// A PNG file with a palette of red, green, blue.
+fn png(pixels: &[u8], palette: &[[u8; 3]]) -> Result<Vec<u8>, EncodingError> {
+    let (mut file, side) = (Vec::new(), SIZE as u32);
+    let mut encoder = Encoder::new(&mut file, side, side);
+    encoder.set_color(ColorType::Indexed);
+    encoder.set_palette(palette.as_flattened());
+    // Drawn pictures are small anyway, and a run writes one for each answer of vision.
+    encoder.set_compression(Compression::Fast);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels)?;
+    writer.finish()?;
+    Ok(file)
 }
 
 /// Draws the centroid of an answer and the direction in which the fingers close.
@@ -150,6 +164,20 @@ mod tests {
             assert!(one.len() < 4_000, "{} bytes", one.len());
             assert!(pictures[..i].iter().all(|other| other != one), "each answer looks otherwise");
         }
+    }
+
+    #[test]
+    fn a_file_has_the_pixels_and_the_palette() {
+        let mut pixels = vec![0; SIZE * SIZE];
+        pixels[3 * SIZE + 7] = 2;
+        let palette = [[1, 2, 3], [4, 5, 6], [7, 8, 9]];
+        let file = png(&pixels, &palette).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
+        assert_eq!(reader.info().palette.as_deref(), Some(palette.as_flattened()));
+        let mut read = vec![0; reader.output_buffer_size().unwrap()];
+        let frame = reader.next_frame(&mut read).unwrap();
+        assert_eq!((frame.width, frame.height, frame.color_type), (160, 160, ColorType::Indexed));
+        assert!(read == pixels, "the pixels are read as they were written");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::{collections::BTreeMap, fmt::Write as _};
 
 use geometry::frame::Vector;
 
-use crate::look::{material::Material, mesh::Mesh};
+use crate::{look::mesh::Mesh, scene::Material};
 
 /// Metres per inch.
 const INCH: f64 = 0.0254;

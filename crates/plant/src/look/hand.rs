@@ -9,49 +9,43 @@ use crate::{
     CellDescription,
     bodies::{CAMERA, body_boxes, palm},
     description::Gripper,
+    hand::Hand,
+    look::mesh::{Mesh, ROUND, SMALL, count},
+    scene::Material::{self, Brass, Bright, Charcoal, Cream, Green, Light, Pad, Red, Rubber, Steel, Yellow},
 };
 use geometry::kinematics::T3;
-
-use crate::look::{
-    Model,
-    material::{
-        Material,
-        Material::{Brass, Bright, Charcoal, Cream, Green, Light, Pad, Red, Rubber, Steel, Yellow},
-    },
-    mesh::{Mesh, ROUND, SMALL, count},
-};
 
 /// Small chamfer, in: gripped parts lie against the adjacent faces.
 const EDGE: f64 = 0.03;
 
-/// The models of the quick change, the grippers and the pedestal's hand.
+/// The body of a hand.
 #[must_use]
-pub fn models(cell: &CellDescription) -> Vec<Model> {
-    let grippers = &cell.gripper;
-    let mut models = vec![Model::new("quick_change", quick_change(cell))];
-    for (name, fingers, gripper, mark) in [
-        ("parts_gripper", ["left_finger", "right_finger"], &grippers.parts, Green),
-        ("v_gripper", ["v_left_finger", "v_right_finger"], &grippers.v, Brass),
-        ("tool_gripper", ["tool_left_finger", "tool_right_finger"], &grippers.tool, Red),
-    ] {
-        models.push(Model::new(name, robot_gripper(cell, gripper, mark)));
-        models.extend(
-            fingers
-                .into_iter()
-                .zip([1.0, -1.0])
-                .map(|(name, side)| Model::new(name, finger(gripper, side, mark))),
-        );
+pub(crate) fn body(cell: &CellDescription, hand: Hand) -> Mesh {
+    match hand {
+        Hand::Pedestal => pedestal_hand(hand.description(cell)),
+        _ => robot_gripper(cell, hand.description(cell), mark(hand)),
     }
-    let hand = &cell.pedestal.hand;
-    models.push(Model::new("pedestal_hand", pedestal_hand(hand)));
-    for (name, side) in [("pedestal_left_finger", 1.0), ("pedestal_right_finger", -1.0)] {
-        models.push(Model::new(name, finger(hand, side, Yellow)));
+}
+
+/// A finger of a hand.
+#[must_use]
+pub(crate) fn finger(cell: &CellDescription, hand: Hand, side: f64) -> Mesh {
+    finger_mesh(hand.description(cell), side, mark(hand))
+}
+
+/// The colour that tells the hands apart.
+const fn mark(hand: Hand) -> Material {
+    match hand {
+        Hand::Parts => Green,
+        Hand::V => Brass,
+        Hand::Tool => Red,
+        Hand::Pedestal => Yellow,
     }
-    models
 }
 
 /// The A plate of the quick change, and the camera, which looks past the gripper.
-fn quick_change(cell: &CellDescription) -> Mesh {
+#[must_use]
+pub fn quick_change(cell: &CellDescription) -> Mesh {
     let mut mesh = Mesh::default();
     let change = &cell.quick_change;
     let (back, front) = (-T3.plate_to_tool, -T3.plate_to_tool + change.length / 2.0);
@@ -124,7 +118,7 @@ fn robot_gripper(cell: &CellDescription, gripper: &Gripper, mark: Material) -> M
 }
 
 /// A finger in its own frame: a bar with a pad on the gripping face, a rib on the other, a carriage at its root.
-fn finger(gripper: &Gripper, side: f64, mark: Material) -> Mesh {
+fn finger_mesh(gripper: &Gripper, side: f64, mark: Material) -> Mesh {
     let mut mesh = Mesh::default();
     let [length, thick, wide] = gripper.fingers;
     let (root, tip, z) = (-length / 2.0, length / 2.0, wide / 2.0);

@@ -3,27 +3,19 @@
 use core::f64::consts::TAU;
 
 use crate::{
-    CellDescription,
-    scene::{Block, jaw_blocks, vise_frame},
+    description::Vise,
+    look::mesh::{Mesh, ROUND, SMALL, count},
+    scene::{
+        Block,
+        Material::{Bright, Charcoal, Gold, Green, Light, Petrol, Red, Rubber, Steel, White, Yellow},
+        Shape, Visual,
+    },
 };
 
-use crate::look::{
-    Model,
-    material::Material::{Bright, Charcoal, Gold, Green, Light, Petrol, Red, Rubber, Steel, White, Yellow},
-    mesh::{Mesh, ROUND, SMALL, count},
-};
-
-/// The links of the vise: body with the fixed jaw, and the movable jaw.
+/// The body of the vise around its shapes, which are boxes.
 #[must_use]
-pub fn vise(cell: &CellDescription, blocks: &[&Block]) -> [Model; 2] {
-    let inverse = vise_frame(&cell.vise).inverse();
-    let mut body = Mesh::default();
-    for block in blocks {
-        let here = block.moved(&inverse);
-        let (material, edge) = if block.jaw { (Steel, 0.0) } else { (Charcoal, 0.12) };
-        body.block(material, here.frame.position.into(), here.size.into(), edge);
-    }
-    let vise = &cell.vise;
+pub fn vise(vise: &Vise, visuals: &[Visual]) -> Mesh {
+    let mut body = boxes(visuals, 0.12);
     let ([front, back], [right, left]) = (vise.body_x, vise.body_y);
     let ledge = -vise.jaw[2];
     // Ways for the jaw, the spindle that moves it, its motor at the back, and a name plate in front.
@@ -43,15 +35,31 @@ pub fn vise(cell: &CellDescription, blocks: &[&Block]) -> [Model; 2] {
     for (x, y) in [(front + 1.0, right + 0.8), (back - 1.0, right + 0.8), (back - 1.0, left - 0.8)] {
         body.rod(Bright, [x, y, ledge - 0.1], [x, y, ledge + 0.2], 0.4, 0.05, 6);
     }
-    let mut jaw = Mesh::default();
-    for block in jaw_blocks(vise) {
-        jaw.block(Steel, block.frame.position.into(), block.size.into(), 0.0);
-    }
+    body
+}
+
+/// The movable jaw around its shapes, which are boxes.
+#[must_use]
+pub fn jaw(vise: &Vise, visuals: &[Visual]) -> Mesh {
+    let mut jaw = boxes(visuals, 0.0);
+    let ledge = -vise.jaw[2];
     let behind = vise.jaw[1];
     for x in [1.4, vise.jaw[0] - 1.4] {
         jaw.rod(Bright, [x, behind - 0.1, ledge + 1.0], [x, behind + 0.25, ledge + 1.0], 0.45, 0.05, 6);
     }
-    [Model::new("vise", body), Model::new("movable_jaw", jaw)]
+    jaw
+}
+
+/// Boxes; the edges of steel are sharp, those of other materials have a chamfer.
+fn boxes(visuals: &[Visual], chamfer: f64) -> Mesh {
+    let mut mesh = Mesh::default();
+    for Visual { frame, shape, colour } in visuals {
+        if let Shape::Box(size) = shape {
+            let edge = if *colour == Steel { 0.0 } else { chamfer };
+            mesh.block(*colour, frame.position.into(), (*size).into(), edge);
+        }
+    }
+    mesh
 }
 
 /// The pallet: a bed with slots in its top; coordinates of the block's frame.

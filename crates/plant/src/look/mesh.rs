@@ -7,7 +7,7 @@ use core::f64::consts::{PI, TAU};
 
 use geometry::frame::{Frame, Rotation, Vector};
 
-use crate::look::material::Material;
+use crate::scene::Material;
 
 /// Faces that meet at a smaller angle than this are shaded as one smooth surface, weighted by area: the cosine of 63
 /// degrees. A chamfered edge then looks round and needs few vertices.

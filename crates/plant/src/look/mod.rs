@@ -1,8 +1,8 @@
-//! Visual meshes of the cell: one for each link, generated from the description of the cell.
+//! Visual meshes of the cell: one for each link of a [`Scene`], generated from the description of the cell.
 //!
-//! [`models`] makes parametric solids, which become glTF files. They are for display only: the physics has its own
+//! [`Scene::models`] makes parametric solids, which become glTF files. They are for display only: the physics has its own
 //! bodies ([`crate::bodies`], [`crate::scene`]). Each mesh covers the bodies of its link, so that contacts of the
-//! physics show no gap. [`labels`] lists the names to display, [`camera`] draws what vision saw.
+//! physics show no gap. [`Scene::labels`] lists the names to display, [`camera`] draws what vision saw.
 //!
 //! The same description gives the same bytes. Lengths are inches; [`glb`] converts to metres.
 
@@ -11,24 +11,13 @@ pub mod camera;
 pub mod glb;
 pub mod hand;
 pub mod machine;
-pub mod material;
 pub mod mesh;
 pub mod parts;
-pub mod png;
 pub mod room;
 
-use crate::{
-    CellDescription,
-    description::PartType,
-    scene::{Block, furniture},
-};
+use crate::scene::{Block, Body, Link, Moving, ROOT, Scene};
 
 pub use mesh::Mesh;
-
-/// Frame of everything that does not move.
-const WORLD: &str = "world";
-/// Blocks of the furniture that belong to the link of the vise.
-const VISE: [&str; 2] = ["vise_body", "fixed_jaw"];
 
 /// A mesh, and the frame in which it is drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,7 +40,7 @@ impl Model {
     /// The model of a group of fixed things, in world coordinates.
     #[must_use]
     pub fn standing(name: &str, mesh: Mesh) -> Self {
-        Self { name: name.into(), frame: WORLD.into(), mesh }
+        Self { name: name.into(), frame: ROOT.into(), mesh }
     }
 
     /// The mesh as a GLB file.
@@ -72,45 +61,60 @@ pub struct Label {
     pub position: [f64; 3],
 }
 
-/// The models of the cell and its parts, which are given by link name and type. The description must be validated.
-#[must_use]
-pub fn models(cell: &CellDescription, parts: &[(String, &PartType)]) -> Vec<Model> {
-    let furniture = furniture(cell);
-    let (vise, rest): (Vec<&Block>, Vec<&Block>) =
-        furniture.iter().partition(|block| VISE.contains(&block.name.as_str()));
-    let mut models = room::models(cell, &rest);
-    models.extend(arm::models(cell));
-    models.extend(hand::models(cell));
-    models.extend(machine::vise(cell, &vise));
-    models.extend(parts.iter().map(|(link, kind)| Model::new(link, parts::mesh(kind))));
-    models
-}
+impl Scene<'_> {
+    /// The detailed meshes: one for each group of fixed bodies, and one for each other link.
+    #[must_use]
+    pub fn models(&self) -> Vec<Model> {
+        let blocks: Vec<&Block> = self.blocks().collect();
+        let mut models = room::models(self.cell, &blocks);
+        models.extend(self.links().iter().filter_map(|link| Some(Model::new(&link.name, self.mesh(link)?))));
+        models
+    }
 
-/// Labels of the important objects.
-#[must_use]
-pub fn labels(cell: &CellDescription) -> Vec<Label> {
-    let label = |text: &str, frame, position| Label { text: text.into(), frame, position };
-    let above = |text: &str, fixture: &str, rise: f64| {
-        let fixture = cell.fixture.iter().find(|known| known.name == fixture)?;
-        let [x, y, z] = fixture.centre;
-        Some(label(text, WORLD, [x, y, z + fixture.size[2] / 2.0 + rise]))
-    };
-    let mut labels = vec![label("T3", "turret", [0.0, 0.0, 2.0 * cell.robot.upper_arm_radius + 6.0])];
-    for (tray, number) in cell.tray.iter().zip(1..) {
-        // At different heights, because the trays stand side by side.
-        let ([x, y], up) = (tray.centre, 7.0 * f64::from(number));
-        labels.push(label(&format!("tray {}", tray.unit), WORLD, [x, y, tray.floor + up]));
+    /// The mesh of a link; `None` if it is fixed.
+    fn mesh(&self, link: &Link<'_>) -> Option<Mesh> {
+        let cell = self.cell;
+        Some(match link.body {
+            Body::Fixed(_) => return None,
+            Body::Part(kind) => parts::mesh(kind),
+            Body::Moving(moving) => match moving {
+                Moving::Arm(joint) => arm::mesh(joint, cell),
+                Moving::QuickChange => hand::quick_change(cell),
+                Moving::Hand(hand) => hand::body(cell, hand),
+                Moving::Finger(hand, finger) => hand::finger(cell, hand, finger.sign()),
+                Moving::Vise => machine::vise(&cell.vise, &link.visuals),
+                Moving::Jaw => machine::jaw(&cell.vise, &link.visuals),
+            },
+        })
     }
-    let [_, _, up] = cell.vise.jaw;
-    labels.push(label("vise", "vise", [cell.vise.jaw[0], 0.0, 2.0 * up]));
-    // At different heights, because these stand side by side.
-    labels.extend(above("machining centre", "machine_column", 18.0));
-    labels.extend(above("tool drum", "tool_drum", 8.0));
-    let [x, y, z] = cell.pedestal.position;
-    labels.push(label("pedestal", WORLD, [x, y, z + 6.0]));
-    if let Some(frame) = cell.holsters.right.frame() {
-        let [x, y, z] = frame.position.into();
-        labels.push(label("grippers", WORLD, [x, y, z + 18.0]));
+
+    /// Labels of the important objects.
+    #[must_use]
+    pub fn labels(&self) -> Vec<Label> {
+        let cell = self.cell;
+        let label = |text: &str, frame, position| Label { text: text.into(), frame, position };
+        let above = |text: &str, fixture: &str, rise: f64| {
+            let fixture = cell.fixture.iter().find(|known| known.name == fixture)?;
+            let [x, y, z] = fixture.centre;
+            Some(label(text, ROOT, [x, y, z + fixture.size[2] / 2.0 + rise]))
+        };
+        let mut labels = vec![label("T3", "turret", [0.0, 0.0, 2.0 * cell.robot.upper_arm_radius + 6.0])];
+        for (tray, number) in cell.tray.iter().zip(1..) {
+            // At different heights, because the trays stand side by side.
+            let ([x, y], up) = (tray.centre, 7.0 * f64::from(number));
+            labels.push(label(&format!("tray {}", tray.unit), ROOT, [x, y, tray.floor + up]));
+        }
+        let [_, _, up] = cell.vise.jaw;
+        labels.push(label("vise", "vise", [cell.vise.jaw[0], 0.0, 2.0 * up]));
+        // At different heights, because these stand side by side.
+        labels.extend(above("machining centre", "machine_column", 18.0));
+        labels.extend(above("tool drum", "tool_drum", 8.0));
+        let [x, y, z] = cell.pedestal.position;
+        labels.push(label("pedestal", ROOT, [x, y, z + 6.0]));
+        if let Some(frame) = cell.holsters.right.frame() {
+            let [x, y, z] = frame.position.into();
+            labels.push(label("grippers", ROOT, [x, y, z + 18.0]));
+        }
+        labels
     }
-    labels
 }

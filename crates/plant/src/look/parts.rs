@@ -2,36 +2,19 @@
 
 use crate::{
     description::PartType,
-    solid::{Family, along},
-};
-
-use crate::look::{
-    material::{
-        Material,
-        Material::{Brass, Bright, Gold, Green, Red, Steel, Violet},
-    },
-    mesh::{Mesh, ROUND, SMALL},
+    look::mesh::{Mesh, ROUND, SMALL},
+    scene::Material::{self, Bright, Gold, Steel},
+    solid::along,
 };
 
 /// Chamfer of a part's edges, in.
 const EDGE: f64 = 0.03;
 
-/// The colour of a kind of part: the colour of its family.
-#[must_use]
-pub fn colour(kind: &PartType) -> Material {
-    match Family::of(kind) {
-        Family::Tool => Red,
-        Family::Round => Brass,
-        Family::Block => Violet,
-        Family::Bar => Green,
-    }
-}
-
 /// A part in its own frame: origin at its middle, X down as the part lies, Z along it.
 #[must_use]
 pub fn mesh(kind: &PartType) -> Mesh {
     let mut mesh = Mesh::default();
-    let material = colour(kind);
+    let material = Material::of_part(kind);
     let Some((axis, radius, length)) = along(kind) else {
         mesh.block(material, [0.0; 3], kind.size, EDGE);
         return mesh;

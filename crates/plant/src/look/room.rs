@@ -2,17 +2,22 @@
 //!
 //! The mesh of a block contains the block's own box. All other meshes are out of the arm's reach.
 
-use crate::{CellDescription, description::Kind, scene::Block};
-use geometry::frame::{Frame, Vector};
-
-use crate::look::{
-    Model, arm, machine,
-    material::Material::{
-        Blue, Bright, Charcoal, Concrete, Cream, Green, Light, Maple, Orange, PaleBlue, Petrol, Red, Rubber,
-        Slate, Steel, Yellow,
+use crate::{
+    CellDescription,
+    description::Kind,
+    look::{
+        Model, arm, machine,
+        mesh::{Mesh, ROUND, SMALL, count},
     },
-    mesh::{Mesh, ROUND, SMALL, count},
+    scene::{
+        Block,
+        Material::{
+            Blue, Bright, Charcoal, Cream, Green, Light, Maple, Orange, PaleBlue, Petrol, Red, Rubber, Slate,
+            Steel, Yellow,
+        },
+    },
 };
+use geometry::frame::{Frame, Vector};
 
 /// Chamfer of surfaces that parts lie on or lean against, in.
 const EDGE: f64 = 0.03;
@@ -57,18 +62,17 @@ pub fn models(cell: &CellDescription, blocks: &[&Block]) -> Vec<Model> {
 
 /// The group of a block, and its mesh in its own frame.
 fn look(cell: &CellDescription, block: &Block) -> (&'static str, Mesh) {
-    let boxed = |material, edge| {
+    let boxed = |edge| {
         let mut mesh = Mesh::default();
-        mesh.block(material, [0.0; 3], block.size.into(), edge);
+        mesh.block(block.colour(), [0.0; 3], block.size.into(), edge);
         mesh
     };
     let place = |point: Vector| block.frame.inverse().shifted(point).position;
     match (block.kind, block.name.as_str()) {
         (Kind::Tray, name) => ("trays", tray(block, name.ends_with("_floor"))),
-        (Kind::Holster, name) if name.ends_with("_foot") => ("holsters", boxed(Slate, EDGE)),
-        (Kind::Holster, _) => ("holsters", boxed(Yellow, EDGE)),
-        (Kind::Drum, _) => ("machine", boxed(Yellow, EDGE)),
-        (_, "floor") => ("floor", boxed(Concrete, 0.0)),
+        (Kind::Holster, _) => ("holsters", boxed(EDGE)),
+        (Kind::Drum, _) => ("machine", boxed(EDGE)),
+        (_, "floor") => ("floor", boxed(0.0)),
         (_, "robot_base") => ("base", arm::base(block)),
         (_, "machine_pallet") => ("machine", machine::pallet(block)),
         (_, "machine_column") => {
@@ -80,13 +84,12 @@ fn look(cell: &CellDescription, block: &Block) -> (&'static str, Mesh) {
             ("machine", machine::drum(block, place(exchange).into()))
         }
         (_, "horizontal_fixture" | "vertical_fixture") => ("machine", tower(block)),
-        (_, name) if name.starts_with("nest_") => ("machine", boxed(Charcoal, EDGE)),
-        (_, name) if name.starts_with("pot_") => ("trays", boxed(Charcoal, EDGE)),
-        (_, name) if name.starts_with("cradle_") => ("trays", boxed(Cream, EDGE)),
+        (_, name) if name.starts_with("nest_") => ("machine", boxed(EDGE)),
+        (_, name) if name.starts_with("pot_") || name.starts_with("cradle_") => ("trays", boxed(EDGE)),
         (_, name) if name == cell.pedestal.stand => ("benches", stand(block)),
-        (_, "brush_bracket") => ("benches", boxed(Steel, BEVEL)),
+        (_, "brush_bracket") => ("benches", boxed(BEVEL)),
         _ if block.size.min() >= 8.0 => ("benches", bench(block)),
-        _ => ("benches", boxed(Slate, EDGE)),
+        _ => ("benches", boxed(EDGE)),
     }
 }
 

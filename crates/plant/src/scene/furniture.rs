@@ -1,12 +1,11 @@
 //! Fixed bodies as boxes: the furniture of the description, the trays, the vise.
 //!
-//! Simulation, clearance check and picture use the same list of [`Block`]s.
-
-use core::f64::consts::FRAC_PI_2;
+//! Simulation, clearance check and scene use the same list of [`Block`]s.
 
 use geometry::frame::{Frame, Rotation, Vector as Inches};
 use rapier3d_f64::prelude::*;
 
+use super::material::Material;
 use crate::{
     clearance::Body,
     convert::{to_metres, to_pose},
@@ -80,6 +79,33 @@ impl Block {
     #[must_use]
     pub fn moved(&self, by: &Frame) -> Self {
         Self { frame: by.compose(&self.frame), ..self.clone() }
+    }
+
+    /// True if it belongs to the vise, which has links of its own.
+    #[must_use]
+    pub fn is_of_vise(&self) -> bool {
+        self.kind == Kind::Vise
+    }
+
+    /// Its colour; that of the top of a bench.
+    #[must_use]
+    pub fn colour(&self) -> Material {
+        match (self.kind, self.name.as_str()) {
+            (Kind::Vise, _) if self.jaw => Material::Steel,
+            (Kind::Vise, _) => Material::Charcoal,
+            (Kind::Tray, _) => Material::Blue,
+            (Kind::Holster, name) if name.ends_with("_foot") => Material::Slate,
+            (Kind::Holster | Kind::Drum, _) => Material::Yellow,
+            (_, "floor") => Material::Concrete,
+            (_, "robot_base" | "tool_drum") => Material::Charcoal,
+            (_, "machine_pallet") => Material::Petrol,
+            (_, "machine_column") => Material::White,
+            (_, "horizontal_fixture" | "vertical_fixture" | "brush_bracket") => Material::Steel,
+            (_, name) if name.starts_with("nest_") || name.starts_with("pot_") => Material::Charcoal,
+            (_, name) if name.starts_with("cradle_") => Material::Cream,
+            _ if self.size.min() >= 8.0 => Material::Maple,
+            _ => Material::Slate,
+        }
     }
 
     /// A collider of this block at its position.
@@ -214,19 +240,13 @@ impl From<&Block> for Body {
     }
 }
 
-/// The rotation of a cylinder along Z, as in a URDF, onto the X axis of a link.
-#[must_use]
-pub fn along_x() -> Rotation {
-    Rotation::from_axis_angle(&Inches::y_axis(), FRAC_PI_2)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_steps_of_the_programs_are_cut_out_of_the_jaws() {
-        let cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
+        let cell = CellDescription::from_toml(include_str!("../../../../data/cell.toml")).unwrap();
         let mut pieces = jaw_pieces(&cell.vise);
         pieces.sort_by(|a, b| b[1][0].total_cmp(&a[1][0]).then(a[2][0].total_cmp(&b[2][0])));
         assert_eq!(

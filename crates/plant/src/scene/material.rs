@@ -1,5 +1,7 @@
 //! Materials: a few colours that are easy to tell apart.
 
+use crate::{description::PartType, solid::Family};
+
 /// A material of the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Material {
@@ -81,6 +83,17 @@ impl Material {
             Self::Light => (0x00FF_F4D6, 0.0, 0.50, 0.6),
         };
         Look { colour, metal, rough, light }
+    }
+
+    /// The colour of a kind of part: that of its family.
+    #[must_use]
+    pub fn of_part(kind: &PartType) -> Self {
+        match Family::of(kind) {
+            Family::Tool => Self::Red,
+            Family::Round => Self::Brass,
+            Family::Block => Self::Violet,
+            Family::Bar => Self::Green,
+        }
     }
 
     /// Name of the material.
