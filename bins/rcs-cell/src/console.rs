@@ -100,9 +100,9 @@ fn jog(axis: &str, degrees: &str) -> Result<Key, String> {
 }
 
 fn estop(word: &str) -> Result<EStop, String> {
-    EStop::from_word(word).ok_or_else(|| {
-        let known = EStop::ALL.map(EStop::word).join(", ");
-        format!("one of the E-stops {known} was expected, found {word}")
+    EStop::from_text(word).ok_or_else(|| {
+        let known: Vec<&str> = EStop::ALL.iter().map(|site| site.text()).collect();
+        format!("one of the E-stops {} was expected, found {word}", known.join(", "))
     })
 }
 
@@ -192,7 +192,7 @@ mod tests {
             Key::PrimBox(false),
             Key::Jog { axis: 1, degrees: -5 },
         ] {
-            assert_eq!(key.text().parse(), Ok(ConsoleCommand::Key(key)));
+            assert_eq!(key.to_string().parse(), Ok(ConsoleCommand::Key(key)));
         }
         assert_eq!("wait 0.25".parse(), Ok(ConsoleCommand::Wait(250)));
         for (wrong, says) in [

@@ -189,7 +189,7 @@ impl Shell {
         let arrived = self.host.arrived(now);
         let (rx, cts) = self.carry(Direction::ToController, arrived, self.host.has_host());
         if let Some(key) = self.operator.next(&self.t3, cts) {
-            stdout_line!("[auto] {}", key.text());
+            stdout_line!("[auto] {}", key);
             self.press(key);
         }
         self.t3.advance(elapsed.min(LONGEST_STEP_S), &[self.t3.arm().tool_weight()]);

@@ -1,16 +1,12 @@
 //! The workstation of the simulated cell, in the interface of the workstation controller's emulator.
 
-use interfaces::device::{joystick_frame, single_step};
+use interfaces::station::{Key, ViseOpening};
 use neighbours::workstation::player::Workstation;
 use plant::{
-    BoxAction, BoxButton, Cell, CellDescription, CellEvent, Droop, EStop, Key, Placement, ResolverKey,
-    TableKey, WorkstationAction, WorkstationError, t3::Stage,
+    Cell, CellDescription, CellEvent, Droop, Placement, WorkstationAction, WorkstationError, t3::Stage,
 };
 use rcs_core::tick::{TICK_MS, Tick};
-use taskdata::load::job::{
-    Drum, EStop as Site, Joystick, JoystickButton, JoystickFrame, Offset, Panel, ResolverPanel, Stepped,
-    TablePanel, ViseOpening, Workstation as Action,
-};
+use taskdata::load::job::{Drum, Offset, Workstation as Action};
 
 /// Time limit for an arm without pressure to come to rest before the run ends, ticks: two minutes. From HOME it takes
 /// 40 s; an arm that slides off an obstacle takes twice as long.
@@ -181,96 +177,15 @@ pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<Workstation
         Action::Drum(Drum::Grip) => WorkstationAction::DrumGrip,
         Action::Drum(Drum::Release) => WorkstationAction::DrumRelease,
         Action::Drum(Drum::Tool(tool)) => WorkstationAction::DrumTool { part: tool.to_string() },
-        Action::Joystick(action) => WorkstationAction::Joystick(at_the_box(*action)),
-        Action::Press(site) => WorkstationAction::T3(Key::Press(estop(*site))),
-        Action::Release(site) => WorkstationAction::T3(Key::Release(estop(*site))),
-        Action::Panel(key) => WorkstationAction::T3(at_the_panel(*key)),
-        Action::Table(key) => WorkstationAction::Table(at_the_table(*key)),
-        Action::Resolvers(ResolverPanel::Manual(on)) => {
-            WorkstationAction::Resolvers(ResolverKey::Manual(*on))
-        }
-        Action::Resolvers(ResolverPanel::Joint(joint)) => {
-            WorkstationAction::Resolvers(ResolverKey::Joint(*joint))
-        }
+        Action::Joystick(action) => WorkstationAction::Joystick(*action),
+        Action::Press(site) => WorkstationAction::T3(Key::Press(*site)),
+        Action::Release(site) => WorkstationAction::T3(Key::Release(*site)),
+        Action::Panel(key) => WorkstationAction::T3(*key),
+        Action::Table(key) => WorkstationAction::Table(*key),
+        Action::Resolvers(key) => WorkstationAction::Resolvers(*key),
         // These actions do not affect the cell.
         Action::Wait { .. } | Action::Load { .. } | Action::HandOver => return Ok(Vec::new()),
     }])
-}
-
-const fn estop(site: Site) -> EStop {
-    match site {
-        Site::ControlPanel => EStop::ControlPanel,
-        Site::TeachPendant => EStop::TeachPendant,
-        Site::Terminals => EStop::Terminals,
-        Site::JoystickBox => EStop::JoystickBox,
-        Site::Pedestal => EStop::Pedestal,
-    }
-}
-
-const fn at_the_panel(key: Panel) -> Key {
-    match key {
-        Panel::Power(on) => Key::ControlPower(on),
-        Panel::FaultReset => Key::FaultReset,
-        Panel::Hydraulics(enable) => Key::Hydraulics(enable),
-        Panel::Manual(on) => Key::Manual(on),
-        Panel::Align(axis) => Key::Align(axis),
-        Panel::Auto => Key::Auto,
-        Panel::CycleStart => Key::CycleStart,
-        Panel::Interrupt => Key::Interrupt,
-        Panel::Cancel => Key::Cancel,
-        Panel::Enter => Key::Enter,
-        Panel::Hold(on) => Key::Hold(on),
-    }
-}
-
-const fn at_the_table(key: TablePanel) -> TableKey {
-    match key {
-        TablePanel::Power(on) => TableKey::Power(on),
-        TablePanel::Manual(on) => TableKey::Manual(on),
-        TablePanel::Run { plus, ticks } => TableKey::Run { plus, ticks },
-        TablePanel::Step { plus, count } => TableKey::Step { plus, count },
-        TablePanel::Reset => TableKey::Reset,
-    }
-}
-
-/// Translate the words of a job into switches of the box.
-pub const fn at_the_box(action: Joystick) -> BoxAction {
-    match action {
-        Joystick::Frame(frame) => BoxAction::Frame(match frame {
-            JoystickFrame::World => joystick_frame::WORLD,
-            JoystickFrame::Tool => joystick_frame::TOOL,
-            JoystickFrame::ToolOrigin => joystick_frame::TOOL_ORIGIN,
-            JoystickFrame::WristOrigin => joystick_frame::WRIST_ORIGIN,
-            JoystickFrame::Off => 0,
-        }),
-        Joystick::Stick { x, y, ticks } => BoxAction::Stick { x, y, ticks },
-        Joystick::Press { button, ticks } => BoxAction::Press(
-            match button {
-                JoystickButton::Up => BoxButton::Up,
-                JoystickButton::Down => BoxButton::Down,
-                JoystickButton::RollPlus => BoxButton::RollPlus,
-                JoystickButton::RollMinus => BoxButton::RollMinus,
-                JoystickButton::Open => BoxButton::Open,
-                JoystickButton::Close => BoxButton::Close,
-            },
-            ticks,
-        ),
-        Joystick::Velocity(knob) => BoxAction::Velocity(knob),
-        Joystick::Record => BoxAction::Record,
-        Joystick::Resume => BoxAction::Resume,
-        Joystick::Hold(process) => BoxAction::Hold(switch(process)),
-        Joystick::Free(process) => BoxAction::Free(switch(process)),
-        Joystick::Step { process, count } => BoxAction::Step(switch(process), count),
-    }
-}
-
-const fn switch(process: Stepped) -> u8 {
-    match process {
-        Stepped::Task => single_step::TASK,
-        Stepped::Subtask => single_step::SUBTASK,
-        Stepped::Emove => single_step::EMOVE,
-        Stepped::Prim => single_step::PRIM,
-    }
 }
 
 /// Converts the hundredths of a job to inches and degrees.
@@ -315,7 +230,9 @@ impl Workstation for SimulatedWorkstation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::device::{DeviceInputs, DeviceOutputs, JoystickBox, KNOB_FULL};
+    use interfaces::device::{
+        DeviceInputs, DeviceOutputs, JoystickBox, KNOB_FULL, joystick_frame, single_step,
+    };
     use std::path::Path;
     use taskdata::load::{Job, Source, Step, Store};
 

@@ -35,6 +35,7 @@ pub mod process;
 pub mod processes;
 pub mod quick_change;
 mod remedy;
+pub mod station;
 pub mod subtask;
 pub mod t3i;
 pub mod track;

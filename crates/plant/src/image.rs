@@ -30,6 +30,33 @@ pub mod record {
     }
 }
 
+/// Enums of the controller without data, as the number of their variant: the bytes of an enum with serde's own traits.
+pub mod word {
+    use rcs_core::{
+        Plain,
+        plain::{from_bytes, to_bytes},
+    };
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    /// Write the number of the variant.
+    ///
+    /// # Errors
+    /// Errors of the serializer.
+    pub fn serialize<T: Plain, S: Serializer>(word: &T, serializer: S) -> Result<S::Ok, S::Error> {
+        let [code] = to_bytes::<1, _>(word);
+        serializer.serialize_u32(u32::from(code))
+    }
+
+    /// Read the number of the variant.
+    ///
+    /// # Errors
+    /// Errors of the deserializer, or an error if no variant has the number.
+    pub fn deserialize<'de, T: Plain, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+        let code = u8::try_from(u32::deserialize(deserializer)?).map_err(D::Error::custom)?;
+        from_bytes(&[code]).map_err(D::Error::custom)
+    }
+}
+
 /// Frames, as position and the columns of the rotation.
 pub mod frame {
     use geometry::frame::{Frame, Rotation, Vector};

@@ -3,7 +3,10 @@
 //! Switches and knob keep their setting; stick and buttons return when their time is over. Each control has one
 //! position: an action replaces what the same control did before, and leaves the other controls as they are.
 
-use interfaces::device::{JoystickBox, KNOB_FULL};
+use interfaces::{
+    device::{JoystickBox, KNOB_FULL},
+    station::{BoxAction, BoxButton},
+};
 use serde::{Deserialize, Serialize};
 
 /// Duration of a short press, ticks: long enough for every process to read it.
@@ -11,58 +14,11 @@ const PRESS: u32 = 2;
 /// Ticks between two short presses of the same button.
 const PAUSE: u32 = 2;
 
-/// A push-button; the letters are those of the box.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
-pub enum BoxButton {
-    /// D: along +Z.
-    Up,
-    /// E: along -Z.
-    Down,
-    /// Z: positive roll about the tool's X.
-    RollPlus,
-    /// a: negative roll.
-    RollMinus,
-    /// F: open the gripper.
-    Open,
-    /// H: close it.
-    Close,
-}
-
-/// An action at the joystick box.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BoxAction {
-    /// Set the coordinate switches: bits of [`interfaces::device::joystick_frame`]. 0 also releases stick and buttons.
-    Frame(u8),
-    /// Deflect the stick for a number of ticks: -1000 to 1000. This replaces its deflection; 0 0 releases it.
-    Stick {
-        /// Along X, or pitch.
-        x: i16,
-        /// Along Y, or yaw.
-        y: i16,
-        /// Duration, ticks.
-        ticks: u32,
-    },
-    /// Hold a button down for a number of ticks, counted from now.
-    Press(BoxButton, u32),
-    /// Turn the velocity knob: 0 to 1000.
-    Velocity(u16),
-    /// Press the record button.
-    Record,
-    /// Press the carriage return.
-    Resume,
-    /// Set the switches that suspend processes: bits of [`interfaces::device::single_step`].
-    Hold(u8),
-    /// Reset the switches that suspend processes: the same bits.
-    Free(u8),
-    /// Press the single-step buttons of these bits, with the number of presses.
-    Step(u8, u32),
-}
-
 /// A control that is held down, and the number of ticks left.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 enum Held {
     Stick([i16; 2]),
-    Button(BoxButton),
+    Button(#[serde(with = "crate::image::word")] BoxButton),
     Record,
     Resume,
     Step(u8),

@@ -88,8 +88,8 @@ pub use cell::{
 };
 pub use description::CellDescription;
 pub use ideal::Ideal;
-pub use joystick::{BoxAction, BoxButton, Joystick};
+pub use interfaces::station::{BoxAction, BoxButton, EStop, Key, ResolverKey, TableKey};
+pub use joystick::Joystick;
 pub use part::PartState;
-pub use pedestal::{TableKey, TablePanel};
-pub use resolver_box::ResolverKey;
-pub use t3::{Cut, EStop, Key};
+pub use pedestal::TablePanel;
+pub use t3::Cut;

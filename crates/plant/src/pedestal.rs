@@ -18,7 +18,7 @@ use interfaces::device::{GripSensors, MotorCommand, MotorOrder, PedestalSensors,
 use rapier3d_f64::prelude::*;
 use serde::{Deserialize, Serialize};
 
-pub use self::panel::{TableKey, TablePanel, TableRefusal};
+pub use self::panel::{TablePanel, TableRefusal};
 use crate::{
     convert::to_pose,
     description::{Pedestal as Description, RotaryTable},

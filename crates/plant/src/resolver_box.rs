@@ -5,22 +5,16 @@
 //! at HOME: elsewhere the reset makes the readings wrong (CHOSEN).
 
 use geometry::kinematics::HOME_JOINTS;
-use interfaces::device::{RESOLVER_COUNTS, Resolvers};
+use interfaces::{
+    device::{RESOLVER_COUNTS, Resolvers},
+    station::ResolverKey,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::{
     noise::{Noise, Stream},
     sensor::resolver,
 };
-
-/// An action at the resolver electronics.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ResolverKey {
-    /// Set the MANUAL/AUTO switch to MANUAL (true) or to AUTO.
-    Manual(bool),
-    /// Set the address switches to a joint, 0 for the base to 5 for the roll, and press its button.
-    Joint(u8),
-}
 
 /// Reasons for which the electronics does not react.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

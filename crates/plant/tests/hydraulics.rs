@@ -151,7 +151,7 @@ fn pressure_lifts_it_by_about_ten_inches() {
 
 #[test]
 fn an_emergency_stop_ends_the_link_and_the_start_up_brings_it_back() {
-    for site in EStop::ALL {
+    for site in EStop::ALL.iter().copied() {
         let mut rig = Rig::new(&description(), 1);
         rig.tick();
         assert!(rig.inputs.link_ready);

@@ -87,7 +87,7 @@ fn controller(
         screen,
         screen_tick,
         cut: t3.cut().map_or_else(Text::default, |cut| Text::clipped(&cut.to_string())),
-        estops: EStop::ALL.map(|site| t3.is_pressed(site)),
+        estops: std::array::from_fn(|at| EStop::ALL.get(at).is_some_and(|site| t3.is_pressed(*site))),
         aligned: t3.aligned(),
         at_rest: t3.at_rest(),
     }

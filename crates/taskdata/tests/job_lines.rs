@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use interfaces::station::{
+    BoxAction, BoxButton, BoxFrame, EStop, Key, LineVerb, ResolverKey, Stepped, TableKey, ViseOpening,
+    following,
+};
 use rcs_core::name::Name16;
 use taskdata::load::{
-    Job, Source, Step, Store, ViseOpening, Workstation,
-    job::{
-        Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, ResolverPanel, Stepped,
-        TablePanel,
-    },
+    Job, Source, Step, Store, Workstation,
+    job::{Drum, Offset},
     source::read_blocks_under,
 };
 
@@ -75,9 +76,9 @@ fn drum_and_wait() {
 
 #[test]
 fn resolver_electronics() {
-    assert_eq!(action("** resolvers manual"), Workstation::Resolvers(ResolverPanel::Manual(true)));
-    assert_eq!(action("** resolvers auto"), Workstation::Resolvers(ResolverPanel::Manual(false)));
-    assert_eq!(action("** resolvers joint 5"), Workstation::Resolvers(ResolverPanel::Joint(5)));
+    assert_eq!(action("** resolvers manual"), Workstation::Resolvers(ResolverKey::Manual(true)));
+    assert_eq!(action("** resolvers auto"), Workstation::Resolvers(ResolverKey::Manual(false)));
+    assert_eq!(action("** resolvers joint 5"), Workstation::Resolvers(ResolverKey::Joint(5)));
     let report = load("** resolvers joint 6").unwrap_err();
     assert!(report.contains("number of a joint"), "{report}");
 }
@@ -102,19 +103,19 @@ fn a_command_that_has_to_fail() {
 #[test]
 fn the_joystick_box() {
     let frames = [
-        ("WORLD", JoystickFrame::World),
-        ("TOOL", JoystickFrame::Tool),
-        ("TOOL-ORIGIN", JoystickFrame::ToolOrigin),
-        ("WRIST-ORIGIN", JoystickFrame::WristOrigin),
-        ("OFF", JoystickFrame::Off),
+        ("WORLD", BoxFrame::World),
+        ("TOOL", BoxFrame::Tool),
+        ("TOOL-ORIGIN", BoxFrame::ToolOrigin),
+        ("WRIST-ORIGIN", BoxFrame::WristOrigin),
+        ("OFF", BoxFrame::Off),
     ];
     let buttons = [
-        ("up", JoystickButton::Up),
-        ("down", JoystickButton::Down),
-        ("roll+", JoystickButton::RollPlus),
-        ("roll-", JoystickButton::RollMinus),
-        ("open", JoystickButton::Open),
-        ("close", JoystickButton::Close),
+        ("up", BoxButton::Up),
+        ("down", BoxButton::Down),
+        ("roll+", BoxButton::RollPlus),
+        ("roll-", BoxButton::RollMinus),
+        ("open", BoxButton::Open),
+        ("close", BoxButton::Close),
     ];
     let processes = [
         ("TASK", Stepped::Task),
@@ -122,22 +123,21 @@ fn the_joystick_box() {
         ("EMOVE", Stepped::Emove),
         ("PRIM", Stepped::Prim),
     ];
-    let mut expected: Vec<(String, Joystick)> = vec![
-        ("stick 1000 -500 25".into(), Joystick::Stick { x: 1000, y: -500, ticks: 25 }),
-        ("stick 0 0 0".into(), Joystick::Stick { x: 0, y: 0, ticks: 0 }),
-        ("stick 0 0 25".into(), Joystick::Stick { x: 0, y: 0, ticks: 25 }),
-        ("velocity 500".into(), Joystick::Velocity(500)),
-        ("record".into(), Joystick::Record),
-        ("resume".into(), Joystick::Resume),
+    let mut expected: Vec<(String, BoxAction)> = vec![
+        ("stick 1000 -500 25".into(), BoxAction::Stick { x: 1000, y: -500, ticks: 25 }),
+        ("stick 0 0 0".into(), BoxAction::Stick { x: 0, y: 0, ticks: 0 }),
+        ("stick 0 0 25".into(), BoxAction::Stick { x: 0, y: 0, ticks: 25 }),
+        ("velocity 500".into(), BoxAction::Velocity(500)),
+        ("record".into(), BoxAction::Record),
+        ("resume".into(), BoxAction::Resume),
     ];
-    expected.extend(frames.map(|(word, frame)| (format!("frame {word}"), Joystick::Frame(frame))));
-    expected
-        .extend(buttons.map(|(word, button)| (format!("{word} 7"), Joystick::Press { button, ticks: 7 })));
+    expected.extend(frames.map(|(word, frame)| (format!("frame {word}"), BoxAction::Frame(frame.bits()))));
+    expected.extend(buttons.map(|(word, button)| (format!("{word} 7"), BoxAction::Press(button, 7))));
     for (word, process) in processes {
-        expected.push((format!("hold {word}"), Joystick::Hold(process)));
-        expected.push((format!("free {word}"), Joystick::Free(process)));
-        expected.push((format!("step {word}"), Joystick::Step { process, count: 1 }));
-        expected.push((format!("step {word} 3"), Joystick::Step { process, count: 3 }));
+        expected.push((format!("hold {word}"), BoxAction::Hold(process.bit())));
+        expected.push((format!("free {word}"), BoxAction::Free(process.bit())));
+        expected.push((format!("step {word}"), BoxAction::Step(process.bit(), 1)));
+        expected.push((format!("step {word} 3"), BoxAction::Step(process.bit(), 3)));
     }
     for (line, joystick) in expected {
         assert_eq!(action(&format!("** joystick {line}")), Workstation::Joystick(joystick), "{line}");
@@ -158,38 +158,62 @@ fn emergency_stops_and_the_panel_of_the_robot_controller() {
         assert_eq!(action(&format!("** release {word}")), Workstation::Release(site));
     }
     let keys = [
-        ("power on", Panel::Power(true)),
-        ("power off", Panel::Power(false)),
-        ("fault-reset", Panel::FaultReset),
-        ("hydraulics enable", Panel::Hydraulics(true)),
-        ("hydraulics disable", Panel::Hydraulics(false)),
-        ("manual on", Panel::Manual(true)),
-        ("manual off", Panel::Manual(false)),
-        ("align", Panel::Align(None)),
-        ("align 6", Panel::Align(Some(6))),
-        ("auto", Panel::Auto),
-        ("cycle-start", Panel::CycleStart),
-        ("interrupt", Panel::Interrupt),
-        ("cancel", Panel::Cancel),
-        ("enter", Panel::Enter),
-        ("hold on", Panel::Hold(true)),
-        ("hold off", Panel::Hold(false)),
+        ("power on", Key::ControlPower(true)),
+        ("power off", Key::ControlPower(false)),
+        ("fault-reset", Key::FaultReset),
+        ("hydraulics enable", Key::Hydraulics(true)),
+        ("hydraulics disable", Key::Hydraulics(false)),
+        ("manual on", Key::Manual(true)),
+        ("manual off", Key::Manual(false)),
+        ("align", Key::Align(None)),
+        ("align 6", Key::Align(Some(6))),
+        ("auto", Key::Auto),
+        ("cycle-start", Key::CycleStart),
+        ("interrupt", Key::Interrupt),
+        ("cancel", Key::Cancel),
+        ("enter", Key::Enter),
+        ("hold on", Key::Hold(true)),
+        ("hold off", Key::Hold(false)),
     ];
     for (words, key) in keys {
         assert_eq!(action(&format!("** panel {words}")), Workstation::Panel(key));
     }
     let keys = [
-        ("power off", TablePanel::Power(false)),
-        ("mode manual", TablePanel::Manual(true)),
-        ("mode prog", TablePanel::Manual(false)),
-        ("run+ 25", TablePanel::Run { plus: true, ticks: 25 }),
-        ("run- 1", TablePanel::Run { plus: false, ticks: 1 }),
-        ("step+", TablePanel::Step { plus: true, count: 1 }),
-        ("step- 30", TablePanel::Step { plus: false, count: 30 }),
-        ("reset", TablePanel::Reset),
+        ("power off", TableKey::Power(false)),
+        ("mode manual", TableKey::Manual(true)),
+        ("mode prog", TableKey::Manual(false)),
+        ("run+ 25", TableKey::Run { plus: true, ticks: 25 }),
+        ("run- 1", TableKey::Run { plus: false, ticks: 1 }),
+        ("step+", TableKey::Step { plus: true, count: 1 }),
+        ("step- 30", TableKey::Step { plus: false, count: 30 }),
+        ("reset", TableKey::Reset),
     ];
     for (words, key) in keys {
         assert_eq!(action(&format!("** table {words}")), Workstation::Table(key));
+    }
+}
+
+/// All lines of words that begin with these.
+fn lines_from(words: &[&'static str]) -> Vec<String> {
+    let Some(lists) = following(words) else { return vec![words.join(" ")] };
+    let next = lists.iter().flat_map(|list| list.variants);
+    next.flat_map(|variant| lines_from(&[words, &[variant.text]].concat())).collect()
+}
+
+#[test]
+fn lines_of_the_grammar_are_lines_of_a_job_and_in_its_description() {
+    let page = include_str!("../../../data/README.md");
+    let verbs = LineVerb::ALL.iter().map(|verb| verb.text()).filter(|verb| following(&[verb]).is_some());
+    let lines: Vec<String> = verbs.flat_map(|verb| lines_from(&[verb])).collect();
+    assert!(lines.len() > 60, "{}", lines.len());
+    for line in lines {
+        // Names and numbers that some words need.
+        let endings = ["", " 1", " 1 1 1", " PFIXTURE", " LINKBAR1"];
+        let read = endings.iter().any(|ending| load(&format!("** {line}{ending}")).is_ok());
+        assert!(read, "{line}: {:?}", load(&format!("** {line}")));
+        for word in line.split(' ').filter(|word| word.parse::<u8>().is_err()) {
+            assert!(page.contains(word), "data/README.md does not have {word}");
+        }
     }
 }
 
@@ -205,7 +229,7 @@ fn after_a_restart_the_robot_may_go_from_home() {
 #[test]
 fn what_happens_during_a_command_stands_before_it() {
     let steps = load("** after 50 joystick hold PRIM\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0").unwrap();
-    let held = Workstation::Joystick(Joystick::Hold(Stepped::Prim));
+    let held = Workstation::Joystick(BoxAction::Hold(Stepped::Prim.bit()));
     assert_eq!(steps[0], Step::After { ticks: 50, action: held });
     assert!(matches!(steps[1], Step::Command(_)));
 }

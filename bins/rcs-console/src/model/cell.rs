@@ -7,13 +7,12 @@ use geometry::kinematics::{JOINT_NAMES, Joints, T3};
 use interfaces::{
     CommonMemory,
     device::{DeviceInputs, RESOLVER_COUNTS},
+    station::EStop,
 };
 
 use super::{Section, Text, Tone, drawing::Drawing};
 use crate::{picture::Picture, source::Cell};
 
-/// The emergency stops, in the order of the cell (III.6).
-const ESTOPS: [&str; 5] = ["control panel", "teach pendant", "terminals", "joystick box", "pedestal"];
 /// A joint nearer to a limit than this is marked, degrees.
 const NEAR: f64 = 10.0;
 /// Margin per character of the bar, degrees.
@@ -199,10 +198,10 @@ fn surroundings(cell: &Cell) -> Section {
 }
 
 fn shown(view: &CellView) -> Vec<Text> {
-    let pressed: Vec<&str> = ESTOPS
-        .into_iter()
+    let pressed: Vec<&str> = EStop::ALL
+        .iter()
         .zip(view.controller.estops)
-        .filter_map(|(name, is_in)| is_in.then_some(name))
+        .filter_map(|(site, is_in)| is_in.then_some(site.text()))
         .collect();
     let estops = match &pressed[..] {
         [] => Text::plain(" E-stops: all five are out"),

@@ -5,12 +5,10 @@ use executive::memory::cell::TableView;
 use geometry::units::inches;
 use interfaces::{
     CommonMemory,
-    device::{
-        DeviceInputs, JoystickBox, KNOB_FULL, PedestalSensors, TABLE_STEPS_PER_TENTH, joystick_frame,
-        single_step,
-    },
+    device::{DeviceInputs, JoystickBox, KNOB_FULL, PedestalSensors, TABLE_STEPS_PER_TENTH},
     grip::Felt,
     pedestal::PedestalVerb,
+    station::{BoxFrame, EStop, Stepped},
 };
 
 use super::{
@@ -71,9 +69,6 @@ pub const KEYS: [&str; 45] = [
 pub const TO_NAME: &str = "OBJECT";
 /// Number of keys shown around the cursor.
 const SHOWN: usize = 3;
-/// The emergency stops, in the order of the cell.
-const ESTOPS: [&str; 5] =
-    ["control panel", "teach pendant", "terminals", "joystick box", "near the pedestal"];
 
 /// The sections: box, controller, pedestal and keys, from top to bottom.
 #[must_use]
@@ -103,25 +98,16 @@ fn look_only() -> Section {
 }
 
 fn frame(joystick: &JoystickBox) -> &'static str {
-    match joystick.frame {
-        0 => "no frame is on: the box moves nothing",
-        joystick_frame::WORLD => "WORLD",
-        joystick_frame::TOOL => "TOOL",
-        joystick_frame::TOOL_ORIGIN => "TOOL-ORIGIN",
-        joystick_frame::WRIST_ORIGIN => "WRIST-ORIGIN",
-        _ => "several switches are on: the box moves nothing",
+    match BoxFrame::from_bits(joystick.frame) {
+        Some(BoxFrame::Off) => "no frame is on: the box moves nothing",
+        Some(frame) => frame.text(),
+        None => "several switches are on: the box moves nothing",
     }
 }
 
 fn joystick_box(joystick: &JoystickBox, recording: bool, operating: Option<&Operating>) -> Section {
-    let processes = [
-        (single_step::TASK, "Task"),
-        (single_step::SUBTASK, "Subtask"),
-        (single_step::EMOVE, "E-move"),
-        (single_step::PRIM, "Prim"),
-    ];
-    let held: Vec<_> =
-        processes.into_iter().filter(|(bit, _)| joystick.hold & bit != 0).map(|(_, name)| name).collect();
+    let held = Stepped::ALL.iter().filter(|process| joystick.hold & process.bit() != 0);
+    let held: Vec<&str> = held.map(|process| process.process().text()).collect();
     let held = if held.is_empty() { "no process".to_owned() } else { held.join(", ") };
     let percent = u32::from(joystick.velocity) * 100 / u32::from(KNOB_FULL);
     let bar = "#".repeat(usize::try_from(percent / 5).unwrap_or_default());
@@ -180,8 +166,13 @@ fn controller(cell: &Cell) -> Section {
     if !t3.cut.to_string().is_empty() {
         lines.push(Text::new(Tone::Trouble, format!("!!no pressure: {}", t3.cut)));
     }
-    let pressed: Vec<_> =
-        t3.estops.iter().zip(ESTOPS).filter(|(pressed, _)| **pressed).map(|(_, name)| name).collect();
+    let pressed: Vec<_> = t3
+        .estops
+        .iter()
+        .zip(EStop::ALL)
+        .filter(|(pressed, _)| **pressed)
+        .map(|(_, site)| site.text())
+        .collect();
     lines.push(match pressed.is_empty() {
         true => Text::plain(" E-stops all five are out"),
         false => Text::new(Tone::Trouble, format!("!!E-stops that are in: {}", pressed.join(", "))),

@@ -4,7 +4,7 @@ use std::{fmt, path::Path, sync::Arc};
 
 use depc::fault::FaultKind;
 use diagnostics::{FAULTS, nearest};
-use interfaces::device::single_step;
+use interfaces::station::Stepped;
 use levels::ladder::ProcessId;
 use plant::{
     BoxAction, CellDescription, EStop, Key, WorkstationAction,
@@ -86,13 +86,6 @@ const PLAIN: [(&str, Kind); 13] = [
 ];
 /// Interruptions of a process, `WORD:PROCESS`.
 const OF_PROCESS: [&str; 3] = ["held", "restart", "lost"];
-/// Processes with a switch on the joystick box.
-const SWITCHES: [(ProcessId, u8); 4] = [
-    (ProcessId::Task, single_step::TASK),
-    (ProcessId::Subtask, single_step::SUBTASK),
-    (ProcessId::Emove, single_step::EMOVE),
-    (ProcessId::Prim, single_step::PRIM),
-];
 
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -130,14 +123,14 @@ impl Kind {
                 Some(all)
             }
             None if text == "held" => {
-                Some(SWITCHES.iter().map(|(process, _)| Self::Held(*process)).collect())
+                Some(Stepped::ALL.iter().map(|process| Self::Held(process.process())).collect())
             }
             None if text == "restart" => Some(ProcessId::ALL.iter().copied().map(Self::Restart).collect()),
             None if text == "lost" => Some(ProcessId::ALL.iter().copied().map(Self::Lost).collect()),
             None if text == "fault" => Some(faults(data, cell)?),
             None => PLAIN.iter().find(|(name, _)| *name == text).map(|(_, kind)| vec![kind.clone()]),
             Some(("held", name)) => process(name)
-                .filter(|process| SWITCHES.iter().any(|(one, _)| one == process))
+                .filter(|process| Stepped::ALL.iter().any(|one| one.process() == *process))
                 .map(|process| vec![Self::Held(process)]),
             Some(("restart", name)) => process(name).map(|process| vec![Self::Restart(process)]),
             Some(("lost", name)) => process(name).map(|process| vec![Self::Lost(process)]),
@@ -218,7 +211,8 @@ impl Kind {
             Self::Nudge => nudge(),
             Self::Away => away(),
             Self::Held(process) => {
-                let bit = SWITCHES.iter().find(|(one, _)| one == process).map_or(0, |(_, bit)| *bit);
+                let bit =
+                    Stepped::ALL.iter().find(|one| one.process() == *process).map_or(0, |one| one.bit());
                 let hold = |action| ScriptStep::Workstation(WorkstationAction::Joystick(action));
                 vec![hold(BoxAction::Hold(bit)), ScriptStep::Wait(HELD), hold(BoxAction::Free(bit))]
             }

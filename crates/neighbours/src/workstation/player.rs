@@ -37,13 +37,13 @@ mod operator;
 mod outcome;
 mod step;
 
-use interfaces::{Header, HwsCommand, Reason, hws::HwsReport};
+use interfaces::{Header, HwsCommand, Reason, hws::HwsReport, station::Key};
 use rcs_core::{
     handshake::{Commander, ECHO_LIMIT, Lower},
     name::Name16,
     tick::{TICK_MS, Tick},
 };
-use taskdata::load::job::{JobLine, Panel, Step, Workstation as Action};
+use taskdata::load::job::{JobLine, Step, Workstation as Action};
 
 use self::{operator::Intervention, step::Later};
 pub use self::{
@@ -291,7 +291,7 @@ impl Hwsc {
     /// True if the current step or a later one resets a fault of the robot controller.
     #[must_use]
     pub fn resets_emergency(&self) -> bool {
-        let reset = Step::Workstation(Action::Panel(Panel::FaultReset));
+        let reset = Step::Workstation(Action::Panel(Key::FaultReset));
         self.steps.iter().skip(self.current.saturating_sub(1)).any(|line| line.step == reset)
     }
 

@@ -22,7 +22,10 @@ use depc::{
     fault::{Direction, Injector as LineInjector},
 };
 use geometry::{frame::Frame, kinematics::Joints};
-use interfaces::device::{DeviceInputs, DeviceOutputs, LinkBytes};
+use interfaces::{
+    device::{DeviceInputs, DeviceOutputs, LinkBytes},
+    station::Key,
+};
 use rapier3d_f64::prelude::*;
 use rcs_core::tick::{TICK_S, Tick};
 use serde::{Deserialize, Serialize};
@@ -51,7 +54,7 @@ use crate::{
     resolver_box::ResolverBox,
     scene::{Block, FINGER, furniture},
     sensor::DeadTimes,
-    t3::{DriveError, Key, Message, Refusal, StepInputs, StepOutputs, T3Controller},
+    t3::{DriveError, Message, Refusal, StepInputs, StepOutputs, T3Controller},
     vise::Vise,
     world::World,
 };

@@ -1,15 +1,11 @@
 //! Workstation actions besides those of the robot: put down and remove parts, operate the vise, machine parts.
 
 use geometry::{frame::Frame, units::Length};
+use interfaces::station::{BoxAction, Key, ResolverKey, TableKey};
 
 use super::Cell;
 use crate::{
-    description::Tolerance,
-    joystick::BoxAction,
-    pedestal::{TableKey, TableRefusal},
-    resolver_box::{ResolverKey, ResolverRefusal},
-    t3::{Key, Refusal},
-    vise::Jaws,
+    description::Tolerance, pedestal::TableRefusal, resolver_box::ResolverRefusal, t3::Refusal, vise::Jaws,
 };
 
 /// Place of a new part in a sector.

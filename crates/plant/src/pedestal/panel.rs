@@ -9,37 +9,13 @@
 //! IV.1 says that the power is turned off and on again at the end, and that the switch is at PROG whenever the power is
 //! turned on. So a controller that was at MANUAL, or was turned on there, does not obey its serial line (CHOSEN).
 
+use interfaces::station::TableKey;
 use serde::{Deserialize, Serialize};
 
 use super::Table;
 
 /// More steps than between the two limit switches.
 const FAR: f64 = 1e6;
-
-/// A key or switch of the panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TableKey {
-    /// Switch the power on or off.
-    Power(bool),
-    /// Set the mode switch to MANUAL (true) or to PROG.
-    Manual(bool),
-    /// Hold RUN+ or RUN- down for a number of ticks.
-    Run {
-        /// Toward the + limit.
-        plus: bool,
-        /// Duration, ticks.
-        ticks: u32,
-    },
-    /// Press STEP+ or STEP- a number of times: the motor takes one step each time (ASSUMED).
-    Step {
-        /// Toward the + limit.
-        plus: bool,
-        /// Number of presses.
-        count: u32,
-    },
-    /// RESET: set the counter to zero here.
-    Reset,
-}
 
 /// Reasons for which the panel refuses a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

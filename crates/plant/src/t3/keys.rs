@@ -35,7 +35,7 @@ impl T3Controller {
                 Ok(())
             }
             Key::Press(site) => {
-                self.estops[site.index()] = true;
+                self.estops[usize::from(site.code())] = true;
                 self.fault(Cut::EStop(site));
                 Ok(())
             }
@@ -114,7 +114,7 @@ impl T3Controller {
         if self.stage != Stage::Faulted {
             return Err(Refusal::NoFault);
         }
-        if let Some(site) = EStop::ALL.into_iter().find(|site| self.is_pressed(*site)) {
+        if let Some(site) = EStop::ALL.iter().copied().find(|site| self.is_pressed(*site)) {
             return Err(Refusal::Pressed(site));
         }
         if !self.prim_box {
@@ -126,7 +126,7 @@ impl T3Controller {
     }
 
     fn release(&mut self, site: EStop) -> Result<(), Refusal> {
-        if !std::mem::replace(&mut self.estops[site.index()], false) {
+        if !std::mem::replace(&mut self.estops[usize::from(site.code())], false) {
             return Err(Refusal::NotPressed(site));
         }
         Ok(())

@@ -33,11 +33,14 @@ use geometry::{
     kinematics::{HOME_JOINTS, Joints, T3},
     pose::WireFrame,
 };
-use interfaces::device::LinkBytes;
+use interfaces::{
+    device::LinkBytes,
+    station::{EStop, Key},
+};
 use serde::{Deserialize, Serialize};
 
 pub use self::{
-    key::{Cut, EStop, Key},
+    key::Cut,
     message::{HOME, HOME_TOLERANCE, Lamps, Message, RobotEvent, explained, off_home as off_printed_home},
     refusal::Refusal,
     stage::Stage,
@@ -278,7 +281,7 @@ impl T3Controller {
     /// True if an emergency stop is pressed.
     #[must_use]
     pub fn is_pressed(&self, site: EStop) -> bool {
-        self.estops[site.index()]
+        self.estops[usize::from(site.code())]
     }
 
     /// Cause of the loss of pressure; `None` under pressure.

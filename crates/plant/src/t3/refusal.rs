@@ -1,6 +1,6 @@
 //! Reasons for which a key has no effect.
 
-use super::EStop;
+use interfaces::station::EStop;
 
 /// Refusal of a key that was pressed at the wrong time, with what must be done first (IV.3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -18,10 +18,10 @@ pub enum Refusal {
     #[error("the FAULT RESET button is lit: fault reset comes first")]
     Fault,
     /// An emergency stop is still pressed.
-    #[error("{0} is still in: release it first")]
+    #[error("the E-stop {} is still in: release it first", .0.place())]
     Pressed(EStop),
     /// The E-stop is not pressed.
-    #[error("{0} is not pressed")]
+    #[error("the E-stop {} is not pressed", .0.place())]
     NotPressed(EStop),
     /// FAULT RESET is not lit.
     #[error("the FAULT RESET button is not lit: there is nothing to reset")]

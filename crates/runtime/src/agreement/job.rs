@@ -1,16 +1,13 @@
 //! Follows the effects of a job's lines on the trays and the vise of the cell.
 
 use geometry::units::Length;
-use interfaces::HwsCommand;
+use interfaces::{HwsCommand, station::ViseOpening};
 use plant::{
     CellDescription, Placement, WorkstationAction,
     description::{Fixture, PartType, ViseProgram},
 };
 use rcs_core::name::{Name10, Name16};
-use taskdata::{
-    files::TaskData,
-    load::{ViseOpening, Workstation},
-};
+use taskdata::{files::TaskData, load::Workstation};
 
 /// Tolerance for rounding in the description, in.
 const ROUNDING: f64 = 1e-6;

@@ -29,6 +29,7 @@ use closed_loop::workstation::SimulatedWorkstation;
 use interfaces::{
     CommonMemory, OperatorInputs,
     device::{JoystickBox, KNOB_FULL},
+    station::TableKey,
 };
 use neighbours::workstation::{
     Gate,
@@ -38,10 +39,7 @@ use plant::Joystick;
 use rcs_core::tick::Tick;
 use serde::Serialize;
 use sessions::operator::Event;
-use taskdata::load::{
-    BlockNumber, Store,
-    job::{TablePanel, Workstation},
-};
+use taskdata::load::{BlockNumber, Store, job::Workstation};
 
 pub use self::source::{Input, Inputs, WORKSTATION};
 use self::{hold::Ended, request::Request, terminals::Terminals};
@@ -336,7 +334,7 @@ impl Operator {
             Request::Cell(action, line) => {
                 around.workstation.begin_line(&action, &line)?;
                 self.turns_table |=
-                    matches!(action, Workstation::Table(TablePanel::Run { .. } | TablePanel::Step { .. }));
+                    matches!(action, Workstation::Table(TableKey::Run { .. } | TableKey::Step { .. }));
                 Ok(done)
             }
         }

@@ -16,12 +16,12 @@ const START_UP: &str = "`panel fault-reset`, then start the robot up at its pane
 /// The emergency that keeps the robot without pressure, and what to do; `None` without an emergency.
 pub fn emergency(workstation: &SimulatedWorkstation) -> Option<String> {
     let pressed: Vec<EStop> =
-        EStop::ALL.into_iter().filter(|site| workstation.cell.t3().is_pressed(*site)).collect();
+        EStop::ALL.iter().copied().filter(|site| workstation.cell.t3().is_pressed(*site)).collect();
     if pressed.is_empty() {
         return workstation.emergency().map(|why| format!("EMERGENCY: {why}: {START_UP}"));
     }
-    let sites: Vec<String> = pressed.iter().map(ToString::to_string).collect();
-    let releases: Vec<String> = pressed.iter().map(|site| format!("`release {}`", site.word())).collect();
+    let sites: Vec<String> = pressed.iter().map(|site| format!("the E-stop {}", site.place())).collect();
+    let releases: Vec<String> = pressed.iter().map(|site| format!("`release {site}`")).collect();
     let is_are = if pressed.len() == 1 { "is" } else { "are" };
     Some(format!("EMERGENCY: {} {is_are} pressed: {}, {START_UP}", sites.join(" and "), releases.join(", ")))
 }

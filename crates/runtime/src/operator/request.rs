@@ -1,16 +1,16 @@
 //! Requests of an operator, and their text form.
 
 use diagnostics::nearest;
-use interfaces::HwsCommand;
-use plant::BoxAction;
+use interfaces::{
+    HwsCommand,
+    station::{BoxAction, Key, LineVerb},
+};
 use taskdata::load::{
     BlockNumber, Store,
-    job::{self, Panel, Step, Workstation},
+    job::{self, Step, Workstation},
 };
 
 use super::terminals::Entry;
-use closed_loop::workstation::at_the_box;
-
 use crate::load;
 
 /// A request.
@@ -131,11 +131,11 @@ impl Request {
             let Step::Command(command) = read.step else { return Err(format!("{line} is no command")) };
             return Ok(Self::Command(read.text, command));
         }
-        if !first.is_empty() && !job::own_line_words().any(|word| word == first) {
+        if !first.is_empty() && LineVerb::from_text(first).is_none() {
             return Err(unknown(first));
         }
         match job::own_line(line, store).map_err(|error| error.to_string())? {
-            Workstation::Joystick(action) => Ok(Self::Box(at_the_box(action))),
+            Workstation::Joystick(action) => Ok(Self::Box(action)),
             action => Ok(Self::Cell(action, line.to_owned())),
         }
     }
@@ -152,10 +152,7 @@ impl Request {
             | Self::Wait
             | Self::Box(BoxAction::Hold(_)) => true,
             Self::Cell(action, _) => {
-                matches!(
-                    action,
-                    Workstation::Press(_) | Workstation::Panel(Panel::Hold(true) | Panel::Interrupt)
-                )
+                matches!(action, Workstation::Press(_) | Workstation::Panel(Key::Hold(true) | Key::Interrupt))
             }
             Self::Terminal(entry) => entry.is_stop(),
             Self::Load(_)
@@ -192,7 +189,7 @@ impl Request {
 /// The refusal of a request that begins with an unknown word.
 fn unknown(word: &str) -> String {
     let known = WORDS.iter().filter_map(|(words, _)| words.split(' ').next());
-    match nearest(word, known.chain(OTHER_WORDS).chain(job::own_line_words())) {
+    match nearest(word, known.chain(OTHER_WORDS).chain(LineVerb::ALL.iter().map(|verb| verb.text()))) {
         Some(near) => format!("no request is named {word}: the nearest is {near}"),
         None => format!("no request is named {word}: docs/operator.md lists the requests"),
     }

@@ -43,7 +43,7 @@ use diagnostics::Problems;
 pub use diagnostics::{At, BlockNumber, Diagnostic, Diagnostics, Loaded, Severity, Source};
 
 pub use fault::Fault;
-pub use job::{Job, Step, ViseOpening, Workstation};
+pub use job::{Job, Step, Workstation};
 pub use origins::Origins;
 pub use store::Store;
 

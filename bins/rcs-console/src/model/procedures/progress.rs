@@ -1,5 +1,6 @@
 //! Progress of each procedure: the marks of its steps, and the keys that change them.
 
+use interfaces::station::EStop;
 use rcs_core::tick::Tick;
 
 use super::{
@@ -209,14 +210,11 @@ fn lines(ask: Ask, cell: &Cell) -> Vec<String> {
         Ask::Line(line) => vec![line.to_owned()],
         Ask::ReleaseEStops => {
             let Cell::Shown(view) = cell else { return Vec::new() };
-            let pressed = ESTOPS.into_iter().zip(view.controller.estops).filter(|(_, is_in)| *is_in);
+            let pressed = EStop::ALL.iter().zip(view.controller.estops).filter(|(_, is_in)| *is_in);
             pressed.map(|(site, _)| format!("release {site}")).collect()
         }
     }
 }
-
-/// The emergency stops in the words of a request, in the order of the cell.
-const ESTOPS: [&str; 5] = ["control-panel", "teach-pendant", "terminals", "joystick-box", "pedestal"];
 
 /// Progress of all procedures.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,9 @@
 //! The state of the cell that is shown with a step.
 
-use interfaces::device::{KNOB_FULL, joystick_frame, single_step};
+use interfaces::{
+    device::KNOB_FULL,
+    station::{BoxFrame, Stepped},
+};
 
 use super::condition::{HOME, Sight, TOLERANCE, largest, rows};
 use crate::model::{Text, Tone, cell};
@@ -133,23 +136,11 @@ fn holsters(sight: &Sight<'_>) -> Text {
 fn joystick_box(sight: &Sight<'_>) -> Text {
     let joystick = sight.joystick();
     let knob = u32::from(joystick.velocity) * 100 / u32::from(KNOB_FULL);
-    let frames = [
-        (joystick_frame::WORLD, "WORLD"),
-        (joystick_frame::TOOL, "TOOL"),
-        (joystick_frame::TOOL_ORIGIN, "TOOL-ORIGIN"),
-        (joystick_frame::WRIST_ORIGIN, "WRIST-ORIGIN"),
-    ];
-    let holds = [
-        (single_step::TASK, "Task"),
-        (single_step::SUBTASK, "Subtask"),
-        (single_step::EMOVE, "E-move"),
-        (single_step::PRIM, "Prim"),
-    ];
-    let on = |bits: u8, names: [(u8, &str); 4]| {
-        let on: Vec<_> = names.into_iter().filter(|(bit, _)| bits & bit != 0).map(|(_, name)| name).collect();
-        if on.is_empty() { "none".to_owned() } else { on.join(", ") }
-    };
-    let (frame, hold) = (on(joystick.frame, frames), on(joystick.hold, holds));
+    let frames = BoxFrame::ALL.iter().filter(|frame| joystick.frame & frame.bits() != 0);
+    let holds = Stepped::ALL.iter().filter(|process| joystick.hold & process.bit() != 0);
+    let listed = |names: Vec<&str>| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+    let frame = listed(frames.map(|frame| frame.text()).collect());
+    let hold = listed(holds.map(|process| process.process().text()).collect());
     Text::plain(format!("joystick box: knob {knob} %, frame {frame}, held {hold}"))
 }
 

@@ -4,7 +4,10 @@
 use std::{collections::BTreeSet, path::Path};
 
 use diagnostics::JOBS;
-use interfaces::operator::Variable;
+use interfaces::{
+    operator::Variable,
+    station::{LineVerb, following},
+};
 use taskdata::load::{BlockNumber, Source, Store, source::blocks, verdict::TASK_COMMANDS};
 
 /// The names, blocks and jobs of a run's task data.
@@ -60,8 +63,8 @@ impl Names {
     }
 }
 
-/// The words that can follow the first words of a line. `*` in an entry matches any word.
-static FOLLOWING: [(&[&str], &[&str]); 33] = [
+/// The words that can follow the first words of a line, except those of the station ([`following`]). `*` in an entry matches any word.
+static FOLLOWING: [(&[&str], &[&str]); 14] = [
     (&["job"], &["wait", "go", "skip"]),
     (&["db-done"], ON_OFF),
     (&["pedestal"], &["pre-grip", "grip", "flip", "release", "pause"]),
@@ -74,84 +77,31 @@ static FOLLOWING: [(&[&str], &[&str]); 33] = [
         &["TASK", "SUBTASK", "EMOVE", "PRIM", "T3I", "QUICK-CHANGE", "GRIP", "V-GRIP", "TOOL-GRIP"],
     ),
     (&["stand-alone"], &["now"]),
-    (
-        &["joystick"],
-        &[
-            "frame", "stick", "velocity", "hold", "free", "step", "record", "resume", "up", "down", "roll+",
-            "roll-", "open", "close",
-        ],
-    ),
-    (&["joystick", "frame"], &["WORLD", "TOOL", "TOOL-ORIGIN", "WRIST-ORIGIN", "OFF"]),
-    (&["joystick", "hold"], LEVELS),
-    (&["joystick", "free"], LEVELS),
-    (&["joystick", "step"], LEVELS),
-    (&["estop"], ESTOPS),
-    (&["release"], ESTOPS),
-    (
-        &["panel"],
-        &[
-            "power",
-            "fault-reset",
-            "hydraulics",
-            "manual",
-            "align",
-            "auto",
-            "cycle-start",
-            "interrupt",
-            "cancel",
-            "enter",
-            "hold",
-        ],
-    ),
-    (&["panel", "power"], ON_OFF),
-    (&["table"], &["power", "mode", "run+", "run-", "step+", "step-", "reset"]),
-    (&["table", "power"], ON_OFF),
-    (&["table", "mode"], &["manual", "prog"]),
-    (&["resolvers"], &["manual", "joint", "auto"]),
-    (&["resolvers", "joint"], &["0", "1", "2", "3", "4", "5"]),
-    (&["panel", "manual"], ON_OFF),
-    (&["panel", "hold"], ON_OFF),
-    (&["panel", "hydraulics"], &["enable", "disable"]),
-    (&["vise"], &["open", "close", "partial"]),
-    (&["drum"], &["grip", "release", "tool"]),
     (&["load"], &["16000", "20000", "21000"]),
     (&["BOARD"], &["0", "2", "4", "6", "8", "12"]),
     (&["OFFSET"], &["!", "@"]),
     (&["*", "OFFSET"], &["!"]),
     (&["send"], TASK_COMMANDS),
 ];
-/// Processes that the joystick box can hold.
-const LEVELS: &[&str] = &["TASK", "SUBTASK", "EMOVE", "PRIM"];
-const ESTOPS: &[&str] = &["control-panel", "teach-pendant", "terminals", "joystick-box", "pedestal"];
 const ON_OFF: &[&str] = &["on", "off"];
-/// Requests in today's words.
-const REQUESTS: [&str; 27] = [
+/// First words of requests that are not lines for the station.
+const REQUESTS: [&str; 17] = [
     "board",
     "confirm",
     "db-done",
-    "drum",
-    "estop",
     "execute",
     "go",
     "job",
-    "joystick",
     "leave",
     "line-load",
     "load",
-    "machine",
     "note",
-    "panel",
     "pedestal",
-    "release",
-    "resolvers",
     "robot-init",
     "run",
     "send",
     "stand-alone",
     "stop",
-    "table",
-    "tray",
-    "vise",
     "write",
 ];
 /// Words that can follow one or more numbers.
@@ -166,8 +116,11 @@ fn candidates(words: &[&str], names: &Names, terminal: &[&str]) -> Vec<String> {
     };
     match *words {
         [] => {
-            let first = REQUESTS.iter().chain(TASK_COMMANDS).chain(terminal);
-            let first: BTreeSet<&str> = first.copied().chain(["workstation"]).collect();
+            // The words of lines that only a job can have have other meanings as requests, or none.
+            let station =
+                LineVerb::ALL.iter().filter(|verb| !matches!(verb, LineVerb::Wait | LineVerb::After));
+            let first = REQUESTS.iter().chain(TASK_COMMANDS).chain(terminal).copied();
+            let first: BTreeSet<&str> = first.chain(station.map(|verb| verb.text())).collect();
             owned(&first.into_iter().collect::<Vec<_>>())
         }
         ["run"] => names.jobs.clone(),
@@ -191,7 +144,11 @@ fn candidates(words: &[&str], names: &Names, terminal: &[&str]) -> Vec<String> {
                     && front.iter().zip(words).all(|(front, word)| *front == "*" || front == word)
             };
             let found = FOLLOWING.iter().find(|(front, _)| fits(front));
-            found.map_or_else(Vec::new, |(_, following)| owned(following))
+            let station = following(words).unwrap_or_default().iter().flat_map(|list| list.variants);
+            found.map_or_else(
+                || station.map(|variant| variant.text.to_owned()).collect(),
+                |(_, following)| owned(following),
+            )
         }
     }
 }

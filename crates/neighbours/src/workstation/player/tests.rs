@@ -2,14 +2,14 @@
 
 use super::*;
 use geometry::frame::Frame;
-use interfaces::{Reason, hws::HwsStatus};
+use interfaces::{Reason, hws::HwsStatus, station::ViseOpening};
 use rcs_core::{
     handshake::{Arrival, Receiver},
     name::Name10,
 };
 use taskdata::{
     files::{Location, Place},
-    load::{job::ViseOpening, verdict::TASK_COMMANDS},
+    load::verdict::TASK_COMMANDS,
 };
 
 /// A Task that executes each command for some ticks.
@@ -131,7 +131,7 @@ impl Workstation for Vise {
 }
 
 /// The action that ends the emergency of a [`Vise`].
-const RESET: Action = Action::Panel(Panel::FaultReset);
+const RESET: Action = Action::Panel(Key::FaultReset);
 
 fn command(verb: &str) -> JobLine {
     let command = HwsCommand { command: Name16::clipped(verb), ..HwsCommand::default() };

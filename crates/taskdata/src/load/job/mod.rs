@@ -37,9 +37,9 @@
 mod action;
 mod fields;
 mod own_line;
+mod panels;
 mod read;
 mod reload;
-mod table_panel;
 mod workstation;
 
 use std::path::Path;
@@ -49,12 +49,9 @@ use interfaces::hws::HwsCommand;
 
 pub use own_line::{OwnLineError, is_command, own_command, own_line, reported_command};
 pub use reload::Reload;
-pub use workstation::own_line_words;
 
-pub use action::{
-    Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, ResolverPanel, Stepped, TablePanel,
-    ViseOpening, Workstation,
-};
+pub use action::{Drum, Offset, Workstation};
+pub use interfaces::station::ViseOpening;
 
 use super::{
     Part, Store,
