@@ -65,7 +65,7 @@ fn process(command: &str) -> Process {
         return shell;
     };
     let (program, arguments) = match rest.trim().split_once("-- ") {
-        Some(("-p rcs-log ", arguments)) => (rcs_log(), arguments),
+        Some(("--bin rcs-log ", arguments)) => (rcs_log(), arguments),
         Some(("", arguments)) => (rcs_run(), arguments),
         _ => (rcs_run(), rest),
     };

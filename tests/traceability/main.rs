@@ -1,10 +1,11 @@
-//! Compares pages of docs with the code: docs/traceability.md, docs/reasons.md, and the design pages
-//! ([`design`]).
+//! Compares pages of docs with the code: docs/traceability.md, docs/reasons.md, the design pages
+//! ([`design`]), and the table of packages ([`packages`]).
 //!
 //! Every command, variable and status value of chapters V and VI that docs/traceability.md names is there and
 //! has a test, and everything that the interfaces have is on the page.
 
 mod design;
+mod packages;
 mod sources;
 
 use std::{

@@ -8,7 +8,7 @@ use std::{
 
 use whole_system_tests::root;
 
-/// Directories of crates: their names with `_` are those of `cargo test`.
+/// Directories of crates and programs: their names with `_` are those of `cargo test`.
 const CRATES: [&str; 2] = ["crates", "bins"];
 
 /// Every file of Rust in the workspace, by its path from the root of the repository.

@@ -3,9 +3,9 @@
 use std::{path::PathBuf, str::FromStr};
 
 use clap::Parser;
-use cli_pages::{DataArgument, fault_file};
 use depc::Limits;
-use egm_robot::EgmOptions;
+use executive::egm::EgmOptions;
+use programs::pages::{DataArgument, fault_file};
 
 /// The simulated T3 controller behind a pseudo-terminal: opens as a serial port, speaks DEPC. With --egm a robot
 /// with ABB's Externally Guided Motion takes its place; with --emulate it is such a robot itself.
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn a_robot_with_egm_is_behind_the_link_or_this_program_itself() {
-        cli_pages::shipped::carry();
+        programs::shipped::carry();
         let cli = |arguments: &[&str]| Cli::try_parse_from(["rcs-cell"].iter().chain(arguments));
         assert!(cli(&["--link", "x", "--egm", "6510,slack=20"]).is_ok());
         assert!(cli(&["--emulate", "egm:6510,gain=10,loss=5"]).is_ok());
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_period_is_a_multiple_of_ten_milliseconds() {
-        cli_pages::shipped::carry();
+        programs::shipped::carry();
         let cli = |period| Cli::try_parse_from(["rcs-cell", "--link", "x", "--period", period]);
         assert_eq!(cli("20").map(|cli| cli.period.period_us()).ok(), Some(20_000));
         assert_eq!(cli("19.76").map(|cli| cli.period).ok(), Some(Limits::APPENDIX));

@@ -16,7 +16,7 @@ use std::{
 };
 
 use egm::message::MOST_BYTES;
-use egm_robot::{
+use executive::egm::{
     EgmOptions, Peer,
     emulator::{CYCLE_NS, EgmRobot},
     network::Network,

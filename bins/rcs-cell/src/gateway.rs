@@ -1,7 +1,7 @@
 //! `--egm [ADDRESS:]PORT[,OPTION...]`: a gateway that connects any DEPC host to an EGM robot.
 //!
 //! One side is the pseudo-terminal of `--link`, the other the UDP port; between them runs the DEPC function of
-//! [`egm_robot::Bridge`]. The host sees a T3 controller whose program begins when the robot follows.
+//! [`executive::egm::Bridge`]. The host sees a T3 controller whose program begins when the robot follows.
 
 use std::{
     io,
@@ -13,7 +13,7 @@ use std::{
 };
 
 use depc::Limits;
-use egm_robot::{Bridge, EgmOptions, Line, Peer, udp::UdpLine};
+use executive::egm::{Bridge, EgmOptions, Line, Peer, udp::UdpLine};
 use os_io::stdout_line;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 

@@ -41,8 +41,8 @@ const FAILED: u8 = 1;
 const UNUSABLE: u8 = 2;
 
 fn main() -> ExitCode {
-    cli_pages::shipped::carry();
-    let cli: Cli = cli_pages::parse();
+    programs::shipped::carry();
+    let cli: Cli = programs::pages::parse();
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGHUP] {
         if let Err(error) = signal_hook::flag::register(signal, Arc::clone(&stop)) {

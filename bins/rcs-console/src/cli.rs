@@ -5,7 +5,7 @@ use std::{env, path::PathBuf};
 use clap::{Parser, ValueEnum};
 use executive::memory::RunName;
 
-use crate::{model::Screen, view::Look};
+use crate::rcs_console::{model::Screen, view::Look};
 
 /// The help of `--data`, which only serves a run or a log without data of its own.
 const DATA: &str = "Task data whose blocks screen 5 lists [with --operate those of the run, with a log those in the log; \
@@ -40,7 +40,7 @@ pub struct Cli {
     pub operate: bool,
     /// The data.
     #[command(flatten)]
-    pub data: cli_pages::DataArgument,
+    pub data: crate::pages::DataArgument,
     /// Whether to use colours, which only repeat what the text says; auto follows NO_COLOR and TERM=dumb
     #[arg(long, value_enum, default_value_t = Colour::Auto)]
     pub colour: Colour,

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use executive::memory::{RunName, operator_socket};
 use sessions::operator::{Client, ClientError, Name};
 
-use crate::model::Operating;
+use crate::rcs_console::model::Operating;
 
 /// Time between two questions about the status, which also keep the session alive: well below the time after which a
 /// run considers the operator silent.

@@ -2,14 +2,18 @@
 
 use std::process::ExitCode;
 
-use rcs_console::{cli::Cli, once, terminal};
+use programs::{
+    pages,
+    rcs_console::{cli::Cli, once, terminal},
+    shipped,
+};
 
 /// Exit status of a usage or file error.
 const UNUSABLE: u8 = 2;
 
 fn main() -> ExitCode {
-    cli_pages::shipped::carry();
-    let cli: Cli = cli_pages::parse();
+    shipped::carry();
+    let cli: Cli = pages::parse();
     let ended = match cli.once {
         Some(screen) => once::print(&cli, screen),
         None => terminal::show(&cli),

@@ -1,6 +1,6 @@
 //! Prints one screen as text, for scripts, tests and bug reports.
 
-use crate::{
+use crate::rcs_console::{
     cli::Cli,
     error::ConsoleError,
     model::{Model, Place, Screen},

@@ -13,7 +13,7 @@ use ratatui::{
 };
 use signal_hook::{consts::SIGTSTP, low_level::emulate_default_handler};
 
-use crate::error::ConsoleError;
+use crate::rcs_console::error::ConsoleError;
 
 /// The letter that was pressed with Control.
 pub fn with_control(event: &Event) -> Option<char> {

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use executive::{boards, memory, memory::RunName};
 
-use crate::view::Waiting;
+use crate::rcs_console::view::Waiting;
 
 /// Time between two searches.
 const SEARCH: Duration = Duration::from_secs(1);

@@ -12,7 +12,7 @@ use record::{
     remarks,
 };
 
-use crate::picture::Picture;
+use crate::rcs_console::picture::Picture;
 
 /// State of a process from a tick on.
 #[derive(Clone, Copy, Debug, PartialEq)]

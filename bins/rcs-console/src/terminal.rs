@@ -31,7 +31,7 @@ use signal_hook::{
     iterator::Signals,
 };
 
-use crate::{
+use crate::rcs_console::{
     cli::Cli,
     error::ConsoleError,
     hand::Hand,
@@ -231,7 +231,7 @@ impl Session {
                 if let (Some(hand), Some(operating)) = (hand, &mut model.operating) {
                     hand.work(operating, source.about().state == State::Over);
                     if let Some(directory) = operating.directory.take() {
-                        model.terminal.library = Library::of(cli_pages::shipped::resolve(directory.into()));
+                        model.terminal.library = Library::of(crate::shipped::resolve(directory.into()));
                     }
                 }
             }

@@ -7,7 +7,7 @@ use std::{
 
 use os_io::replace::replace;
 
-use crate::model::buffers::{is_within, paths};
+use crate::rcs_console::model::buffers::{is_within, paths};
 
 /// Path of the list; `None` without a home directory.
 #[must_use]

@@ -10,7 +10,7 @@ use geometry::pose::WireFrame;
 use interfaces::{
     CommonMemory, ExternalInputs, ProcessId, prim::PrimVerb, subtask::SubtaskVerb, t3i::T3iReport,
 };
-use rcs_console::{
+use programs::rcs_console::{
     model::{Key, Model, Operating, Screen, procedures::ALL},
     once,
     picture::Picture,
@@ -197,7 +197,7 @@ fn the_start_up_is_seen_step_by_step() {
     stage.view.as_mut().unwrap().controller.aligned = [true; 6];
     look(&mut model, &mut stage);
     let shown = screen(&model, &stage);
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/console.md");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/console.md");
     let page = std::fs::read_to_string(page).expect("the page is there");
     assert!(page.contains(&format!("```text\n{shown}```")), "docs/console.md must show:\n{shown}");
     assert_eq!([word(&model, "10"), word(&model, "11"), cursor(&model)], ["seen", "seen", "12"]);

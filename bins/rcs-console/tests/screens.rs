@@ -11,8 +11,7 @@ use executive::memory::{
     cell::{CellView, ControllerView, Lamps, TableView},
 };
 use interfaces::ProcessId;
-use ratatui::{Terminal, backend::TestBackend};
-use rcs_console::{
+use programs::rcs_console::{
     model::{Effect, Key, Model, Operating, Pane, Place, Prompt, Screen, terminal::library::Library},
     once,
     picture::Picture,
@@ -20,6 +19,7 @@ use rcs_console::{
     story::Story,
     view::{Look, Scene, Waiting, draw},
 };
+use ratatui::{Terminal, backend::TestBackend};
 use runtime::{Ending, LogTarget, Observer, Run, RunConfig};
 
 const PLAIN: Look = Look { colour: false, ascii: false };
@@ -36,7 +36,7 @@ impl Observer for Silent {
 static LOG: LazyLock<(tempfile::TempDir, PathBuf)> = LazyLock::new(|| {
     let directory = tempfile::tempdir().expect("a directory can be made");
     let path = directory.path().join("missing.mcap");
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
     let faults = Some(data.join("faults/blank-missing.toml"));
     let log = LogTarget::File(path.clone());
     let config = RunConfig { faults, log, shared_memory: false, ..RunConfig::new(data, "linkbar") };
@@ -385,7 +385,7 @@ fn one_enter_starts_no_job() {
 #[test]
 fn the_page_shows_these_screens() {
     let log = log();
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/console.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/console.md");
     let page = std::fs::read_to_string(&path).expect("the page is there");
     let shown: Vec<&str> = page
         .split("```text\n")
@@ -432,7 +432,7 @@ fn terminal_with_a_block_of_commands() {
 #[test]
 fn a_block_is_edited_while_its_board_is_stopped() {
     let data = tempfile::tempdir().expect("a directory can be made");
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
     for source in taskdata::load::source::read_blocks_under(&shipped).0 {
         let path = data.path().join(&source.name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();

@@ -15,7 +15,6 @@ use std::{
     time::{Duration, Instant},
 };
 
-#[path = "terminal/recording.rs"]
 mod recording;
 
 use runtime::{Boards, ClockKind, LogTarget, Observer, Run, RunConfig};
@@ -216,7 +215,7 @@ fn waiting_run(directory: &Path, data: &Path, name: &str, speed: u8) -> Running 
 }
 
 fn shipped() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../data")
 }
 
 fn begin(config: RunConfig) -> Running {

@@ -8,10 +8,10 @@ use std::{
     process::ExitCode,
 };
 
-use cli_pages::{data_directory, job};
 use diagnostics::JOBS;
 use interfaces::CommonMemory;
 use os_io::text::amount;
+use programs::pages::{data_directory, job};
 use runtime::{LogTarget, Run, RunConfig, StartError};
 use serde::Serialize;
 

@@ -209,8 +209,8 @@ enum Error {
 }
 
 fn main() -> ExitCode {
-    cli_pages::shipped::carry();
-    let cli: Cli = cli_pages::parse();
+    programs::shipped::carry();
+    let cli: Cli = programs::pages::parse();
     let outcome = match cli.command {
         Command::Info(arguments) => info::info(&arguments),
         Command::Why(arguments) => why::why(&arguments),

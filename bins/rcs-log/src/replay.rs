@@ -22,7 +22,7 @@ pub struct Arguments {
     #[arg(required = true)]
     pub files: Vec<PathBuf>,
     /// Task data to replay with, instead of those in the log
-    #[arg(long, value_name = "DIR", value_parser = cli_pages::data_directory())]
+    #[arg(long, value_name = "DIR", value_parser = programs::pages::data_directory())]
     pub data: Option<PathBuf>,
     /// Begin at the last recorded snapshot of the states before this tick
     #[arg(long, value_name = "TICK")]

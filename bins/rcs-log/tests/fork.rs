@@ -11,7 +11,7 @@ use runtime::{LogTarget, Run, RunConfig};
 use serde_json::Value;
 use tempfile::TempDir;
 
-const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data");
 /// The pose of the tray UNIT_1.
 const TRAY: &str = "datum poses.blk:612:3-5:3";
 

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use cli_pages::DataArgument;
+use programs::pages::DataArgument;
 use sessions::network::Address;
 
-use crate::vision::Fault;
+use crate::vision::fault::Fault;
 
 /// Neighbour systems of the RCS-II/T3 controller, as separate processes.
 #[derive(Debug, Parser)]
@@ -98,7 +98,7 @@ pub struct WorkstationArguments {
     #[command(flatten)]
     pub controller: ControllerArguments,
     /// Name of a job in the data directory, or a path
-    #[arg(default_value = "linkbar", value_parser = cli_pages::job(), hide_possible_values = true)]
+    #[arg(default_value = "linkbar", value_parser = programs::pages::job(), hide_possible_values = true)]
     pub job: String,
     /// The data.
     #[command(flatten)]

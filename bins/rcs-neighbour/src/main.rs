@@ -98,8 +98,8 @@ impl Error {
 }
 
 fn main() -> ExitCode {
-    cli_pages::shipped::carry();
-    let cli: Cli = cli_pages::parse();
+    programs::shipped::carry();
+    let cli: Cli = programs::pages::parse();
     let outcome = match cli.command {
         Command::Workstation(arguments) => workstation::play(&arguments),
         Command::DataSystem(arguments) => data_system::serve(&arguments),

@@ -17,8 +17,8 @@ use os_io::stderr_line;
 use runtime::{StartError, boards, loads::BoardFiles, setup::TaskFiles};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
-use crate::{
-    cli::BoardArguments,
+use crate::rcs_run::{
+    arguments::BoardArguments,
     error::{Error, STOPPED},
     interrupt::interruption,
     memory_fault::stuck,

@@ -16,11 +16,11 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-use cli_pages::DataArgument;
+use crate::pages::DataArgument;
 use diagnostics::{
     Blame, Diagnostic, Diagnostics, FAULTS, Finding, Group, JOBS, Problems, ROBOTS, Severity, Source, grouped,
 };
-use egm_robot::{RobotFile, placement::PlacementError};
+use executive::egm::{RobotFile, placement::PlacementError};
 use os_io::{
     console::{self, shown},
     files,
@@ -37,9 +37,9 @@ use taskdata::load::{Job, Store};
 
 use runtime::{StartError, agreement, setup::fault_file};
 
-use crate::{
-    answer_long_json,
-    cli::CheckArguments,
+use crate::rcs_run::{
+    answer::answer_long_json,
+    arguments::CheckArguments,
     error::{Error, UNUSABLE},
     explain, pose,
     reach::Reach,

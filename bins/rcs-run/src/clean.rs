@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use os_io::console;
 
-use crate::error::{Error, UNUSABLE};
+use crate::rcs_run::error::{Error, UNUSABLE};
 
 /// Remove the remains of killed runs, and print what was removed.
 pub fn clean() -> Result<ExitCode, Error> {

@@ -14,7 +14,7 @@ use std::{
 use executive::memory::RunName;
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::{error::Error, programs};
+use crate::rcs_run::{error::Error, programs};
 
 /// Name of the console program, which is installed in the same directory.
 const PROGRAM: &str = "rcs-console";

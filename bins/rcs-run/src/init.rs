@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use os_io::text::amount;
 use os_io::{console, shell};
 
-use crate::{cli::InitArguments, error::Error};
+use crate::rcs_run::{arguments::InitArguments, error::Error};
 
 /// Write the copy.
 ///
@@ -13,7 +13,7 @@ use crate::{cli::InitArguments, error::Error};
 /// [`Error::Write`] if a file exists already, or cannot be written.
 pub fn init(arguments: &InitArguments) -> Result<ExitCode, Error> {
     let directory = &arguments.directory;
-    let count = cli_pages::shipped::write(directory)
+    let count = crate::shipped::write(directory)
         .map_err(|source| Error::Write { path: directory.clone(), source })?;
     let is_here = directory.as_os_str() == ".";
     let data = if is_here { "data".into() } else { directory.join("data") };

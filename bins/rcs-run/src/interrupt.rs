@@ -17,7 +17,7 @@ use signal_hook::{
     low_level,
 };
 
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// Signals within this time after the first one count as one: a terminal, a shell, `timeout` and a service manager send
 /// several at once.

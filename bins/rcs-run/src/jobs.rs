@@ -6,7 +6,7 @@ use diagnostics::JOBS;
 use os_io::files;
 use serde::Serialize;
 
-use crate::{answer, cli::JobsArguments, error::Error};
+use crate::rcs_run::{answer::answer, arguments::JobsArguments, error::Error};
 
 /// Sign that begins a comment in a job.
 const COMMENT: char = '%';

@@ -5,7 +5,7 @@ use std::fmt;
 use os_io::shell;
 use runtime::{Ending, RunOutcome};
 
-use crate::programs::start_of;
+use crate::rcs_run::programs::start_of;
 
 /// The lines. A run without a log leaves nothing to open.
 pub struct LastLines<'a>(pub &'a RunOutcome);

@@ -21,7 +21,7 @@ use os_io::text::amount;
 use rcs_core::tick::TICK_MS;
 use serde::Serialize;
 
-use crate::{answer, cli::LatencyArguments, error::Error, interrupt::interruption};
+use crate::rcs_run::{answer::answer, arguments::LatencyArguments, error::Error, interrupt::interruption};
 
 /// Length of a slot.
 const SLOT: Duration = Duration::from_millis(TICK_MS);

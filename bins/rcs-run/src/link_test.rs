@@ -27,9 +27,9 @@ use self::{
     dump::{Dump, Way},
     tally::{Observed, Tally, Verdict},
 };
-use crate::{
-    answer,
-    cli::LinkTestArguments,
+use crate::rcs_run::{
+    answer::answer,
+    arguments::LinkTestArguments,
     error::{Error, FAILED, STOPPED},
     interrupt::interruption,
 };

@@ -16,7 +16,7 @@ use signal_hook::{
     low_level::{exit, register},
 };
 
-use crate::error::{Error, STOPPED, UNUSABLE};
+use crate::rcs_run::error::{Error, STOPPED, UNUSABLE};
 
 const WORDS: &[u8] =
     b"\nrcs-run: shared memory went away under the program: /dev/shm is full, or another process cut an object short; \

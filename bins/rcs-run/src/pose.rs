@@ -25,9 +25,9 @@ use runtime::{StartError, setup::CELL};
 use taskdata::{files::PoseRecord, load::Store};
 
 use self::form::Kind;
-use crate::{
-    answer,
-    cli::PoseArguments,
+use crate::rcs_run::{
+    answer::answer,
+    arguments::PoseArguments,
     error::{Error, UNUSABLE},
     memory_fault::stuck,
     status::only_run,

@@ -26,7 +26,7 @@ pub fn start_of(program: &str) -> String {
 fn started_as(program: &str, is_by_cargo: bool, own: &Path) -> String {
     if is_by_cargo {
         let profile = if cfg!(debug_assertions) { "" } else { " --release" };
-        return format!("cargo run{profile} -p {program} --");
+        return format!("cargo run{profile} --bin {program} --");
     }
     let is_by_path = own.parent().is_some_and(|directory| !directory.as_os_str().is_empty());
     if is_by_path { shell::path(own.with_file_name(program)) } else { program.to_owned() }
@@ -42,6 +42,6 @@ mod tests {
         assert_eq!(as_by("rcs-run"), "rcs-log");
         assert_eq!(as_by("target/release/rcs-run"), "target/release/rcs-log");
         assert_eq!(as_by("/opt/my robot/rcs-run"), "'/opt/my robot/rcs-log'");
-        assert!(started_as("rcs-log", true, Path::new("x/rcs-run")).ends_with(" -p rcs-log --"));
+        assert!(started_as("rcs-log", true, Path::new("x/rcs-run")).ends_with(" --bin rcs-log --"));
     }
 }

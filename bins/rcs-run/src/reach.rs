@@ -7,7 +7,7 @@
 use std::{fmt, panic::resume_unwind, path::Path, thread};
 
 use diagnostics::{JOBS, ROBOTS};
-use egm_robot::{
+use executive::egm::{
     Placement, RobotFile,
     arm::{Arm, Axes, Track},
     placement::PlacementError,
@@ -24,7 +24,7 @@ use runtime::{StartError, setup::CELL};
 use serde::Serialize;
 use taskdata::load::{Job, Store};
 
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// Reach of the arm.
 #[derive(Debug, Serialize)]

@@ -11,8 +11,9 @@ use runtime::{
     result::{FailureResult, RunResult},
 };
 
-use crate::{
-    cli::{Cli, RunArguments},
+use crate::rcs_run::{
+    arguments::RunArguments,
+    cli::Cli,
     console::Console,
     error::{Error, FAILED, STOPPED},
     interrupt::interruption,

@@ -7,8 +7,8 @@ use os_io::{console, stderr_line};
 use sessions::network::{NeighbourKeys, Peer, Role};
 use sessions::operator::Client;
 
-use crate::{
-    cli::SendArguments,
+use crate::rcs_run::{
+    arguments::SendArguments,
     error::{Error, FAILED},
     status::only_run,
 };

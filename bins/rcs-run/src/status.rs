@@ -11,7 +11,7 @@ use executive::{
 use os_io::console;
 use serde::Serialize;
 
-use crate::{answer, cli::StatusArguments, error::Error, memory_fault::stuck};
+use crate::rcs_run::{answer::answer, arguments::StatusArguments, error::Error, memory_fault::stuck};
 
 /// Read the state of a run, and print it.
 ///

@@ -19,7 +19,7 @@ use rcs_core::{
     table::{ActionText, Row, Table, Variable},
 };
 
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// Explanation of the form of the tables.
 const HEAD: &str = "\
@@ -303,7 +303,7 @@ fn sentence(value: &VariantSchema) -> String {
     if value.text.contains(' ') { value.text.to_owned() } else { meaning(value) }
 }
 
-/// A doc comment without links into the sources: ``[`Pose`](crate::pose)`` becomes `Pose`.
+/// A doc comment without links into the sources: ``[`Pose`](crate::rcs_run::pose)`` becomes `Pose`.
 fn prose(doc: &str) -> String {
     let (mut text, mut rest) = (String::new(), doc.trim());
     while let Some((before, bracket)) = rest.split_once('[') {

@@ -17,9 +17,9 @@ use runtime::{StartError, setup::CELL};
 use serde::Serialize;
 use taskdata::load::{Job, Store};
 
-use crate::{
-    answer_long_json,
-    cli::CheckArguments,
+use crate::rcs_run::{
+    answer::answer_long_json,
+    arguments::CheckArguments,
     error::{Error, UNUSABLE},
 };
 

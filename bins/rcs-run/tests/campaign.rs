@@ -5,7 +5,7 @@ use std::{path::Path, process::Command};
 use serde_json::Value;
 
 /// Directory of the workspace, whose data are used.
-const WORKSPACE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+const WORKSPACE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
 fn rcs_run(arguments: &[&str]) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_rcs-run"))

@@ -1,7 +1,5 @@
 //! Standard output and standard error that go away: a tool ends quietly, and a run goes on.
 
-mod common;
-
 use std::{
     fs::File,
     io::{self, Read},
@@ -12,7 +10,7 @@ use std::{
 
 use rustix::pty;
 
-use common::command;
+use crate::common::command;
 
 /// A pipe whose reader has gone, as in `rcs-run | head`.
 fn closed_pipe() -> Stdio {

@@ -37,7 +37,7 @@ impl Place {
             .args(["--json", "--log", "none", "--shared-memory", "off", "--database"])
             .arg(self.file("items.db"))
             .args(more)
-            .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
+            .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
             .stdin(Stdio::null());
         command
     }

@@ -1,8 +1,6 @@
 //! The program with a robot at a serial port: over a pseudo-terminal, with the controller of [`depc`] behind it.
 
 mod common;
-#[path = "common/data.rs"]
-mod data;
 
 use std::{
     fs::{self, File},
@@ -363,7 +361,7 @@ fn a_block_is_loaded_while_the_link_to_a_robot_runs() {
     on_the_grid(|| {
         let place = Place::new();
         let own = place.0.path().join("data");
-        data::copy(&common::root().join("data"), &own);
+        common::data::copy(&common::root().join("data"), &own);
         let peer = Peer::plug(&place.port(), PROMPT);
         let (robot, data_text) = (place.robot(), own.display().to_string());
         let name = format!("port-load-{}", std::process::id());

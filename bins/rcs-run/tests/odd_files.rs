@@ -1,9 +1,5 @@
 //! Files that are none, limits of files, and signals: a run refuses in words, or ends in order.
 
-mod common;
-#[path = "common/data.rs"]
-mod data;
-
 use std::{
     fs,
     os::unix::fs::symlink,
@@ -17,8 +13,8 @@ use rustix::{
     process::{Pid, Signal, kill_process},
 };
 
-use common::{command, root};
-use data::copy;
+use crate::common::data::copy;
+use crate::common::{command, root};
 
 /// What the program says on standard error, on one line.
 fn said(output: &Output) -> String {

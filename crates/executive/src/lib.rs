@@ -3,14 +3,15 @@
 //! The control processes are pure state machines; [`closed_loop::course`] steps them with tick-parity buffers, and this
 //! crate runs a course. [`runner`] times the steps and publishes the buffers, [`clock`] determines
 //! when each tick begins, [`realtime`] requests real-time priority from the system, [`timing`] measures the parts of a
-//! tick, [`overrun`] reacts to skipped slots, [`serial`] is the line to a real robot, [`alloc`] counts allocations,
-//! [`boards`] distributes the processes over operating system processes, [`memory`] publishes the buffers in shared
-//! memory, and [`status`] summarises them.
+//! tick, [`overrun`] reacts to skipped slots, [`alloc`] counts allocations, [`boards`] distributes the processes over
+//! operating system processes, [`memory`] publishes the buffers in shared memory, and [`status`] summarises them.
+//! Lines to robots at ports are [`serial`], to a T3, and [`mod@egm`], to a robot with ABB's Externally Guided Motion.
 
 #![deny(unsafe_code)]
 
 pub mod boards;
 pub mod clock;
+pub mod egm;
 pub mod histogram;
 pub mod machine;
 pub mod memory;

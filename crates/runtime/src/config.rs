@@ -6,7 +6,7 @@ use depc::{
     host::RESTART_TICKS,
     track::{LAG_MS, MOST_LAG_MS},
 };
-use egm_robot::{EgmOptions, Peer};
+use executive::egm::{EgmOptions, Peer};
 use executive::{
     memory::{OnStuck, RunName},
     overrun::Policy,

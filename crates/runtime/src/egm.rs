@@ -9,7 +9,7 @@ use std::{
 use ::egm::{LinkState, Pose, Sample, host::Counters};
 use closed_loop::RobotInputs;
 use depc::{Limits, Plate, link::LinkBytes};
-use egm_robot::{Bridge, BridgeOutputs, EgmOptions, Line, Peer, Refusals, udp::UdpLine};
+use executive::egm::{Bridge, BridgeOutputs, EgmOptions, Line, Peer, Refusals, udp::UdpLine};
 use executive::{
     histogram::{Histogram, Summary},
     realtime,

@@ -71,10 +71,10 @@ pub enum StartError {
     Port(#[from] OpenError),
     /// The port of EGM cannot be opened.
     #[error("the robot cannot be reached: {0}")]
-    Egm(#[from] egm_robot::udp::UdpError),
+    Egm(#[from] executive::egm::udp::UdpError),
     /// The robot's frames cannot be used.
     #[error(transparent)]
-    Placement(#[from] egm_robot::placement::PlacementError),
+    Placement(#[from] executive::egm::placement::PlacementError),
     /// The log whose inputs are to be replayed cannot be read.
     #[error("the operator's inputs cannot be replayed: {0}")]
     Inputs(#[source] Box<record::ReadError>),

@@ -8,7 +8,7 @@ use rcs_core::{Plain, plain::Writer};
 use record::layout::{self, Leaf};
 
 use super::{Section, Text, Tone, units::unit};
-use crate::picture::Picture;
+use crate::rcs_console::picture::Picture;
 
 /// All fields of common memory and of the external inputs.
 static MEMORY: LazyLock<Vec<Leaf>> = LazyLock::new(|| layout::leaves(CommonMemory::STRUCT));

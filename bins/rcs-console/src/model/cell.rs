@@ -11,7 +11,7 @@ use interfaces::{
 };
 
 use super::{Section, Text, Tone, drawing::Drawing};
-use crate::{picture::Picture, source::Cell};
+use crate::rcs_console::{picture::Picture, source::Cell};
 
 /// A joint nearer to a limit than this is marked, degrees.
 const NEAR: f64 = 10.0;

@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn the_arm_and_the_trays_stand_in_both_views() {
-        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
         let sections = Drawing::load(&data).unwrap().sections(&HOME_JOINTS);
         for section in sections.iter().take(2) {
             let text: String = section.lines.iter().map(|line| format!("{}\n", line.text)).collect();

@@ -3,7 +3,7 @@
 use interfaces::ProcessId;
 
 use super::{Model, Pane, Place, Prompt, Screen, buffers, drawing::Drawing, ladder, views::fields_named};
-use crate::source::{Source, State};
+use crate::rcs_console::source::{Source, State};
 
 /// Ticks per second.
 const SECOND: u64 = 25;

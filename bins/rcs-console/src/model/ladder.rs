@@ -5,7 +5,8 @@ use interfaces::{CommonMemory, Header, ProcessId, Said, device::VisionStatus, fo
 use levels::ladder::Ladder;
 use rcs_core::{handshake::Lower, table::Row, tick::TICK_S};
 
-use crate::{
+use super::Tone;
+use crate::rcs_console::{
     picture::{Absence, Picture},
     story::{self, Story},
 };
@@ -73,6 +74,19 @@ pub struct Mark {
     pub on: bool,
     /// It differs from the previous picture.
     pub changed: bool,
+}
+
+impl Mark {
+    /// The emphasis of its line.
+    #[must_use]
+    pub const fn tone(&self) -> Tone {
+        match self {
+            Self { trouble: true, .. } => Tone::Trouble,
+            Self { absent: true, .. } => Tone::Faint,
+            Self { changed: true, .. } => Tone::Marked,
+            _ => Tone::Plain,
+        }
+    }
 }
 
 /// A line of the ladder.

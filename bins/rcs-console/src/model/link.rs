@@ -9,7 +9,7 @@ use rcs_core::{Plain, plain::Schema, tick::TICK_S};
 use record::{Level, reader::LogLine};
 
 use super::{Section, Text, Tone, frames};
-use crate::{picture::Picture, source::Cell, story::Story};
+use crate::rcs_console::{picture::Picture, source::Cell, story::Story};
 
 /// Number of messages shown.
 const MESSAGES: usize = 6;
@@ -177,7 +177,7 @@ mod tests {
     use interfaces::{CommonMemory, ExternalInputs};
     use rcs_core::tick::Tick;
 
-    use crate::picture::Timing;
+    use crate::rcs_console::picture::Timing;
 
     fn picture() -> Picture {
         let (external, memory) = (ExternalInputs::default(), CommonMemory::default());

@@ -7,10 +7,11 @@ pub mod frames;
 mod keys;
 pub mod ladder;
 pub mod link;
-pub mod operating;
+mod operating;
 pub mod panels;
 pub mod procedures;
 pub mod process;
+pub mod session;
 mod take_over;
 pub mod terminal;
 pub mod text_of;
@@ -29,12 +30,12 @@ use self::{
 
 pub use self::{
     keys::{Effect, Key},
-    operating::Operating,
     procedures::Progress,
+    session::Operating,
     take_over::{TakeOver, sections as take_over_sections},
     terminal::BoardTerminal,
 };
-use crate::{
+use crate::rcs_console::{
     picture::Picture,
     source::{Cell, Source, State},
 };

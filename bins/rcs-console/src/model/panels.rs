@@ -13,9 +13,9 @@ use interfaces::{
 
 use super::{
     Section, Text, Tone,
-    operating::{JOGS, Operating},
+    session::{JOGS, Operating},
 };
-use crate::source::Cell;
+use crate::rcs_console::source::Cell;
 
 /// The requests of the key list, in order.
 pub const KEYS: [&str; 45] = [

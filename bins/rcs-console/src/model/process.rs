@@ -9,7 +9,7 @@ use rcs_core::{
 };
 
 use super::{Section, Text, Tone};
-use crate::{
+use crate::rcs_console::{
     picture::Picture,
     story::{Doing, Story},
 };

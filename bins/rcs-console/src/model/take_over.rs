@@ -3,7 +3,7 @@
 use rcs_core::tick::Tick;
 
 use super::{Key, Model, Section, Text, Tone};
-use crate::picture::Picture;
+use crate::rcs_console::picture::Picture;
 
 /// Part of a refusal which says that the command can be taken over.
 const OFFER: &str = "`stand-alone` takes over";

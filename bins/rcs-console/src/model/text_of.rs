@@ -4,7 +4,7 @@ use interfaces::ProcessId;
 use levels::ladder::Ladder;
 
 use super::{Section, Text, Tone};
-use crate::picture::Picture;
+use crate::rcs_console::picture::Picture;
 
 /// Files with decision tables, and their texts.
 static FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/tables.rs"));

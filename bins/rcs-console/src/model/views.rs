@@ -4,7 +4,7 @@ use interfaces::ProcessId;
 use os_io::text::amount;
 
 use super::{Section, Text, Tone, buffers};
-use crate::picture::Picture;
+use crate::rcs_console::picture::Picture;
 
 /// A show word (IV.2.6): its board, its subject, and its buffers.
 #[derive(Debug)]

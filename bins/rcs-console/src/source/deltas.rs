@@ -11,7 +11,7 @@ use rcs_core::{
 };
 use record::{delta::Codec, reader::LoggedTick, writer::FULL_SET};
 
-use crate::picture::{Picture, Timing};
+use crate::rcs_console::picture::{Picture, Timing};
 
 /// A stored tick.
 struct Kept {

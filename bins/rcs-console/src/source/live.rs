@@ -10,7 +10,7 @@ use executive::memory::{
 };
 
 use super::{About, Cell, Source, State};
-use crate::{
+use crate::rcs_console::{
     picture::{Picture, Timing},
     story::Story,
 };

@@ -10,7 +10,7 @@ pub use recorded::Recorded;
 use executive::memory::cell::CellView;
 use taskdata::load::Source as Blocks;
 
-use crate::{picture::Picture, story::Story};
+use crate::rcs_console::{picture::Picture, story::Story};
 
 /// A source of pictures. No source writes to the data that it reads.
 pub trait Source {

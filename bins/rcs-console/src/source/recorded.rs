@@ -9,7 +9,7 @@ use record::{Attachment, Log, ReadError};
 use taskdata::load::Source as Blocks;
 
 use super::{About, Cell, Source, State, deltas::Deltas};
-use crate::{error::ConsoleError, picture::Picture, story::Story};
+use crate::rcs_console::{error::ConsoleError, picture::Picture, story::Story};
 
 /// Metres to inches.
 const INCHES: f64 = 1.0 / 0.0254;

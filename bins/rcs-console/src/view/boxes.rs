@@ -6,8 +6,8 @@ use ratatui::{
     text::{Line, Span},
 };
 
-use super::{Look, ladder::tone, text::fit};
-use crate::model::{
+use super::{Look, text::fit};
+use crate::rcs_console::model::{
     Tone,
     ladder::{self, Item},
 };
@@ -109,7 +109,7 @@ fn draw(grid: &mut Grid, (x, y): (usize, usize), line: &ladder::Line, chosen: bo
     };
     let said =
         if line.item == Item::Robot { line.status.clone() } else { format!("{}  {}", line.status, line.row) };
-    let tone = tone(&line.mark);
+    let tone = line.mark.tone();
     grid.put(x, y, &border, tone, chosen);
     grid.put(x, y + 1, &numbered(&line.command, line.number), tone, chosen);
     grid.put(x, y + 2, &numbered(&said, line.echo), tone, chosen);

@@ -3,7 +3,7 @@
 use ratatui::text::Line;
 
 use super::Look;
-use crate::model::Tone;
+use crate::rcs_console::model::Tone;
 
 /// The keys and their effects.
 const KEYS: [(&str, &str); 16] = [

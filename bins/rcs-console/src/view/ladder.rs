@@ -7,7 +7,7 @@ use super::{
     Look, boxes,
     text::{fit, rule, wrap},
 };
-use crate::{
+use crate::rcs_console::{
     model::{
         Model, Tone,
         ladder::{self, Branch, Item, Mark},
@@ -69,7 +69,7 @@ pub fn body(
     let mut lines = vec![look.line(Tone::Plain, head)];
     for line in ladder::lines(picture, model.last.as_ref(), source.story()) {
         let chosen = line.item == Item::Process(model.process);
-        let drawn = look.line(tone(&line.mark), row(&widths, &line));
+        let drawn = look.line(line.mark.tone(), row(&widths, &line));
         lines.push(if chosen { drawn.patch_style(Modifier::REVERSED) } else { drawn });
     }
     // In the smallest terminal there is room for two sentences only.
@@ -108,15 +108,6 @@ fn shortened(mut lines: Vec<String>, share: usize, width: usize) -> Vec<String> 
         *last = fit(&format!("{} …", fit(last, width - 2).trim_end()), width);
     }
     lines
-}
-
-pub fn tone(mark: &Mark) -> Tone {
-    match mark {
-        Mark { trouble: true, .. } => Tone::Trouble,
-        Mark { absent: true, .. } => Tone::Faint,
-        Mark { changed: true, .. } => Tone::Marked,
-        _ => Tone::Plain,
-    }
 }
 
 fn row(widths: &Widths, line: &ladder::Line) -> String {

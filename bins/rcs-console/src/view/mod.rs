@@ -22,7 +22,7 @@ use ratatui::{
 };
 use record::Level;
 
-use crate::{
+use crate::rcs_console::{
     model::{
         Model, Operating, Place, Prompt, Screen, Tone, cell, ladder as lines, link, panels, procedures,
         take_over_sections,
@@ -222,7 +222,7 @@ const fn state_tone(state: State) -> Tone {
 fn run(model: &Model, source: &dyn Source, about: &About<'_>, width: usize) -> String {
     let (_, last) = source.range().unwrap_or_default();
     let knob = model.picture.as_ref().map_or(0, |picture| picture.external.devices.joystick.velocity / 10);
-    let seconds = model.picture.as_ref().map_or(0.0, crate::picture::Picture::seconds);
+    let seconds = model.picture.as_ref().map_or(0.0, crate::rcs_console::picture::Picture::seconds);
     let tick = model.tick();
     let place = format!("tick {tick}  {seconds:.2} s  knob {knob} %");
     let operator = model.operating.as_ref().filter(|operating| operating.lost.is_none());

@@ -7,7 +7,7 @@ use super::{
     Look, Reach,
     text::{rule, wrap},
 };
-use crate::{
+use crate::rcs_console::{
     model::{Model, Pane, Section, Text, Tone, buffers, process, text_of, views},
     picture::Picture,
     source::Source,

@@ -7,7 +7,7 @@ use super::{
     Look,
     text::{fit, rule},
 };
-use crate::model::Tone;
+use crate::rcs_console::model::Tone;
 
 /// The runs to choose from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 //! recording of it for `asciinema play`:
 //!
 //! ```sh
-//! RCS_RECORDING=docs/console.cast cargo test --release -p rcs-console --test terminal recording
+//! RCS_RECORDING=docs/console.cast cargo test --release -p programs --test console recording
 //! ```
 
 use std::{env, fmt::Write as _};
@@ -149,6 +149,6 @@ fn a_recording_shows_the_start_up_of_the_robot_and_a_taught_point() {
         assert!(shown.iter().any(|screen| screen.contains(picture)), "{picture} is not in the recording");
     }
     if let Some(file) = file {
-        std::fs::write(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file), text).unwrap();
+        std::fs::write(Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file), text).unwrap();
     }
 }

@@ -312,7 +312,7 @@ mod tests {
     use super::*;
 
     fn cell() -> String {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/cell.toml");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/cell.toml");
         std::fs::read_to_string(path).unwrap()
     }
 

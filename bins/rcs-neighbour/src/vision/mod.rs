@@ -1,7 +1,7 @@
 //! The vision system: the picture analysis of the simulated cell behind the vision mailboxes, for one run after the
 //! other.
 
-mod fault;
+pub mod fault;
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use plant::{
 };
 use sessions::network::{Peer, PeerError, Received, Role};
 
-pub use self::fault::{Fault, Kind};
+use self::fault::{Fault, Kind};
 use crate::{Error, Reconnect, cli::VisionArguments, connect, connect_again};
 
 /// File of the cell description in the data directory.
@@ -214,7 +214,7 @@ mod tests {
 
     use super::*;
 
-    const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/cell.toml");
+    const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/cell.toml");
 
     fn request(number: u32) -> [u8; request::RequestLayout::BYTES] {
         let request = VisionRequest {

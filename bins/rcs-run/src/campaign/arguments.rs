@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use crate::pages::{DataArgument, with_names};
 use clap::{
     Args,
     builder::{ArgPredicate, StringValueParser},
 };
-use cli_pages::{DataArgument, with_names};
 use diagnostics::FAULTS;
 
 use super::{interruption::first_words, operator::Recovery, trial::Until};
@@ -15,7 +15,7 @@ use super::{interruption::first_words, operator::Recovery, trial::Until};
 #[derive(Clone, Debug, Args)]
 pub struct CampaignArguments {
     /// Names of jobs in the data directory, or paths
-    #[arg(default_value = "linkbar", value_parser = cli_pages::job(), hide_possible_values = true)]
+    #[arg(default_value = "linkbar", value_parser = crate::pages::job(), hide_possible_values = true)]
     pub jobs: Vec<String>,
     /// The data.
     #[command(flatten)]
@@ -94,6 +94,6 @@ pub struct CampaignArguments {
 
 /// The interruptions that completions offer: all first words, and a `fault` with each fault file.
 fn interruption_names() -> Vec<String> {
-    let faults = cli_pages::names(&FAULTS).into_iter().map(|name| format!("fault:{name}"));
+    let faults = crate::pages::names(&FAULTS).into_iter().map(|name| format!("fault:{name}"));
     first_words().map(str::to_owned).chain(faults).collect()
 }

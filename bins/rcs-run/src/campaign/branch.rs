@@ -18,7 +18,7 @@ use runtime::StartError;
 use taskdata::load::{Job, Store, job::Reload};
 
 use super::past;
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// The data that all branches of a campaign share.
 pub struct Facility {

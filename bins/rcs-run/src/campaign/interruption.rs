@@ -14,16 +14,14 @@ use runtime::{StartError, setup::fault_file};
 
 use super::{
     disturbance::{self, Disturbance},
-    script::{Script, ScriptStep, away, lead, nudge},
+    script::{FAULT, Script, ScriptStep, away, lead, nudge},
 };
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// Duration of a Hold, ticks: 3 s.
 const HOLD: u64 = 75;
 /// Ticks for which the box holds a process.
 const HELD: u64 = 50;
-/// Ticks for which a fault is on.
-pub const FAULT: u64 = 20;
 /// Ticks between the emergency stop and its release: the time to walk there.
 const STOPPED: u64 = 100;
 

@@ -12,18 +12,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use cli_pages::VERSION;
+use crate::pages::VERSION;
 use runtime::StartError;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    branch::Facility,
-    coverage::Coverage,
-    parent::Parent,
-    pool::Plan,
-    trial::{BranchResult, Procedure},
+    branch::Facility, coverage::Coverage, parent::Parent, pool::Plan, trial::Procedure, verdict::BranchResult,
 };
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// A line.
 #[derive(Deserialize, Serialize)]

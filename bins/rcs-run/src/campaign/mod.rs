@@ -37,6 +37,7 @@ mod story;
 mod tests;
 mod trial;
 mod truth;
+mod verdict;
 
 use std::{fs, io, process::ExitCode};
 
@@ -57,9 +58,10 @@ use self::{
     report::CampaignReport,
     runner::{Keep, Runner},
     series::Series,
-    trial::{BranchResult, NoObserver, Procedure, Until, Verdict},
+    trial::{NoObserver, Procedure, Until},
+    verdict::{BranchResult, Verdict},
 };
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// Default number of ticks between two forks.
 const EVERY: u64 = 23;

@@ -3,7 +3,7 @@
 use geometry::{frame::Rotation, kinematics::Joints};
 use rcs_core::tick::Tick;
 
-use super::{branch::Branch, trial::Verdict};
+use super::{branch::Branch, verdict::Verdict};
 
 /// Ticks without motion after which everything is at rest: 12 s, longer than the controller waits between motions.
 const STILL: u64 = 300;

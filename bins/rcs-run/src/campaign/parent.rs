@@ -12,7 +12,7 @@ use super::{
     branch::{Branch, Facility},
     harm::World,
 };
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// Selects the ticks at which the parent is forked.
 #[derive(Clone, Debug)]

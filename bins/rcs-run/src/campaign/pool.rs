@@ -12,9 +12,10 @@ use super::{
     known::Known,
     parent::{Parent, emulator},
     series::Series,
-    trial::{self, BranchResult, Procedure},
+    trial::{self, Procedure},
+    verdict::BranchResult,
 };
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// A branch to run.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,9 +12,9 @@ use super::{
     disturbance::{self, Follow},
     markdown::Column,
     parent::Parent,
-    trial::{BranchResult, Verdict},
+    verdict::{BranchResult, Verdict},
 };
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// Branches listed per reason.
 const LISTED: usize = 3;

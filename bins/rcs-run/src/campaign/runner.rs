@@ -19,9 +19,10 @@ use super::{
     parent::Parent,
     pool::{self, Plan},
     random::Draw,
-    trial::{BranchResult, Procedure, Verdict},
+    trial::Procedure,
+    verdict::{BranchResult, Verdict},
 };
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// What is kept of the coverage of a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]

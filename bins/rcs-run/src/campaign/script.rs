@@ -16,7 +16,6 @@ use rcs_core::tick::Tick;
 use super::{
     branch::Branch,
     disturbance::{self, Lead, Undo, What},
-    interruption::FAULT,
 };
 
 /// Height by which the robot is moved away, in.
@@ -29,6 +28,8 @@ const LED: u64 = 100;
 const PATIENCE: u64 = 2000;
 /// Ticks from CYCLE START to the DEPC function: the program makes two short motions.
 const REHEARSAL: u64 = 75;
+/// Ticks for which a fault is on.
+pub const FAULT: u64 = 20;
 /// Least probability of a random fault, millionths per tick or byte, so that it occurs within [`FAULT`] ticks.
 const CHANCE: u32 = 50_000;
 

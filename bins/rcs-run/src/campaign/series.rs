@@ -5,7 +5,7 @@ use std::{fmt, path::Path};
 use plant::CellDescription;
 
 use super::interruption::Kind;
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// One interruption of a series.
 #[derive(Clone, Debug, PartialEq)]

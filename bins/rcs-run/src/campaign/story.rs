@@ -7,10 +7,7 @@ use interfaces::Decided;
 use levels::ladder::{Ladder, ProcessId};
 use rcs_core::tick::Tick;
 
-use super::{
-    branch::Branch,
-    trial::{BranchResult, Observer},
-};
+use super::{branch::Branch, trial::Observer, verdict::BranchResult};
 
 /// The state of a process that the story prints.
 #[derive(Clone, Debug, Default, PartialEq)]

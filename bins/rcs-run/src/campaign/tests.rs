@@ -20,12 +20,13 @@ use super::{
     pool::{self, Plan},
     random::{self, Draw, Settings},
     series::Series,
-    trial::{self, BranchResult, NoObserver, Procedure, Until, Verdict},
+    trial::{self, NoObserver, Procedure, Until},
+    verdict::{BranchResult, Verdict},
 };
 use closed_loop::{Commander, workstation::SimulatedWorkstation};
 use runtime::setup::{CellFile, TaskFiles};
 
-const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data");
 const PROCEDURE: Procedure = Procedure { recovery: Recovery::Pause, tries: 3, until: Until::Next };
 
 pub(super) fn facility(job: &str) -> Facility {

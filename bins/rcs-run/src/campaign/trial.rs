@@ -25,10 +25,9 @@ use super::{
     parent::Parent,
     script::Script,
     series::Series,
+    verdict::{BranchResult, Verdict},
 };
-use crate::error::Error;
-
-pub use self::judgement::{BranchResult, Verdict};
+use crate::rcs_run::error::Error;
 
 /// A location that is not in the task data.
 const MISSPELT: &str = "NOWHERRE";

@@ -24,7 +24,7 @@ fn replace(file: &Path, from: &str, to: &str) {
 
 #[test]
 fn a_file_that_cannot_be_read_is_one_mistake_and_hides_none_of_the_others() {
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
     let scratch = tempfile::tempdir().unwrap();
     let data = scratch.path().join("data");
     copy(&shipped, &data);

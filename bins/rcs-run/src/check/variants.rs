@@ -1,7 +1,7 @@
 //! Wrong variants of the shipped data (variants.toml). docs/check-variants.md shows the findings of `rcs-run check` for
 //! each. Each variant is refused before anything moves, or gives a reason why it is harmless.
 //!
-//! `RCS_VARIANTS=write cargo test --release -p rcs-run --bin rcs-run variants` writes the page again.
+//! `RCS_VARIANTS=write cargo test --release -p programs --lib variants` writes the page again.
 
 use std::{
     fmt::Write as _,
@@ -17,7 +17,7 @@ use super::{Checked, Finding, Flights, data::copy};
 
 /// The root directory of the workspace.
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
 #[derive(Deserialize)]
@@ -154,7 +154,7 @@ fn every_variant_is_refused_before_anything_moves_or_harmless() {
     let said = all_said(&table.variant);
     let mut page = format!(
         "# What `rcs-run check` says of {} wrong variants\n\n\
-         Written by `RCS_VARIANTS=write cargo test --release -p rcs-run --bin rcs-run variants` from\n\
+         Written by `RCS_VARIANTS=write cargo test --release -p programs --lib variants` from\n\
          `bins/rcs-run/src/check/variants.toml`, which has each edit. A variant with an error is \
          refused before anything moves.\n",
         table.variant.len()

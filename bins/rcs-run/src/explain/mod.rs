@@ -20,9 +20,9 @@ use runtime::{StartError, judge};
 use serde::Serialize;
 use taskdata::load::{Diagnostics, Step, Store, job::reported_command};
 
-use crate::{
-    answer_long_json,
-    cli::CheckArguments,
+use crate::rcs_run::{
+    answer::answer_long_json,
+    arguments::CheckArguments,
     error::{Error, UNUSABLE},
 };
 

@@ -7,7 +7,7 @@ use taskdata::load::Store;
 use super::{Explanation, command_of, explained};
 
 fn store() -> Store {
-    let sound = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/taskdata/tests/sound"));
+    let sound = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../crates/taskdata/tests/sound"));
     Store::load(sound).map_or_else(|report| panic!("{report}"), |(store, _)| store)
 }
 

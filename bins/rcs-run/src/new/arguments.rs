@@ -1,7 +1,7 @@
 //! The command line of `rcs-run new`.
 
+use crate::pages::{DataArgument, length};
 use clap::{Args, Subcommand};
-use cli_pages::{DataArgument, length};
 
 use super::size::Size;
 

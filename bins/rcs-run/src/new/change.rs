@@ -10,7 +10,7 @@ use os_io::{files, replace::replace_text};
 use similar::TextDiff;
 use taskdata::load::{Source, source::BLOCK_LINES, source::blocks};
 
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// Unchanged lines that the diff shows around a change.
 const AROUND: usize = 2;

@@ -14,7 +14,7 @@ use taskdata::load::{
 };
 
 use super::entered::Entered;
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// A family of parts.
 pub struct Family {

@@ -8,6 +8,7 @@ mod family;
 mod forms;
 mod jaws;
 mod nests;
+mod numbers;
 mod part;
 mod place;
 mod size;
@@ -33,7 +34,7 @@ use self::{
     part::Order,
     trial::Trial,
 };
-use crate::{cli::CheckArguments, error::Error, pose, ways};
+use crate::rcs_run::{arguments::CheckArguments, error::Error, pose, ways};
 
 /// Make new data.
 ///

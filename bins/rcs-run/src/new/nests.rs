@@ -26,10 +26,10 @@ use taskdata::{
 use super::{
     change::Change,
     family::Family,
-    part::{Numbers, Places},
+    numbers::{Numbers, Places},
     sizes::{ROOM, hundredths, resized},
 };
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// Height above its nest from which a part is lowered, in.
 const ABOVE: f64 = 3.0;

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use geometry::movetable::MovetableLine;
 use os_io::text::amount;
 use plant::{
     CellDescription,
@@ -12,11 +11,19 @@ use rcs_core::name::{Name, Name16};
 use runtime::setup::CELL;
 use taskdata::load::{
     Store,
-    entries::{Entry, GripEntry, MovetableEntry, Named, Typed},
+    entries::{Entry, GripEntry, MovetableEntry, Named},
 };
 
-use super::{change::Change, family::Family, forms::Blocks, nests::Nested, size::Size, sizes::Sizes};
-use crate::error::Error;
+use super::{
+    change::Change,
+    family::Family,
+    forms::Blocks,
+    nests::Nested,
+    numbers::{Numbers, Places},
+    size::Size,
+    sizes::Sizes,
+};
+use crate::rcs_run::error::Error;
 
 /// Longest name of a part: `S-` and `_BH` are added to it, and an object has 16 characters.
 const LONGEST: usize = 11;
@@ -49,45 +56,6 @@ pub struct Made {
     pub chosen: Vec<(&'static str, String)>,
     /// The poses that must be taught at the machine.
     pub to_teach: Vec<String>,
-}
-
-/// Computes the numbers of a family whose parts have other sizes.
-pub trait Numbers {
-    /// The new parts.
-    fn parts(&self) -> &[PartType];
-
-    /// The places of the new grips that replace a grip, and the lines of their movetables.
-    ///
-    /// # Errors
-    /// [`Error::New`] if the grip is at an unsupported place.
-    fn grips(&self, grip: &GripEntry) -> Result<Vec<(Typed, Vec<MovetableLine>)>, Error>;
-
-    /// Approach and grasp openings, force and depart opening of an object, in 0.01 in and lb.
-    fn openings(&self, object: &Name16, values: [i32; 4]) -> [i32; 4];
-
-    /// Numbers of an object at the pedestal: approach, grasp, force, release, table, flip.
-    fn pedestal(&self, _object: &Name16, values: [i32; 6]) -> [i32; 6] {
-        values
-    }
-
-    /// The range of a view, mm.
-    fn range(&self, _object: &Name16, range: i32) -> i32 {
-        range
-    }
-
-    /// Add the vise's program or the nests to the cell description.
-    ///
-    /// # Errors
-    /// [`Error::New`] if there is no table after which theirs can be inserted.
-    fn places(&self, change: &mut Change) -> Result<Places, Error>;
-}
-
-/// The changes of vise or nests for the new parts.
-pub struct Places {
-    pub chosen: Vec<(&'static str, String)>,
-    pub to_teach: Vec<String>,
-    /// True if other parts must be tried, too.
-    pub others: bool,
 }
 
 /// Make the data of a part or a tool.

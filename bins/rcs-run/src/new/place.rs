@@ -14,7 +14,7 @@ use taskdata::{
 };
 
 use super::{change::Change, entered::Entered, forms::Blocks};
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// Longest name: `-P` is added to it in a name of 10 characters.
 const LONGEST: usize = 8;

@@ -3,7 +3,7 @@
 
 use std::{fmt, str::FromStr};
 
-use cli_pages::length;
+use crate::pages::length;
 use os_io::units;
 use plant::description::{PartType, Shape};
 

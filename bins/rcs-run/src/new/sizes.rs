@@ -25,9 +25,9 @@ use super::{
     change::Change,
     family::{Family, subject},
     jaws::{Chosen, Wanted, choose},
-    part::{Numbers, Places},
+    numbers::{Numbers, Places},
 };
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// Largest share of a low part's height that fingers cover; the rest keeps them off the floor.
 const REACH: f64 = 2.0 / 3.0;

@@ -10,10 +10,10 @@ use super::{
     sizes::Sizes,
     trial::Trial,
 };
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 fn data() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../data")
 }
 
 fn loaded() -> (Store, CellDescription) {

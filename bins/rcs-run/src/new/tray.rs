@@ -18,7 +18,7 @@ use super::{
     forms::Blocks,
     place::{New, clipped, is_name, with_blocks},
 };
-use crate::error::Error;
+use crate::rcs_run::error::Error;
 
 /// The changes for a new tray, and a job that tries it.
 pub struct Made {

@@ -7,7 +7,7 @@ use runtime::{Ending, LogTarget, Run, RunConfig, result::FailureResult};
 use tempfile::TempDir;
 
 use super::change::Change;
-use crate::{check, error::Error};
+use crate::rcs_run::{check, error::Error};
 
 /// Seeds for the runs of a new job.
 const SEEDS: [u64; 3] = [1, 2, 3];

@@ -198,7 +198,7 @@ Actions:
 #[test]
 fn links_of_doc_comments_are_left_out() {
     assert_eq!(
-        prose(" See [`Pose`](crate::pose), [`Tick`] and [the cell](docs/cell.md)."),
+        prose(" See [`Pose`](crate::rcs_run::pose), [`Tick`] and [the cell](docs/cell.md)."),
         "See `Pose`, `Tick` and the cell."
     );
     assert_eq!(prose("The sector, [1, 16], of poses[2]"), "The sector, [1, 16], of poses[2]");

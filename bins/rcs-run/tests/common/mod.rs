@@ -1,5 +1,7 @@
 //! What tests of the program share.
 
+pub mod data;
+
 use std::{
     path::{Path, PathBuf},
     process::{Command, Stdio},
@@ -7,7 +9,7 @@ use std::{
 
 /// The directory of the workspace.
 pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
 /// The program with arguments, in that directory, without standard input.

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fmt};
 
 use ::egm::host::Counters;
 use depc::fault::{Counts, FaultKind};
-use egm_robot::Refusals;
+use executive::egm::Refusals;
 use executive::serial::SerialCounts;
 use interfaces::t3i::LinkCounters;
 use serde::Serialize;

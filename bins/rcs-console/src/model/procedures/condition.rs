@@ -8,7 +8,7 @@ use interfaces::{
 };
 use rcs_core::tick::Tick;
 
-use crate::{
+use crate::rcs_console::{
     model::Operating,
     picture::{Absence, Picture},
     source::Cell,

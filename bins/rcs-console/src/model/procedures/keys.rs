@@ -1,7 +1,7 @@
 //! The keys of the procedure screen.
 
 use super::{Mark, Sight, Track};
-use crate::{
+use crate::rcs_console::{
     model::{Key, Model, Prompt},
     source::Source,
 };
@@ -11,7 +11,7 @@ const PAGE: usize = 8;
 
 impl Model {
     /// Carry out a key of the procedures. Returns false for other keys.
-    pub(in crate::model) fn work_a_procedure(&mut self, key: Key, source: &dyn Source) -> bool {
+    pub(in crate::rcs_console::model) fn work_a_procedure(&mut self, key: Key, source: &dyn Source) -> bool {
         if !self.procedures.is_open {
             return self.choose_a_procedure(key);
         }
@@ -63,7 +63,7 @@ impl Model {
     }
 
     /// Skip the step.
-    pub(in crate::model) fn leave_out(&mut self, reason: String) {
+    pub(in crate::rcs_console::model) fn leave_out(&mut self, reason: String) {
         let tick = self.picture.as_ref().map_or_else(Default::default, |picture| picture.tick);
         let Some(track) = self.procedures.open() else { return };
         if reason.trim().is_empty() {

@@ -7,7 +7,7 @@ use super::{
     ALL, Ask, Procedure, Step, Watch,
     condition::{Begun, Sight},
 };
-use crate::source::Cell;
+use crate::rcs_console::source::Cell;
 
 /// Mark of a step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

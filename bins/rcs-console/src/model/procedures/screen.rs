@@ -1,7 +1,7 @@
 //! The procedure screen as lines: the list, or the steps of the open procedure.
 
 use super::{ALL, Ask, Progress, Step, Track, condition::Sight, progress::Mark};
-use crate::model::{Section, Text, Tone};
+use crate::rcs_console::model::{Section, Text, Tone};
 
 /// Columns before the text of a step.
 const INDENT: &str = "              ";

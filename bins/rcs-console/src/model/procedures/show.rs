@@ -6,7 +6,7 @@ use interfaces::{
 };
 
 use super::condition::{HOME, Sight, TOLERANCE, largest, rows};
-use crate::model::{Text, Tone, cell};
+use crate::rcs_console::model::{Text, Tone, cell};
 
 /// The state of the cell that is shown with a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

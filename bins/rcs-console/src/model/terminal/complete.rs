@@ -207,7 +207,7 @@ mod tests {
     use taskdata::load::source::read_blocks_under;
 
     fn names() -> Names {
-        let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+        let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
         Names::of(&read_blocks_under(&directory).0, &directory)
     }
 

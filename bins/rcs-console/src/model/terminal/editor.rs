@@ -21,7 +21,7 @@ use taskdata::load::{
     source::{BLOCK_COLUMNS, BLOCK_LINES, blocks},
 };
 
-use crate::model::{Key, Section, Text, Tone};
+use crate::rcs_console::model::{Key, Section, Text, Tone};
 
 /// Lines about a form that fit above the 16 lines of a block in the smallest terminal; the diff shows all of them.
 const ABOUT: usize = 2;
@@ -386,7 +386,7 @@ mod tests {
 
     /// A copy of the blocks in the shipped data.
     fn data() -> tempfile::TempDir {
-        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
         let to = tempfile::tempdir().unwrap();
         for source in read_blocks_under(&from).0 {
             let path = to.path().join(&source.name);

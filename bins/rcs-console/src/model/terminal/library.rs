@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     fn library() -> Library {
-        Library::of(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data"))
+        Library::of(Path::new(env!("CARGO_MANIFEST_DIR")).join("../data"))
     }
 
     #[test]

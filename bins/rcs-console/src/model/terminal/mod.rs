@@ -14,7 +14,6 @@ use std::path::PathBuf;
 
 use interfaces::{
     ProcessId,
-    hws::HwsReport,
     operator::{BOARDS as RUNNING, Variable},
 };
 use taskdata::load::{BlockNumber, commands};
@@ -25,8 +24,7 @@ use self::{
     teach::Lesson,
     words::{Interpreter, is_of_terminal},
 };
-use super::{Key, Model, Operating, Text, Tone, operating::Exchange, views::ShowWord};
-use crate::picture::Picture;
+use super::{Key, Model, Operating, Text, Tone, views::ShowWord};
 
 pub use self::{screen::sections, words::known};
 
@@ -36,17 +34,6 @@ pub const BOARDS: [u8; 6] = [0, 2, 4, 6, 8, 12];
 const KEPT: usize = 100;
 /// The characters that are keys on this screen while the run takes requests; all others begin a line.
 const KEYS: &str = " !:?[]{}";
-
-/// The command that connects the Data System (V.4.1).
-const STARTUP: &str = "STARTUP";
-/// The steps of Task's table STARTUP after the first, and what the original terminal displayed (IV.4.2 step 3). Earlier
-/// updates are sent while it connects.
-const STAGES: [(&str, &str); 4] = [
-    ("aborting", "Aborting..."),
-    ("initiating", "Initiating..."),
-    ("connecting", "Connecting..."),
-    ("settling", "Connecting..."),
-];
 
 /// The mode of a terminal (IV.2.6).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -321,71 +308,4 @@ impl Model {
 
 fn look_only() -> Text {
     Text::new(Tone::Trouble, "!!this console looks only: start it with --operate to work on the run")
-}
-
-/// The stage of STARTUP in the words of the original terminal (IV.4.2 step 3); `None` before the first.
-fn connecting(picture: &Picture) -> Option<&'static str> {
-    let step = picture.memory.task.header.step?;
-    let (_, shown) = STAGES.iter().find(|(name, _)| *name == step.as_str())?;
-    Some(shown)
-}
-
-/// Update the progress of the command that a request has sent, in the words of the original terminal (IV.4.2 step 3).
-pub fn follow(exchange: &mut Exchange, picture: &Picture) {
-    let Some(Ok(answer)) = &exchange.answer else { return };
-    let number = answer.rsplit_once("command ").and_then(|(_, number)| number.parse::<u32>().ok());
-    let status = &picture.memory.task.status;
-    if number != Some(status.echo) {
-        return;
-    }
-    let stage = match status.report {
-        HwsReport::Finished => format!("Finished{}", status.unconfirmed.suffix()),
-        HwsReport::Executing if status.command.as_str() == STARTUP => match connecting(picture) {
-            Some(stage) => stage.to_owned(),
-            None => return,
-        },
-        report => report.to_string(),
-    };
-    if exchange.stages.last() != Some(&stage) {
-        exchange.stages.push(stage);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use interfaces::{CommonMemory, ExternalInputs, hws::HwsStatus};
-    use levels::ladder::Ladder;
-    use rcs_core::{
-        name::{Name, Name16},
-        tick::Tick,
-    };
-
-    /// The names of the stages are those of the steps in Task's table.
-    #[test]
-    fn startup_shows_the_stages_of_the_manual() {
-        let tables = Ladder::processes()[ProcessId::Task.position()].tables;
-        let steps = tables.iter().find(|table| table.name == STARTUP).unwrap().steps.unwrap();
-        let mut exchange = Exchange {
-            number: 1,
-            line: "STARTUP".into(),
-            answer: Some(Ok("tick 5: command 7".into())),
-            stages: Vec::new(),
-        };
-        let mut memory = CommonMemory::default();
-        let executing = HwsStatus { echo: 7, command: Name16::clipped(STARTUP), ..HwsStatus::default() };
-        let mut look = |step: &str, report| {
-            memory.task.status = HwsStatus { report, ..executing };
-            memory.task.header.step = Some(Name::clipped(step));
-            let external = ExternalInputs::default();
-            follow(&mut exchange, &Picture { tick: Tick(9), external, memory, timing: None });
-        };
-        for step in steps.variants {
-            look(step.text, HwsReport::Executing);
-        }
-        look("", HwsReport::Finished);
-        let shown = ["Aborting...", "Initiating...", "Connecting...", "Finished"];
-        assert_eq!(exchange.stages, shown);
-        assert_eq!(steps.variants.len(), STAGES.len() + 1, "a step has no stage");
-    }
 }

@@ -10,7 +10,7 @@ use taskdata::files::{
 };
 
 use super::library::Library;
-use crate::{model::buffers, picture::Picture};
+use crate::rcs_console::{model::buffers, picture::Picture};
 
 /// The file of a pointer, by the end of its field's path.
 #[derive(Clone, Copy)]

@@ -3,8 +3,8 @@
 use interfaces::{CommonMemory, ProcessId, operator::BOARDS as RUNNING};
 
 use super::{Board, BoardTerminal, Mode, Typed, pointer::nine};
-use crate::{
-    model::{Operating, Section, Text, Tone, operating::Exchange, views::lines},
+use crate::rcs_console::{
+    model::{Operating, Section, Text, Tone, session::Exchange, views::lines},
     picture::Picture,
 };
 

@@ -11,7 +11,7 @@ use rcs_core::name::{Name, Name10};
 use taskdata::load::{BlockNumber, Source, Store};
 
 use super::editor::Editor;
-use crate::picture::Picture;
+use crate::rcs_console::picture::Picture;
 
 /// Name of the cell description in a data directory.
 const CELL: &str = "cell.toml";

@@ -7,7 +7,7 @@ use levels::ladder::Ladder;
 use taskdata::load::{BlockNumber, source::BLOCK_LINES};
 
 use super::{BOARDS, Board, Mode, library::Library, pointer::target, said, teach::Lesson};
-use crate::{
+use crate::rcs_console::{
     model::{
         Text, Tone,
         views::{SHOW_WORDS, VOCABULARIES, fields_named, lines},
@@ -365,7 +365,7 @@ mod tests {
             let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
             Self {
                 board,
-                library: Library::of(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data")),
+                library: Library::of(Path::new(env!("CARGO_MANIFEST_DIR")).join("../data")),
                 picture: Picture { tick: Tick(7), external, memory, timing: None },
             }
         }

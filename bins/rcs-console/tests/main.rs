@@ -1,0 +1,5 @@
+//! The console: its screens as text, and the program in a terminal.
+
+mod procedures;
+mod screens;
+mod terminal;

@@ -1,0 +1,6 @@
+//! The program `rcs-log` as its users start it.
+
+mod command_line;
+mod damaged;
+mod fork;
+mod serve;

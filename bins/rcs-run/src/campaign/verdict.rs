@@ -1,0 +1,69 @@
+//! The verdict on a branch, and its result.
+
+use closed_loop::truth::Confirmation;
+use serde::{Deserialize, Serialize};
+
+/// The verdict on a branch.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The job continued.
+    Done,
+    /// The job did not continue, for the given reason.
+    Stranded,
+    /// An arm without pressure, its alignment, its own travel to HOME or a person has touched something, or let a part
+    /// slide in the fingers.
+    Apart,
+    /// A commanded point has done damage, or a finished command has not had its effect.
+    Hurt,
+    /// A command is reported as finished, and the cell is not as its goal has it.
+    False,
+}
+
+/// The result of a branch.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct BranchResult {
+    /// Tick after which the branch was interrupted.
+    pub at: u64,
+    /// The interruptions, as on the command line.
+    pub interruption: String,
+    /// The smallest series of interruptions with the same verdict and reason, if there were several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smallest: Option<String>,
+    /// What became of it.
+    pub verdict: Verdict,
+    /// Reason of a verdict other than done, without numbers, by which branches are counted.
+    pub reason: String,
+    /// The reason with numbers, the tick in which it began, and the process that reported it.
+    pub detail: String,
+    /// The line of the job that was interrupted.
+    pub line: String,
+    /// True if that line was a command.
+    pub met_command: bool,
+    /// The command of each process at the interruption.
+    pub doing: Vec<String>,
+    /// The commands that have ended since: tick, command and result.
+    pub ended: Vec<String>,
+    /// Last tick of the branch.
+    pub until: u64,
+    /// Ticks from the interruption to the last motion, if the branch is judged at rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest_after: Option<u64>,
+    /// The confirmations that are not true.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub untrue: Vec<Confirmation>,
+    /// Number of confirmations that were judged.
+    #[serde(default)]
+    pub judged: u64,
+    /// True if a command failed, a person undid the disturbance, and the job continued.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub remedied: bool,
+    /// True if the branch was to run to the end of the job.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub whole: bool,
+    /// Digest of its last state.
+    pub state: String,
+    /// Digest of all its ticks, if nothing has interrupted it: that of the ordinary run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub digest: Option<String>,
+}

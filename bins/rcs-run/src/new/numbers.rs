@@ -1,0 +1,48 @@
+//! What a part of another size changes: the numbers in the forms of its family, and vise or nests of the cell.
+
+use geometry::movetable::MovetableLine;
+use plant::description::PartType;
+use rcs_core::name::Name16;
+use taskdata::load::entries::{GripEntry, Typed};
+
+use super::change::Change;
+use crate::rcs_run::error::Error;
+
+/// Computes the numbers of a family whose parts have other sizes.
+pub trait Numbers {
+    /// The new parts.
+    fn parts(&self) -> &[PartType];
+
+    /// The places of the new grips that replace a grip, and the lines of their movetables.
+    ///
+    /// # Errors
+    /// [`Error::New`] if the grip is at an unsupported place.
+    fn grips(&self, grip: &GripEntry) -> Result<Vec<(Typed, Vec<MovetableLine>)>, Error>;
+
+    /// Approach and grasp openings, force and depart opening of an object, in 0.01 in and lb.
+    fn openings(&self, object: &Name16, values: [i32; 4]) -> [i32; 4];
+
+    /// Numbers of an object at the pedestal: approach, grasp, force, release, table, flip.
+    fn pedestal(&self, _object: &Name16, values: [i32; 6]) -> [i32; 6] {
+        values
+    }
+
+    /// The range of a view, mm.
+    fn range(&self, _object: &Name16, range: i32) -> i32 {
+        range
+    }
+
+    /// Add the vise's program or the nests to the cell description.
+    ///
+    /// # Errors
+    /// [`Error::New`] if there is no table after which theirs can be inserted.
+    fn places(&self, change: &mut Change) -> Result<Places, Error>;
+}
+
+/// The changes of vise or nests for the new parts.
+pub struct Places {
+    pub chosen: Vec<(&'static str, String)>,
+    pub to_teach: Vec<String>,
+    /// True if other parts must be tried, too.
+    pub others: bool,
+}

@@ -1,0 +1,8 @@
+//! The program `rcs-run` as its users start it.
+
+mod campaign;
+mod command_line;
+mod common;
+mod console;
+mod database;
+mod odd_files;

@@ -1,0 +1,298 @@
+//! The frames of a robot: the T3's world in the robot's work object, and the robot's tool in the T3's end plate. They
+//! come from a file such as `data/robots/same.toml`, which can also describe the robot's arm.
+
+use std::path::{Path, PathBuf};
+
+use depc::{Plate, plate::HALF_TURN, track::MOST_LAG_MS};
+use diagnostics::{
+    Diagnostics, Problem, Source, UnknownFile,
+    toml::{Document, FileKind, element, join},
+};
+use egm::{Limits, Pose, pose};
+use geometry::{
+    frame::{Frame, Vector, rotation_by, rotation_vector},
+    kinematics::T3,
+};
+use os_io::files;
+use serde::Deserialize;
+
+use crate::egm::arm::{Arm, ArmText};
+
+/// Millimetres per inch.
+const MM_PER_IN: f64 = 25.4;
+/// Limits of DEPC (A 2.3) in mm/s and rad/s. One position can be rounded and the next exact, so each end of a 40 ms
+/// period adds 0.01 in and 0.01 degree.
+const SPEED: f64 = (14.0 + 0.5) * MM_PER_IN;
+/// See [`SPEED`]: each of three angles may turn by 1.0 rad/s.
+const TURN: f64 = 1.75;
+
+/// Messages about the file: lengths in mm, angles in degrees, and quaternions, whose components can be very small.
+pub(crate) const KIND: FileKind = FileKind {
+    whole: "the file",
+    syntax: "robot.syntax",
+    key: "robot.key",
+    missing: "robot.missing",
+    value: "robot.value",
+    magnitudes: [0.0, 1e6],
+};
+
+/// Errors of a robot's file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlacementError {
+    /// There is no such robot.
+    #[error(transparent)]
+    Unknown(#[from] UnknownFile),
+    /// The file cannot be read.
+    #[error("the robot's frames {} cannot be read: {source}", path.display())]
+    Read {
+        /// Path of the file.
+        path: PathBuf,
+        /// Error of the operating system.
+        source: std::io::Error,
+    },
+    /// The contents are not as expected.
+    #[error("the robot's file cannot be used: {}", .0.in_line())]
+    Text(Box<Diagnostics>),
+}
+
+/// A pose in the file.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Place {
+    /// Position, mm.
+    position: [f64; 3],
+    /// Unit quaternion w, x, y, z.
+    orientation: [f64; 4],
+}
+
+impl Place {
+    /// The pose of the table `name`; adds its errors to `problems`.
+    pub(crate) fn pose(&self, name: &str, problems: &mut Vec<Problem>) -> Option<Pose> {
+        let pose = Pose::new(self.position, self.orientation);
+        if pose.is_err() {
+            let expected = "a quaternion w, x, y, z of length 1";
+            let found = format!("{:?}", self.orientation);
+            problems.push(Problem::unlike(KIND.value, &join(name, "orientation"), expected, found));
+        }
+        pose.ok()
+    }
+}
+
+/// The work space in the file, mm in the work object.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Space {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+/// How the robot follows its targets.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Following {
+    /// Expected lag behind the positions sent, ms.
+    lag: f64,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Text {
+    world: Place,
+    tool: Place,
+    space: Option<Space>,
+    following: Option<Following>,
+    arm: Option<ArmText>,
+}
+
+/// Contents of a robot's file. By default it is at the place of the T3.
+#[derive(Clone, Debug, Default)]
+pub struct RobotFile {
+    /// The frames of the robot.
+    pub placement: Placement,
+    /// Expected lag behind the positions sent, ms, if the file states it.
+    pub lag_ms: Option<u16>,
+    /// The arm of the robot, if the file describes it.
+    pub arm: Option<Arm>,
+}
+
+impl Following {
+    /// The lag; adds an error to `problems`.
+    fn lag_ms(self, problems: &mut Vec<Problem>) -> Option<u16> {
+        let whole = (0.0..=f64::from(MOST_LAG_MS)).contains(&self.lag) && self.lag.fract() == 0.0;
+        if !whole {
+            let expected = format!("a whole number of ms from 0 to {MOST_LAG_MS}");
+            problems.push(Problem::unlike(KIND.value, "following.lag", &expected, self.lag));
+        }
+        // A whole number up to 1000.
+        whole.then_some(self.lag as u16)
+    }
+}
+
+impl RobotFile {
+    /// Reads a robot's file.
+    ///
+    /// # Errors
+    /// [`PlacementError`] if the file cannot be read or used.
+    pub fn load(path: &Path) -> Result<Self, PlacementError> {
+        let text = files::read_text(path)
+            .map_err(|source| PlacementError::Read { path: path.to_owned(), source })?;
+        let source = Source { name: path.display().to_string(), text: text.into() };
+        Self::from_toml(&source).map_err(|report| PlacementError::Text(Box::new(report)))
+    }
+
+    /// Parses the text of a robot's file.
+    ///
+    /// # Errors
+    /// All problems of the text, with their places.
+    pub fn from_toml(source: &Source) -> Result<Self, Diagnostics> {
+        let mut file = None;
+        Document::load(source, KIND, |text: &Text, stand_ins, problems| {
+            let mut found = Vec::new();
+            let placement = Placement::from_text(text, &mut found);
+            let arm = text.arm.as_ref().map(|arm| Arm::from_text(arm, &mut found));
+            let lag_ms = text.following.and_then(|following| following.lag_ms(&mut found));
+            found.retain(|problem| problem.entry.as_ref().is_none_or(|entry| stand_ins.trusts(entry)));
+            problems.extend(found);
+            file = placement.map(|placement| Self { placement, lag_ms, arm: arm.flatten() });
+        })?;
+        let unusable = || Problem::of_entry(KIND.value, "", "the file has no frames".to_owned());
+        file.ok_or_else(|| Diagnostics::of_file(unusable().into(), source))
+    }
+}
+
+/// The text as the source of a robot's file.
+#[cfg(test)]
+pub(crate) fn source(text: &str) -> Source {
+    Source { name: "robot.toml".to_owned(), text: text.into() }
+}
+
+/// The frames of a robot, and the limits of its targets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Pose of the T3's world in the work object.
+    world: Pose,
+    /// Pose of the robot's tool in the T3's end plate.
+    tool: Pose,
+    limits: Limits,
+}
+
+impl Default for Placement {
+    /// The work object coincides with the T3's world, and the tool with its end plate.
+    fn default() -> Self {
+        Self { world: Pose::IDENTITY, tool: Pose::IDENTITY, limits: Limits::of_speed(SPEED, TURN) }
+    }
+}
+
+impl Placement {
+    fn from_text(text: &Text, problems: &mut Vec<Problem>) -> Option<Self> {
+        let (world, tool) = (text.world.pose("world", problems), text.tool.pose("tool", problems));
+        for (axis, (low, high)) in
+            text.space.iter().flat_map(|space| space.low.iter().zip(space.high)).enumerate()
+        {
+            if *low >= high {
+                let expected = format!("less than the {high} of space.high");
+                problems.push(Problem::unlike(KIND.value, &element("space.low", axis), expected, low));
+            }
+        }
+        let (world, tool) = (world?, tool?);
+        // The tool point turns about the end plate, so a rotation adds to its speed.
+        let speed = SPEED + TURN * pose::norm(&tool.position);
+        let mut limits = Limits::of_speed(speed, TURN);
+        if let Some(Space { low, high }) = text.space {
+            limits.space = [low, high];
+        }
+        Some(Self { world, tool, limits })
+    }
+
+    /// The limits that points and targets are checked against.
+    #[must_use]
+    pub const fn limits(&self) -> Limits {
+        self.limits
+    }
+
+    /// Pose of the robot's tool in its work object, mm, for an end-plate frame (inches, world).
+    #[must_use]
+    pub fn pose(&self, plate: &Frame) -> Pose {
+        let turn = rotation_vector(&plate.rotation);
+        let position = plate.position * MM_PER_IN;
+        let plate = Pose { position: position.into(), orientation: pose::from_rotation_vector(&turn.into()) };
+        self.world.compose(&plate).compose(&self.tool)
+    }
+
+    /// Pose of the T3's end plate in the T3's world, mm, for a pose of the robot's tool in its work object.
+    #[must_use]
+    pub fn plate_pose(&self, pose: &Pose) -> Pose {
+        self.world.inverse().compose(pose).compose(&self.tool.inverse())
+    }
+
+    /// As [`Self::plate_pose`], in inches.
+    #[must_use]
+    pub fn plate_frame(&self, pose: &Pose) -> Frame {
+        let plate = self.plate_pose(pose);
+        Frame {
+            position: Vector::from(plate.position) / MM_PER_IN,
+            rotation: rotation_by(&pose::rotation_vector(&plate.orientation).into()),
+        }
+    }
+
+    /// The T3's tool frame (inches, world) for a pose of the robot's tool in its work object.
+    #[must_use]
+    pub fn tool_frame(&self, pose: &Pose) -> Frame {
+        self.plate_frame(pose).shifted(Vector::new(T3.plate_to_tool, 0.0, 0.0))
+    }
+
+    /// DEPC words of a pose, with D and R near those of `near`; `None` if DEPC cannot express the pose.
+    #[must_use]
+    pub fn words(&self, pose: &Pose, near: &Plate) -> Option<Plate> {
+        let words = Plate::from_frame(&self.plate_frame(pose), near).ok()?;
+        let [.., e, _] = words.words;
+        (0..=HALF_TURN).contains(&e.into()).then_some(words)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::kinematics::HOME_JOINTS;
+    use proptest::prelude::*;
+
+    const TEXT: &str = "[world]\nposition = [1200.0, 0.0, 900.0]\norientation = [0.7071068, 0.0, 0.0, 0.7071068]\n\
+                        [tool]\nposition = [0.0, 0.0, 100.0]\norientation = [0.5, 0.5, 0.5, 0.5]\n";
+
+    proptest! {
+        #[test]
+        fn a_plate_comes_back(at in prop::array::uniform3(-80.0_f64..80.0), turn in prop::array::uniform3(-1.7_f64..1.7)) {
+            let plate = Frame { position: at.into(), rotation: rotation_by(&turn.into()) };
+            for placement in [Placement::default(), RobotFile::from_toml(&source(TEXT)).unwrap().placement] {
+                let back = placement.plate_frame(&placement.pose(&plate));
+                let off = back.distance(&plate);
+                prop_assert!(off.inches < 1e-9 && off.radians < 1e-9, "{off:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn home_is_where_it_was_worked_out_to_be() {
+        let home = T3.forward_plate(&HOME_JOINTS);
+        let pose = Placement::default().pose(&home);
+        assert!((pose.position[1] + 62.93 * 25.4).abs() < 0.3, "{pose:?}");
+        // Turned by 90 degrees about z, y becomes -x; the world lies 1200 mm in front.
+        let placed =
+            RobotFile::from_toml(&source(&TEXT.replace("100.0", "0.0"))).unwrap().placement.pose(&home);
+        assert!((placed.position[0] - (1200.0 + 62.93 * 25.4)).abs() < 0.3, "{placed:?}");
+    }
+
+    #[test]
+    fn a_file_with_a_mistake_says_which() {
+        for (wrong, word) in [
+            (TEXT.replace("0.7071068, 0.0", "0.9, 0.0"), "world.orientation"),
+            (TEXT.replace("[tool]", "[tools]"), "tools"),
+            (format!("{TEXT}[following]\nlag = 1001.0\n"), "following.lag"),
+            (format!("{TEXT}[space]\nlow = [0.0, 0.0, 0.0]\nhigh = [1.0, 1.0, 0.0]\n"), "space.low"),
+        ] {
+            let said = RobotFile::from_toml(&source(&wrong)).unwrap_err().in_line();
+            assert!(said.contains(word), "{said}");
+        }
+    }
+}
