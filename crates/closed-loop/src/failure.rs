@@ -6,12 +6,7 @@
 
 use interfaces::{CommonMemory, Detail, ExternalInputs, Fault, Header, HwsCommand, Reason};
 use levels::ladder::{PROCESS_COUNT, ProcessId, ProcessInfo};
-use rcs_core::{
-    Plain,
-    handshake::Lower,
-    table::{Row, Table},
-    tick::Tick,
-};
+use rcs_core::{Plain, handshake::Lower, table::Fired, tick::Tick};
 
 /// Number of processes of [`CommonMemory`], in its order.
 pub const PROCESSES: usize = PROCESS_COUNT;
@@ -100,31 +95,23 @@ impl Watch {
         let cause = cause_of(root)?;
         let why = cause.fault.text();
         let process = &processes[root.position()];
-        let row = row_of(process, &cause.header);
+        let fired = process.fired(&cause.header);
         let text = format!(
             "{}: {why}{}, {}{}",
             process.name,
             cause.detail,
             while_doing(root, cause),
-            row.map_or_else(String::new, |(table, row)| format!(
-                " (table {}, row {}: {row})",
-                table.name, row.number
-            ))
+            fired.map_or_else(String::new, |fired| format!(" (table {fired})"))
         );
         Some(Failure {
             tick: cause.tick,
             process: process.name.to_owned(),
-            table: row.map(|(table, _)| table.name.to_owned()),
-            row: row.map(|(_, row)| row.number),
+            table: fired.map(|fired| fired.table.name.to_owned()),
+            row: fired.map(|fired| fired.row.number),
             text,
             stopped: link,
         })
     }
-}
-
-/// The table and the row in a header.
-fn row_of(process: &ProcessInfo, header: &Header) -> Option<(&'static Table, &'static Row)> {
-    process.row(header.decided?)
 }
 
 fn faults(memory: &CommonMemory) -> [Fault; PROCESSES] {
@@ -156,9 +143,9 @@ pub fn present_commands(
 ) -> String {
     let lines = ProcessId::ALL.iter().zip(processes).filter_map(|(id, process)| {
         let command = command(*id, hws, memory);
-        let (table, row) = row_of(process, memory.header(*id))?;
+        let Fired { table, row, .. } = process.fired(memory.header(*id))?;
         let text =
-            || format!("{} executes {command} (table {}, row {})", process.name, table.name, row.number);
+            || format!("{} executes {command} (table {} row {})", process.name, table.name, row.number);
         (!command.is_empty()).then(text)
     });
     lines.collect::<Vec<_>>().join("; ")
@@ -293,7 +280,7 @@ mod tests {
         assert_eq!(
             failure.text,
             "Grip: the fingers closed on nothing, while it executed CLOSE-GRIP (opening 0.00 in, force 25 lb) \
-             (table CLOSE-GRIP, row 3: Wait, fingers Shut => Fail(GraspMissed) -> Start)"
+             (table CLOSE-GRIP row 3: Wait, fingers Shut => Fail(GraspMissed) -> Start)"
         );
     }
 

@@ -7,7 +7,7 @@
 //! instead.
 
 use interfaces::{
-    CommonMemory, Decided, ExternalInputs, OutsidePedestal,
+    CommonMemory, Decided, ExternalInputs, Header, OutsidePedestal,
     device::{LinkBytes, single_step},
     for_each_process,
     operator::may_be_written,
@@ -15,7 +15,7 @@ use interfaces::{
 };
 use rcs_core::{
     Plain,
-    table::{Row, Table},
+    table::{Fired, Row, Table},
     tick::Tick,
 };
 use taskdata::files::TaskData;
@@ -50,6 +50,13 @@ impl ProcessInfo {
     pub fn row(&self, decided: Decided) -> Option<(&'static Table, &'static Row)> {
         let table = self.table(decided.table)?;
         Some((table, table.row(decided.row)?))
+    }
+
+    /// The row that decided last, with the values for which it fired.
+    #[must_use]
+    pub fn fired(&self, header: &Header) -> Option<Fired> {
+        let (table, row) = self.row(header.decided?)?;
+        Some(Fired { table, row, values: header.basis.map(|basis| basis.values) })
     }
 }
 

@@ -121,7 +121,7 @@ use core::fmt;
 
 use crate::plain::EnumSchema;
 
-pub use values::{NearMiss, Values};
+pub use values::{Fired, NearMiss, Values};
 
 /// A decision table as text, for logs, `rcs-run tables` and failure reports.
 #[derive(Debug)]
@@ -191,7 +191,7 @@ pub struct Row {
 }
 
 /// The condition of a row on a variable.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Condition {
     /// The variable.
     pub variable: &'static str,
@@ -267,19 +267,7 @@ impl Table {
 impl Row {
     /// The step and the conditions as text: `Closing, door Stuck`, or `always`.
     pub fn conditions(&self) -> impl fmt::Display {
-        fmt::from_fn(move |f| {
-            if self.steps.is_empty() && self.when.is_empty() {
-                return f.write_str("always");
-            }
-            join(f, self.steps, " or ")?;
-            for (position, condition) in self.when.iter().enumerate() {
-                if position > 0 || !self.steps.is_empty() {
-                    f.write_str(", ")?;
-                }
-                write!(f, "{condition}")?;
-            }
-            Ok(())
-        })
+        fmt::from_fn(move |f| conditions(f, self.steps, self.when.iter().copied()))
     }
 
     /// The action with what it carries: `Fail(DoorStuck)`.
@@ -289,6 +277,30 @@ impl Row {
             None => f.write_str(self.action),
         })
     }
+
+    /// The action with what it carries, and the next step: `Close -> Closing`.
+    fn effect(&self) -> impl fmt::Display {
+        fmt::from_fn(move |f| match self.next {
+            Some(next) => write!(f, "{} -> {next}", self.call()),
+            None => write!(f, "{}", self.call()),
+        })
+    }
+}
+
+/// Steps and conditions as text.
+fn conditions(
+    f: &mut fmt::Formatter<'_>,
+    steps: &[&str],
+    when: impl Iterator<Item = Condition>,
+) -> fmt::Result {
+    join(f, steps, " or ")?;
+    let mut is_first = steps.is_empty();
+    for condition in when {
+        f.write_str(if is_first { "" } else { ", " })?;
+        write!(f, "{condition}")?;
+        is_first = false;
+    }
+    if is_first { f.write_str("always") } else { Ok(()) }
 }
 
 /// Names with a word between them.
@@ -312,10 +324,6 @@ impl fmt::Display for Condition {
 /// The row as text: `Closing, door Stuck => Fail(DoorStuck)`.
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} => {}", self.conditions(), self.call())?;
-        match self.next {
-            Some(next) => write!(f, " -> {next}"),
-            None => Ok(()),
-        }
+        write!(f, "{} => {}", self.conditions(), self.effect())
     }
 }

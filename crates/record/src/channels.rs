@@ -16,7 +16,7 @@ use levels::ladder::{Ladder, ProcessInfo};
 use mcap::{McapResult, records::MessageHeader};
 use rcs_core::{
     plain::{self, Schema, StructSchema},
-    table::{Row, Table},
+    table::Fired,
     tick::Tick,
 };
 
@@ -237,8 +237,8 @@ impl HeaderPlace {
 
     /// The row that a header names.
     #[must_use]
-    pub fn row(&self, header: &Header) -> Option<(&'static Table, &'static Row)> {
-        self.process.row(header.decided?)
+    pub fn fired(&self, header: &Header) -> Option<Fired> {
+        self.process.fired(header)
     }
 }
 

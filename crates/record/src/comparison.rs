@@ -8,7 +8,6 @@ use crate::{
     channels::{HeaderPlace, headers},
     layout::{self, Leaf},
     reader::LoggedTick,
-    remarks::row_text,
 };
 
 /// The first difference of a replay from the run.
@@ -92,8 +91,8 @@ impl Comparison {
         let Some(place) = self.headers.iter().find(|place| place.field == process) else {
             return String::new();
         };
-        match place.row(&place.read(memory)) {
-            Some((table, row)) => format!("{} decided by {}", place.process.name, row_text(table, row)),
+        match place.fired(&place.read(memory)) {
+            Some(fired) => format!("{} decided by {fired}", place.process.name),
             None => format!("{} decided by no row", place.process.name),
         }
     }

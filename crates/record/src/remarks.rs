@@ -12,10 +12,7 @@ use interfaces::{
     prim::{PrimReport, PrimVerb},
     t3i::{T3iStatus, T3iVerb},
 };
-use rcs_core::{
-    handshake::Lower,
-    table::{Row, Table},
-};
+use rcs_core::handshake::Lower;
 
 use crate::{channels::HeaderPlace, proto::foxglove::Level};
 
@@ -191,13 +188,13 @@ fn failures(
 fn failure(headers: &[HeaderPlace], field: &str, header: &Header, level: Level, reason: String) -> Remark {
     let place = headers.iter().find(|place| place.field == field);
     let source = name_of(headers, field);
-    match place.and_then(|place| place.row(header)) {
-        Some((table, row)) => Remark {
+    match place.and_then(|place| place.fired(header)) {
+        Some(fired) => Remark {
             level,
             source,
-            text: format!("{reason} ({})", row_text(table, row)),
-            file: table.file,
-            line: table.line,
+            text: format!("{reason} ({fired})"),
+            file: fired.table.file,
+            line: fired.table.line,
         },
         None => Remark { level, source, text: reason, ..Remark::default() },
     }
@@ -213,12 +210,6 @@ fn holding(was: &Holding, is: &Holding) -> Option<String> {
         (_, Holding::Something) => Some("holds something unknown".to_owned()),
         (_, Holding::NotKnown) => Some("cannot tell whether anything is held".to_owned()),
     }
-}
-
-/// A row as one line: `GET-OBJECT row 4: Start, held Nothing, vision Needed => MovToVu -> Viewing`.
-#[must_use]
-pub fn row_text(table: &Table, row: &Row) -> String {
-    format!("{} row {}: {row}", table.name, row.number)
 }
 
 fn name_of(headers: &[HeaderPlace], field: &str) -> String {

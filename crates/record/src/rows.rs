@@ -11,7 +11,7 @@ use levels::ladder::ProcessInfo;
 use mcap::McapResult;
 use prost_types::field_descriptor_proto::Type;
 use rcs_core::{
-    table::{Table, Values},
+    table::{Fired, Table, Values},
     tick::Tick,
 };
 
@@ -113,8 +113,8 @@ fn timeless(header: &Header) -> Header {
 
 /// The message, but for the tick.
 fn row_message(place: &HeaderPlace, header: &Header) -> Vec<u8> {
-    let (table, conditions, action, next) = match place.row(header) {
-        Some((table, row)) => {
+    let (table, conditions, action, next) = match place.fired(header) {
+        Some(Fired { table, row, .. }) => {
             (table.name, row.conditions().to_string(), row.call().to_string(), row.next.unwrap_or_default())
         }
         None => Default::default(),

@@ -3,7 +3,7 @@
 use closed_loop::failure;
 use interfaces::{CommonMemory, Header, ProcessId, Said, device::VisionStatus, for_each_process};
 use levels::ladder::Ladder;
-use rcs_core::{handshake::Lower, table::Row, tick::TICK_S};
+use rcs_core::{handshake::Lower, table::Fired, tick::TICK_S};
 
 use super::Tone;
 use crate::rcs_console::{
@@ -152,7 +152,7 @@ fn process_line(branch: Branch, process: ProcessId, picture: &Picture, story: &S
     let info = &Ladder::processes()[process.position()];
     let (header, said) = (picture.memory.header(process), picture.memory.said(process));
     let absence = picture.absence(process);
-    let row = header.decided.and_then(|decided| info.row(decided));
+    let fired = info.fired(header);
     let command = picture.command(process);
     let cause =
         story.present_trouble(picture).and_then(|trouble| story::process_named(&trouble.failure.process));
@@ -176,15 +176,15 @@ fn process_line(branch: Branch, process: ProcessId, picture: &Picture, story: &S
         command,
         status,
         echo: Some(echo(&picture.memory, process)),
-        row: row.map_or_else(String::new, |(table, row)| format!("{} {}", table.name, row.number)),
-        text: row_text(&said, row.map(|(_, row)| row)),
+        row: fired.map_or_else(String::new, |fired| format!("{} {}", fired.table.name, fired.row.number)),
+        text: row_text(&said, fired),
         age: age(header),
     }
 }
 
 /// The row that fired, after what no sensor confirms about a finished command.
-fn row_text(said: &Said, row: Option<&Row>) -> String {
-    let row = row.map_or_else(String::new, ToString::to_string);
+fn row_text(said: &Said, fired: Option<Fired>) -> String {
+    let row = fired.map_or_else(String::new, |fired| fired.text().to_string());
     if said.unconfirmed.is_none() { row } else { format!("unconfirmed: {}; {row}", said.unconfirmed) }
 }
 

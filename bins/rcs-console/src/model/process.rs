@@ -1,10 +1,10 @@
 //! The process screen: the decision table consulted last, the rows that fired before, and their meaning.
 
-use interfaces::{Header, ProcessId};
+use interfaces::{Consulted, Header, ProcessId};
 use levels::ladder::{Ladder, ProcessInfo};
 use rcs_core::{
     plain::EnumSchema,
-    table::{Row, Table, Values},
+    table::{Fired, Row, Table, Values},
     tick::TICK_S,
 };
 
@@ -77,9 +77,11 @@ fn near(table: &Table, row: &Row, values: Values) -> Option<String> {
 
 /// The rows of other tables that fired in addition to the deciding one.
 fn beside(info: &ProcessInfo, header: &Header) -> Vec<Text> {
-    let rows = header.beside.iter().flatten().filter_map(|consulted| info.row(consulted.decided));
-    rows.map(|(table, row)| Text::plain(format!("       beside: {} {}: {row}", table.name, row.number)))
-        .collect()
+    let rows = header.beside.iter().flatten().filter_map(|Consulted { decided, values }| {
+        let (table, row) = info.row(*decided)?;
+        Some(Fired { table, row, values: Some(*values) })
+    });
+    rows.map(|fired| Text::plain(format!("       beside: {fired}"))).collect()
 }
 
 /// The meaning of a row in the words of the source: each condition, the action, the next step.

@@ -6,8 +6,7 @@ use std::{collections::HashMap, fmt};
 use interfaces::Decided;
 use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId};
 use os_io::text::amount;
-use rcs_core::tick::TICK_S;
-use record::remarks::row_text;
+use rcs_core::{table::Fired, tick::TICK_S};
 use serde::Serialize;
 
 use super::{
@@ -169,7 +168,8 @@ fn rows(process: usize, others: Others, a: &Trace, b: &Trace) -> Option<Rows> {
     let info = &Ladder::processes()[ProcessId::ALL[process].position()];
     let [a, b] = decided.map(|decided| {
         let row = decided.and_then(|decided| info.row(decided));
-        row.map_or_else(|| "no row".to_owned(), |(table, row)| row_text(table, row))
+        let text = |(table, row)| Fired { table, row, values: None }.to_string();
+        row.map_or_else(|| "no row".to_owned(), text)
     });
     let ticks = others.map_or(0, |(ticks, ..)| ticks);
     Some(Rows { process: info.name.to_owned(), ticks, same_order: parted.is_none(), first, a, b })

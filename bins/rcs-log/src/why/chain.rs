@@ -9,10 +9,10 @@
 
 use interfaces::t3i::LinkFault;
 use levels::ladder::{PROCESS_COUNT, ProcessId};
-use rcs_core::table::{Condition, Row};
+use rcs_core::table::{Condition, Fired, Row};
 use serde::Serialize;
 
-use super::history::{Fired, History, condition, info, row_of, row_words};
+use super::history::{self, History, condition, info, row_of, row_words};
 
 /// A step of the trace.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -86,7 +86,7 @@ fn report(history: &History, at: Root) -> Link {
 
 /// The conditions of a row that the previous row does not have: the reasons why it fired. `None` unless it fired for
 /// the first time and under the same command as in the tick before.
-fn news(history: &History, at: Root, fired: &Fired) -> Option<String> {
+fn news(history: &History, at: Root, fired: &history::Fired) -> Option<String> {
     if fired.tick != at.tick {
         return None;
     }
@@ -96,20 +96,23 @@ fn news(history: &History, at: Root, fired: &Fired) -> Option<String> {
         return None;
     }
     let last = history.row(at.process, seen)?;
-    let ((table, now), (above, before)) = (row_of(at.process, fired)?, row_of(at.process, last)?);
+    let (now, before) = (row_of(at.process, fired)?, row_of(at.process, last)?);
     // A table consulted first that decides now had passed the decision on before, by a row that no header names.
-    let passed = table.rows.iter().filter(|row| above.name != table.name && row.action == CONSULT);
-    let changed = changed(passed.chain([before]), now);
+    let is_above = before.table.name != now.table.name;
+    let passed = now.table.rows.iter().filter(|row| is_above && row.action == CONSULT);
+    let changed = changed(passed.chain([before.row]), &now);
     (!changed.is_empty()).then(|| changed.join(", "))
 }
 
 /// The action of rows that pass the decision on to the next table.
 const CONSULT: &str = "consult";
 
-/// Conditions of a row that no row before it has. The step is left out, because it is the table's own state.
-fn changed<'a>(before: impl Iterator<Item = &'a Row>, now: &Row) -> Vec<String> {
+/// The values for which a row fired, of the conditions that no row before it has. The step is left out, because it is
+/// the table's own state.
+fn changed<'a>(before: impl Iterator<Item = &'a Row>, now: &Fired) -> Vec<String> {
     let known: Vec<&Condition> = before.flat_map(|row| row.when).collect();
-    now.when.iter().filter(|asked| !known.contains(asked)).map(condition).collect()
+    let asked = now.row.when.iter().zip(now.conditions());
+    asked.filter(|(asked, _)| !known.contains(asked)).map(|(_, found)| condition(&found)).collect()
 }
 
 /// The commands that led to a process, from the workstation controller down, each with its tick and row.
@@ -255,7 +258,8 @@ mod tests {
         }
         const BEFORE: Row = row(1, &[asked("hand", &["Empty"]), asked("held", &["No"])]);
         const NOW: Row = row(2, &[asked("hand", &["Empty"]), asked("held", &["Yes", "Maybe"])]);
-        assert_eq!(changed([&BEFORE].into_iter(), &NOW), ["held is Yes or Maybe"]);
-        assert!(changed([&BEFORE, &NOW].into_iter(), &NOW).is_empty());
+        let now = Fired { table: &levels::execution::EXECUTE, row: &NOW, values: None };
+        assert_eq!(changed([&BEFORE].into_iter(), &now), ["held is Yes or Maybe"]);
+        assert!(changed([&BEFORE, &NOW].into_iter(), &now).is_empty());
     }
 }

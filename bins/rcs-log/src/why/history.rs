@@ -5,7 +5,7 @@ use interfaces::{Decided, Header};
 use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
     name::Name16,
-    table::{Condition, Row, Table},
+    table::{self, Condition, Row, Values},
 };
 
 use crate::story::Moment;
@@ -28,6 +28,8 @@ pub struct Fired {
     pub tick: u64,
     /// Table and row; `None` if no row of a table fired.
     pub decided: Option<Decided>,
+    /// The values for which it first fired.
+    pub values: Option<Values>,
     /// Step of the command after the row.
     pub step: Option<Name16>,
 }
@@ -57,10 +59,10 @@ impl History {
         let tick = moment.tick.0;
         for process in ProcessId::ALL.iter().copied() {
             let at = process.position();
-            let Header { decided, step, .. } = *moment.after.header(process);
+            let Header { decided, step, basis, .. } = *moment.after.header(process);
             let rows = &mut self.rows[at];
             if rows.last().is_none_or(|last| (last.decided, last.step) != (decided, step)) {
-                rows.push(Fired { tick, decided, step });
+                rows.push(Fired { tick, decided, values: basis.map(|basis| basis.values), step });
             }
             let said = moment.after.said(process);
             let (report, reason) = (said.report, said.fault.text());
@@ -107,17 +109,19 @@ pub fn info(process: ProcessId) -> &'static ProcessInfo {
 }
 
 /// The table and row that fired.
-pub fn row_of(process: ProcessId, fired: &Fired) -> Option<(&'static Table, &'static Row)> {
-    info(process).row(fired.decided?)
+pub fn row_of(process: ProcessId, fired: &Fired) -> Option<table::Fired> {
+    let (table, row) = info(process).row(fired.decided?)?;
+    Some(table::Fired { table, row, values: fired.values })
 }
 
-/// The conditions of a row as text: `step is Start`, `gripper is None`.
-pub fn conditions(row: &Row) -> Vec<String> {
-    let step = (!row.steps.is_empty()).then(|| format!("step is {}", row.steps.join(" or ")));
-    step.into_iter().chain(row.when.iter().map(condition)).collect()
+/// The values for which a row fired, as text: `step is Start`, `gripper is None`.
+pub fn conditions(fired: &table::Fired) -> Vec<String> {
+    let steps = fired.steps();
+    let step = (!steps.is_empty()).then(|| format!("step is {}", steps.join(" or ")));
+    step.into_iter().chain(fired.conditions().map(|asked| condition(&asked))).collect()
 }
 
-/// A condition as text: `held is Nothing or Other`.
+/// A condition as text: `held is Nothing`.
 pub fn condition(asked: &Condition) -> String {
     format!("{} is {}", asked.variable, asked.values.join(" or "))
 }
@@ -146,10 +150,10 @@ pub fn because(conditions: &[String]) -> String {
 pub fn row_words(process: ProcessId, fired: &Fired) -> String {
     match row_of(process, fired) {
         None => "by no row of a table".to_owned(),
-        Some((table, row)) => {
-            let (effect, because) =
-                (effect(row, fired.step.unwrap_or_default().as_str()), because(&conditions(row)));
-            format!("table {} row {}: {effect}, {because}", table.name, row.number)
+        Some(row) => {
+            let effect = effect(row.row, fired.step.unwrap_or_default().as_str());
+            let because = because(&conditions(&row));
+            format!("table {} row {}: {effect}, {because}", row.table.name, row.row.number)
         }
     }
 }
@@ -158,6 +162,8 @@ pub fn row_words(process: ProcessId, fired: &Fired) -> String {
 mod tests {
     use super::*;
     use interfaces::ExternalInputs;
+    use levels::execution::{Buffer, EXECUTE, Outcome};
+    use rcs_core::{handshake::Arrival, table::Variables as _};
 
     #[test]
     fn what_processes_read_are_inputs() {
@@ -186,7 +192,6 @@ mod tests {
         };
         assert_eq!(effect(&any, "letting-go"), "Wait in step letting-go");
         assert_eq!(effect(&any, ""), "Wait");
-        assert_eq!(because(&conditions(&any)), "because work is Busy or Lost");
         let one = Row {
             number: 2,
             steps: &["Start"],
@@ -196,7 +201,18 @@ mod tests {
             next: Some("Stowing"),
         };
         assert_eq!(effect(&one, "stowing"), "MovToHol(Own), then Stowing");
-        assert_eq!(because(&conditions(&one)), "because step is Start");
-        assert_eq!(because(&conditions(&Row { steps: &[], ..one })), "whatever the state");
+    }
+
+    #[test]
+    fn a_reason_names_the_values_for_which_the_row_fired() {
+        let of_row = |number: u8, values: Option<Values>| {
+            let row = EXECUTE.row(number).unwrap();
+            because(&conditions(&table::Fired { table: &EXECUTE, row, values }))
+        };
+        let values =
+            Values { step: Outcome::Done.code(), variables: Buffer { arrival: Arrival::Same }.code() };
+        assert_eq!(of_row(5, Some(values)), "because step is Done, arrival is Same");
+        assert_eq!(of_row(5, None), "because step is Idle or Done or Error or Joystick, arrival is Same");
+        assert_eq!(because(&[]), "whatever the state");
     }
 }

@@ -127,7 +127,7 @@ struct Rung {
     beside: Vec<String>,
     table: Option<String>,
     row: Option<u8>,
-    /// Conditions of the row: its steps and state variables.
+    /// Conditions of the row: its step and state variables, with the values for which it fired.
     conditions: Vec<String>,
     /// Action of the row, with its parameters.
     action: Option<String>,
@@ -236,22 +236,23 @@ fn explain(log: &Log, moment: &Moment, world: Option<World>, told: Option<Told>)
     let levels = Ladder::processes().iter().zip(ProcessId::ALL).map(|(process, id)| {
         let header = moment.after.header(*id);
         let command = failure::command(*id, &moment.external.hws, &moment.before);
-        let row = header.decided.and_then(|decided| process.row(decided));
+        let fired = process.fired(header);
+        let row = fired.map(|fired| fired.row);
         let step = header.step.unwrap_or_default();
         Rung {
             process: process.name.to_owned(),
             command,
             held: header.republished,
             old: header.basis.filter(|_| header.age() > Some(0)).map(|basis| basis.tick.0),
-            values: row.zip(header.consulted()).map(|((table, _), found)| values_text(table, found.values)),
+            values: fired.and_then(|fired| Some(values_text(fired.table, fired.values?))),
             beside: beside(process, header).collect(),
-            table: row.map(|(table, _)| table.name.to_owned()),
-            row: row.map(|(_, row)| row.number),
-            conditions: row.map_or_else(Vec::new, |(_, row)| conditions(row)),
-            action: row.map(|(_, row)| row.call().to_string()),
-            next: row.and_then(|(_, row)| row.next).map(str::to_owned),
+            table: fired.map(|fired| fired.table.name.to_owned()),
+            row: row.map(|row| row.number),
+            conditions: fired.as_ref().map_or_else(Vec::new, conditions),
+            action: row.map(|row| row.call().to_string()),
+            next: row.and_then(|row| row.next).map(str::to_owned),
             step: step.to_string(),
-            effect: row.map_or_else(String::new, |(_, row)| effect(row, step.as_str())),
+            effect: row.map_or_else(String::new, |row| effect(row, step.as_str())),
         }
     });
     let (failure, begun) = told.map_or((None, None), |told| (Some(told.story), Some(told.begun)));

@@ -5,7 +5,9 @@
 //! time, from the table as text. Both come from the same source as the `match` that decides; a test of the
 //! levels compares them.
 
-use super::{Condition, Row, Table, Variable};
+use core::{fmt, slice};
+
+use super::{Condition, Row, Table, Variable, conditions};
 use crate::{Plain, plain::VariantSchema};
 
 /// What a table was consulted with.
@@ -26,6 +28,55 @@ pub struct NearMiss {
     pub value: &'static VariantSchema,
     /// The row that would have fired then.
     pub row: &'static Row,
+}
+
+/// A row that has fired. Its text has the values that the table found, where the row fires for several:
+/// `CLOSE-DOOR row 2: Start, door Stuck, lamp Dark => Close -> Closing`.
+#[derive(Clone, Copy, Debug)]
+pub struct Fired {
+    /// Its table.
+    pub table: &'static Table,
+    /// The row.
+    pub row: &'static Row,
+    /// The values; `None` if another system has consulted the table. Then the text is that of the row.
+    pub values: Option<Values>,
+}
+
+impl Fired {
+    /// The step in which it fired; empty if the row fires in any.
+    #[must_use]
+    pub fn steps(&self) -> &'static [&'static str] {
+        let step = self.values.and_then(|values| self.table.step(values));
+        narrowed(self.row.steps, step.map(|step| step.name))
+    }
+
+    /// The conditions of the row, each with the value that the variable had.
+    pub fn conditions(&self) -> impl Iterator<Item = Condition> {
+        let Self { table, row, values } = *self;
+        row.when.iter().map(move |condition| {
+            let value = values.and_then(|values| table.value_of(condition.variable, values));
+            Condition { values: narrowed(condition.values, value.map(|value| value.name)), ..*condition }
+        })
+    }
+
+    /// The row without its table and number.
+    pub fn text(&self) -> impl fmt::Display {
+        fmt::from_fn(move |f| {
+            conditions(f, self.steps(), self.conditions())?;
+            write!(f, " => {}", self.row.effect())
+        })
+    }
+}
+
+impl fmt::Display for Fired {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} row {}: {}", self.table.name, self.row.number, self.text())
+    }
+}
+
+/// The one of several names that is known to hold; all, if none of them is.
+fn narrowed(names: &'static [&'static str], known: Option<&str>) -> &'static [&'static str] {
+    names.iter().find(|name| Some(**name) == known).map_or(names, slice::from_ref)
 }
 
 impl Variable {
@@ -125,9 +176,13 @@ impl Table {
     }
 
     fn holds(&self, condition: &Condition, values: Values) -> bool {
-        let at = self.variables.iter().position(|variable| variable.name == condition.variable);
-        let value = at.and_then(|at| self.value(at, values));
+        let value = self.value_of(condition.variable, values);
         value.is_some_and(|value| condition.values.contains(&value.name))
+    }
+
+    /// The value of the variable with a name.
+    fn value_of(&self, name: &str, values: Values) -> Option<&'static VariantSchema> {
+        self.value(self.variables.iter().position(|variable| variable.name == name)?, values)
     }
 }
 
@@ -224,6 +279,17 @@ mod tests {
         let expected =
             [("door", "Stuck", "half way", "It stands between its switches."), ("lamp", "Lit", "lit", "")];
         assert_eq!(told, expected);
+    }
+
+    #[test]
+    fn a_fired_row_names_the_values_that_it_found() {
+        let situation = Situation { door: Door::Stuck, lamp: Lamp::Dark };
+        let values = Values { step: CloseDoorStep::Start.code(), variables: situation.code() };
+        let row = CLOSE_DOOR.consult(values).unwrap();
+        let fired = |values| Fired { table: &CLOSE_DOOR, row, values }.to_string();
+        assert_eq!(fired(Some(values)), "CLOSE-DOOR row 2: Start, door Stuck, lamp Dark => Close -> Closing");
+        // Another system does not say them.
+        assert_eq!(fired(None), "CLOSE-DOOR row 2: Start, door Open or Stuck, lamp Dark => Close -> Closing");
     }
 
     #[test]
