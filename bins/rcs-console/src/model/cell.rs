@@ -268,7 +268,7 @@ mod tests {
             |view: &CellView| shown(view).into_iter().map(|line| line.text).collect::<Vec<_>>().join("\n");
         assert!(text(&view).contains("all five are out") && !text(&view).contains("!!"));
         view.controller.estops[3] = true;
-        assert!(text(&view).contains("!! E-stop is in: joystick box"));
+        assert!(text(&view).contains("!! E-stop is in: joystick-box"));
         view.parts[0] = PartView { id: 1, held: true, position: [1.0, 2.0, 3.5], ..PartView::default() };
         let lines = parts(&Cell::Shown(Box::new(view))).lines;
         assert_eq!(lines.len(), 1);
