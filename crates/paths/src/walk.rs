@@ -118,7 +118,12 @@ impl<'a> Walk<'a> {
         match *step {
             Step::Go { verb, object, grip, location } => self.go(verb, object, grip, &location),
             Step::Relative { name, location } => self.relative(name, &location),
-            Step::Fingers { verb, object, grip } => self.fingers(verb, object, grip),
+            Step::Fingers { verb, object, grip } => {
+                if let (EmoveVerb::Release, GoneTo::Brought(left)) = (verb, self.place.gone_to) {
+                    self.place.gone_to = GoneTo::Object(left);
+                }
+                self.fingers(verb, object, grip)
+            }
             Step::Locate => Phase::standing(LOCATE.to_owned()),
             Step::Pedestal(verb) => Phase::standing(verb.text().to_owned()),
             Step::Engage(id) => Phase::standing(format!("the quick change meets gripper {id}")),
@@ -167,6 +172,11 @@ impl<'a> Walk<'a> {
                     object.and_then(|object| self.data.grip_movetable(&object, grip, &location.place));
                 (gone_to, grips.map_or(location.frame, |by| self.data.moved(&location.frame, by)))
             }
+        };
+        // With the object E-move leaves as it came, until the fingers have released it.
+        let gone_to = match gone_to {
+            GoneTo::Object(brought) if verb == EmoveVerb::MovObjTo => GoneTo::Brought(brought),
+            gone_to => gone_to,
         };
         self.place = robot_at(gone_to, location, &frame);
         if verb != EmoveVerb::MovToVu {
