@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use runtime::{ClockKind, setup::MOST_SPEED};
+use runtime::{ClockKind, config::MOST_SPEED};
 
 /// When ticks are run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

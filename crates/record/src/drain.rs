@@ -14,10 +14,9 @@ use rtrb::Consumer;
 use crate::{
     error::RecordError,
     file::LogFile,
-    input::{Attachment, CellFrame, End, Setup, Shown},
+    input::{Attachment, CellFrame, End, Lost, Note, Setup, Shown},
+    names::CONTINUES,
     operator::OperatorLine,
-    part::CONTINUES,
-    recorder::{Lost, Note},
     remarks::Remark,
     rotation::LogLimit,
     sink::Sink,

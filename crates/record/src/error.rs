@@ -84,7 +84,7 @@ pub enum ReadError {
     /// An MCAP file, but not of this program.
     #[error(
         "{path} is an MCAP file without the metadata {:?}: it was not written by this program",
-        crate::writer::RUN
+        crate::names::RUN
     )]
     NotALog {
         /// The file.

@@ -8,7 +8,10 @@ use std::{
 use rcs_core::tick::Tick;
 use taskdata::load::Source;
 
-use crate::{error::RecordError, proto::foxglove::Transform};
+use crate::{
+    error::RecordError,
+    proto::foxglove::{Level, Link, Transform},
+};
 
 /// Greatest number of moving links.
 pub const MAX_LINKS: usize = 64;
@@ -120,15 +123,6 @@ impl Attachment {
     pub fn source(&self, name: &str) -> Source {
         Source { name: name.to_owned(), text: String::from_utf8_lossy(&self.data).into_owned().into() }
     }
-}
-
-/// A link of the cell: a frame and its parent frame.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Link {
-    /// Name, as in the URDF.
-    pub name: String,
-    /// Name of the parent in the URDF; `world` for bodies that are fixed or move freely.
-    pub parent: String,
 }
 
 /// The shape of a link.
@@ -278,6 +272,36 @@ pub struct End {
     pub result: String,
     /// Further facts of the run: real-time verdict, overruns, faults, where the parts are.
     pub facts: BTreeMap<String, String>,
+}
+
+/// Longest text of a note, bytes; a longer one is cut.
+pub const NOTE: usize = 192;
+
+/// A line for `/log` on its way to the writer.
+#[derive(Clone, Copy)]
+pub(crate) struct Note {
+    pub(crate) tick: Tick,
+    pub(crate) level: Level,
+    pub(crate) source: [u8; 16],
+    pub(crate) code: &'static str,
+    pub(crate) text: [u8; NOTE],
+}
+
+/// Number of entries that did not fit into the rings.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lost {
+    /// Ticks. The run cannot be replayed across them.
+    pub ticks: u64,
+    /// Frames of the cell.
+    pub frames: u64,
+    /// Lines for `/log`.
+    pub notes: u64,
+    /// Files of the run, such as reloads. Without them the run cannot be replayed to the end.
+    pub files: u64,
+    /// Pictures of the camera, and lists of contacts.
+    pub shown: u64,
+    /// Requests of operators. Without them the inputs cannot be replayed.
+    pub operators: u64,
 }
 
 #[cfg(test)]

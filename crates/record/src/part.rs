@@ -4,14 +4,10 @@ use std::path::PathBuf;
 
 use rcs_core::tick::Tick;
 
-use crate::{reader::Log, writer::REPLAY};
-
-/// Begin of the line on `/log` that names the log before this one.
-pub(crate) const EARLIER: &str = "the ticks before this one are in ";
-/// Begin of the result of a log after which the run began another one.
-pub(crate) const CONTINUES: &str = "the run continues at tick ";
-/// Key of the metadata: how the run ended.
-pub(crate) const RESULT: &str = "result";
+use crate::{
+    names::{CONTINUES, EARLIER, REPLAY, RESULT},
+    reader::Log,
+};
 
 /// The place of a log that does not have its whole run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -22,7 +22,7 @@ use mcap::{
 };
 use zstd::bulk::Decompressor;
 
-use crate::writer::{END, RUN};
+use crate::names::{END, RUN};
 
 /// Size of a record's header, bytes: operation code and length.
 const HEAD: usize = 9;

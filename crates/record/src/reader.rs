@@ -23,17 +23,18 @@ use crate::{
     delta::Codec,
     described::Described,
     error::ReadError,
-    input::{Attachment, Link},
+    input::Attachment,
     layout,
+    names::{END, LAYOUT, LOG_TOPIC, REPLAY, RUN},
     operator::{OPERATOR, OperatorLine},
     pieces::{self, Damage, Decoder, Message, Piece, Pieces},
     proto::{
-        foxglove::{self, Level, Transform},
+        foxglove::{self, Level, Link, Transform},
         wire::{Fields, Value},
     },
     scene::{TF, TF_STATIC},
     tap::Tap,
-    writer::{Codecs, END, LAYOUT, LOG_TOPIC, REPLAY, RUN, Timing, replay_field},
+    writer::{Codecs, Timing, replay_field},
 };
 
 /// Size of the magic of an MCAP file, bytes.

@@ -26,7 +26,7 @@ use crate::{
     drain::{Drain, Rotation},
     error::RecordError,
     file::LogFile,
-    input::{Attachment, CellFrame, End, Setup, Shown},
+    input::{Attachment, CellFrame, End, Lost, NOTE, Note, Setup, Shown},
     operator::OperatorLine,
     proto::foxglove::Level,
     rotation::LogLimit,
@@ -50,8 +50,6 @@ const FILE_RING: usize = 64;
 const SHOWN_RING: usize = 256;
 /// Capacity of the ring of operators' lines.
 const OPERATOR_RING: usize = 256;
-/// Longest text of a note, bytes; a longer one is cut.
-pub const NOTE: usize = 192;
 
 /// Behaviour when the ring is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,16 +58,6 @@ pub enum Pace {
     Wait,
     /// The tick is not recorded, but counted: for runs in real time.
     Drop,
-}
-
-/// A line for `/log` on its way to the writer.
-#[derive(Clone, Copy)]
-pub(crate) struct Note {
-    pub(crate) tick: Tick,
-    pub(crate) level: Level,
-    pub(crate) source: [u8; 16],
-    pub(crate) code: &'static str,
-    pub(crate) text: [u8; NOTE],
 }
 
 /// The first part of a text that fits, in whole characters.
@@ -100,23 +88,6 @@ pub struct Recorder {
     path: PathBuf,
     end: Arc<Mutex<(End, Lost)>>,
     thread: JoinHandle<Result<(Written, usize), RecordError>>,
-}
-
-/// Number of entries that did not fit into the rings.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Lost {
-    /// Ticks. The run cannot be replayed across them.
-    pub ticks: u64,
-    /// Frames of the cell.
-    pub frames: u64,
-    /// Lines for `/log`.
-    pub notes: u64,
-    /// Files of the run, such as reloads. Without them the run cannot be replayed to the end.
-    pub files: u64,
-    /// Pictures of the camera, and lists of contacts.
-    pub shown: u64,
-    /// Requests of operators. Without them the inputs cannot be replayed.
-    pub operators: u64,
 }
 
 /// Result of a log.

@@ -37,16 +37,15 @@ use rcs_core::{Plain, plain::Writer, tick::Tick};
 use crate::{
     channels::{Buffers, HeaderPlace, Output, headers},
     delta::Codec,
-    input::{Attachment, CellFrame, End, Setup, Shown},
+    input::{Attachment, CellFrame, End, Lost, Setup, Shown},
     layout,
+    names::{EARLIER, END, LAYOUT, LOG_TOPIC, REPLAY, RESULT, RUN},
     operator::{OperatorChannel, OperatorLine},
-    part::{EARLIER, RESULT},
     proto::{
         descriptor::{self, encode_set, field, file},
         foxglove::{self, Level},
         wire,
     },
-    recorder::Lost,
     remarks::{Remark, remarks},
     rows::Rows,
     scene::Scene,
@@ -62,16 +61,6 @@ const REPETITION: u64 = 10;
 const CHUNK: u64 = 256 * 1024;
 /// Level of the compression. At level 6 a log is a twenty-sixth smaller, and a run takes a seventh more processor time.
 const COMPRESSION: u32 = 3;
-/// Name of the metadata written at the start.
-pub const RUN: &str = "rcs-run";
-/// Name of the metadata written at the end.
-pub const END: &str = "rcs-end";
-/// Key of the layout version in [`RUN`].
-pub const LAYOUT: &str = "layout";
-/// Topic of the byte images.
-pub const REPLAY: &str = "/replay";
-/// Topic of the log lines.
-pub const LOG_TOPIC: &str = "/log";
 
 /// Field numbers of the message on [`REPLAY`].
 pub mod replay_field {

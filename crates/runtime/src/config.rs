@@ -19,6 +19,9 @@ use sessions::network::{Address, Role};
 
 use crate::as_text;
 
+/// Largest number of ticks in 40 ms: a tick with the simulated cell takes about 0.2 ms.
+pub const MOST_SPEED: u8 = 20;
+
 /// The configuration of a run. [`RunConfig::default`] is the configuration of `rcs-run` without options.
 ///
 /// Serde reads and writes it with the words of the command line, such as `robot = "egm:6510,slack=15"` in TOML. Omitted

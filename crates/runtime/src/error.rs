@@ -58,7 +58,7 @@ pub enum StartError {
     #[error("a robot at a port needs real time: add --clock real")]
     NotInRealTime,
     /// An invalid clock speed.
-    #[error("a speed from 1 to {most} times real time was expected, found {0}", most = crate::setup::MOST_SPEED)]
+    #[error("a speed from 1 to {most} times real time was expected, found {0}", most = crate::config::MOST_SPEED)]
     Speed(u8),
     /// The configuration names a robot of the caller, and the caller has provided none.
     #[error("the configuration names a robot of the caller's own: start the run by Run::with_robot")]

@@ -7,8 +7,10 @@
 //!
 //! The log contains the text, so that a replay, and a repetition with the same inputs, load the same block.
 
+pub mod error;
+
 use std::{
-    fmt, fs, io, thread,
+    fs, thread,
     time::{Duration, Instant},
 };
 
@@ -18,7 +20,7 @@ use executive::{
     memory::load_file,
 };
 use rcs_core::tick::{TICK_MS, Tick};
-use taskdata::load::{BlockNumber, Diagnostics, Source};
+use taskdata::load::{BlockNumber, Source};
 
 use crate::{
     Run,
@@ -27,90 +29,13 @@ use crate::{
     operator::Input,
 };
 
-/// Time limit for the boards' check of a load.
-const PATIENCE: Duration = Duration::from_secs(10);
+pub use self::error::LoadError;
+use self::error::PATIENCE;
+
 /// The same time limit in ticks.
 const BOARDS_LIMIT: u64 = PATIENCE.as_secs() * 1000 / TICK_MS;
 /// Time between two looks at the boards, when the run waits for them.
 const LOOK: Duration = Duration::from_millis(5);
-
-/// Errors of a load.
-#[derive(Debug)]
-pub enum LoadError {
-    /// A command is in progress.
-    Busy,
-    /// Another block is being loaded.
-    Loading,
-    /// The operator has left or disconnected before the boards had checked the block.
-    Withdrawn,
-    /// The data directory has no such block.
-    NoBlock(BlockNumber),
-    /// A symbolic link leads from this file out of the data directory.
-    Outside(String),
-    /// The log whose inputs are replayed does not contain the text.
-    NotRecorded,
-    /// The load was refused in the log.
-    Recorded(String),
-    /// The data with the block have errors.
-    Data(Box<Diagnostics>),
-    /// The job has loaded blocks meanwhile, or waits for the end of a command to load some.
-    Reload,
-    /// The file for the boards cannot be written.
-    Write(io::Error),
-    /// A board has not finished its check in time.
-    Late,
-    /// A board has other data after the load.
-    Differs(Board),
-    /// The thread that checks has ended.
-    NoThread,
-}
-
-impl fmt::Display for LoadError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Busy => {
-                f.write_str("a command is executed, and keeps its records: PAUSE, or wait for its end")
-            }
-            Self::Loading => f.write_str("another block is being checked: ask again when that is answered"),
-            Self::Withdrawn => f.write_str(
-                "the operator who asked for it has left before it was checked; nothing has changed",
-            ),
-            Self::NoBlock(block) => write!(f, "the run's data directory has no {block}"),
-            Self::Outside(file) => write!(
-                f,
-                "{file} is a link to a file outside of the run's data directory: a block of that directory was expected"
-            ),
-            Self::NotRecorded => f.write_str("the log has no text of the block"),
-            Self::Recorded(why) => f.write_str(why),
-            Self::Data(report) => write!(f, "with this change the task data have errors:\n{report}"),
-            Self::Reload => f.write_str("the job loads blocks at this moment: ask again"),
-            Self::Write(error) => write!(f, "the blocks for the boards cannot be written: {error}"),
-            Self::Late => write!(
-                f,
-                "not all boards have checked it within {} s; nothing has changed",
-                PATIENCE.as_secs()
-            ),
-            Self::Differs(board) => {
-                write!(
-                    f,
-                    "{board} has other task data after this: it was started with other data; nothing has changed"
-                )
-            }
-            Self::NoThread => f.write_str("the thread that checks blocks has ended; nothing has changed"),
-        }
-    }
-}
-
-impl LoadError {
-    /// The error in one line.
-    #[must_use]
-    pub fn in_line(&self) -> String {
-        match self {
-            Self::Data(report) => format!("with this change the task data have errors: {}", report.in_line()),
-            other => other.to_string(),
-        }
-    }
-}
 
 /// Source of a load, which gets the answer.
 pub enum Asker {
@@ -122,16 +47,6 @@ pub enum Asker {
 
 /// An answered load.
 pub type Answer = (Asker, Result<String, LoadError>);
-
-/// Read `load OFFSET BLOCK` (IV.2.4); `None` if the words begin something else. With another word after it, the text is
-/// a line of a job, whose reader gives the error.
-#[must_use]
-pub fn asked(words: &[&str]) -> Option<Result<BlockNumber, String>> {
-    let ["load", offset, block] = words else { return None };
-    let numbers = offset.parse().ok().zip(block.parse().ok());
-    let expected = || "load OFFSET BLOCK was expected, such as load 21000 610".to_owned();
-    Some(numbers.map(|(offset, number)| BlockNumber { offset, number }).ok_or_else(expected))
-}
 
 /// Loads and jobs requested during a run.
 #[derive(Default)]

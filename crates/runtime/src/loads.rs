@@ -38,7 +38,17 @@ use taskdata::{
     },
 };
 
-use crate::load::LoadError;
+use crate::load::error::LoadError;
+
+/// Read `load OFFSET BLOCK` (IV.2.4); `None` if the words begin something else. With another word after it, the text is
+/// a line of a job, whose reader gives the error.
+#[must_use]
+pub fn asked(words: &[&str]) -> Option<Result<BlockNumber, String>> {
+    let ["load", offset, block] = words else { return None };
+    let numbers = offset.parse().ok().zip(block.parse().ok());
+    let expected = || "load OFFSET BLOCK was expected, such as load 21000 610".to_owned();
+    Some(numbers.map(|(offset, number)| BlockNumber { offset, number }).ok_or_else(expected))
+}
 
 /// Insert a reload into the reloads of a run, after the first `done` ones, which have led to `base`. The later ones are
 /// loaded on top of it.

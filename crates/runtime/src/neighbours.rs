@@ -4,6 +4,8 @@
 //! A neighbour runs in this process, or in another one behind the network. The run reaches both through mailboxes. In
 //! fast clock, which runs both in lock step, the results are the same bits.
 
+mod command;
+
 use std::{
     sync::atomic::Ordering,
     thread,

@@ -24,7 +24,7 @@ use taskdata::load::{
 use crate::{
     event::Event,
     judge::{CommandJudge, read_command},
-    load,
+    loads,
 };
 
 /// Number of commands that a run remembers, so that a run of a year does not fill the memory.
@@ -295,7 +295,7 @@ impl OutsideWorkstation {
         store: &Store,
     ) -> Result<(), String> {
         let words: Vec<&str> = line.split_whitespace().collect();
-        if let Some(block) = load::asked(&words) {
+        if let Some(block) = loads::asked(&words) {
             self.load = Some((block?, line.to_owned()));
             self.loading = Some(self.line);
             return Ok(());

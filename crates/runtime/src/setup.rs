@@ -34,7 +34,7 @@ use taskdata::load::{Diagnostics, Fault, Job, Source, Store};
 
 use crate::{
     agreement,
-    config::{ClockKind, LogTarget, RobotKind, RunConfig},
+    config::{ClockKind, LogTarget, MOST_SPEED, RobotKind, RunConfig},
     egm::EgmPort,
     error::StartError,
     findings::Findings,
@@ -53,9 +53,6 @@ use crate::{
 pub const EXTENSION: &str = JOBS.extension;
 
 pub use plant::description::CELL;
-
-/// Largest number of ticks in 40 ms: a tick with the simulated cell takes about 0.2 ms.
-pub const MOST_SPEED: u8 = 20;
 
 /// The parts of a run.
 pub struct Setup {

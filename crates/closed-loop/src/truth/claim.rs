@@ -3,32 +3,17 @@
 use geometry::frame::Frame;
 use interfaces::{Unconfirmed, pose_range};
 use rcs_core::name::Name16;
-use taskdata::files::{MovtabId, Place, PoseId, TaskData};
+use taskdata::files::{Place, PoseId, TaskData};
 
 use super::{
-    NotSensed, Scene,
+    Scene,
     history::History,
     parts::{holds_nothing, is_held, is_held_alone, is_in_drum, is_out_of_drum, is_placed, lies_at},
     robot::{is_at, is_linked, is_near, is_open, stops, touches, wears, wears_none},
-    seen::{at_part, is_located},
+    seen::{Movement, at_part, is_located},
     tolerance::{THERE_DEGREES, THERE_INCHES},
+    untruth::{Untruth, expect},
 };
-
-/// A claim that is untrue.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Untruth {
-    /// What is true instead: a sentence without its full stop.
-    pub text: String,
-    /// Why no sensor could show it; `None` if the confirmation is false.
-    pub not_sensed: Option<NotSensed>,
-}
-
-impl Untruth {
-    /// An untruth that a sensor could have shown.
-    pub const fn is_false(text: String) -> Self {
-        Self { text, not_sensed: None }
-    }
-}
 
 /// A statement about the cell. Frames are world frames, in.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,10 +96,6 @@ pub enum Claim {
     /// The robot controller executes the DEPC function.
     Linked,
 }
-
-/// A movetable, resolved: the motion from a reference frame to the goal, in the axes of the reference.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Movement(pub MovtabId);
 
 /// The frame of a record of POSE, or of a changing record.
 pub fn pose(number: Option<u32>, scene: &Scene<'_>) -> Option<Frame> {
@@ -215,11 +196,6 @@ impl Claim {
             Self::Linked => is_linked(cell),
         }
     }
-}
-
-/// `Ok` if a condition holds.
-pub fn expect(condition: bool, text: impl FnOnce() -> String) -> Result<(), Untruth> {
-    if condition { Ok(()) } else { Err(Untruth::is_false(text())) }
 }
 
 /// The frame of a location for an object and grip: where the tool is with the object there.

@@ -6,7 +6,8 @@ use taskdata::files::{EndEffId, VisionId};
 
 use super::{
     Scene,
-    claim::{Claim, Movement, at, grip_goal, holds, pose},
+    claim::{Claim, at, grip_goal, holds, pose},
+    seen::Movement,
 };
 
 /// What must be true when a command is finished.

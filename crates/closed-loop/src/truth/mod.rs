@@ -27,6 +27,7 @@ mod task;
 #[cfg(test)]
 mod tests;
 pub mod tolerance;
+mod untruth;
 
 use std::fmt;
 
@@ -37,8 +38,8 @@ use rcs_core::tick::Tick;
 use serde::{Deserialize, Serialize};
 use taskdata::files::TaskData;
 
-pub use self::claim::{Claim, Untruth};
 use self::history::History;
+pub use self::{claim::Claim, untruth::Untruth};
 
 /// A process whose confirmations are judged.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]

@@ -6,9 +6,9 @@ use rcs_core::name::Name16;
 
 use super::{
     NotSensed, Scene,
-    claim::{Untruth, expect},
     history::{History, apart},
     tolerance::{GRIP_INCHES, WIDTH_INCHES},
+    untruth::{Untruth, expect},
 };
 
 /// All free parts of a name.

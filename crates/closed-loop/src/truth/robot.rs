@@ -4,9 +4,9 @@ use geometry::{frame::Frame, kinematics::T3};
 use plant::{Cell, RingState, t3::Stage};
 
 use super::{
-    claim::{Untruth, expect},
     history::apart,
     tolerance::{LAG_INCHES, OPENING_INCHES, STOP_INCHES, TOUCH_INCHES},
+    untruth::{Untruth, expect},
 };
 
 pub fn is_at(cell: &Cell, goals: &[Frame], name: &str, inches: f64, degrees: f64) -> Result<(), Untruth> {

@@ -3,15 +3,20 @@
 use geometry::frame::{Frame, Vector, rotation_by};
 use plant::{Cell, PartState};
 use rcs_core::name::Name16;
+use taskdata::files::MovtabId;
 
 use super::{
     NotSensed, Scene,
-    claim::{Movement, Untruth, expect},
     history::History,
     parts::is_alike,
     robot::is_at,
     tolerance::{SEEN_DEGREES, SEEN_INCHES},
+    untruth::{Untruth, expect},
 };
+
+/// A movetable, resolved: the motion from a reference frame to the goal, in the axes of the reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Movement(pub MovtabId);
 
 /// A part belongs to a sector if it is no farther than this from its centre, in: half the distance of two sectors.
 const SECTOR_INCHES: f64 = 5.25;

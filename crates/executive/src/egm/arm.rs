@@ -21,7 +21,7 @@ use rs_opw_kinematics::{
 };
 use serde::Deserialize;
 
-use crate::egm::placement::{KIND, Place};
+use crate::egm::pose_entry::{KIND, PoseEntry};
 
 /// Axis angles, radians.
 pub type Axes = [f64; 6];
@@ -43,8 +43,8 @@ pub(crate) struct ArmText {
     low: Axes,
     high: Axes,
     speeds: Axes,
-    work_object: Place,
-    tool: Place,
+    work_object: PoseEntry,
+    tool: PoseEntry,
 }
 
 /// Why the arm cannot follow a motion.

@@ -14,22 +14,26 @@
 //! * [`placement`]: the frames of the robot, which connect the T3's world with its work object, from a file;
 //! * [`arm`]: the kinematics of the robot, from the same file, to check reach and axis speeds beforehand;
 //! * [`bridge`]: the adapter between the DEPC function and the robot;
+//! * [`exchange`]: orders and reports between them;
 //! * [`mod@line`]: the host with a socket ([`udp`]) or with an emulated robot ([`simulated`]);
 //! * [`emulator`]: an emulated EGM robot with the arm of the T3; [`network`]: simulated faults of UDP.
 
 pub mod arm;
 pub mod bridge;
 pub mod emulator;
+pub mod exchange;
 pub mod line;
 pub mod network;
 pub mod options;
 pub mod placement;
+mod pose_entry;
 pub mod simulated;
 pub mod udp;
 
 pub use self::{
     bridge::{Bridge, BridgeOutputs},
-    line::{Cause, Line, Order, Refusals, Refused, Report},
+    exchange::{Cause, Order, Refusals, Refused, Report},
+    line::Line,
     options::{EgmOptions, Peer},
     placement::{Placement, RobotFile},
 };

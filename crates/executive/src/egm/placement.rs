@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use depc::{Plate, plate::HALF_TURN, track::MOST_LAG_MS};
 use diagnostics::{
     Diagnostics, Problem, Source, UnknownFile,
-    toml::{Document, FileKind, element, join},
+    toml::{Document, element},
 };
 use egm::{Limits, Pose, pose};
 use geometry::{
@@ -16,7 +16,10 @@ use geometry::{
 use os_io::files;
 use serde::Deserialize;
 
-use crate::egm::arm::{Arm, ArmText};
+use crate::egm::{
+    arm::{Arm, ArmText},
+    pose_entry::{KIND, PoseEntry},
+};
 
 /// Millimetres per inch.
 const MM_PER_IN: f64 = 25.4;
@@ -25,16 +28,6 @@ const MM_PER_IN: f64 = 25.4;
 const SPEED: f64 = (14.0 + 0.5) * MM_PER_IN;
 /// See [`SPEED`]: each of three angles may turn by 1.0 rad/s.
 const TURN: f64 = 1.75;
-
-/// Messages about the file: lengths in mm, angles in degrees, and quaternions, whose components can be very small.
-pub(crate) const KIND: FileKind = FileKind {
-    whole: "the file",
-    syntax: "robot.syntax",
-    key: "robot.key",
-    missing: "robot.missing",
-    value: "robot.value",
-    magnitudes: [0.0, 1e6],
-};
 
 /// Errors of a robot's file.
 #[derive(Debug, thiserror::Error)]
@@ -56,29 +49,6 @@ pub enum PlacementError {
     Text(Box<Diagnostics>),
 }
 
-/// A pose in the file.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Place {
-    /// Position, mm.
-    position: [f64; 3],
-    /// Unit quaternion w, x, y, z.
-    orientation: [f64; 4],
-}
-
-impl Place {
-    /// The pose of the table `name`; adds its errors to `problems`.
-    pub(crate) fn pose(&self, name: &str, problems: &mut Vec<Problem>) -> Option<Pose> {
-        let pose = Pose::new(self.position, self.orientation);
-        if pose.is_err() {
-            let expected = "a quaternion w, x, y, z of length 1";
-            let found = format!("{:?}", self.orientation);
-            problems.push(Problem::unlike(KIND.value, &join(name, "orientation"), expected, found));
-        }
-        pose.ok()
-    }
-}
-
 /// The work space in the file, mm in the work object.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -98,8 +68,8 @@ struct Following {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Text {
-    world: Place,
-    tool: Place,
+    world: PoseEntry,
+    tool: PoseEntry,
     space: Option<Space>,
     following: Option<Following>,
     arm: Option<ArmText>,

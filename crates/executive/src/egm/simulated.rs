@@ -4,7 +4,7 @@ use egm::{Host, Sample, host::Settings, message::MOST_BYTES};
 
 use crate::egm::{
     emulator::{CYCLE_NS, EgmRobot},
-    line::{Order, Report},
+    exchange::{Order, Report},
     network::Network,
 };
 

@@ -15,7 +15,7 @@ use std::{
 use egm::{Host, LinkState, Sample, host::Settings, message::MOST_BYTES};
 use rtrb::{Consumer, Producer, RingBuffer};
 
-use crate::egm::line::{Cause, Order, Refusals, Refused, Report};
+use crate::egm::exchange::{Cause, Order, Refusals, Refused, Report};
 
 /// Capacity of the ring of orders: several ticks.
 const MOST_ORDERS: usize = 16;

@@ -6,7 +6,7 @@ use diagnostics::alternatives;
 
 use super::{
     name::{NameError, RunName},
-    place::other_users,
+    objects::other_users,
 };
 
 /// Errors of shared memory.

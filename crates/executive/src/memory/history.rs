@@ -10,19 +10,13 @@ use rcs_core::{Plain, plain::DecodeError, tick::Tick};
 
 use super::{
     error::SharedMemoryError,
-    layout::Epoch,
+    layout::{AllHeaders, Epoch, HISTORY},
     runs,
     slot::{self, NewService, ServiceReader, SlotReader, SlotWriter, UNWRITTEN},
 };
 
 /// Number of ticks whose headers are kept: 10 s.
 pub const HISTORY_TICKS: u32 = 250;
-/// The name of the service.
-pub(super) const HISTORY: &str = "history";
-
-/// The headers of all processes, in the order of [`ProcessId`].
-pub(super) type AllHeaders = [Header; PROCESS_COUNT];
-
 /// The headers of all processes after a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Headers {

@@ -3,13 +3,10 @@
 
 use std::sync::LazyLock;
 
-use interfaces::{ExternalInputs, for_each_process};
+use interfaces::{ExternalInputs, Header, PROCESS_COUNT, for_each_process};
 use rcs_core::{Plain, digest::Digest, plain::FieldSchema, reflect, tick::Tick};
 
-use super::{
-    cell::{CELL, CellView},
-    history::{AllHeaders, HISTORY},
-};
+use super::cell::{CELL, CellView};
 
 /// Epoch of a service: 1 for the first writer, the next number for a writer that replaces a killed one, because a
 /// blackboard cannot be reopened for writing while a reader holds it. It is part of the service's name.
@@ -35,6 +32,10 @@ pub struct Pulse {
 /// The services of a run that are not outputs of a process.
 pub(super) const OUTSIDE: &str = "outside";
 pub(super) const EXECUTIVE: &str = "executive";
+pub(super) const HISTORY: &str = "history";
+
+/// The headers of all processes, in the order of [`ProcessId`](interfaces::ProcessId).
+pub(super) type AllHeaders = [Header; PROCESS_COUNT];
 
 macro_rules! services {
     ($(

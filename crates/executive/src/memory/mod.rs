@@ -29,6 +29,7 @@ pub mod layout;
 pub mod limit;
 pub mod mirror;
 mod name;
+mod objects;
 mod place;
 mod presence;
 pub mod publish;

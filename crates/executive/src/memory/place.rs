@@ -26,10 +26,13 @@ use rustix::{
     process::geteuid,
 };
 
-use super::{error::SharedMemoryError, layout::layout_version, name::RunName};
+use super::{
+    error::SharedMemoryError,
+    layout::layout_version,
+    name::RunName,
+    objects::{ROOT, SHARED_MEMORY, objects},
+};
 
-/// The directory in which Linux keeps shared memory objects.
-pub(super) const SHARED_MEMORY: &str = "/dev/shm";
 /// Number of bytes of shared memory that must be free before a run creates its objects, which take 1.9 MB with boards
 /// and less without.
 const NEEDED: u64 = 3 * 1024 * 1024;
@@ -44,24 +47,12 @@ const OTHERS: u32 = 0o077;
 
 /// Variable of the environment with another directory for the directory of runs.
 const ELSEWHERE: &str = "RCS_RUNS";
-/// Name of the directory of runs, before the number of the user.
-const ROOT: &str = "rcs-runs-";
-
 /// Directory of all runs of this user.
 #[must_use]
 pub fn root() -> PathBuf {
     let named = std::env::var_os(ELSEWHERE).filter(|named| !named.is_empty());
     let parent = named.map_or_else(|| PathBuf::from(SHARED_MEMORY), PathBuf::from);
     parent.join(format!("{ROOT}{}", geteuid().as_raw()))
-}
-
-/// Numbers of the other users of this machine that have a directory of runs.
-pub(super) fn other_users() -> Vec<u32> {
-    let own = geteuid().as_raw();
-    let user = |path: PathBuf| path.file_name()?.to_str()?.strip_prefix(ROOT)?.parse().ok();
-    let mut users: Vec<u32> = objects(ROOT).filter_map(user).filter(|user| *user != own).collect();
-    users.sort_unstable();
-    users
 }
 
 /// The layout version of this program as used in names.
@@ -104,14 +95,6 @@ pub fn prefix(name: &RunName, layout: &str) -> String {
     digest.add(name.as_str().as_bytes());
     let value = digest.value();
     format!("rcs-{:08x}_", (value ^ (value >> 32)) & u64::from(u32::MAX))
-}
-
-/// The objects in shared memory whose names start with a run's prefix.
-pub(super) fn objects(prefix: &str) -> impl Iterator<Item = PathBuf> {
-    let entries = fs::read_dir(SHARED_MEMORY).into_iter().flatten().flatten();
-    entries
-        .filter(move |entry| entry.file_name().to_str().is_some_and(|name| name.starts_with(prefix)))
-        .map(|entry| entry.path())
 }
 
 /// Take the lock for listing runs, and for creating or removing a run's directory. The system releases it when its

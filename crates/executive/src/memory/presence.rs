@@ -17,7 +17,8 @@ use rustix::process::geteuid;
 
 use super::{
     error::SharedMemoryError,
-    place::{LOCK_LIMIT, SHARED_MEMORY, objects, own_file},
+    objects::{SHARED_MEMORY, objects},
+    place::{LOCK_LIMIT, own_file},
 };
 
 /// Text after the prefix in the name of a lock file; the role comes last.

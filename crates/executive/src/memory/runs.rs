@@ -22,9 +22,8 @@ use super::{
     error::SharedMemoryError,
     layout::Epoch,
     name::RunName,
-    place::{
-        files, have_nodes, have_salt, layout, lock, objects, own_directory, own_objects, place, prefix, root,
-    },
+    objects::objects,
+    place::{files, have_nodes, have_salt, layout, lock, own_directory, own_objects, place, prefix, root},
     presence::{self, Presence},
 };
 

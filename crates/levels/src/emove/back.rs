@@ -1,9 +1,9 @@
 //! The part of an interrupted way that is flown back (docs/design/recovery.md "On the way").
 
 use rcs_core::Plain;
-use taskdata::files::{TaskData, TrajParaId};
+use taskdata::files::TaskData;
 
-use super::route::{Leg, LegGoal, Route};
+use super::route::{Leg, LegGoal, Route, slower};
 
 /// The part of an interrupted way that is flown back.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -35,10 +35,4 @@ impl Back {
             self.next = self.next.saturating_sub(1);
         }
     }
-}
-
-/// The parameters with the lower velocity: those of both ends of a segment hold when it is flown back.
-pub(super) fn slower(a: TrajParaId, b: TrajParaId, data: &TaskData<'_>) -> TrajParaId {
-    let velocity = |id| data.traj_para(id).map_or(i32::MAX, |parameters| parameters.vel_max);
-    if velocity(b) < velocity(a) { b } else { a }
 }

@@ -12,10 +12,7 @@ use interfaces::emove::{EmoveCommand, EmoveVerb, GoneTo, Leg as Part, ObjectGrip
 use rcs_core::Plain;
 use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Place, Target, TaskData, TrajParaId, VisionId};
 
-use super::{
-    back::slower,
-    robot_place::{gone_to, place, place_named, robot_at},
-};
+use super::robot_place::{gone_to, place, place_named, robot_at};
 
 /// Opening, 0.01 in, when pictures are taken: the camera looks between the open fingers (V.2.1 MOV-TO-VU).
 /// The parts gripper opens as wide; the others open to their stop.
@@ -386,4 +383,10 @@ impl Route {
             self.complete = true;
         }
     }
+}
+
+/// The parameters with the lower velocity: those of both ends of a segment hold when it is flown back.
+pub(super) fn slower(a: TrajParaId, b: TrajParaId, data: &TaskData<'_>) -> TrajParaId {
+    let velocity = |id| data.traj_para(id).map_or(i32::MAX, |parameters| parameters.vel_max);
+    if velocity(b) < velocity(a) { b } else { a }
 }

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, convert::Infallible};
 
-use super::server::{Item, Records, Said};
+use super::records::{Item, Records, Said};
 
 /// A client of the database.
 #[derive(Clone, Debug, Default)]

@@ -11,7 +11,8 @@ use rcs_core::{
 use super::{
     books::Books,
     command,
-    server::{Answer, Item, Records as _, Server},
+    records::{Item, Records as _},
+    server::{Answer, Server},
     status::{STATUS, Status, Summary},
 };
 use crate::mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox, MailboxError};

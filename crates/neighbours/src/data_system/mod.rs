@@ -15,10 +15,12 @@
 mod books;
 pub mod command;
 mod connection;
+mod records;
 mod server;
 pub mod statement;
 pub mod status;
 
 pub use books::Books;
 pub use connection::{ANSWER_TICKS, DataSystem, InMemory, Keeper, Reply};
-pub use server::{Answer, Item, Records, Said, Server};
+pub use records::{Item, Records, Said};
+pub use server::{Answer, Server};

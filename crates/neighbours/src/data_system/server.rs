@@ -11,11 +11,10 @@
 //!     `------- ABORT -------+------- ABORT -----'  <---'
 //! ```
 
-use std::fmt::Display;
-
 use super::{
     books::Books,
     command::{self, Transaction},
+    records::{Item, Records, Said},
     statement::{self, Column, Update},
     status::{Refusal, ServerStatus, Status, Summary},
 };
@@ -49,65 +48,6 @@ pub struct Answer {
     pub status: Status,
     /// Why the command was refused, for the log; empty if it was executed.
     pub why: String,
-}
-
-/// An item in the data base.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Item {
-    /// `ITEM_NBR`; empty if it has none.
-    pub number: String,
-    /// `ITEM_NAME`.
-    pub name: String,
-    /// `ITEM_TYPE`.
-    pub kind: String,
-    /// `DEVICE`.
-    pub device: String,
-    /// `STORAGE_POS`.
-    pub position: String,
-    /// Number of the sector at the storage position; 0 for none.
-    pub sector: u8,
-}
-
-/// A statement of a client.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Said<'a> {
-    /// trans-id#: 0 for a statement without a number.
-    pub number: u16,
-    /// The DML string.
-    pub statement: &'a str,
-}
-
-/// The records that a server keeps: in a database, or in memory ([`Books`](super::Books)).
-pub trait Records {
-    /// Error of reading or writing the records.
-    type Error: Display;
-
-    /// State of a client's connection; 0 if the client is not known.
-    ///
-    /// # Errors
-    /// If the records cannot be read.
-    fn session(&self, client: &str) -> Result<u8, Self::Error>;
-
-    /// Set the state of a client's connection.
-    ///
-    /// # Errors
-    /// If the records cannot be written.
-    fn set_session(&mut self, client: &str, session: u8) -> Result<(), Self::Error>;
-
-    /// Store the position of an item that a client reports. Returns true if the position is new.
-    ///
-    /// A statement with a number other than 0 counts once: repeated with the same number it changes nothing, even after
-    /// reports of other clients.
-    ///
-    /// # Errors
-    /// If the records cannot be written; they are then unchanged.
-    fn report(&mut self, client: &str, said: Said<'_>, item: &Item) -> Result<bool, Self::Error>;
-
-    /// All items, sorted by name and number.
-    ///
-    /// # Errors
-    /// If the records cannot be read.
-    fn items(&self) -> Result<Vec<Item>, Self::Error>;
 }
 
 /// The Data System's end of the mailboxes.

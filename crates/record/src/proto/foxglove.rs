@@ -9,7 +9,6 @@ use super::{
     descriptor::{encode_set, enumeration, field, file, message, repeated, typed_field},
     wire::{self, Value},
 };
-use crate::input::Link;
 
 /// Full name of the message on `/tf`.
 pub const FRAME_TRANSFORMS: &str = "foxglove.FrameTransforms";
@@ -180,6 +179,15 @@ pub fn put_log(time: u64, level: Level, text: &str, source: &str, file: &str, li
     wire::bytes(4, source.as_bytes(), out);
     wire::bytes(5, file.as_bytes(), out);
     wire::fixed32(6, line, out);
+}
+
+/// A link of the cell: a frame and its parent frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Link {
+    /// Name, as in the URDF.
+    pub name: String,
+    /// Name of the parent in the URDF; `world` for bodies that are fixed or move freely.
+    pub parent: String,
 }
 
 /// The transforms of a `FrameTransforms` message, without their time stamps; the first malformed one ends the list.

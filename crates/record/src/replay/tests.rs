@@ -8,8 +8,7 @@ use taskdata::files::TaskData;
 
 use super::*;
 use crate::{
-    input::{End, Setup},
-    recorder::Lost,
+    input::{End, Lost, Setup},
     writer::{LogWriter, TickRecord},
 };
 

@@ -11,7 +11,7 @@ use taskdata::load::{
 };
 
 use super::terminals::Entry;
-use crate::load;
+use crate::loads;
 
 /// A request.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,7 +118,7 @@ impl Request {
         if let Some(entry) = Entry::read(&each) {
             return entry.map(Self::Terminal);
         }
-        if let Some(block) = load::asked(&each) {
+        if let Some(block) = loads::asked(&each) {
             return block.map(Self::Load);
         }
         if let Some(request) = line_load(&each, store).or_else(|| play(&each)) {

@@ -21,9 +21,9 @@ use crate::live::{
     commands::Access,
     connection::Connection,
     feed::{Feed, Queue},
+    options::{Notices, Options},
     outgoing::Outgoing,
     protocol::{self, StatusLevel},
-    server::{Notices, Options},
     session::{Action, Rights, Session},
     silence::Silence,
 };

@@ -23,6 +23,7 @@ pub mod commands;
 mod connection;
 pub mod feed;
 mod frames;
+pub mod options;
 pub mod origin;
 mod outgoing;
 pub mod protocol;
@@ -31,6 +32,7 @@ pub mod session;
 mod silence;
 
 pub use feed::Feed;
+pub use options::Options;
 pub use origin::Origin;
 pub use protocol::NoRandom;
-pub use server::{Options, Port, Server};
+pub use server::{Port, Server};

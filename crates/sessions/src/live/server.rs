@@ -6,7 +6,6 @@ use std::{
     sync::{
         Arc,
         atomic::{AtomicBool, AtomicUsize, Ordering},
-        mpsc::Sender,
     },
     thread::{self, JoinHandle},
     time::{Duration, Instant},
@@ -21,12 +20,8 @@ use tungstenite::{
 };
 
 use crate::live::{
-    client::Client,
-    commands::{Access, Knob},
-    connection::Connection,
-    feed::Feed,
-    origin::Origin,
-    protocol::{SUBPROTOCOLS, ServerInfo},
+    client::Client, connection::Connection, feed::Feed, options::Options, origin::Origin,
+    protocol::SUBPROTOCOLS,
 };
 
 /// Default port of the viewers.
@@ -35,41 +30,12 @@ pub const PORT: u16 = 8765;
 pub const CLIENTS: usize = 16;
 /// Greatest length of a client's message, bytes.
 pub const MESSAGE: usize = 64 * 1024;
-/// Time after which a client that reads nothing is disconnected.
-pub const PATIENCE: Duration = Duration::from_secs(5);
 /// Time limit of a handshake.
 const HANDSHAKE: Duration = Duration::from_secs(3);
 /// Time at the end in which clients can still read.
 const LAST: Duration = Duration::from_secs(2);
 /// Pause after a connection that could not be accepted.
 const AGAIN: Duration = Duration::from_millis(100);
-
-/// Receives a sentence for each client that the server disconnects, with the name of the client and the reason.
-pub type Notices = Sender<String>;
-
-/// Options of the server.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Origins of web pages that may connect, besides Foxglove's.
-    pub origins: Vec<Origin>,
-    /// The first message to clients.
-    pub info: ServerInfo,
-    /// Time after which a client that reads nothing is disconnected.
-    pub patience: Duration,
-    /// The velocity knob; `None` if there is none.
-    pub knob: Option<Knob>,
-    /// Access for requests; `None` if the run accepts none.
-    pub access: Option<Access>,
-    /// Receives the reasons of disconnects; `None` if nobody wants to know.
-    pub notices: Option<Notices>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        let (info, origins) = (ServerInfo::default(), Vec::new());
-        Self { origins, info, patience: PATIENCE, knob: None, access: None, notices: None }
-    }
-}
 
 /// A bound port on 127.0.0.1. Clients that connect wait until a [`Server`] starts.
 #[derive(Debug)]

@@ -1,0 +1,24 @@
+//! A claim that is untrue.
+
+use super::NotSensed;
+
+/// A claim that is untrue.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Untruth {
+    /// What is true instead: a sentence without its full stop.
+    pub text: String,
+    /// Why no sensor could show it; `None` if the confirmation is false.
+    pub not_sensed: Option<NotSensed>,
+}
+
+impl Untruth {
+    /// An untruth that a sensor could have shown.
+    pub const fn is_false(text: String) -> Self {
+        Self { text, not_sensed: None }
+    }
+}
+
+/// `Ok` if a condition holds.
+pub fn expect(condition: bool, text: impl FnOnce() -> String) -> Result<(), Untruth> {
+    if condition { Ok(()) } else { Err(Untruth::is_false(text())) }
+}

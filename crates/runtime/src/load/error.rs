@@ -1,0 +1,87 @@
+//! Errors of a load.
+
+use std::{fmt, io, time::Duration};
+
+use executive::boards::Board;
+use taskdata::load::{BlockNumber, Diagnostics};
+
+/// Time limit for the boards' check of a load.
+pub const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Errors of a load.
+#[derive(Debug)]
+pub enum LoadError {
+    /// A command is in progress.
+    Busy,
+    /// Another block is being loaded.
+    Loading,
+    /// The operator has left or disconnected before the boards had checked the block.
+    Withdrawn,
+    /// The data directory has no such block.
+    NoBlock(BlockNumber),
+    /// A symbolic link leads from this file out of the data directory.
+    Outside(String),
+    /// The log whose inputs are replayed does not contain the text.
+    NotRecorded,
+    /// The load was refused in the log.
+    Recorded(String),
+    /// The data with the block have errors.
+    Data(Box<Diagnostics>),
+    /// The job has loaded blocks meanwhile, or waits for the end of a command to load some.
+    Reload,
+    /// The file for the boards cannot be written.
+    Write(io::Error),
+    /// A board has not finished its check in time.
+    Late,
+    /// A board has other data after the load.
+    Differs(Board),
+    /// The thread that checks has ended.
+    NoThread,
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Busy => {
+                f.write_str("a command is executed, and keeps its records: PAUSE, or wait for its end")
+            }
+            Self::Loading => f.write_str("another block is being checked: ask again when that is answered"),
+            Self::Withdrawn => f.write_str(
+                "the operator who asked for it has left before it was checked; nothing has changed",
+            ),
+            Self::NoBlock(block) => write!(f, "the run's data directory has no {block}"),
+            Self::Outside(file) => write!(
+                f,
+                "{file} is a link to a file outside of the run's data directory: a block of that directory was expected"
+            ),
+            Self::NotRecorded => f.write_str("the log has no text of the block"),
+            Self::Recorded(why) => f.write_str(why),
+            Self::Data(report) => write!(f, "with this change the task data have errors:\n{report}"),
+            Self::Reload => f.write_str("the job loads blocks at this moment: ask again"),
+            Self::Write(error) => write!(f, "the blocks for the boards cannot be written: {error}"),
+            Self::Late => write!(
+                f,
+                "not all boards have checked it within {} s; nothing has changed",
+                PATIENCE.as_secs()
+            ),
+            Self::Differs(board) => {
+                write!(
+                    f,
+                    "{board} has other task data after this: it was started with other data; nothing has changed"
+                )
+            }
+            Self::NoThread => f.write_str("the thread that checks blocks has ended; nothing has changed"),
+        }
+    }
+}
+
+impl LoadError {
+    /// The error in one line.
+    #[must_use]
+    pub fn in_line(&self) -> String {
+        match self {
+            Self::Data(report) => format!("with this change the task data have errors: {}", report.in_line()),
+            other => other.to_string(),
+        }
+    }
+}
