@@ -7,7 +7,7 @@ use interfaces::{
     CommonMemory, DataBaseCommand, DeviceOutputs, ExternalInputs, GripOutputs, Header, OutsidePedestal,
     Reason,
     device::single_step,
-    emove::{Grasped, Located, PlacedObject},
+    emove::{Beliefs, Grasped, Located, PlacedObject},
     grip::{GripCommand, GripReport, GripVerb},
     hws::{HwsReport, Ledger},
     operator::{BOARDS, Variable, Write, board_bit, process_bit},
@@ -392,14 +392,17 @@ fn believing() -> Rig {
     let mut state = rig.ladder.state();
     state.subtask.regrip = Some(Regrip::default());
     state.task.data_system.beliefs.owed[0] = Some(DataBaseCommand::default());
-    state.emove.beliefs.placed = Some(PlacedObject::default());
-    state.emove.beliefs.located = Some(Located::default());
-    state.emove.beliefs.held = Some(Grasped::default());
+    state.emove.adopt(&Beliefs {
+        placed: Some(PlacedObject::default()),
+        located: Some(Located::default()),
+        held: Some(Grasped::default()),
+        ..state.emove.beliefs()
+    });
     rig.ladder.restore(&state);
     rig.before.task.ledger = Some(Ledger::default());
     rig.before.task.beliefs.owed = state.task.data_system.beliefs.owed;
     rig.before.subtask.regrip = state.subtask.regrip;
-    rig.before.emove.beliefs = state.emove.beliefs;
+    rig.before.emove.beliefs = state.emove.beliefs();
     rig
 }
 

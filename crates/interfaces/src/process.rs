@@ -29,7 +29,7 @@ pub trait Process<Data: ?Sized> {
     /// Its output buffers.
     type Outputs: Plain;
     /// The state variables of a tick, and other results of preprocess.
-    type Seen;
+    type StateVariables;
     /// Actions of the tables.
     type Action;
 
@@ -39,16 +39,16 @@ pub trait Process<Data: ?Sized> {
     const TABLES: &'static [&'static Table];
 
     /// Read the inputs and set the state variables. `outputs` holds what was written in the tick before.
-    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &Self::Outputs) -> Self::Seen;
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &Self::Outputs) -> Self::StateVariables;
 
     /// Look the state variables up in the decision tables.
-    fn decide(&mut self, seen: &Self::Seen) -> Self::Action;
+    fn decide(&mut self, seen: &Self::StateVariables) -> Self::Action;
 
     /// Carry out the action of the row that fired, and fill the output buffers.
     fn postprocess(
         &mut self,
         action: Self::Action,
-        seen: &Self::Seen,
+        seen: &Self::StateVariables,
         inputs: &Inputs<'_, Data>,
         outputs: &mut Self::Outputs,
     );

@@ -21,7 +21,7 @@ use rcs_core::{
     tick::Tick,
 };
 
-use crate::execution::{Course, Ending, Execution, LastOrder};
+use crate::execution::{Course, Ending, Execution, LastOrder, Progress};
 
 /// The command of a process, for [`HALT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -247,14 +247,14 @@ impl Execution {
     }
 
     /// Consult [`EFFECT`], the table with this number, about a row that fired: the row, or that of EFFECT. `variables`
-    /// are those of the command's table, as one number.
+    /// are those of the command's table, as one number, with the progress of the command.
     pub fn effect<Action: Commanding, Step>(
         &mut self,
         number: u8,
         choice: Choice<Action, Step>,
-        variables: u64,
+        (variables, progress): (u64, Progress),
     ) -> Choice<Action, Step> {
-        let this = LastOrder { table: choice.table, row: choice.row, variables };
+        let this = LastOrder { table: choice.table, row: choice.row, variables, progress };
         let order = match choice.action.is_order() {
             false => Order::None,
             true if self.last_order == Some(this) => Order::Repeated,

@@ -10,8 +10,6 @@ use interfaces::{
 use rcs_core::{Plain, name::Name10};
 use taskdata::files::{ArrayId, Location, LocptId, LookupError, Place, PoseId, Reference, TaskData};
 
-use crate::emove::route::same_location;
-
 /// Locations that the processes name themselves, because no command of the workstation controller does.
 pub mod named {
     /// Where the Active Pedestal takes an object (V.3.1 FIX-GRIP).
@@ -84,6 +82,12 @@ location_keys! {
     RobotPlace: record, array, sector;
     crate::task::plan::Location: record, array, sector;
     crate::subtask::aims::Aim: record, array, sector;
+}
+
+/// True if two places are the same location: no intermediate trajectory leads from one to the other.
+#[must_use]
+pub fn same_location(a: &Place, b: &Place) -> bool {
+    a.locpt == b.locpt && (!a.locpt.is_null() || a.array == b.array)
 }
 
 /// The place of a location point.

@@ -5,7 +5,7 @@ use std::{path::Path, sync::OnceLock};
 
 use interfaces::emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace};
 use levels::{
-    emove::route::{Ahead, Goal, LegGoal, Planning, Route},
+    emove::motion::route::{Ahead, Goal, LegGoal, Planning, Route},
     places::robot_at,
 };
 use rcs_core::name::{Name10, Name16};

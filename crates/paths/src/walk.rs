@@ -13,9 +13,9 @@ use interfaces::{
 };
 use levels::{
     emove::{
-        route::{Goal, LegGoal, Planning, Route},
+        motion::route::{Goal, LegGoal, Planning, Route},
+        robot_place::is_same_pose,
         tables::{Action, Request, accept::accept},
-        way::is_same_pose,
     },
     execution::Asked,
     places::{LocationKey, robot_at},

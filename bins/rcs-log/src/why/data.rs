@@ -9,7 +9,7 @@ use interfaces::{
     prim::{PrimCommand, PrimVerb},
 };
 use levels::{
-    emove::{relative::Relative, robot_place::place_named, way::route_of},
+    emove::{localization::path::route_of, motion::relative::Relative, robot_place::place_named},
     ladder::ProcessId,
 };
 use taskdata::{

@@ -13,6 +13,7 @@ use std::collections::BTreeSet;
 use depc::link::LinkCounters;
 use interfaces::{CommonMemory, ProcessId, pose_range};
 use levels::{
+    emove::gripper::Gripper,
     execution::{Execution, Outcome},
     grip::calibration::{Readings, Steady},
     ladder::LadderState,
@@ -54,10 +55,10 @@ fn count_commands(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick
     // A commander, the number in its buffer, and the echoes of the process below in its state and its status.
     macro_rules! count {
         ($(
-            $above:ident: $commander:ident $(. $of:ident)?, $command:ident => $below:ident $(. $execution:ident)?;
+            $above:ident: $commander:expr, $command:ident => $below:ident $(. $execution:ident)?;
         )*) => {$(
             settle(
-                &mut ladder.$above.$commander $(. $of)?,
+                $commander,
                 [
                     &mut memory.$above.$command.number,
                     &mut ladder.$below $(. $execution)? .receiver.echo,
@@ -68,17 +69,17 @@ fn count_commands(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick
         )*};
     }
     count! {
-        task: subtask, subtask => subtask.execution;
-        subtask: emove, emove => emove.execution;
-        subtask: pedestal, pedestal => pedestal.execution;
-        emove: prim, prim => prim.execution;
-        emove: quick_change, quick_change => quick_change.execution;
-        emove: grippers.parts, grip => grip.execution;
-        emove: grippers.v, v_grip => v_grip.execution;
-        emove: grippers.tool, tool_grip => tool_grip.execution;
-        prim: t3i, t3i => t3i;
-        pedestal: hand, hand => hand.execution;
-        pedestal: table, table => table.execution;
+        task: &mut ladder.task.subtask, subtask => subtask.execution;
+        subtask: &mut ladder.subtask.emove, emove => emove.execution;
+        subtask: &mut ladder.subtask.pedestal, pedestal => pedestal.execution;
+        emove: ladder.emove.motion.commander(), prim => prim.execution;
+        emove: ladder.emove.exchange.commander(), quick_change => quick_change.execution;
+        emove: ladder.emove.grippers.commander(Gripper::Parts), grip => grip.execution;
+        emove: ladder.emove.grippers.commander(Gripper::V), v_grip => v_grip.execution;
+        emove: ladder.emove.grippers.commander(Gripper::Tool), tool_grip => tool_grip.execution;
+        prim: &mut ladder.prim.t3i, t3i => t3i;
+        pedestal: &mut ladder.pedestal.hand, hand => hand.execution;
+        pedestal: &mut ladder.pedestal.table, table => table.execution;
     }
 }
 
@@ -103,7 +104,7 @@ fn count_poses(memory: &mut CommonMemory, ladder: &mut LadderState) {
     let newest = [
         (pose_range::TASK, ladder.task.last_pose),
         (pose_range::SUBTASK, ladder.subtask.last_pose),
-        (pose_range::EMOVE, ladder.emove.last_pose),
+        (pose_range::EMOVE, *ladder.emove.motion.pose_numbers().1),
         (pose_range::PRIM, ladder.prim.newest_pose),
     ];
     let mut numbers = pose_numbers(memory, ladder);
@@ -143,12 +144,13 @@ fn pose_numbers<'a>(memory: &'a mut CommonMemory, ladder: &'a mut LadderState) -
         &mut aims.second.pose,
         &mut aims.third.pose,
     ];
-    let route = ladder.emove.route.iter_mut().flat_map(|route| [&mut route.departure, &mut route.goal]);
+    let (route, last_of_emove) = ladder.emove.motion.pose_numbers();
+    let route = route.into_iter().flat_map(|route| [&mut route.departure, &mut route.goal]);
     let last = [
         &mut emove.prim.pose,
         &mut ladder.task.last_pose,
         &mut ladder.subtask.last_pose,
-        &mut ladder.emove.last_pose,
+        last_of_emove,
         &mut ladder.prim.newest_pose,
     ];
     let optional = records.map(|record| &mut record.number).chain(optional);
@@ -235,7 +237,9 @@ mod tests {
             *number += u32::from(*number > pose_range::CHANGING) * 12;
         }
         let echoes = [&mut memory.prim.status.echo, &mut ladder.prim.execution.receiver.echo];
-        for number in [&mut memory.emove.prim.number, &mut ladder.emove.prim.number].into_iter().chain(echoes)
+        for number in [&mut memory.emove.prim.number, &mut ladder.emove.motion.commander().number]
+            .into_iter()
+            .chain(echoes)
         {
             *number += 3;
         }
@@ -251,11 +255,11 @@ mod tests {
     fn a_command_that_is_not_echoed_is_none_of_the_past() {
         let (mut memory, mut ladder, now) = fetching();
         let expected = forgotten((memory, ladder, now));
-        (memory.emove.prim.number, ladder.emove.prim.number) =
-            (memory.emove.prim.number + 1, ladder.emove.prim.number + 1);
+        (memory.emove.prim.number, ladder.emove.motion.commander().number) =
+            (memory.emove.prim.number + 1, ladder.emove.motion.commander().number + 1);
         let sent = forgotten((memory, ladder, now));
         assert_ne!(sent, expected);
-        ladder.emove.prim.sent = now;
+        ladder.emove.motion.commander().sent = now;
         assert_ne!(forgotten((memory, ladder, now)), sent, "it is lost later");
     }
 }

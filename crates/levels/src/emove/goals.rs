@@ -1,19 +1,18 @@
 //! The goals of E-move's commands, and how the sensors compare with them.
 
 use interfaces::{
-    EmoveOutputs, Unconfirmed,
-    emove::{EmoveCommand, EmoveVerb, Holding, Offset, RobotPlace},
+    CommonMemory, EmoveOutputs, Unconfirmed,
+    emove::{EmoveCommand, EmoveVerb, Holding},
     grip::Felt,
-    process::Inputs,
 };
 use rcs_core::handshake::Lower;
-use taskdata::files::TaskData;
 
 use super::{
+    EmoveInputs, State,
     gripper::Gripper,
+    localization::returning::offset_of_place,
     robot_place::{commanded_pose, offset},
-    state::State,
-    tables::{Fingers, Holster, Lock, Mate, Situation, resume},
+    tables::{Fingers, Holster, Lock, Mate, Situation},
 };
 use crate::{
     confirm::{Evidence, Proof},
@@ -118,13 +117,27 @@ pub static REMOVED: Goal = Goal {
     unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 
+/// The fingers stand at the size of the object; those of the parts gripper feel it.
+fn is_grasped(situation: &Situation, memory: &CommonMemory) -> Proof {
+    let attached = Gripper::attached(memory);
+    if situation.fingers != Fingers::Gripping {
+        return Proof::of(Evidence::NotHeld);
+    }
+    match attached.felt(memory) {
+        _ if attached.has_stops() => Proof::HOLDS,
+        Felt::Something => Proof::HOLDS,
+        Felt::Nothing => Proof::of(Evidence::NotHeld),
+        Felt::NotKnown => Proof::of(Evidence::NotKnown),
+    }
+}
+
 impl State {
     /// The goal of the command, compared with the sensors.
     pub(super) fn proof(
         &self,
         command: &EmoveCommand,
         situation: &Situation,
-        inputs: &Inputs<'_, TaskData<'_>>,
+        inputs: &EmoveInputs<'_>,
         outputs: &EmoveOutputs,
     ) -> Proof {
         let memory = inputs.memory;
@@ -135,10 +148,10 @@ impl State {
         };
         let at_goal = || {
             let [_, goal, ..] = &outputs.poses;
-            let seen = self
-                .route
-                .as_ref()
-                .map_or_else(|| offset(&goal.pose, memory), |route| self.offset_of_place(&route.to, inputs));
+            let seen = self.motion.goal().map_or_else(
+                || offset(&goal.pose, memory),
+                |to| offset_of_place(&to, self.holding(memory), inputs),
+            );
             Proof::at(seen)
         };
         let at_command = || {
@@ -156,7 +169,7 @@ impl State {
             Holding::Something => Proof::of(Evidence::Unknown),
             Holding::NotKnown => Proof::of(Evidence::NotKnown),
         };
-        let seat = self.beliefs.seat;
+        let seat = self.held.seat();
         match command.command {
             EmoveVerb::None | EmoveVerb::Pause => {
                 let moves = matches!(situation.prim, Lower::Pending | Lower::Executing);
@@ -169,7 +182,7 @@ impl State {
             | EmoveVerb::LocateObj => at_goal(),
             EmoveVerb::MovObjTo => is_held().and(at_goal()).with_part(seat),
             EmoveVerb::GraspObj | EmoveVerb::AcquireTool => {
-                self.is_grasped(situation, memory).and(force).with_part(seat)
+                is_grasped(situation, memory).and(force).with_part(seat)
             }
             EmoveVerb::Release => is_free(),
             EmoveVerb::QcAttach => Proof::when(situation.mate == Mate::Right, Evidence::GripperOff)
@@ -184,30 +197,6 @@ impl State {
                 is_free().and(at_command()).and_unsensed(Unconfirmed::ToolInDrum).with_part(seat)
             }
             EmoveVerb::RemoveTool => is_held().and(at_command()).with_part(seat),
-        }
-    }
-
-    /// How far the robot is from a place. A vise or the pedestal that has closed on the part in the fingers may have
-    /// shifted the hand: the robot is there then, as it is for the next command.
-    pub(super) fn offset_of_place(&self, at: &RobotPlace, inputs: &Inputs<'_, TaskData<'_>>) -> Offset {
-        let is_there = self.offset(at, inputs) == resume::Offset::There;
-        match offset(&at.pose, inputs.memory) {
-            Offset::Slight | Offset::Off if is_there => Offset::None,
-            seen => seen,
-        }
-    }
-
-    /// The fingers stand at the size of the object; those of the parts gripper feel it.
-    fn is_grasped(&self, situation: &Situation, memory: &interfaces::CommonMemory) -> Proof {
-        let attached = Gripper::attached(memory);
-        if situation.fingers != Fingers::Gripping {
-            return Proof::of(Evidence::NotHeld);
-        }
-        match attached.felt(memory) {
-            _ if attached.has_stops() => Proof::HOLDS,
-            Felt::Something => Proof::HOLDS,
-            Felt::Nothing => Proof::of(Evidence::NotHeld),
-            Felt::NotKnown => Proof::of(Evidence::NotKnown),
         }
     }
 }

@@ -19,6 +19,7 @@ use interfaces::{
     CommonMemory, EmoveOutputs, Reason,
     grip::{GripCommand, GripVerb},
     jaws::{JawsCommand, JawsReport, JawsVerb},
+    prim::JoystickGrip,
 };
 use rcs_core::{
     Plain,
@@ -26,28 +27,64 @@ use rcs_core::{
     tick::Tick,
 };
 
-use super::{
-    gripper::Gripper,
-    order::{FingerOrder, FingerVerb},
-};
+use super::gripper::Gripper;
+
+/// What is asked of the attached gripper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum FingerVerb {
+    /// Nothing yet.
+    #[text = ""]
+    None,
+    /// Leave the fingers as they are.
+    Pause,
+    /// Bring the fingers to an opening, nothing between them.
+    Stand,
+    /// Open and let go.
+    Release,
+    /// Close on an object.
+    Grasp,
+    /// Calibrate the sensors.
+    Calibrate,
+}
+
+/// An [`FingerVerb`] with what goes with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FingerOrder {
+    /// What to do.
+    pub order: FingerVerb,
+    /// Opening, or size of the object, 0.01 in.
+    pub opening: i32,
+    /// Force of a grasp, lb.
+    pub force: i32,
+}
+
+impl FingerOrder {
+    /// A request that needs an opening and no force.
+    #[must_use]
+    pub const fn to(order: FingerVerb, opening: i32) -> Self {
+        Self { order, opening, force: 0 }
+    }
+}
 
 /// E-move's side of the interfaces to the three gripper processes, and the order that was given last.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Grippers {
     /// Commands to Grip.
-    pub parts: Commander,
+    parts: Commander,
     /// Commands to V-Grip.
-    pub v: Commander,
+    v: Commander,
     /// Commands to Tool-Grip.
-    pub tool: Commander,
+    tool: Commander,
     /// The gripper that has the last order.
-    pub to: Gripper,
+    to: Gripper,
     /// The last order.
-    pub order: FingerVerb,
+    order: FingerVerb,
     /// Size commanded last to jaws, 0.01 in.
-    pub size: i32,
+    size: i32,
     /// It was a command to jaws to close.
-    pub closing: bool,
+    closing: bool,
+    /// Gripper button of the joystick box in the tick before: pressing counts, not holding down.
+    button: JoystickGrip,
 }
 
 impl Grippers {
@@ -87,6 +124,39 @@ impl Grippers {
         (self.to, self.closing) = (attached, self.order == FingerVerb::Grasp);
     }
 
+    /// The last order.
+    #[must_use]
+    pub const fn order(&self) -> FingerVerb {
+        self.order
+    }
+
+    /// The attached gripper has the last order.
+    #[must_use]
+    pub fn are_ordered(&self, memory: &CommonMemory) -> bool {
+        self.to == Gripper::attached(memory)
+    }
+
+    /// Another gripper is on: its process wakes, and answers nothing that it was told before it was left.
+    pub fn note_gripper(&mut self, memory: &CommonMemory) {
+        if Gripper::attached(memory) != Gripper::None {
+            self.to = Gripper::None;
+        }
+    }
+
+    /// The gripper button of the joystick box, if it has just been pressed.
+    #[must_use]
+    pub fn pressed(&self, memory: &CommonMemory) -> JoystickGrip {
+        match memory.prim.status.joystick_grip {
+            pressed if pressed == self.button => JoystickGrip::None,
+            pressed => pressed,
+        }
+    }
+
+    /// After everything else in a tick that reads inputs: remember the gripper button.
+    pub const fn note_button(&mut self, memory: &CommonMemory) {
+        self.button = memory.prim.status.joystick_grip;
+    }
+
     /// Are the fingers busy with an order that moves them?
     #[must_use]
     pub fn are_moving(&self, tick: Tick, memory: &CommonMemory) -> bool {
@@ -109,7 +179,7 @@ impl Grippers {
             Gripper::None => {}
             Gripper::Parts => {
                 outputs.grip = GripCommand {
-                    number: self.parts.send(tick),
+                    number: self.commander(self.to).send(tick),
                     command: match request.order {
                         FingerVerb::None | FingerVerb::Pause => GripVerb::Pause,
                         FingerVerb::Stand => GripVerb::Position,
@@ -142,9 +212,8 @@ impl Grippers {
             self.size = request.opening.clamp(closed, open);
             self.closing = command == JawsVerb::Grasp;
         }
-        let commander = if self.to == Gripper::V { &mut self.v } else { &mut self.tool };
         JawsCommand {
-            number: commander.send(tick),
+            number: self.commander(self.to).send(tick),
             command,
             force: request.force,
             size: self.size,
@@ -207,5 +276,14 @@ impl Grippers {
     #[must_use]
     pub fn has_let_go(&self, tick: Tick, memory: &CommonMemory) -> bool {
         self.order == FingerVerb::Release && self.status(tick, memory) == Lower::Done
+    }
+
+    /// Commands to a gripper, for a search that numbers them anew (docs/proof.md); without one, to the parts gripper.
+    pub const fn commander(&mut self, of: Gripper) -> &mut Commander {
+        match of {
+            Gripper::None | Gripper::Parts => &mut self.parts,
+            Gripper::V => &mut self.v,
+            Gripper::Tool => &mut self.tool,
+        }
     }
 }

@@ -13,62 +13,92 @@
 //!     error <-----------------------------------------------
 //! ```
 //!
-//! * [`state`]: the state of E-move;
-//! * [`robot_place`] and [`whereabouts`]: place of the robot;
-//! * [`route`]: depart, trajectory, approach and stop as one list of points;
-//! * [`way`]: continuation of an interrupted path;
-//! * [`track`] and [`rejoin`]: return of a robot that the joystick box has moved;
-//! * [`exchange`]: position of the robot in the change of a gripper;
-//! * [`drum`]: its position at the tool drum;
-//! * [`locate`]: from a picture to a part frame;
-//! * [`relative`]: the short moves at holsters and tool drum;
-//! * [`gripper`] and [`order`]: the three grippers as one;
-//! * [`preprocess`] and [`plan`]: the state variables, and what a new command needs;
-//! * [`fingers`]: openings as state variables and as orders;
-//! * [`tables`]: the decision tables, one file per command;
-//! * [`postprocess`], [`camera`] and [`ends`]: the outputs that a row asks for.
+//! A tick reads as the manual does (II.2.1): [`sense`], decide, [`act`], [`report`]. [`State`] is the command under way
+//! and these parts, none of which reads the fields of another:
+//!
+//! * [`held_object`]: the object in the fingers;
+//! * [`grippers`] and [`gripper`]: the three grippers as one;
+//! * [`gripper_exchange`]: quick change, and the position of the robot in the change of a gripper;
+//! * [`tool_drum`]: its position at the tool drum;
+//! * [`localization`]: its place, or the path that it is on;
+//! * [`motion`]: the route of the command, and the commands to Prim;
+//! * [`vision`]: pictures, and from a picture to a part frame.
+//!
+//! Besides there are [`plan`] with what a new command needs, [`goals`] with what a command that is done has reached,
+//! [`robot_place`] and [`grasp`] with conversions of places and objects, and [`tables`] with the decision tables, one
+//! file per command.
 
-pub mod back;
-pub mod camera;
-pub mod drum;
-pub mod ends;
-pub mod exchange;
-pub mod fingers;
+pub mod act;
 pub mod goals;
+pub mod grasp;
 pub mod gripper;
+pub mod gripper_exchange;
 pub mod grippers;
-pub mod locate;
-pub mod order;
+pub mod held_object;
+pub mod localization;
+pub mod motion;
 pub mod plan;
-pub mod postprocess;
-pub mod preprocess;
-pub mod rejoin;
-pub mod relative;
+pub mod report;
 pub mod robot_place;
-pub mod route;
-pub mod state;
-pub mod surroundings;
+pub mod sense;
 pub mod tables;
 #[cfg(test)]
 mod tests;
-pub mod track;
-pub mod way;
-pub mod whereabouts;
-mod written;
+pub mod tool_drum;
+pub mod vision;
 
 use interfaces::{
     EmoveOutputs,
     operator::Write,
     process::{Inputs, Process},
 };
-use rcs_core::table::{Table, Verdict};
+use rcs_core::{
+    Plain,
+    table::{Table, Verdict},
+};
 use taskdata::files::TaskData;
 
 use self::{
-    state::State,
-    tables::{Action, Seen, attend::attend, number},
+    gripper_exchange::GripperExchange,
+    grippers::Grippers,
+    held_object::HeldObject,
+    localization::Localization,
+    motion::Motion,
+    tables::{Action, Ordered, StateVariables, Step, attend::attend, number},
+    tool_drum::ToolDrum,
+    vision::Vision,
 };
-use crate::execution::Course;
+use crate::execution::{Course, Execution};
+
+/// What E-move reads in a tick.
+pub type EmoveInputs<'a> = Inputs<'a, TaskData<'a>>;
+
+/// State of E-move: the command under way, and the parts.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct State {
+    /// The command of Subtask and how far it has come.
+    pub execution: Execution,
+    /// Step of its table.
+    pub step: Step,
+    /// The process that has its last order.
+    pub ordered: Ordered,
+    /// It has ordered something of Prim, or waits until Prim has ended what it did before.
+    pub uses_prim: bool,
+    /// The object in the fingers.
+    pub held: HeldObject,
+    /// The gripper processes.
+    pub grippers: Grippers,
+    /// The change of a gripper.
+    pub exchange: GripperExchange,
+    /// The tool drum.
+    pub drum: ToolDrum,
+    /// Where the robot is.
+    pub localization: Localization,
+    /// The motion of the command.
+    pub motion: Motion,
+    /// Pictures.
+    pub vision: Vision,
+}
 
 /// The E-move process.
 #[derive(Clone, Debug, Default)]
@@ -83,30 +113,30 @@ impl crate::goal::Goals for Emove {
 impl<'d> Process<TaskData<'d>> for Emove {
     type State = State;
     type Outputs = EmoveOutputs;
-    type Seen = Seen;
+    type StateVariables = StateVariables;
     type Action = Action;
 
     const NAME: &'static str = "E-move";
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, outputs: &EmoveOutputs) -> Seen {
+    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, outputs: &EmoveOutputs) -> StateVariables {
         self.state.sense(inputs, outputs)
     }
 
-    fn decide(&mut self, seen: &Seen) -> Action {
+    fn decide(&mut self, seen: &StateVariables) -> Action {
         tables::decide(&mut self.state, &mut { *seen })
     }
 
     fn postprocess(
         &mut self,
         action: Action,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, TaskData<'d>>,
         outputs: &mut EmoveOutputs,
     ) {
         let state = &mut self.state;
         if state.execution.accepted(seen.asked) {
-            state.publish_route(outputs);
+            state.motion.publish_route(outputs);
         }
         state.act(action, seen, inputs, outputs);
         state.report(inputs, outputs);
@@ -130,7 +160,7 @@ impl State {
     ///
     /// # Errors
     /// The action of its row otherwise.
-    fn attend(&mut self, course: Course, seen: &mut Seen) -> Result<Course, Action> {
+    fn attend(&mut self, course: Course, seen: &mut StateVariables) -> Result<Course, Action> {
         if course != Course::Rest {
             return Ok(course);
         }

@@ -1,28 +1,27 @@
 //! The data of a command, looked up when it comes: a command that cannot be executed moves nothing.
 
-use geometry::frame::Frame;
 use interfaces::{
     CommonMemory,
     emove::{EmoveCommand, EmoveVerb},
-    pose_range,
-    process::Inputs,
     quick_change::RingPosition,
 };
 use rcs_core::name::Name10;
-use taskdata::files::{PoseId, TaskData};
+use taskdata::files::TaskData;
 
 use super::{
-    fingers::{gripper_on, sizes},
+    EmoveInputs, State,
+    grasp::{gripper_on, sizes},
     gripper::Gripper,
-    locate::view_of,
-    relative::{self, Relative},
-    robot_place::place_named,
-    route::{Goal, Planning},
-    state::State,
-    tables::{
-        Attached, Coupling, Exchange, HolsterData, Knowledge, Ordered, Record, Request, Target, ToolWork,
+    motion::{
+        flight::Flight,
+        relative::{self, Relative},
+        route::{Goal, Planning},
     },
-    way::Flight,
+    robot_place::place_named,
+    tables::{
+        Attached, Coupling, ExchangeWork, HolsterData, Knowledge, Ordered, Record, Request, Target, ToolWork,
+    },
+    vision::view_of,
 };
 use crate::{execution::Asked, halt::BoxState};
 
@@ -76,25 +75,25 @@ impl State {
         &mut self,
         command: &EmoveCommand,
         joystick: BoxState,
-        inputs: &Inputs<'_, TaskData<'_>>,
+        inputs: &EmoveInputs<'_>,
     ) -> Request {
         let (memory, data) = (inputs.memory, inputs.data);
         let planned = self.plan(command, inputs);
-        Flight { route: self.route, back: self.back, rejoin: self.rejoin } = planned.unwrap_or_default();
         (self.ordered, self.uses_prim) = (Ordered::Nothing, false);
-        (self.tries, self.undetected) = (0, 0);
-        self.carrying = self.beliefs.held.is_some();
+        self.motion.begin(planned.unwrap_or_default());
+        self.vision.begin();
+        self.held.begin();
         Request {
             asked: Asked::Now,
             verb: command.command,
             gripper: attached(command, memory),
-            start: match (self.place(), self.beliefs.drum) {
+            start: match (self.localization.place(), self.drum.half_way()) {
                 (None, None) => Knowledge::Unknown,
                 _ => Knowledge::Known,
             },
-            coupling: if self.is_misread(memory) { Coupling::Misread } else { coupling(memory) },
-            exchange: if self.beliefs.exchange.is_some() { Exchange::HalfDone } else { Exchange::None },
-            drum: if self.beliefs.drum.is_some() { ToolWork::HalfDone } else { ToolWork::None },
+            coupling: if self.exchange.is_misread(memory) { Coupling::Misread } else { coupling(memory) },
+            exchange: if self.exchange.is_half_done() { ExchangeWork::HalfDone } else { ExchangeWork::None },
+            drum: if self.drum.half_way().is_some() { ToolWork::HalfDone } else { ToolWork::None },
             target: target(command, inputs.data),
             sizes: record(sizes(command, data).is_some()),
             view: record(view_of(command, data).is_some()),
@@ -106,48 +105,27 @@ impl State {
     }
 
     /// The way of a motion command.
-    fn plan(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Flight, Planning> {
+    fn plan(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Result<Flight, Planning> {
+        let holding = self.holding(inputs.memory);
         match command.command {
             EmoveVerb::MovToLoc
             | EmoveVerb::MovToObj
             | EmoveVerb::MovObjTo
             | EmoveVerb::MovToVu
             | EmoveVerb::MovToHol => {
-                let base = self.base_frame(command, inputs)?;
+                let base = self.vision.base_frame(command, inputs)?;
                 let goal = Goal::new(command, &base, inputs.data)?;
-                let mut flight = self.flight(command, &goal, inputs)?;
+                let begin = self.localization.origination(holding, inputs)?;
+                let mut flight = Flight::plan(&goal, &goal.place(command), &begin, inputs.data)?;
                 if let (Some(route), Gripper::None) = (&mut flight.route, Gripper::attached(inputs.memory)) {
                     route.opening = None;
                 }
                 Ok(flight)
             }
-            EmoveVerb::LocateObj | EmoveVerb::GraspObj | EmoveVerb::Release => self.stand_still(inputs),
+            EmoveVerb::LocateObj | EmoveVerb::GraspObj | EmoveVerb::Release => {
+                self.localization.stand_still(holding, inputs)
+            }
             _ => Ok(Flight::default()),
         }
-    }
-
-    /// The pose of a command, or where vision has found the object.
-    pub(super) fn base_frame(
-        &self,
-        command: &EmoveCommand,
-        inputs: &Inputs<'_, TaskData<'_>>,
-    ) -> Result<Frame, Planning> {
-        let located = self.beliefs.located.filter(|located| {
-            command.command == EmoveVerb::MovToObj
-                && Some(located.object) == command.object
-                && located.record == command.location_record
-                && located.array == command.location_array
-                && located.sector == command.location_sector
-        });
-        let pose = match (located, command.pose) {
-            (Some(located), _) => located.pose,
-            (None, None) => return Err(Planning::NoPose),
-            (None, Some(pose @ 0..pose_range::CHANGING)) => {
-                let record = inputs.data.pose(PoseId::new(pose)).ok_or(Planning::NoPose)?;
-                return Ok(record.frame);
-            }
-            (None, Some(pose)) => *inputs.memory.changing_pose(pose).ok_or(Planning::NoPose)?,
-        };
-        pose.to_frame().map_err(|_| Planning::BadPose)
     }
 }

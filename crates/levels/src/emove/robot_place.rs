@@ -7,9 +7,10 @@ use interfaces::{
     emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, Offset, RobotPlace, Standing},
     prim::PrimReport,
 };
-use taskdata::files::Place;
+use taskdata::files::{Place, TaskData};
 
-use crate::places::LocationKey;
+use super::motion::route::near;
+use crate::places::{LocationKey, pose_of};
 
 /// What a command goes to.
 #[must_use]
@@ -75,6 +76,23 @@ pub fn place_named(command: &EmoveCommand) -> Place {
     LocationKey::of(command).place(command.location_kind)
 }
 
+/// A command that names a place.
+#[must_use]
+pub fn command_at(place: &RobotPlace) -> EmoveCommand {
+    EmoveCommand {
+        location_kind: place.kind,
+        location_record: place.record,
+        location_array: place.array,
+        ..EmoveCommand::default()
+    }
+}
+
+/// The pose of the location that a command names.
+#[must_use]
+pub fn base(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Frame> {
+    pose_of(command.pose?, memory, data)
+}
+
 /// Where the robot stands, for the status.
 #[must_use]
 pub const fn standing(at: &RobotPlace) -> Standing {
@@ -134,4 +152,17 @@ pub fn offset(pose: &Pose, memory: &CommonMemory) -> Offset {
     } else {
         Offset::Off
     }
+}
+
+/// True if both places are the same pose at the same location, whatever the robot goes to there.
+#[must_use]
+pub fn is_same_pose(a: &RobotPlace, b: &RobotPlace) -> bool {
+    let (Ok(a_frame), Ok(b_frame)) = (a.pose.to_frame(), b.pose.to_frame()) else { return false };
+    LocationKey::of(a).has_location_of(LocationKey::of(b))
+        && near(&a_frame, &b_frame, THERE_INCHES, THERE_RADIANS)
+}
+
+/// Is it the same goal: same kind, place, object and grip, and the same pose?
+pub(super) fn is_same_goal(a: &RobotPlace, b: &RobotPlace) -> bool {
+    a.gone_to == b.gone_to && place(a) == place(b) && is_same_pose(a, b)
 }

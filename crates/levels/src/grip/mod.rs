@@ -74,7 +74,8 @@ use self::{
     site::{PartsGripper, Site},
     state::State,
     tables::{
-        Action, Duty, Phase, Seen, Situation, Step, accept::accept, number, of_command, up_init::up_init,
+        Action, Duty, Phase, Situation, StateVariables, Step, accept::accept, number, of_command,
+        up_init::up_init,
     },
 };
 use crate::execution::Course;
@@ -96,18 +97,18 @@ impl<S> crate::goal::Goals for Servo<S> {
 impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
     type State = State;
     type Outputs = GripOutputs;
-    type Seen = Seen;
+    type StateVariables = StateVariables;
     type Action = Action;
 
     const NAME: &'static str = S::NAME;
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &GripOutputs) -> Seen {
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &GripOutputs) -> StateVariables {
         self.state.sense::<S, Data>(inputs, outputs)
     }
 
     /// A calibration goes on in the tick of a refusal, and while a command waits for it.
-    fn decide(&mut self, seen: &Seen) -> Action {
+    fn decide(&mut self, seen: &StateVariables) -> Action {
         let state = &mut self.state;
         let course = state.execution.execute(seen.arrival);
         if course == Course::Begin {
@@ -140,7 +141,7 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
     fn postprocess(
         &mut self,
         action: Action,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, Data>,
         outputs: &mut GripOutputs,
     ) {

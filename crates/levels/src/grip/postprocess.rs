@@ -11,7 +11,7 @@ use rcs_core::tick::Tick;
 use super::{
     calibration::{Readings, Steady, calibration},
     state::State,
-    tables::{Action, Flow, Gripper, Phase, Seen},
+    tables::{Action, Flow, Gripper, Phase, StateVariables},
 };
 use crate::execution::Outcome;
 
@@ -24,7 +24,7 @@ const FINGER_HEIGHT: i32 = 0;
 
 impl State {
     /// Carry out what a row asks for. Without the gripper all valves are off.
-    pub(super) fn act(&mut self, action: Action, seen: &Seen, tick: Tick) {
+    pub(super) fn act(&mut self, action: Action, seen: &StateVariables, tick: Tick) {
         match action {
             Action::Begin | Action::Widen => (self.since, self.steady) = (tick, Steady::default()),
             Action::NoteClosed => self.closed = self.take_readings(),
@@ -94,7 +94,7 @@ impl State {
     }
 
     /// The outputs of this tick.
-    pub(super) fn report(&self, action: Action, seen: &Seen, tick: Tick) -> GripOutputs {
+    pub(super) fn report(&self, action: Action, seen: &StateVariables, tick: Tick) -> GripOutputs {
         let execution = &self.execution;
         let report = match execution.outcome {
             Outcome::Idle => GripReport::Idle,

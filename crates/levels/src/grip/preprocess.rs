@@ -19,7 +19,7 @@ use super::{
     state::{Sensed, State, WINDOW},
     tables::{
         Addressee, Calibrating, Clock, Command, Flow, Grasp, Gripper, Measured, Motion, Opening, Phase,
-        Reach, Request, Rest, Seen, Sensors, Situation, Step,
+        Reach, Request, Rest, Sensors, Situation, StateVariables, Step,
     },
 };
 use crate::execution::{Asked, Outcome};
@@ -67,7 +67,7 @@ impl State {
         &mut self,
         inputs: &Inputs<'_, Data>,
         outputs: &GripOutputs,
-    ) -> Seen {
+    ) -> StateVariables {
         let command = S::command(inputs.memory);
         let (gripper, sensors) = S::sensors(&inputs.external.devices);
         let (arrival, asked) = self.observe((inputs.tick, command.number), gripper, outputs);
@@ -81,7 +81,7 @@ impl State {
         self.feel(before.as_ref(), &measured);
         let step = if arrival == Arrival::New { Step::Start } else { self.step };
         self.count(arrival, step, &measured, inputs.tick);
-        Seen {
+        StateVariables {
             arrival,
             request: Request {
                 asked,

@@ -59,7 +59,7 @@ use rcs_core::table::Table;
 
 use self::{
     state::State,
-    tables::{Action, Seen},
+    tables::{Action, StateVariables},
 };
 
 /// The process of a gripper that opens and closes.
@@ -81,24 +81,24 @@ impl<K> crate::goal::Goals for Jaws<K> {
 impl<K: JawsKind, Data: ?Sized> Process<Data> for Jaws<K> {
     type State = State;
     type Outputs = JawsOutputs;
-    type Seen = Seen;
+    type StateVariables = StateVariables;
     type Action = Action;
 
     const NAME: &'static str = K::NAME;
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &JawsOutputs) -> Seen {
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &JawsOutputs) -> StateVariables {
         self.state.sense::<K, Data>(inputs, outputs)
     }
 
-    fn decide(&mut self, seen: &Seen) -> Action {
+    fn decide(&mut self, seen: &StateVariables) -> Action {
         tables::decide(&mut self.state, &mut { *seen })
     }
 
     fn postprocess(
         &mut self,
         action: Action,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, Data>,
         outputs: &mut JawsOutputs,
     ) {

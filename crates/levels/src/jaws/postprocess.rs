@@ -10,14 +10,14 @@ use rcs_core::tick::Tick;
 
 use super::{
     state::State,
-    tables::{Action, Gripper, Seen},
+    tables::{Action, Gripper, StateVariables},
 };
 use crate::execution::Outcome;
 
 impl State {
     /// Carry out what a row asks for. Air stays on when the fingers have arrived: a part is held as long as
     /// they press. Without the gripper there is none; id pins that have lost their contact leave it as it is.
-    pub(super) fn act(&mut self, action: Action, seen: &Seen) {
+    pub(super) fn act(&mut self, action: Action, seen: &StateVariables) {
         const NONE: JawValves = JawValves { open: false, close: false };
         match action {
             Action::Close | Action::Open | Action::Wait => {}
@@ -48,7 +48,7 @@ impl State {
 
     /// The outputs of this tick. Of the words of VI.4.2 only `jaws-stuck` is bad news, so it stands for every
     /// failure that finds the fingers nowhere; the reason says which.
-    pub(super) fn report(&self, seen: &Seen, tick: Tick) -> JawsOutputs {
+    pub(super) fn report(&self, seen: &StateVariables, tick: Tick) -> JawsOutputs {
         let report = match self.execution.outcome {
             Outcome::Idle => JawsReport::Idle,
             Outcome::Executing => JawsReport::Executing,

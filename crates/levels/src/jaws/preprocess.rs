@@ -10,7 +10,7 @@ use rcs_core::{
 use super::{
     kind::{JawsKind, Parameters},
     state::{State, WINDOW},
-    tables::{Addressee, Gripper, Motion, Request, Seen, Situation, Size, Stop},
+    tables::{Addressee, Gripper, Motion, Request, Situation, Size, StateVariables, Stop},
 };
 
 /// Counts of the potentiometer at opening 0. ASSUMED; all grippers use the same connections (III.3.7,
@@ -43,7 +43,7 @@ impl State {
         &mut self,
         inputs: &Inputs<'_, Data>,
         outputs: &JawsOutputs,
-    ) -> Seen {
+    ) -> StateVariables {
         let command = K::command(inputs.memory);
         let devices = &inputs.external.devices;
         let gripper = gripper(&devices.quick_change, &K::PARAMETERS);
@@ -66,7 +66,7 @@ impl State {
         let opening = opening_at((newest + second + third + oldest) / 4.0);
         let stop = stop(opening, &K::PARAMETERS);
         let motion = self.motion(&window, stop, inputs.tick);
-        Seen {
+        StateVariables {
             arrival,
             verb: self.verb,
             request: Request {

@@ -52,7 +52,7 @@ use taskdata::files::TaskData;
 use self::{
     state::State,
     tables::{
-        Action, Attendance, Kind, Seen,
+        Action, Attendance, Kind, StateVariables,
         attend::{Attention, attend},
         link::LinkStep,
         number,
@@ -73,24 +73,24 @@ impl crate::goal::Goals for Prim {
 impl<'d> Process<TaskData<'d>> for Prim {
     type State = State;
     type Outputs = PrimOutputs;
-    type Seen = Seen;
+    type StateVariables = StateVariables;
     type Action = Action;
 
     const NAME: &'static str = "Prim";
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, outputs: &PrimOutputs) -> Seen {
+    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, outputs: &PrimOutputs) -> StateVariables {
         self.state.sense(inputs, outputs)
     }
 
-    fn decide(&mut self, seen: &Seen) -> Action {
+    fn decide(&mut self, seen: &StateVariables) -> Action {
         tables::decide(&mut self.state, &mut { *seen })
     }
 
     fn postprocess(
         &mut self,
         action: Action,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, TaskData<'d>>,
         outputs: &mut PrimOutputs,
     ) {
@@ -117,7 +117,7 @@ impl State {
     ///
     /// # Errors
     /// The action if they are not.
-    fn attend(&mut self, course: Course, seen: &mut Seen) -> Result<Course, Action> {
+    fn attend(&mut self, course: Course, seen: &mut StateVariables) -> Result<Course, Action> {
         let attendance = Attendance { course, kind: Kind::of(seen.verb), operator: seen.situation.operator };
         let attention = attend(self.execution.outcome, &attendance);
         self.execution.rows.beside(&attention.of(number::ATTEND));

@@ -20,7 +20,7 @@ use super::{
     motion::Motion,
     state::{Standstill, State},
     tables::{
-        Action, FirstPause, Path, Seen, Way, number,
+        Action, FirstPause, Path, StateVariables, Way, number,
         path_clock::{Flow, path_clock},
         record_pose::{Recording, record_pose},
     },
@@ -40,7 +40,7 @@ impl State {
     pub(super) fn act(
         &mut self,
         action: Action,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut PrimOutputs,
     ) {
@@ -111,7 +111,7 @@ impl State {
 
     /// The condition has come: publish where the resolvers see the robot, or without them where it was sent,
     /// and stop it.
-    fn detect(&mut self, seen: &Seen, outputs: &mut PrimOutputs) {
+    fn detect(&mut self, seen: &StateVariables, outputs: &mut PrimOutputs) {
         let commanded = self.motion.as_ref().map(Motion::frame);
         let [_, _, detected, _] = &mut outputs.poses;
         self.publish(detected, seen.resolvers.or(commanded).as_ref().map(Pose::from_frame));
@@ -137,7 +137,7 @@ impl State {
     /// True if the commanded pose is recorded.
     pub(super) fn follow_path(
         &mut self,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut PrimOutputs,
     ) -> Recording {
@@ -179,7 +179,7 @@ impl State {
     pub(super) fn report(
         &mut self,
         recording: Recording,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut PrimOutputs,
     ) {

@@ -25,7 +25,7 @@ use super::{
     state::{Goal, Standstill, State, Target},
     tables::{
         Button, Guard, Interface, Kind, Link, Missing, Operator, Passage, Position, Posture, Request, Rest,
-        Samples, Seen, Situation, Switches, Way,
+        Samples, Situation, StateVariables, Switches, Way,
     },
 };
 use crate::{execution::Asked, halt::Above, places::pose_of};
@@ -41,7 +41,11 @@ const AT_GOAL_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0;
 
 impl State {
     /// Read the inputs of a tick. `outputs` holds what was written in the tick before.
-    pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &PrimOutputs) -> Seen {
+    pub(super) fn sense(
+        &mut self,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &PrimOutputs,
+    ) -> StateVariables {
         let (t3i, devices) = (&inputs.memory.t3i.status, &inputs.external.devices);
         self.t3i.start_from(inputs.tick, inputs.memory.prim.t3i.number, t3i.echo);
         self.resume_from_rest(inputs);
@@ -82,7 +86,7 @@ impl State {
         let button = self.button(&devices.joystick);
         let lag_ms = devices.robot_lag.unwrap_or(track::LAG_MS);
         let proof = self.proof(verb, &situation, resolvers.as_ref(), lag_ms);
-        Seen { arrival, verb, request, proof, situation, button, feedback, resolvers }
+        StateVariables { arrival, verb, request, proof, situation, button, feedback, resolvers }
     }
 
     /// After a time in which Prim was held or suspended the motion goes on from rest, because T3I has stopped

@@ -52,7 +52,7 @@ use rcs_core::table::Table;
 
 use self::{
     state::State,
-    tables::{Action, Seen, Step, accept::accept, of_command},
+    tables::{Action, StateVariables, Step, accept::accept, of_command},
 };
 use crate::execution::Course;
 
@@ -69,18 +69,18 @@ impl crate::goal::Goals for QuickChange {
 impl<Data: ?Sized> Process<Data> for QuickChange {
     type State = State;
     type Outputs = QuickChangeOutputs;
-    type Seen = Seen;
+    type StateVariables = StateVariables;
     type Action = Action;
 
     const NAME: &'static str = "Quick Change";
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &QuickChangeOutputs) -> Seen {
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &QuickChangeOutputs) -> StateVariables {
         self.state.sense(inputs, outputs)
     }
 
     /// The ring is watched in every tick, also in that of a refusal.
-    fn decide(&mut self, seen: &Seen) -> Action {
+    fn decide(&mut self, seen: &StateVariables) -> Action {
         let state = &mut self.state;
         if state.execution.execute(seen.arrival) == Course::Begin {
             state.step = Step::Start;
@@ -99,7 +99,7 @@ impl<Data: ?Sized> Process<Data> for QuickChange {
     fn postprocess(
         &mut self,
         action: Action,
-        _: &Seen,
+        _: &StateVariables,
         inputs: &Inputs<'_, Data>,
         outputs: &mut QuickChangeOutputs,
     ) {

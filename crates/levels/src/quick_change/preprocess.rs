@@ -7,7 +7,7 @@ use rcs_core::handshake::Arrival;
 
 use super::{
     state::State,
-    tables::{Clock, Id, Request, Seen, Situation},
+    tables::{Clock, Id, Request, Situation, StateVariables},
 };
 
 /// Ticks after which a ring that neither sensor sees is stuck (0.5 s): longer than it is on its way.
@@ -26,7 +26,7 @@ impl State {
         &mut self,
         inputs: &Inputs<'_, Data>,
         outputs: &QuickChangeOutputs,
-    ) -> Seen {
+    ) -> StateVariables {
         let command = &inputs.memory.emove.quick_change;
         let may_go_on = !self.execution.receiver.started && outputs.valves.port;
         let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
@@ -38,7 +38,7 @@ impl State {
             self.read_ring(sensors);
         }
         let late = inputs.tick.since(self.since) > TURN_TICKS;
-        Seen {
+        StateVariables {
             arrival,
             request: Request { asked, verb: command.command },
             situation: Situation {

@@ -44,7 +44,7 @@ use taskdata::files::TaskData;
 use self::{
     state::State,
     tables::{
-        Action, Seen,
+        Action, StateVariables,
         by_hand::{Manually, by_hand},
         number,
     },
@@ -63,17 +63,17 @@ impl crate::goal::Goals for Subtask {
 impl<'d> Process<TaskData<'d>> for Subtask {
     type State = State;
     type Outputs = SubtaskOutputs;
-    type Seen = Seen;
+    type StateVariables = StateVariables;
     type Action = (Action, Option<Manually>);
 
     const NAME: &'static str = "Subtask";
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, _: &SubtaskOutputs) -> Seen {
+    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, _: &SubtaskOutputs) -> StateVariables {
         self.state.sense(inputs)
     }
 
-    fn decide(&mut self, seen: &Seen) -> (Action, Option<Manually>) {
+    fn decide(&mut self, seen: &StateVariables) -> (Action, Option<Manually>) {
         let action = tables::decide(&mut self.state, &mut { *seen });
         let manually = match by_hand((), &seen.manual) {
             Verdict::Passed(()) => None,
@@ -88,7 +88,7 @@ impl<'d> Process<TaskData<'d>> for Subtask {
     fn postprocess(
         &mut self,
         (action, manually): (Action, Option<Manually>),
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, TaskData<'d>>,
         outputs: &mut SubtaskOutputs,
     ) {

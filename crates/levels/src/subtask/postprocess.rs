@@ -16,7 +16,7 @@ use super::{
     pedestal_hand::{pedestal_hand, turned},
     preprocess::location_pose,
     state::State,
-    tables::{Action, Flip, Holster, Ordered, Pedestal, PedestalHand, Seen},
+    tables::{Action, Flip, Holster, Ordered, Pedestal, PedestalHand, StateVariables},
 };
 use crate::execution::Outcome;
 
@@ -25,7 +25,7 @@ impl State {
     pub(super) fn act(
         &mut self,
         action: Action,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut SubtaskOutputs,
     ) {
@@ -149,7 +149,7 @@ impl State {
     /// Stop the pedestal if it was commanded to move; otherwise send nothing. True if Subtask has to wait for it.
     fn pause_pedestal(
         &mut self,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut SubtaskOutputs,
     ) -> bool {

@@ -19,7 +19,7 @@ use super::{
     state::State,
     tables::{
         Drum, Exchange, GripHeld, Gripper, Hindrance, Leaving, Named, Ordered, Pedestal, PedestalData,
-        Request, Robot, Seen, Situation, Subordinates, Vision, Where, by_hand::RobotThere,
+        Request, Robot, Situation, StateVariables, Subordinates, Vision, Where, by_hand::RobotThere,
     },
 };
 use crate::{
@@ -31,7 +31,7 @@ use crate::{
 
 impl State {
     /// Read the inputs of a tick.
-    pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> Seen {
+    pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> StateVariables {
         let command = &inputs.memory.task.subtask;
         self.adopt(inputs);
         let (emove, pedestal) = (self.emove(inputs), self.pedestal(inputs));
@@ -39,7 +39,7 @@ impl State {
         let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
         let request = if asked == Asked::Now { self.look_up(command, inputs) } else { Request::default() };
         let situation = self.situation(command, inputs);
-        Seen {
+        StateVariables {
             arrival,
             asked,
             replaced: replaced(command, emove, pedestal, inputs),

@@ -49,7 +49,7 @@ use rcs_core::table::Table;
 
 pub use self::state::State;
 use self::tables::{
-    Action, Seen,
+    Action, StateVariables,
     follow::follow,
     number, of_command,
     receive::{Intake, receive},
@@ -84,17 +84,17 @@ impl crate::goal::Goals for T3i {
 impl<Data: ?Sized> Process<Data> for T3i {
     type State = State;
     type Outputs = T3iOutputs;
-    type Seen = Seen;
+    type StateVariables = StateVariables;
     type Action = Action;
 
     const NAME: &'static str = "T3 Interface";
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &T3iOutputs) -> Seen {
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &T3iOutputs) -> StateVariables {
         self.state.sense(inputs, outputs)
     }
 
-    fn decide(&mut self, seen: &Seen) -> Action {
+    fn decide(&mut self, seen: &StateVariables) -> Action {
         let state = &mut self.state;
         let checked = report(state.check, &seen.answer);
         state.rows.beside(&checked.of(number::REPORT));
@@ -123,7 +123,7 @@ impl<Data: ?Sized> Process<Data> for T3i {
     fn postprocess(
         &mut self,
         action: Action,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, Data>,
         outputs: &mut T3iOutputs,
     ) {

@@ -19,7 +19,7 @@ use rcs_core::handshake::Arrival;
 use super::{
     state::State,
     tables::{
-        Action, Before, Seen, Step,
+        Action, Before, StateVariables, Step,
         follow::Supervision,
         receive::{Intake, ReceiveStep},
         report::Comparison,
@@ -28,7 +28,7 @@ use super::{
 
 impl State {
     /// Do with the command in the buffer what RECEIVE says.
-    pub(super) fn take(&mut self, intake: Intake, seen: &Seen) {
+    pub(super) fn take(&mut self, intake: Intake, seen: &StateVariables) {
         let arrival = seen.request.arrival;
         if matches!(arrival, Arrival::New | Arrival::Restarted) {
             self.command = seen.command.command;
@@ -60,7 +60,7 @@ impl State {
     }
 
     /// Do with the motion what FOLLOW says.
-    pub(super) fn supervise(&mut self, supervision: Supervision, seen: &Seen) {
+    pub(super) fn supervise(&mut self, supervision: Supervision, seen: &StateVariables) {
         match supervision {
             Supervision::Continue => {}
             Supervision::Stop => {
@@ -75,7 +75,7 @@ impl State {
     }
 
     /// Put the frame of this tick on the line.
-    pub(super) fn send(&mut self, action: Action, seen: &Seen) -> LinkBytes {
+    pub(super) fn send(&mut self, action: Action, seen: &StateVariables) -> LinkBytes {
         let mut tx = LinkBytes::default();
         let command = |position: &Position| {
             Intent::Position(DataCommand { function: NO_FUNCTION, plate: position.plate })
@@ -126,7 +126,7 @@ impl State {
         &self,
         action: Action,
         link_tx: LinkBytes,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, Data>,
     ) -> T3iOutputs {
         let resolver_frame = seen.resolvers;

@@ -19,7 +19,7 @@ use super::{
     state::{GRACE_TICKS, State},
     tables::{
         Above, Answer, Dtr, Feedback, Followed, Grace, Line, Link, Point, Queue, Reported, Request,
-        Restarting, Seen, Situation, Start, Trouble, Way, Words, receive::ReceiveStep,
+        Restarting, Situation, Start, StateVariables, Trouble, Way, Words, receive::ReceiveStep,
     },
 };
 
@@ -31,7 +31,11 @@ const TICK_MS: u16 = 40;
 impl State {
     /// Read the line and the command buffer. `outputs` holds what was written in the tick before: a T3I that
     /// is restarted learns from it what was sent.
-    pub(super) fn sense<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>, outputs: &T3iOutputs) -> Seen {
+    pub(super) fn sense<Data: ?Sized>(
+        &mut self,
+        inputs: &Inputs<'_, Data>,
+        outputs: &T3iOutputs,
+    ) -> StateVariables {
         if !self.receiver.started {
             (self.sent, self.check) = (outputs.status.sent, outputs.status.check);
             (self.following, self.left) = (outputs.status.following, outputs.status.left);
@@ -72,7 +76,7 @@ impl State {
             place: followed,
             grace: if self.reported < GRACE_TICKS { Grace::Running } else { Grace::Over },
         };
-        Seen {
+        StateVariables {
             request: Request { arrival, command: command.command, point, link: self.link() },
             answer,
             feedback,
@@ -161,7 +165,7 @@ impl State {
     }
 
     /// The state variables of the command's table, once RECEIVE has decided.
-    pub(super) fn situation(&self, seen: &Seen) -> Situation {
+    pub(super) fn situation(&self, seen: &StateVariables) -> Situation {
         Situation {
             trouble: if self.following == Following::OffPath {
                 Trouble::OffPath

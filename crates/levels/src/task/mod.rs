@@ -46,7 +46,7 @@ use taskdata::files::TaskData;
 use self::{
     state::State,
     tables::{
-        Action, Operator, Seen, Takeover,
+        Action, Operator, StateVariables, Takeover,
         joystick::{Control, joystick},
         number,
     },
@@ -66,17 +66,17 @@ impl crate::goal::Goals for Task {
 impl<'d> Process<TaskData<'d>> for Task {
     type State = State;
     type Outputs = TaskOutputs;
-    type Seen = Seen;
+    type StateVariables = StateVariables;
     type Action = (Takeover, Action);
 
     const NAME: &'static str = "Task";
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, _: &TaskOutputs) -> Seen {
+    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, _: &TaskOutputs) -> StateVariables {
         self.state.sense(inputs)
     }
 
-    fn decide(&mut self, seen: &Seen) -> (Takeover, Action) {
+    fn decide(&mut self, seen: &StateVariables) -> (Takeover, Action) {
         let mut seen = *seen;
         let action = tables::decide(&mut self.state, &mut seen);
         (seen.subordinates.takeover, action)
@@ -85,7 +85,7 @@ impl<'d> Process<TaskData<'d>> for Task {
     fn postprocess(
         &mut self,
         (takeover, action): (Takeover, Action),
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, TaskData<'d>>,
         outputs: &mut TaskOutputs,
     ) {
@@ -128,7 +128,7 @@ impl State {
     ///
     /// # Errors
     /// None: it withholds no command.
-    fn joystick(&mut self, course: Course, seen: &mut Seen) -> Result<Course, Action> {
+    fn joystick(&mut self, course: Course, seen: &mut StateVariables) -> Result<Course, Action> {
         let operator = Operator { subtask: seen.subordinates.subtask, outcome: self.execution.outcome };
         seen.subordinates.takeover = match joystick(self.control, &operator) {
             Verdict::Passed(takeover) => takeover,

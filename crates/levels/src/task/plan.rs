@@ -10,10 +10,7 @@ use rcs_core::{
 use taskdata::files::TaskData;
 
 use super::tables::WayOut;
-use crate::{
-    emove::route::same_location,
-    places::{LocationKey, Missing, is_in_mbd, named},
-};
+use crate::places::{LocationKey, Missing, is_in_mbd, named, same_location};
 
 /// Commands of Task (V.4.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]

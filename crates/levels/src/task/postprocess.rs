@@ -15,7 +15,7 @@ use super::{
     ledger::opened,
     plan::{Plan, Site, TaskVerb},
     state::State,
-    tables::{Action, Goal, Ordered, Seen, Takeover, joystick::Control},
+    tables::{Action, Goal, Ordered, StateVariables, Takeover, joystick::Control},
 };
 use crate::execution::{Outcome, Report};
 
@@ -63,7 +63,7 @@ impl State {
     pub(super) fn act(
         &mut self,
         action: Action,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut TaskOutputs,
     ) {

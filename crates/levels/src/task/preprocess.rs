@@ -16,7 +16,7 @@ use super::{
     state::State,
     support::Support,
     tables::{
-        Drum, Ends, Ordered, Request, Seen, Situation, Station, Subordinates, Takeover, Tool, Way,
+        Drum, Ends, Ordered, Request, Situation, StateVariables, Station, Subordinates, Takeover, Tool, Way,
         joystick::Control,
     },
 };
@@ -29,7 +29,7 @@ use crate::{
 
 impl State {
     /// Read the inputs of a tick.
-    pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> Seen {
+    pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> StateVariables {
         let command = &inputs.external.hws;
         self.adopt(inputs);
         let data_base = &self.data_system.read(inputs.external);
@@ -52,7 +52,7 @@ impl State {
         let subtask = self.subtask(inputs);
         let data_base = self.data_system.status(data_base, inputs.tick);
         let pausing = inputs.memory.task.subtask.command == SubtaskVerb::Pause;
-        Seen {
+        StateVariables {
             arrival,
             asked,
             replaced: Replaced {

@@ -77,7 +77,7 @@ pub trait Fingered: Clone {
 
     fn number(outputs: &mut EmoveOutputs) -> &mut u32;
     fn renumber(&mut self, commander: &mut Commander, number: &mut u32);
-    fn commander(state: &mut emove::state::State) -> &mut Commander;
+    fn commander(state: &mut emove::State) -> &mut Commander;
     /// Take away what no row asks for any more.
     fn forget(&mut self, tick: Tick);
     /// Take away the text of an order that has been taken.
@@ -129,7 +129,7 @@ pub struct Pair<G: Fingered> {
     /// Commands that may still come before the last one has ended (any number if none is given), and restarts that may.
     left: (Option<u8>, u8),
     command: EmoveCommand,
-    emove: emove::state::State,
+    emove: emove::State,
     emove_out: EmoveOutputs,
     gripper: G,
     fingers: G::Fingers,
@@ -156,11 +156,7 @@ impl<G: Fingered> Pair<G> {
             object_at: stands.pose,
             left: (early, restarts),
             command: EmoveCommand::default(),
-            emove: emove::state::State {
-                started: true,
-                attached: G::GRIPPER,
-                ..emove::state::State::default()
-            },
+            emove: emove::State::default(),
             emove_out: EmoveOutputs::default(),
             gripper: G::first(),
             fingers: G::OPEN,
@@ -168,8 +164,9 @@ impl<G: Fingered> Pair<G> {
             robot: Robot::new(stands.pose),
             quick_change: 0,
         };
-        pair.emove.beliefs.place = Some(stands);
-        pair.emove_out.beliefs = pair.emove.beliefs;
+        pair.emove_out.beliefs.place = Some(stands);
+        pair.emove.adopt(&pair.emove_out.beliefs);
+        pair.emove.exchange.adopt_gripper(G::GRIPPER);
         pair.emove_out.status.end_effector_id = G::GRIPPER.id();
         pair.emove.execution.receiver.started = true;
         pair.gripper.execution().receiver.started = true;

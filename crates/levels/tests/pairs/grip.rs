@@ -146,8 +146,8 @@ impl Fingered for Grip {
         rebase(commander, &mut [number, read, &mut self.outputs.status.echo]);
     }
 
-    fn commander(state: &mut emove::state::State) -> &mut Commander {
-        &mut state.grippers.parts
+    fn commander(state: &mut emove::State) -> &mut Commander {
+        state.grippers.commander(Gripper::Parts)
     }
 
     fn forget(&mut self, tick: Tick) {

@@ -7,7 +7,7 @@ use interfaces::{
     emove::{EmoveCommand, EmoveVerb},
     prim::PrimCommand,
 };
-use levels::emove::relative::Relative;
+use levels::emove::motion::relative::Relative;
 
 use crate::{
     data::{data, emove_command, place, pose_of_point},

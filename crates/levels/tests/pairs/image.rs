@@ -191,7 +191,7 @@ pub fn rebase_echoes(numbers: &mut [&mut u32]) -> bool {
 }
 
 /// Record numbers of E-move begin again: those of the records that stand, in their order, and one for all others.
-pub fn renumber_poses(emove: &mut emove::state::State, out: &mut EmoveOutputs) {
+pub fn renumber_poses(emove: &mut emove::State, out: &mut EmoveOutputs) {
     let (first, others) = (pose_range::EMOVE | 1, pose_range::EMOVE | 9);
     let stand = out.poses.map(|record| record.number);
     let renamed = |number: u32| {
@@ -204,34 +204,29 @@ pub fn renumber_poses(emove: &mut emove::state::State, out: &mut EmoveOutputs) {
     if out.prim.pose & pose_range::WRITER == pose_range::EMOVE {
         out.prim.pose = renamed(out.prim.pose);
     }
-    if let Some(route) = &mut emove.route {
+    let (route, last) = emove.motion.pose_numbers();
+    if let Some(route) = route {
         (route.departure, route.goal) = (renamed(route.departure), renamed(route.goal));
     }
-    emove.last_pose = others;
+    *last = others;
 }
 
 /// Take away what no row of E-move asks for any more: the reason, the nearest places, and what it has of a command that
 /// it does not execute. Does it execute one?
-pub fn forget(emove: &mut emove::state::State) -> bool {
+pub fn forget(emove: &mut emove::State) -> bool {
     emove.execution.reason = Reason::None;
-    emove.surroundings = Default::default();
+    emove.localization.forget_surroundings();
     let executes = emove.execution.outcome == Outcome::Executing && !emove.execution.waiting;
     if !executes {
         if !matches!(emove.step, Step::EPause(_)) {
             emove.step = Step::default();
         }
-        (emove.ordered, emove.uses_prim, emove.carrying) = Default::default();
-        (emove.route, emove.back, emove.rejoin) = Default::default();
-        (emove.execution.last_order, emove.tries) = Default::default();
+        (emove.ordered, emove.uses_prim) = Default::default();
+        emove.execution.last_order = None;
+        emove.motion.forget_flight();
+        emove.vision.begin();
+        emove.held.begin();
     }
-    let beliefs = &mut emove.beliefs;
-    match &mut beliefs.grasping {
-        grasping if beliefs.held.is_none() && beliefs.empty => *grasping = None,
-        Some(grasping) => grasping.opening = 0,
-        None => {}
-    }
-    if beliefs.held.is_none() {
-        emove.unfelt = 0;
-    }
+    emove.held.forget_unread();
     executes
 }

@@ -46,7 +46,7 @@ pub trait Side: JawsKind + Clone + Default {
     /// Grasp size of the object, in.
     const PART: f64;
 
-    fn commander(state: &mut emove::state::State) -> &mut Commander;
+    fn commander(state: &mut emove::State) -> &mut Commander;
     fn order(outputs: &mut EmoveOutputs) -> &mut JawsCommand;
     fn outputs(memory: &mut CommonMemory) -> &mut JawsOutputs;
 }
@@ -56,8 +56,8 @@ impl Side for CylindricalPartGripper {
     const OBJECT: (&'static str, i32, &'static str) = ("SHAFT", -1, "V-VFIXTURE");
     const PART: f64 = 1.4;
 
-    fn commander(state: &mut emove::state::State) -> &mut Commander {
-        &mut state.grippers.v
+    fn commander(state: &mut emove::State) -> &mut Commander {
+        state.grippers.commander(Gripper::V)
     }
 
     fn order(outputs: &mut EmoveOutputs) -> &mut JawsCommand {
@@ -74,8 +74,8 @@ impl Side for ToolGripper {
     const OBJECT: (&'static str, i32, &'static str) = ("DRILL-2", 1, "TOOL-SAFE");
     const PART: f64 = 1.75;
 
-    fn commander(state: &mut emove::state::State) -> &mut Commander {
-        &mut state.grippers.tool
+    fn commander(state: &mut emove::State) -> &mut Commander {
+        state.grippers.commander(Gripper::Tool)
     }
 
     fn order(outputs: &mut EmoveOutputs) -> &mut JawsCommand {
@@ -214,7 +214,7 @@ impl<S: Side> Fingered for Jaws<S> {
         rebase(commander, &mut [number, read, &mut self.outputs.status.echo]);
     }
 
-    fn commander(state: &mut emove::state::State) -> &mut Commander {
+    fn commander(state: &mut emove::State) -> &mut Commander {
         S::commander(state)
     }
 

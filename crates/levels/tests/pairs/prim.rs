@@ -92,7 +92,7 @@ pub struct Pair {
     /// The way to Prim's goal has been halved.
     halved: bool,
     command: EmoveCommand,
-    emove: emove::state::State,
+    emove: emove::State,
     emove_out: EmoveOutputs,
     prim: prim::state::State,
     prim_out: PrimOutputs,
@@ -160,7 +160,7 @@ impl Pair {
             left: (0, 0),
             halved: false,
             command: EmoveCommand::default(),
-            emove: emove::state::State::default(),
+            emove: emove::State::default(),
             emove_out: EmoveOutputs::default(),
             prim: prim::state::State::default(),
             prim_out: PrimOutputs::default(),

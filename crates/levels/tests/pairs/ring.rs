@@ -74,7 +74,7 @@ pub struct Pair {
     /// Commands that may still come before the last one has ended, and faults or restarts that may.
     left: (u8, u8),
     command: EmoveCommand,
-    emove: emove::state::State,
+    emove: emove::State,
     emove_out: EmoveOutputs,
     quick_change: quick_change::state::State,
     quick_change_out: QuickChangeOutputs,
@@ -105,7 +105,7 @@ impl Pair {
             obeys: faults > 0,
             left: (early, faults),
             command: EmoveCommand::default(),
-            emove: emove::state::State { started: true, ..emove::state::State::default() },
+            emove: emove::State::default(),
             emove_out: EmoveOutputs::default(),
             quick_change: quick_change::state::State {
                 ring: RingPosition::Unlocked,
@@ -120,12 +120,12 @@ impl Pair {
             grip: PartsGripper::new(OPENING),
             mated: false,
         };
-        pair.emove.beliefs.place = Some(stands);
-        pair.emove.beliefs.empty = true;
+        (pair.emove_out.beliefs.place, pair.emove_out.beliefs.empty) = (Some(stands), true);
+        pair.emove.adopt(&pair.emove_out.beliefs);
         pair.emove.execution.receiver.started = true;
         pair.quick_change.execution.receiver.started = true;
         pair.quick_change_out.status.ring = RingPosition::Unlocked;
-        (pair.emove_out.beliefs, pair.emove_out.dormant.grip) = (pair.emove.beliefs, true);
+        pair.emove_out.dormant.grip = true;
         pair
     }
 

@@ -85,7 +85,7 @@ pub struct Pair {
     command: SubtaskCommand,
     subtask: subtask::state::State,
     subtask_out: SubtaskOutputs,
-    emove: emove::state::State,
+    emove: emove::State,
     emove_out: EmoveOutputs,
     robot: Robot,
     grip: PartsGripper,
@@ -118,11 +118,7 @@ impl Pair {
             command: SubtaskCommand::default(),
             subtask: subtask::state::State::default(),
             subtask_out: SubtaskOutputs::default(),
-            emove: emove::state::State {
-                started: true,
-                attached: Gripper::Parts,
-                ..emove::state::State::default()
-            },
+            emove: emove::State::default(),
             emove_out: EmoveOutputs::default(),
             robot: Robot::new(stands.pose),
             grip: PartsGripper::new(OPENING),
@@ -133,9 +129,9 @@ impl Pair {
             apart: LATE + 1,
             let_go: false,
         };
-        pair.emove.beliefs.place = Some(stands);
-        pair.emove.beliefs.empty = true;
-        pair.emove_out.beliefs = pair.emove.beliefs;
+        (pair.emove_out.beliefs.place, pair.emove_out.beliefs.empty) = (Some(stands), true);
+        pair.emove.adopt(&pair.emove_out.beliefs);
+        pair.emove.exchange.adopt_gripper(Gripper::Parts);
         pair.emove_out.status.end_effector_id = Gripper::Parts.id();
         pair.emove.execution.receiver.started = true;
         pair.subtask.execution.receiver.started = true;

@@ -41,11 +41,11 @@ enum How {
 }
 
 struct Row {
-    /// The field of `Seen` with its variables.
+    /// The field of `StateVariables` with its variables.
     variables: Ident,
     /// `in link`: the field of the state that is its step.
     step: Option<Ident>,
-    /// The field of `Seen` that gets what it passes on.
+    /// The field of `StateVariables` that gets what it passes on.
     passes: Option<(Ident, Ident)>,
 }
 
@@ -207,7 +207,7 @@ impl Order {
         });
         Ok(quote! {
             #( #[doc = #documentation] )*
-            #vis fn decide(state: &mut super::state::State, seen: &mut Seen) -> #action {
+            #vis fn decide(state: &mut super::State, seen: &mut StateVariables) -> #action {
                 #variables
                 let course = state.execution.execute(seen.arrival);
                 #( #gates )*

@@ -40,19 +40,21 @@ use rcs_core::{
 
 pub use self::drum::{AtDrum, Bias};
 pub use self::variables::{
-    Along, At, Attached, Contact, Coupling, Exchange, Fingers, Holster, HolsterData, Initialization,
-    Knowledge, Link, Load, Lock, Mate, Motion, Opening, Ordered, Pause, Reach, Readiness, Record, Ring, Shut,
-    Sight, Spread, Target, ToolWork, Tooling, Tries, Vision, Whereabouts,
+    Along, At, Attached, Contact, Coupling, ExchangeWork, FingerMotion, Fingers, Holster, HolsterData,
+    Initialization, Knowledge, Link, Load, Lock, Mate, Opening, Ordered, Pause, PlaceKnowledge, Reach,
+    Readiness, Record, Ring, Shut, Sight, Spread, Target, ToolWork, Tooling, Tries, VisionAnswer,
 };
 use super::{
     goals,
-    relative::{Relative, RelativeMoves},
-    route::{Ahead, Planning},
+    motion::{
+        relative::{Relative, RelativeMoves},
+        route::{Ahead, Planning},
+    },
 };
 pub use crate::held::Held;
 use crate::{
     confirm::{CONFIRM, Proof},
-    execution::{Asked, EXECUTE, Ending, Outcome, Work},
+    execution::{Asked, EXECUTE, Ending, Outcome, Progress, Work},
     halt::{BoxState, Commanding, EFFECT, HALT, Replaced, Stopping},
 };
 
@@ -70,7 +72,7 @@ pub struct Request {
     /// How the gripper hangs on it.
     pub coupling: Coupling,
     /// The change of a gripper.
-    pub exchange: Exchange,
+    pub exchange: ExchangeWork,
     /// A tool command.
     pub drum: ToolWork,
     /// The location of the command.
@@ -99,7 +101,7 @@ pub struct Watch {
     /// How far it has come.
     pub outcome: Outcome,
     /// Is it known where the robot is?
-    pub place: Whereabouts,
+    pub place: PlaceKnowledge,
     /// Where the resolvers say that it is.
     pub resolvers: Knowledge,
 }
@@ -124,7 +126,7 @@ pub struct Subordinates {
     /// The locking ring.
     pub ring: Ring,
     /// Vision.
-    pub vision: Vision,
+    pub vision: VisionAnswer,
 }
 
 /// The state variables of a tick, for the tables of the commands.
@@ -173,18 +175,18 @@ pub struct Situation {
     /// Status of Prim; done as long as the command does not need it.
     pub prim: Lower,
     /// Do the fingers move?
-    pub motion: Motion,
+    pub motion: FingerMotion,
     /// Quick change and gripper.
     pub tooling: Tooling,
     /// Is it known where the robot is?
-    pub place: Whereabouts,
+    pub place: PlaceKnowledge,
     /// A gripper button of the joystick box that has just been pressed.
     pub button: JoystickGrip,
 }
 
 /// What preprocess has found in a tick.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct StateVariables {
     /// What the command buffer holds.
     pub arrival: Arrival,
     /// The command in it.
@@ -193,8 +195,8 @@ pub struct Seen {
     pub asked: Asked,
     /// What it replaces.
     pub replaced: Replaced,
-    /// Where in its command it is, beside the state variables: the leg, and how often a picture was tried.
-    pub progress: u64,
+    /// How far it has come.
+    pub progress: Progress,
     /// What a new command needs.
     pub request: Request,
     /// What goes on whatever the command.
@@ -207,10 +209,10 @@ pub struct Seen {
     pub situation: Situation,
 }
 
-impl Seen {
+impl StateVariables {
     /// The state variables that an order is to change, for EFFECT.
-    pub(super) fn variables(&self) -> u64 {
-        rcs_core::table::Variables::code(&self.situation) | self.progress
+    pub(super) fn variables(&self) -> (u64, Progress) {
+        (rcs_core::table::Variables::code(&self.situation), self.progress)
     }
 }
 

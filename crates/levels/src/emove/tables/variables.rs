@@ -79,7 +79,7 @@ pub enum Coupling {
 
 /// The change of a gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Exchange {
+pub enum ExchangeWork {
     /// None is under way.
     None,
     /// The robot is in a holster, between the first and the last point of one.
@@ -194,7 +194,7 @@ pub enum Link {
 
 /// Do the fingers do what they were told last?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Motion {
+pub enum FingerMotion {
     /// They have done it, or were told nothing that moves them.
     AtRest,
     /// They move.
@@ -216,7 +216,7 @@ pub enum Tooling {
 
 /// Is it known where the robot is?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Whereabouts {
+pub enum PlaceKnowledge {
     /// It is at a known location.
     Known,
     /// Not all location points have been looked at yet.
@@ -344,7 +344,7 @@ pub enum Readiness {
 
 /// Has vision answered the last request?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Vision {
+pub enum VisionAnswer {
     /// Not yet.
     Waiting,
     /// It has.

@@ -574,7 +574,8 @@ fn what_is_unknown_is_neither_inserted_nor_let_go() {
         let mut bench = empty();
         bench.dead.push("gripper");
         bench.memory.tool_grip.status.felt = felt;
-        bench.process.state_mut().beliefs.empty = false;
+        let state = bench.process.state_mut();
+        state.adopt(&interfaces::emove::Beliefs { empty: false, ..state.beliefs() });
         assert_eq!(run(&mut bench, verb), error(reason), "{verb}");
     }
 }

@@ -6,10 +6,10 @@ use rcs_core::{handshake::Lower, table::Decision};
 
 use crate::{
     emove::{
-        route::Ahead,
+        motion::route::Ahead,
         tables::{
-            Action, Along, At, AtDrum, Bias, Fingers, Held, Holster, Knowledge, Link, Lock, Mate, Motion,
-            Opening, Reach, Readiness, Shut, Sight, Situation, Spread, Tooling, Tries, Whereabouts,
+            Action, Along, At, AtDrum, Bias, FingerMotion, Fingers, Held, Holster, Knowledge, Link, Lock,
+            Mate, Opening, PlaceKnowledge, Reach, Readiness, Shut, Sight, Situation, Spread, Tooling, Tries,
             qc_attach::{QcAttachStep, qc_attach},
             qc_detach::{QcDetachStep, qc_detach},
         },
@@ -53,9 +53,9 @@ fn situations() -> impl Iterator<Item = Situation> {
                         tries: Tries::Left,
                         link: Link::Up,
                         prim: Lower::Done,
-                        motion: Motion::AtRest,
+                        motion: FingerMotion::AtRest,
                         tooling: Tooling::Ready,
-                        place: Whereabouts::Known,
+                        place: PlaceKnowledge::Known,
                         button: JoystickGrip::None,
                     })
                 })

@@ -20,7 +20,7 @@ use super::{
     bench::{Bench, DONE, data, error, frame_of, moved},
     doubles::Mishap,
 };
-use crate::emove::surroundings::Surroundings;
+use crate::emove::localization::surroundings::Surroundings;
 
 pub const SCENARIOS: &[fn()] = &[
     a_robot_moves_with_any_gripper_and_with_none,
@@ -85,7 +85,7 @@ fn a_robot_that_flies_past_a_point_is_on_its_way() {
             return;
         }
         passed += u32::from(moves && bench.memory.prim.status.report == PrimReport::Done);
-        let around = bench.process.state().surroundings;
+        let around = *bench.process.state().localization.surroundings();
         assert_eq!(around, Surroundings::default(), "no places are looked for: {:?}", bench.world.log);
     }
     panic!("never there: {:?}", bench.world.log);

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     emove::tables::{
-        self, Action, Knowledge, Watch, Whereabouts,
+        self, Action, Knowledge, PlaceKnowledge, Watch,
         attend::attend,
         search::{Look, search},
     },
@@ -223,10 +223,10 @@ fn the_search_belongs_to_the_pause() {
         initialization: tables::Initialization::None,
         pause: tables::Pause::UnderWay,
         outcome: Outcome::Executing,
-        place: Whereabouts::Searching,
+        place: PlaceKnowledge::Searching,
         resolvers: Knowledge::Known,
     };
-    for place in [Whereabouts::Known, Whereabouts::Unknown] {
+    for place in [PlaceKnowledge::Known, PlaceKnowledge::Unknown] {
         assert_eq!(rows(Watch { place, ..looking }), (1, Look::Rest));
     }
     assert_eq!(rows(Watch { pause: tables::Pause::Other, ..looking }), (2, Look::Rest));
@@ -249,7 +249,7 @@ fn only_a_standing_pause_goes_on() {
                 initialization: tables::Initialization::None,
                 pause,
                 outcome,
-                place: Whereabouts::Known,
+                place: PlaceKnowledge::Known,
                 resolvers: Knowledge::Known,
             };
             let goes_on =

@@ -1,7 +1,7 @@
 //! Beliefs that a person writes while E-move is not stepped.
 
 use interfaces::{
-    emove::{EmoveVerb::MovObjTo, Holding, Located, ObjectGrip, PlacedObject},
+    emove::{Beliefs, EmoveVerb::MovObjTo, Holding, Located, ObjectGrip, PlacedObject},
     operator::{Variable, Write},
     process::{Inputs, Process},
 };
@@ -87,8 +87,8 @@ fn beliefs_are_forgotten() {
     let placed = Some(PlacedObject { grip: 1, ..PlacedObject::default() });
     let located = Some(Located::default());
     for variable in [Variable::Placed, Variable::Located] {
-        let beliefs = &mut bench.process.state.beliefs;
-        (beliefs.placed, beliefs.located) = (placed, located);
+        let state = &mut bench.process.state;
+        state.adopt(&Beliefs { placed, located, ..state.beliefs() });
         bench.step();
         bench.put(variable, "", 0);
         let beliefs = bench.memory.emove.beliefs;

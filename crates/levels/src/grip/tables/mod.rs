@@ -255,7 +255,7 @@ pub struct Measured {
 
 /// What preprocess has found in a tick.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct StateVariables {
     /// What the command buffer holds.
     pub arrival: Arrival,
     /// What a new command needs.

@@ -43,7 +43,7 @@ use rcs_core::table::Table;
 
 use self::{
     state::State,
-    tables::{Action, Seen},
+    tables::{Action, StateVariables},
 };
 
 /// The pedestal process.
@@ -59,24 +59,24 @@ impl crate::goal::Goals for Pedestal {
 impl<Data: ?Sized> Process<Data> for Pedestal {
     type State = State;
     type Outputs = PedestalOutputs;
-    type Seen = Seen;
+    type StateVariables = StateVariables;
     type Action = Action;
 
     const NAME: &'static str = "Active Pedestal";
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &PedestalOutputs) -> Seen {
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &PedestalOutputs) -> StateVariables {
         self.state.sense(inputs, outputs)
     }
 
-    fn decide(&mut self, seen: &Seen) -> Action {
+    fn decide(&mut self, seen: &StateVariables) -> Action {
         tables::decide(&mut self.state, &mut { *seen })
     }
 
     fn postprocess(
         &mut self,
         action: Action,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, Data>,
         outputs: &mut PedestalOutputs,
     ) {

@@ -13,7 +13,7 @@ use super::{
     orders::{hand_command, table_angle},
     preprocess::felt,
     state::State,
-    tables::{Action, Ordered, Seen},
+    tables::{Action, Ordered, StateVariables},
 };
 use crate::{execution::Report, pedestal::table::report_of};
 
@@ -22,7 +22,7 @@ impl State {
     pub(super) fn act<Data: ?Sized>(
         &mut self,
         action: Action,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, Data>,
         outputs: &mut PedestalOutputs,
     ) {

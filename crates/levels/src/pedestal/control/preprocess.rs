@@ -13,7 +13,7 @@ use super::{
     goals::proof,
     orders::{angle, opening},
     state::State,
-    tables::{Calibration, Gripped, Object, Ordered, Request, Seen, Situation, Subordinates},
+    tables::{Calibration, Gripped, Object, Ordered, Request, Situation, StateVariables, Subordinates},
 };
 use crate::{
     execution::{Asked, Work},
@@ -27,7 +27,7 @@ impl State {
         &mut self,
         inputs: &Inputs<'_, Data>,
         outputs: &PedestalOutputs,
-    ) -> Seen {
+    ) -> StateVariables {
         let memory = inputs.memory;
         let command = &memory.subtask.pedestal;
         let (tick, written) = (inputs.tick, &memory.pedestal);
@@ -63,7 +63,7 @@ impl State {
                 Lower::Done | Lower::Error | Lower::Joystick | Lower::Lost => Work::Over,
             },
         };
-        Seen {
+        StateVariables {
             arrival,
             verb: self.command.command,
             replaced: Replaced {

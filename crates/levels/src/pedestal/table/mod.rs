@@ -62,7 +62,8 @@ use interfaces::{
 use rcs_core::table::{Table as DecisionTable, Verdict};
 
 use self::tables::{
-    Action, Command, Duty, Seen, Situation, Step, accept::accept, calibrate::calibrate, number, of_command,
+    Action, Command, Duty, Situation, StateVariables, Step, accept::accept, calibrate::calibrate, number,
+    of_command,
 };
 use crate::execution::Course;
 
@@ -79,18 +80,18 @@ impl crate::goal::Goals for Table {
 impl<Data: ?Sized> Process<Data> for Table {
     type State = State;
     type Outputs = TableOutputs;
-    type Seen = Seen;
+    type StateVariables = StateVariables;
     type Action = Action;
 
     const NAME: &'static str = "Rotary Table";
     const TABLES: &'static [&'static DecisionTable] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &TableOutputs) -> Seen {
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &TableOutputs) -> StateVariables {
         self.state.sense(inputs, outputs)
     }
 
     /// A calibration goes on in the tick of a refusal, and while a command waits for it.
-    fn decide(&mut self, seen: &Seen) -> Action {
+    fn decide(&mut self, seen: &StateVariables) -> Action {
         let state = &mut self.state;
         let course = state.execution.execute(seen.arrival);
         if course == Course::Begin {
@@ -122,7 +123,7 @@ impl<Data: ?Sized> Process<Data> for Table {
     fn postprocess(
         &mut self,
         action: Action,
-        seen: &Seen,
+        seen: &StateVariables,
         inputs: &Inputs<'_, Data>,
         outputs: &mut TableOutputs,
     ) {

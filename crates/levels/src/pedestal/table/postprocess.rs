@@ -10,7 +10,7 @@ use rcs_core::tick::Tick;
 use super::{
     preprocess::{AT_LIMIT, LIMIT_MINUS, LIMIT_PLUS, steps},
     state::State,
-    tables::{Action, Phase, Seen},
+    tables::{Action, Phase, StateVariables},
 };
 use crate::execution::Outcome;
 
@@ -67,7 +67,7 @@ impl State {
     }
 
     /// The outputs of this tick.
-    pub(super) fn report(&self, seen: &Seen, tick: Tick) -> TableOutputs {
+    pub(super) fn report(&self, seen: &StateVariables, tick: Tick) -> TableOutputs {
         let execution = &self.execution;
         let calibrated = self.phase == Phase::Valid;
         let adoptable = calibrated || self.phase == Phase::Adopting;

@@ -14,7 +14,7 @@ use rcs_core::{
 
 use super::{
     state::State,
-    tables::{Angle, Clock, Command, Counter, Motor, Phase, Request, Seen, Situation, Turned},
+    tables::{Angle, Clock, Command, Counter, Motor, Phase, Request, Situation, StateVariables, Turned},
 };
 
 /// Angle at the + limit, 0.1 degree (IV.1 step 3: the counter is set to zero there).
@@ -43,7 +43,11 @@ pub(super) const LIMIT_TICKS: u64 = 1500;
 impl State {
     /// Read the inputs of a tick.
     /// A process that starts in the middle of a job adopts the calibration that it has written before.
-    pub(super) fn sense<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>, outputs: &TableOutputs) -> Seen {
+    pub(super) fn sense<Data: ?Sized>(
+        &mut self,
+        inputs: &Inputs<'_, Data>,
+        outputs: &TableOutputs,
+    ) -> StateVariables {
         let command = &inputs.memory.pedestal.table;
         let sensors = &inputs.external.devices.pedestal;
         let starting = !self.execution.receiver.started;
@@ -59,7 +63,7 @@ impl State {
         let (motor, counter) = (self.motor(sensors), self.counter(sensors));
         let known = motor != Motor::Standing || counter == Counter::Agrees;
         let late = arrival != Arrival::New && inputs.tick.since(self.since) > LIMIT_TICKS;
-        Seen {
+        StateVariables {
             arrival,
             request: Request { asked, verb: command.command, angle: angle(command) },
             situation: Situation {

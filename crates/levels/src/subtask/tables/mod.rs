@@ -34,7 +34,7 @@ pub use self::variables::{
 use super::goals;
 use crate::{
     confirm::{CONFIRM, Proof},
-    execution::{Asked, EXECUTE, Ending, Work},
+    execution::{Asked, EXECUTE, Ending, Progress, Work},
     halt::{Commanding, EFFECT, HALT, Replaced, Stopping},
     held::Held,
     places::Missing,
@@ -118,7 +118,7 @@ pub struct Situation {
 
 /// What preprocess has found in a tick.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct StateVariables {
     /// What the command buffer holds.
     pub arrival: Arrival,
     /// Is the command to be accepted or refused?
@@ -141,10 +141,10 @@ pub struct Seen {
     pub situation: Situation,
 }
 
-impl Seen {
+impl StateVariables {
     /// The state variables that an order is to change, for EFFECT.
-    pub(super) fn variables(&self) -> u64 {
-        rcs_core::table::Variables::code(&self.situation)
+    pub(super) fn variables(&self) -> (u64, Progress) {
+        (rcs_core::table::Variables::code(&self.situation), Progress::default())
     }
 }
 

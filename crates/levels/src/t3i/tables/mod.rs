@@ -226,7 +226,7 @@ pub struct Situation {
 
 /// What preprocess has found in a tick.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct StateVariables {
     /// What is in the command buffer.
     pub request: Request,
     /// What came from the robot controller.

@@ -158,7 +158,7 @@ pub struct Situation {
 
 /// What preprocess has found in a tick.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct StateVariables {
     /// What the command buffer holds.
     pub arrival: Arrival,
     /// Is the command to be accepted or refused?

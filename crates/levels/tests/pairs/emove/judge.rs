@@ -6,7 +6,7 @@ use interfaces::{
     emove::{EmoveVerb, Holding},
     prim::PrimReport,
 };
-use levels::emove::order::FingerVerb;
+use levels::emove::grippers::FingerVerb;
 
 use super::{Event, Fingered, Pair, Restarted, is_done};
 use crate::{
@@ -18,7 +18,7 @@ use crate::{
 impl<G: Fingered> Pair<G> {
     /// Something that counts as held has been let go, or half of it.
     const fn lets_go(&self) -> bool {
-        self.emove.releasing && self.emove.beliefs.held.is_some()
+        self.emove.held.is_letting_go(true)
     }
 
     /// What is reported done is done.
@@ -64,13 +64,13 @@ impl<G: Fingered> Pair<G> {
         let (now, then) = (&self.emove_out, &before.emove_out);
         let sends = now.prim.number != then.prim.number && robot::moves(now.prim.command);
         let orders = *G::number(&mut { *now }) != *G::number(&mut { *then });
-        let order = before.emove.grippers.order;
+        let order = before.emove.grippers.order();
         let opens = G::are_open(before.fingers);
         let grasps = matches!(order, FingerVerb::Grasp | FingerVerb::Release);
         if sends && grasps && before.gripper.reports_executing() {
             return Err("the robot is moved while the fingers close or let go");
         }
-        if orders && self.emove.grippers.order == FingerVerb::Stand && G::hold(before.fingers) {
+        if orders && self.emove.grippers.order() == FingerVerb::Stand && G::hold(before.fingers) {
             return Err("what is held is brought to an opening");
         }
         match (before.is_at_object(), self.is_at_object()) {
@@ -119,7 +119,7 @@ impl<G: Fingered> Pair<G> {
         let presses = holds && self.gripper.presses();
         let wrong = match self.emove_out.status.held {
             Holding::Nothing if holds => "at rest, and what is held counts as nothing",
-            Holding::Object(_) if !presses && !self.emove.releasing => {
+            Holding::Object(_) if !presses && !self.lets_go() => {
                 "at rest, and something counts as held that is not, nor is being let go"
             }
             _ => return Ok(()),

@@ -13,12 +13,12 @@ impl<G: Fingered> Pair<G> {
         forget(&mut it.emove);
         it.gripper.execution().reason = Reason::None;
         // Rows that order something lead to later steps: none of them fires twice in a command.
-        (it.emove.execution.last_order, it.emove.beliefs.placed, it.emove.beliefs.disturbed) =
-            (None, None, None);
+        it.emove.execution.last_order = None;
+        it.emove.held.forget_places();
         if it.is_settled() {
             G::forget_order(&mut it.emove_out);
         }
-        it.robot.forget_order(&mut it.emove_out, it.emove.route.is_none());
+        it.robot.forget_order(&mut it.emove_out, it.emove.motion.goal().is_none());
         it.gripper.forget(it.tick);
         image.add(&it.command);
         image.add(&it.emove);
@@ -42,7 +42,7 @@ impl<G: Fingered> Pair<G> {
         let echo = &mut emove.execution.receiver.echo;
         rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
         self.gripper.renumber(G::commander(emove), G::number(out));
-        rebase(&mut emove.prim, &mut [&mut out.prim.number, &mut self.robot.echo]);
-        rebase(&mut emove.quick_change, &mut [&mut out.quick_change.number, &mut self.quick_change]);
+        rebase(emove.motion.commander(), &mut [&mut out.prim.number, &mut self.robot.echo]);
+        rebase(emove.exchange.commander(), &mut [&mut out.quick_change.number, &mut self.quick_change]);
     }
 }

@@ -5,7 +5,7 @@ use interfaces::{
     emove::{EmoveVerb, Holding},
     prim::{PrimReport, PrimVerb},
 };
-use levels::{emove::relative::Relative, execution::Outcome};
+use levels::{emove::motion::relative::Relative, execution::Outcome};
 
 use super::{ASIDE, LATE, Pair};
 use crate::{

@@ -2,7 +2,7 @@
 
 use geometry::pose::WireFrame;
 use interfaces::{Reason, emove::EmoveVerb, pose_range};
-use levels::execution::Outcome;
+use levels::{emove::gripper::Gripper, execution::Outcome};
 
 use super::Pair;
 use crate::image::{Image, rebase, rebase_echoes, renumber_poses};
@@ -21,11 +21,11 @@ impl Pair {
             it.emove.execution.last_order = None;
             if it.command.command != EmoveVerb::Pause {
                 (it.emove.step, it.emove.ordered, it.emove.uses_prim) = Default::default();
-                (it.emove.route, it.emove.back, it.emove.rejoin) = Default::default();
+                it.emove.motion.forget_flight();
             }
         }
-        it.emove.surroundings = Default::default();
-        (it.emove.beliefs.placed, it.emove.beliefs.disturbed) = (None, None);
+        it.emove.localization.forget_surroundings();
+        it.emove.held.forget_places();
         it.prim.restarts = Default::default();
         if it.prim.execution.outcome != Outcome::Executing {
             it.prim.standstill = Default::default();
@@ -85,18 +85,21 @@ impl Pair {
         let echo = &mut emove.execution.receiver.echo;
         rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
         let echo = &mut prim.execution.receiver.echo;
-        rebase(&mut emove.prim, &mut [&mut out.prim.number, echo, &mut below.status.echo]);
+        rebase(emove.motion.commander(), &mut [&mut out.prim.number, echo, &mut below.status.echo]);
         if let Some(tool) = &mut self.tool {
-            rebase(&mut emove.grippers.tool, &mut [&mut out.tool_grip.number, tool.echo()]);
+            rebase(emove.grippers.commander(Gripper::Tool), &mut [&mut out.tool_grip.number, tool.echo()]);
         }
         let echo = match &mut self.change {
             Some(change) => {
-                rebase(&mut emove.grippers.parts, &mut [&mut out.grip.number, change.grip_echo()]);
+                rebase(
+                    emove.grippers.commander(Gripper::Parts),
+                    &mut [&mut out.grip.number, change.grip_echo()],
+                );
                 change.echo()
             }
             None => &mut self.quick_change,
         };
-        rebase(&mut emove.quick_change, &mut [&mut out.quick_change.number, echo]);
+        rebase(emove.exchange.commander(), &mut [&mut out.quick_change.number, echo]);
         rebase(&mut prim.t3i, &mut [&mut below.t3i.number, &mut self.t3i.echo]);
     }
 }

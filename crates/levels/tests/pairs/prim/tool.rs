@@ -13,7 +13,7 @@ use interfaces::{
     jaws::{JawsReport, JawsVerb},
 };
 use levels::{
-    emove::relative::Relative,
+    emove::motion::relative::Relative,
     execution::Outcome,
     jaws::{JawsKind as _, ToolGripper},
     prim::state::State,

@@ -1,7 +1,7 @@
 //! Which states of E-move and Quick Change are alike.
 
 use interfaces::{Reason, grip::GripCommand, prim::PrimCommand};
-use levels::execution::Outcome;
+use levels::{emove::gripper::Gripper, execution::Outcome};
 
 use super::{Fault, Pair, STEADY};
 use crate::image::{Image, forget, rebase, rebase_echoes, renumber_poses};
@@ -83,11 +83,11 @@ impl Pair {
         let (ring, below) = (&mut self.quick_change, &mut self.quick_change_out.status);
         let echo = &mut emove.execution.receiver.echo;
         rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
-        rebase(&mut emove.prim, &mut [&mut out.prim.number, &mut self.robot.echo]);
-        rebase(&mut emove.grippers.parts, &mut [&mut out.grip.number, &mut self.grip.echo]);
+        rebase(emove.motion.commander(), &mut [&mut out.prim.number, &mut self.robot.echo]);
+        rebase(emove.grippers.commander(Gripper::Parts), &mut [&mut out.grip.number, &mut self.grip.echo]);
         // V-Grip, whose id the pins may read, does not answer.
-        rebase(&mut emove.grippers.v, &mut [&mut out.v_grip.number]);
+        rebase(emove.grippers.commander(Gripper::V), &mut [&mut out.v_grip.number]);
         let echo = &mut ring.execution.receiver.echo;
-        rebase(&mut emove.quick_change, &mut [&mut out.quick_change.number, echo, &mut below.echo]);
+        rebase(emove.exchange.commander(), &mut [&mut out.quick_change.number, echo, &mut below.echo]);
     }
 }

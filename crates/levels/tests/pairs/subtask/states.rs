@@ -7,7 +7,7 @@ use interfaces::{
     grip::GripCommand,
     subtask::SubtaskCommand,
 };
-use levels::execution::Outcome;
+use levels::{emove::gripper::Gripper, execution::Outcome};
 use rcs_core::tick::Tick;
 
 use super::{Pair, is_over};
@@ -37,7 +37,7 @@ impl Pair {
             self.subtask_out.emove = EmoveCommand { number, command, ..EmoveCommand::default() };
         }
         if !forget(emove) {
-            emove.vision.sent = Tick::BEFORE_START;
+            emove.vision.commander().sent = Tick::BEFORE_START;
             self.emove_out.vision = VisionRequest { number: vision, ..VisionRequest::default() };
             self.vision = VisionResponse { echo: vision, ..VisionResponse::default() };
         }
@@ -57,13 +57,14 @@ impl Pair {
         rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
         let echo = &mut emove.execution.receiver.echo;
         rebase(&mut subtask.emove, &mut [&mut out.emove.number, echo, &mut below.status.echo]);
-        rebase(&mut emove.prim, &mut [&mut below.prim.number, &mut self.robot.echo]);
-        rebase(&mut emove.grippers.parts, &mut [&mut below.grip.number, &mut self.grip.echo]);
-        rebase(&mut emove.quick_change, &mut [&mut below.quick_change.number, &mut self.quick_change]);
+        rebase(emove.motion.commander(), &mut [&mut below.prim.number, &mut self.robot.echo]);
+        rebase(emove.grippers.commander(Gripper::Parts), &mut [&mut below.grip.number, &mut self.grip.echo]);
+        rebase(emove.exchange.commander(), &mut [&mut below.quick_change.number, &mut self.quick_change]);
         // Vision answers the last request: by how many it is behind does not matter.
-        if emove.vision.number != 0 {
-            self.vision.echo = if self.vision.echo == emove.vision.number { 2 } else { 1 };
-            (emove.vision.number, below.vision.number) = (2, 2);
+        let vision = emove.vision.commander();
+        if vision.number != 0 {
+            self.vision.echo = if self.vision.echo == vision.number { 2 } else { 1 };
+            (vision.number, below.vision.number) = (2, 2);
         }
     }
 }

@@ -156,7 +156,7 @@ pub struct Situation {
 
 /// What preprocess has found in a tick.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct StateVariables {
     /// What the command buffer holds.
     pub arrival: Arrival,
     /// What a new command needs.

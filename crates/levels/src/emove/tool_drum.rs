@@ -16,24 +16,23 @@ use geometry::{
 };
 use interfaces::{
     CommonMemory,
-    emove::{CalibratedAt, EmoveCommand, EmoveVerb, GoneTo, RobotPlace},
-    process::Inputs,
+    emove::{Beliefs, CalibratedAt, EmoveCommand, EmoveVerb, GoneTo, RobotPlace},
 };
+use rcs_core::Plain;
 use taskdata::files::{LocptId, TaskData};
 
 use super::{
-    exchange::base,
-    relative::Relative,
-    robot_place::{commanded_pose, is_led, place, place_named, present_frame, robot_at},
-    route::{near, same_location},
-    state::State,
+    EmoveInputs,
+    localization::{ASIDE_INCHES, LOST_RADIANS},
+    motion::{relative::Relative, route::near},
+    robot_place::{base, command_at, commanded_pose, is_led, present_frame, robot_at},
     tables::{
         AtDrum, Bias,
         drum::{AtTheDrum, Belief, Tool, drum},
         number,
     },
-    whereabouts::{ASIDE_INCHES, LOST_RADIANS},
 };
+use crate::{execution::Execution, places::LocationKey};
 
 /// A tool is in its place within this along the way in: the fingers of the drum close on it there, in.
 const SEATED: f64 = 0.15;
@@ -122,16 +121,6 @@ const fn is_tool_command(verb: EmoveVerb) -> bool {
     )
 }
 
-/// A command that names a place.
-fn command_at(place: &RobotPlace) -> EmoveCommand {
-    EmoveCommand {
-        location_kind: place.kind,
-        location_record: place.record,
-        location_array: place.array,
-        ..EmoveCommand::default()
-    }
-}
-
 /// Where a frame is at a drum.
 fn locate(drum: &RobotPlace, memory: &CommonMemory, data: &TaskData<'_>) -> AtDrum {
     let points = drum.pose.to_frame().ok().and_then(|base| Points::of(&command_at(drum), &base, data));
@@ -141,11 +130,51 @@ fn locate(drum: &RobotPlace, memory: &CommonMemory, data: &TaskData<'_>) -> AtDr
     }
 }
 
-impl State {
+/// From where a relative move at the drum leads that was interrupted: where the robot stands, but as far
+/// back along the move as it began, so that it ends where it would have ended.
+pub(super) fn start_of(
+    relative: Relative,
+    command: &EmoveCommand,
+    memory: &CommonMemory,
+    data: &TaskData<'_>,
+) -> Option<Pose> {
+    let points = Points::of(command, &base(command, memory, data)?, data)?;
+    let start = if relative == Relative::AcqSlideOn { points.aside } else { points.inside };
+    let end = data.moved(&start, relative.record(command, data)?.movetable);
+    let stand = commanded_pose(memory)?.to_frame().ok()?;
+    let way = end.position - start.position;
+    let square = way.dot(&way);
+    let share = if square > 0.0 { (stand.position - start.position).dot(&way) / square } else { 0.0 };
+    Some(Pose::from_frame(&Frame { position: stand.position - way * share, ..stand }))
+}
+
+/// The tool drum, and the force sensor that guards the moves at it.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ToolDrum {
+    /// The drum at which the robot is half way, between the first and the last point of a tool command. Its pose is
+    /// that of the location.
+    half_way: Option<RobotPlace>,
+    /// Where the robot was when the force sensor was last ordered to be calibrated.
+    calibrated: CalibratedAt,
+}
+
+impl ToolDrum {
+    pub(super) const fn adopt(&mut self, beliefs: &Beliefs) {
+        (self.half_way, self.calibrated) = (beliefs.drum, beliefs.calibrated);
+    }
+
+    pub(super) const fn write_to(&self, beliefs: &mut Beliefs) {
+        (beliefs.drum, beliefs.calibrated) = (self.half_way, self.calibrated);
+    }
+
+    pub(super) const fn half_way(&self) -> Option<RobotPlace> {
+        self.half_way
+    }
+
     /// Where the robot is at the drum of the command, if it is half way there.
-    pub(super) fn at_drum(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> AtDrum {
-        match &self.beliefs.drum {
-            Some(drum) if same_location(&place(drum), &place_named(command)) => {
+    pub(super) fn at(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> AtDrum {
+        match &self.half_way {
+            Some(drum) if LocationKey::of(drum).has_location_of(LocationKey::of(command)) => {
                 locate(drum, inputs.memory, inputs.data)
             }
             _ => AtDrum::Off,
@@ -154,85 +183,89 @@ impl State {
 
     /// What the force sensor reads without a force, and where that was taken.
     pub(super) const fn bias(&self, memory: &CommonMemory) -> Bias {
-        match (memory.prim.bias, self.beliefs.calibrated) {
+        match (memory.prim.bias, self.calibrated) {
             (None, _) => Bias::Missing,
             (Some(_), CalibratedAt::Drum) => Bias::AtDrum,
             (Some(_), CalibratedAt::Safe) => Bias::AtSafe,
         }
     }
 
-    /// The fingers are around a tool in the drum, which they hold only if nothing has moved it since.
-    pub(super) fn is_around_tool(&self, memory: &CommonMemory, data: &TaskData<'_>) -> bool {
-        match (&self.beliefs.place, &self.beliefs.drum, self.beliefs.held) {
-            (Some(place), _, _) => place.gone_to == GoneTo::Drum,
-            (None, Some(drum), None) => locate(drum, memory, data) == AtDrum::Inside,
+    pub(super) const fn note_calibration(&mut self, at: CalibratedAt) {
+        self.calibrated = at;
+    }
+
+    /// The fingers are around a tool in the drum, which they hold only if nothing has moved it since. `at` is where the
+    /// last motion of the robot ended.
+    pub(super) fn is_around_tool(
+        &self,
+        at: Option<&RobotPlace>,
+        is_held: bool,
+        inputs: &EmoveInputs<'_>,
+    ) -> bool {
+        match (at, &self.half_way, is_held) {
+            (Some(place), ..) => place.gone_to == GoneTo::Drum,
+            (None, Some(drum), false) => locate(drum, inputs.memory, inputs.data) == AtDrum::Inside,
             _ => false,
         }
     }
 
     /// A relative move of the command is ordered: a robot with a tool command is half way at the drum.
-    pub(super) fn note_drum(&mut self, command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) {
-        if let (true, Some(base)) = (is_tool_command(command.command), base(command, memory, data)) {
-            self.beliefs.drum = Some(robot_at(command, GoneTo::Drum, Pose::from_frame(&base)));
+    pub(super) fn note_move(&mut self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
+        let base = base(command, inputs.memory, inputs.data);
+        if let (true, Some(base)) = (is_tool_command(command.command), base) {
+            self.half_way = Some(robot_at(command, GoneTo::Drum, Pose::from_frame(&base)));
         }
+    }
+
+    /// The robot has left the drum, or stands there.
+    pub(super) const fn end(&mut self) {
+        self.half_way = None;
     }
 
     /// A robot that was moved with the fingers around a tool in the drum is half way there again: the tool has moved, or
-    /// the fingers on it.
-    fn sense_moved_tool(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
-        let (Some(at), Some(present)) = (self.beliefs.place, present_frame(inputs.memory)) else { return };
+    /// the fingers on it. `at` is where its last motion ended. True if it was moved.
+    pub(super) fn sense_moved_tool(&mut self, at: Option<RobotPlace>, inputs: &EmoveInputs<'_>) -> bool {
+        let (Some(at), Some(present)) = (at, present_frame(inputs.memory)) else { return false };
         let base = inputs.data.locpt(LocptId::from_option(at.record)).map(|locpt| locpt.frame);
         let is_there = at.pose.to_frame().is_ok_and(|pose| near(&pose, &present, UNMOVED, LOST_RADIANS));
         if let (GoneTo::Drum, Some(base), false) = (at.gone_to, base, is_there) {
-            self.beliefs.drum = Some(RobotPlace { pose: Pose::from_frame(&base), ..at });
-            self.beliefs.place = None;
+            self.half_way = Some(RobotPlace { pose: Pose::from_frame(&base), ..at });
+            return true;
         }
+        false
     }
 
-    /// Does a robot that is half way at the drum stay so? The table DRUM says it.
-    pub(super) fn sense_drum(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
-        self.sense_moved_tool(inputs);
-        let (Some(half_way), Some(present)) = (self.beliefs.drum, present_frame(inputs.memory)) else {
-            return;
-        };
-        let grasped_here = self.beliefs.held.is_some_and(|held| {
-            held.pose.to_frame().is_ok_and(|pose| near(&pose, &present, UNMOVED, LOST_RADIANS))
+    /// Does a robot that is half way at the drum stay so? The table DRUM says it. Returns the place of a robot that
+    /// stands there. `grasped_at` is the pose at which the held object was grasped.
+    pub(super) fn sense(
+        &mut self,
+        grasped_at: Option<Pose>,
+        execution: &mut Execution,
+        inputs: &EmoveInputs<'_>,
+    ) -> Option<RobotPlace> {
+        let (half_way, present) = (self.half_way?, present_frame(inputs.memory)?);
+        let grasped_here = grasped_at.is_some_and(|pose| {
+            pose.to_frame().is_ok_and(|pose| near(&pose, &present, UNMOVED, LOST_RADIANS))
         });
         let situation = AtTheDrum {
             at: locate(&half_way, inputs.memory, inputs.data),
             tool: if grasped_here { Tool::Grasped } else { Tool::Loose },
-            outcome: self.execution.outcome,
+            outcome: execution.outcome,
         };
         let decision = drum((), &situation);
-        self.execution.rows.beside(&decision.of(number::DRUM));
+        execution.rows.beside(&decision.of(number::DRUM));
         match decision.action {
-            Belief::Keep => {}
-            Belief::Leave if is_led(inputs.memory) => {}
-            Belief::Leave => self.beliefs.drum = None,
+            Belief::Keep => None,
+            Belief::Leave if is_led(inputs.memory) => None,
+            Belief::Leave => {
+                self.half_way = None;
+                None
+            }
             Belief::Stand => {
                 let pose = commanded_pose(inputs.memory).unwrap_or_else(|| Pose::from_frame(&present));
-                self.beliefs.place = Some(RobotPlace { pose, ..half_way });
-                self.beliefs.drum = None;
+                self.half_way = None;
+                Some(RobotPlace { pose, ..half_way })
             }
         }
-    }
-
-    /// From where a relative move at the drum leads that was interrupted: where the robot stands, but as far
-    /// back along the move as it began, so that it ends where it would have ended.
-    pub(super) fn start_of(
-        &self,
-        relative: Relative,
-        command: &EmoveCommand,
-        memory: &CommonMemory,
-        data: &TaskData<'_>,
-    ) -> Option<Pose> {
-        let points = Points::of(command, &base(command, memory, data)?, data)?;
-        let start = if relative == Relative::AcqSlideOn { points.aside } else { points.inside };
-        let end = data.moved(&start, relative.record(command, data)?.movetable);
-        let stand = commanded_pose(memory)?.to_frame().ok()?;
-        let way = end.position - start.position;
-        let square = way.dot(&way);
-        let share = if square > 0.0 { (stand.position - start.position).dot(&way) / square } else { 0.0 };
-        Some(Pose::from_frame(&Frame { position: stand.position - way * share, ..stand }))
     }
 }

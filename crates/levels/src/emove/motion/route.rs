@@ -1,5 +1,5 @@
 //! The path from the place of the robot to the goal of a command (V.2.1 MOV-TO-LOC): depart points, intermediate
-//! trajectory, approach points, stop. [`super::way`] continues an interrupted path.
+//! trajectory, approach points, stop. [`super::flight`] continues an interrupted path.
 //!
 //! ```text
 //!   departure --depart--> . --trajectory--> . --approach--> . --stop--> goal
@@ -10,9 +10,12 @@
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::emove::{EmoveCommand, EmoveVerb, GoneTo, Leg as Part, ObjectGrip, RobotPlace};
 use rcs_core::Plain;
-use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Place, Target, TaskData, TrajParaId, VisionId};
+use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Target, TaskData, TrajParaId, VisionId};
 
-use super::robot_place::{gone_to, place, place_named, robot_at};
+use crate::{
+    emove::robot_place::{gone_to, place, place_named, robot_at},
+    places::same_location,
+};
 
 /// Opening, 0.01 in, when pictures are taken: the camera looks between the open fingers (V.2.1 MOV-TO-VU).
 /// The parts gripper opens as wide; the others open to their stop.
@@ -168,12 +171,6 @@ impl Goal {
     }
 }
 
-/// True if two places are the same location: no intermediate trajectory leads from one to the other.
-#[must_use]
-pub fn same_location(a: &Place, b: &Place) -> bool {
-    a.locpt == b.locpt && (!a.locpt.is_null() || a.array == b.array)
-}
-
 /// True if two frames are the same for a robot that is at rest.
 #[must_use]
 pub fn near(a: &Frame, b: &Frame, inches: f64, radians: f64) -> bool {
@@ -202,6 +199,12 @@ fn takes_out(from: &RobotPlace, data: &TaskData<'_>) -> bool {
         GoneTo::Object(ObjectGrip { object, grip }) => data.depart(&object, grip, &place(from)).is_none(),
         GoneTo::Location | GoneTo::View(_) | GoneTo::Drum => false,
     }
+}
+
+/// The parameters with the lower velocity: those of both ends of a segment hold when it is flown back.
+pub(super) fn slower(a: TrajParaId, b: TrajParaId, data: &TaskData<'_>) -> TrajParaId {
+    let velocity = |id| data.traj_para(id).map_or(i32::MAX, |parameters| parameters.vel_max);
+    if velocity(b) < velocity(a) { b } else { a }
 }
 
 impl Route {
@@ -383,10 +386,4 @@ impl Route {
             self.complete = true;
         }
     }
-}
-
-/// The parameters with the lower velocity: those of both ends of a segment hold when it is flown back.
-pub(super) fn slower(a: TrajParaId, b: TrajParaId, data: &TaskData<'_>) -> TrajParaId {
-    let velocity = |id| data.traj_para(id).map_or(i32::MAX, |parameters| parameters.vel_max);
-    if velocity(b) < velocity(a) { b } else { a }
 }

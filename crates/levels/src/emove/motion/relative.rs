@@ -12,7 +12,7 @@ use interfaces::{
 use rcs_core::{Plain, name::Name10};
 use taskdata::files::{PoseId, RelativeMove, TaskData};
 
-use super::robot_place::place_named;
+use crate::emove::robot_place::place_named;
 
 /// The relative moves by their names in task data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]

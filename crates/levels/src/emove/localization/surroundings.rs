@@ -5,8 +5,10 @@ use interfaces::emove::NearPlace;
 use rcs_core::{Plain, name::Name10};
 use taskdata::files::{LocptId, Place, TaskData};
 
-use super::relative::Relative;
-use crate::places::{named, place_of};
+use crate::{
+    emove::motion::relative::Relative,
+    places::{named, place_of},
+};
 
 /// Location points that are looked at in a tick for the nearest ones.
 const NEAREST_PER_TICK: u32 = 16;

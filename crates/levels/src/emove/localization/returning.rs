@@ -12,28 +12,33 @@ use geometry::{
     pose::Pose,
 };
 use interfaces::{
-    emove::{GoneTo, RobotPlace, Way},
-    process::Inputs,
+    emove::{GoneTo, Holding, Offset as Deviation, RobotPlace, Way},
     subtask::LocationKind,
-    track::{Course, Track},
 };
-use rcs_core::Plain;
 use taskdata::files::{Locpt, LocptId, Target, TaskData, TrajParaId};
 
 use super::{
-    robot_place::{THERE_INCHES, THERE_RADIANS, commanded_pose, place, present_frame},
-    route::{Planning, Route, approach_to, near},
-    state::State,
+    Localization,
+    path::{foot, route_of, segment},
     surroundings::is_plain,
-    tables::{
-        Knowledge,
-        resume::{Offset, Stance, Standing, stance},
-        returning::{Freight, Lost, Near, Origin, Return, returning},
-    },
     track,
-    way::{Flight, foot, route_of, segment},
 };
-use crate::places::{LocationKey, is_in_mbd, place_of};
+use crate::{
+    emove::{
+        EmoveInputs,
+        motion::{
+            flight::{Flight, Rejoin},
+            route::{Planning, approach_to, near},
+        },
+        robot_place::{self, THERE_INCHES, THERE_RADIANS, commanded_pose, place, present_frame},
+        tables::{
+            Knowledge,
+            resume::{Offset, Stance, Standing, stance},
+            returning::{Freight, Lost, Near, Origin, Return, returning},
+        },
+    },
+    places::{LocationKey, is_in_mbd, place_of},
+};
 
 /// A vise or the pedestal that closes on a part shifts the hand that holds it by this much at most, in: the part has
 /// 0.06 in of play in the vise (docs/cell.md "Budget"), and the fingers yield …
@@ -49,45 +54,8 @@ const NEST_INCHES: f64 = 2.0;
 /// … and turned by no more than this, radians (10 degrees).
 const NEST_RADIANS: f64 = 10.0 * core::f64::consts::PI / 180.0;
 
-/// The points to which the robot goes before its route begins: first back along the record of how the joystick box has
-/// moved it.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Rejoin {
-    /// Points of the record that lie ahead; the last of them is the next one.
-    pub track: u8,
-    /// The points after them.
-    pub points: [Option<Pose>; 2],
-    /// Parameters of the motions.
-    pub parameters: TrajParaId,
-}
-
-impl Rejoin {
-    /// Straight to a pose.
-    pub(super) const fn to(pose: Pose, parameters: TrajParaId) -> Self {
-        Self { track: 0, points: [None, Some(pose)], parameters }
-    }
-
-    /// How many points lie ahead.
-    pub(super) fn ahead(&self) -> u8 {
-        self.points.iter().flatten().fold(self.track, |ahead, _| ahead.saturating_add(1))
-    }
-
-    /// Take the next point.
-    pub(super) fn next(&mut self, record: &Track) -> Option<Pose> {
-        if record.course != Course::Tracked {
-            // The robot has come back into the neighbourhood of its place or path, which is gone to straight.
-            self.track = 0;
-        }
-        if let Some(before) = self.track.checked_sub(1) {
-            self.track = before;
-            return record.points.get(usize::from(before)).copied();
-        }
-        self.points.iter_mut().find_map(Option::take)
-    }
-}
-
 /// From where a motion begins, and how the robot comes there first.
-pub(super) struct Origination {
+pub(in crate::emove) struct Origination {
     /// The place.
     pub place: Option<RobotPlace>,
     /// Or the path, of which a motion was interrupted.
@@ -102,7 +70,7 @@ pub(super) struct Origination {
 
 /// Parameters of the last motion to a place: those of the stop line of its approach; where none is written, those of the
 /// last point of a trajectory that leads there, as for a motion that goes there (SPECNOTES).
-pub(super) fn parameters_at(at: &RobotPlace, data: &TaskData<'_>) -> Option<TrajParaId> {
+fn parameters_at(at: &RobotPlace, data: &TaskData<'_>) -> Option<TrajParaId> {
     let last = |path| Some(data.path(path).last()?.para);
     approach_to(at, data).and_then(last).or_else(|| {
         let leads_there = |end| data.aliases(&place(at)).any(|alias| alias == end);
@@ -174,58 +142,73 @@ fn to_way(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<Rejoin> {
     beside.then(|| Rejoin::to(Pose::from_frame(&foot), parameters))
 }
 
-impl State {
-    /// The present frame, seen from the place of the robot. A closing vise shifts the hand, and leaves the commanded
-    /// pose where it is; the joystick box moves both.
-    pub(super) fn offset(&self, at: &RobotPlace, inputs: &Inputs<'_, TaskData<'_>>) -> Offset {
-        let Ok(goal) = at.pose.to_frame() else { return Offset::Unseen };
-        let is_there = |frame: &Frame| near(frame, &goal, THERE_INCHES, THERE_RADIANS);
-        let commanded = commanded_pose(inputs.memory).and_then(|pose| pose.to_frame().ok());
-        let is_sent_there = commanded.is_some_and(|frame| is_there(&frame));
-        let gripped = self.holding(inputs.memory).is_held() && clamps(at, inputs.data);
-        let clamped = gripped || at.gone_to == GoneTo::Drum;
-        match present_frame(inputs.memory) {
-            Some(present) if is_there(&present) => Offset::There,
-            Some(present)
-                if clamped && is_sent_there && near(&present, &goal, CLAMP_INCHES, CLAMP_RADIANS) =>
-            {
-                Offset::There
-            }
-            Some(_) if clamped => Offset::Clamped,
-            Some(_) => Offset::Beside,
-            None if is_sent_there => Offset::There,
-            None => Offset::Unseen,
+/// How a robot at its place goes back to it before something else is done.
+///
+/// # Errors
+/// Why it must not.
+pub(in crate::emove) fn settle_at(
+    at: &RobotPlace,
+    offset: Offset,
+    data: &TaskData<'_>,
+) -> Result<Option<Rejoin>, Planning> {
+    match stance((), &Standing { offset }).action {
+        Stance::Stay => Ok(None),
+        Stance::Correct => {
+            let parameters = parameters_at(at, data).ok_or(Planning::NoSpeed)?;
+            Ok(Some(Rejoin::to(at.pose, parameters)))
         }
+        Stance::RefuseOff => Err(Planning::OffPlace),
+        Stance::RefuseStart => Err(Planning::NoStart),
     }
+}
 
-    /// How a robot at its place goes back to it before something else is done.
-    ///
-    /// # Errors
-    /// Why it must not.
-    pub(super) fn settle_at(
-        &self,
-        at: &RobotPlace,
-        offset: Offset,
-        data: &TaskData<'_>,
-    ) -> Result<Option<Rejoin>, Planning> {
-        match stance((), &Standing { offset }).action {
-            Stance::Stay => Ok(None),
-            Stance::Correct => {
-                let parameters = parameters_at(at, data).ok_or(Planning::NoSpeed)?;
-                Ok(Some(Rejoin::to(at.pose, parameters)))
-            }
-            Stance::RefuseOff => Err(Planning::OffPlace),
-            Stance::RefuseStart => Err(Planning::NoStart),
+/// The present frame, seen from the place of the robot. A closing vise shifts the hand, and leaves the commanded
+/// pose where it is; the joystick box moves both.
+fn offset(at: &RobotPlace, holding: Holding, inputs: &EmoveInputs<'_>) -> Offset {
+    let Ok(goal) = at.pose.to_frame() else { return Offset::Unseen };
+    let is_there = |frame: &Frame| near(frame, &goal, THERE_INCHES, THERE_RADIANS);
+    let commanded = commanded_pose(inputs.memory).and_then(|pose| pose.to_frame().ok());
+    let is_sent_there = commanded.is_some_and(|frame| is_there(&frame));
+    let gripped = holding.is_held() && clamps(at, inputs.data);
+    let clamped = gripped || at.gone_to == GoneTo::Drum;
+    match present_frame(inputs.memory) {
+        Some(present) if is_there(&present) => Offset::There,
+        Some(present) if clamped && is_sent_there && near(&present, &goal, CLAMP_INCHES, CLAMP_RADIANS) => {
+            Offset::There
         }
+        Some(_) if clamped => Offset::Clamped,
+        Some(_) => Offset::Beside,
+        None if is_sent_there => Offset::There,
+        None => Offset::Unseen,
     }
+}
 
+/// How far the robot is from a place. A vise or the pedestal that has closed on the part in the fingers may have
+/// shifted the hand: the robot is there then, as it is for the next command.
+pub(in crate::emove) fn offset_of_place(
+    at: &RobotPlace,
+    holding: Holding,
+    inputs: &EmoveInputs<'_>,
+) -> Deviation {
+    let is_there = offset(at, holding, inputs) == Offset::There;
+    match robot_place::offset(&at.pose, inputs.memory) {
+        Deviation::Slight | Deviation::Off if is_there => Deviation::None,
+        seen => seen,
+    }
+}
+
+impl Localization {
     /// A command that does its work where the robot stands: how the robot comes back to its place before.
     ///
     /// # Errors
     /// Why it must not.
-    pub(super) fn stand_still(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Flight, Planning> {
+    pub(in crate::emove) fn stand_still(
+        &self,
+        holding: Holding,
+        inputs: &EmoveInputs<'_>,
+    ) -> Result<Flight, Planning> {
         let Some(at) = self.place() else { return Ok(Flight::default()) };
-        let rejoin = self.settle_at(&at, self.offset(&at, inputs), inputs.data)?;
+        let rejoin = settle_at(&at, offset(&at, holding, inputs), inputs.data)?;
         Ok(Flight { rejoin, ..Flight::default() })
     }
 
@@ -233,28 +216,37 @@ impl State {
     ///
     /// # Errors
     /// Why the robot cannot come there.
-    pub(super) fn origination(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Origination, Planning> {
+    pub(in crate::emove) fn origination(
+        &self,
+        holding: Holding,
+        inputs: &EmoveInputs<'_>,
+    ) -> Result<Origination, Planning> {
         let data = inputs.data;
         let nowhere =
             Origination { place: None, way: None, offset: Offset::There, rejoin: None, is_out: false };
         if let Some(place) = self.place() {
-            return Ok(Origination { place: Some(place), offset: self.offset(&place, inputs), ..nowhere });
+            return Ok(Origination {
+                place: Some(place),
+                offset: offset(&place, holding, inputs),
+                ..nowhere
+            });
         }
         let present = present_frame(inputs.memory);
-        if let Some(way) = self.on_way(inputs) {
+        if let Some(way) = self.on_path(inputs) {
             let rejoin = present.filter(|_| way.by_hand).and_then(|present| to_way(&present, &way, data));
             return Ok(Origination { way: Some(way), rejoin, ..nowhere });
         }
         let present = present.unwrap_or_else(Frame::identity);
-        let (left, way) = (self.beliefs.place, self.beliefs.way);
+        let (left, way) = (self.place, self.way);
         let resting = resting_place(&present, data);
         let out = left.and_then(|nest| out_of(&nest, &present, data));
         let back = Origination { offset: Offset::Beside, ..nowhere };
         let to_place =
             |place: RobotPlace, rejoin| Origination { place: Some(place), rejoin: Some(rejoin), ..back };
         let parameters = |at: &RobotPlace| parameters_at(at, data).ok_or(Planning::NoSpeed);
-        let record = &self.beliefs.track;
-        match (returning((), &self.lost(resting.is_some(), out.is_some(), inputs)).action, left, way) {
+        let record = &self.track;
+        match (returning((), &self.lost(resting.is_some(), out.is_some(), holding, inputs)).action, left, way)
+        {
             (Return::Retrace, Some(left), _) => {
                 let back = Rejoin { track: record.count, ..Rejoin::to(left.pose, parameters(&left)?) };
                 Ok(to_place(left, back))
@@ -282,17 +274,16 @@ impl State {
     }
 
     /// The state variables of RETURN.
-    fn lost(&self, resting: bool, nest: bool, inputs: &Inputs<'_, TaskData<'_>>) -> Lost {
-        let left = self.beliefs.place;
-        let clampable =
-            left.is_some_and(|left| clamps(&left, inputs.data)) && self.holding(inputs.memory).is_held();
+    fn lost(&self, resting: bool, nest: bool, holding: Holding, inputs: &EmoveInputs<'_>) -> Lost {
+        let left = self.place;
+        let clampable = left.is_some_and(|left| clamps(&left, inputs.data)) && holding.is_held();
         Lost {
             resolvers: match present_frame(inputs.memory) {
                 Some(_) => Knowledge::Known,
                 None => Knowledge::Unknown,
             },
-            course: self.beliefs.track.course,
-            origin: match (left.map(|left| left.gone_to), self.beliefs.way) {
+            course: self.track.course,
+            origin: match (left.map(|left| left.gone_to), self.way) {
                 (Some(GoneTo::Drum), _) => Origin::Drum,
                 (Some(_), _) => Origin::Place,
                 (None, Some(_)) => Origin::Way,
@@ -306,17 +297,4 @@ impl State {
             },
         }
     }
-}
-
-/// The whole way from a place whose depart leg is complete.
-///
-/// # Errors
-/// Why there is none.
-pub(super) fn from_outside(
-    from: &RobotPlace,
-    to: &RobotPlace,
-    data: &TaskData<'_>,
-) -> Result<Route, Planning> {
-    let route = Route::between(from, to, data)?;
-    Ok(Route { commanded: route.depart_points(data), ..route })
 }

@@ -19,11 +19,11 @@ use interfaces::{
     track::{Course, Track},
 };
 
-use super::{
+use super::Localization;
+use crate::emove::{
     robot_place::{is_cut_off, is_led},
-    state::State,
     tables::{
-        Knowledge, Whereabouts,
+        Knowledge, PlaceKnowledge,
         track::{Line, Mover, Record, Step, Tracking, track},
     },
 };
@@ -160,13 +160,13 @@ const fn is_motion(order: PrimVerb) -> bool {
     )
 }
 
-impl State {
+impl Localization {
     /// Once a tick: record how the joystick box moves the robot away from its place or way.
-    pub(super) fn sense_track(&mut self, place: Whereabouts, memory: &CommonMemory) {
+    pub(in crate::emove) fn sense_track(&mut self, place: PlaceKnowledge, memory: &CommonMemory) {
         let Some(present) = memory.prim.status.sensor_pose.and_then(|pose| memory.changing_pose(pose)) else {
             return;
         };
-        let record = &mut self.beliefs.track;
+        let record = &mut self.track;
         let (led, sent) = (is_led(memory), is_motion(memory.emove.prim.command));
         record.by_hand = led || (record.by_hand && !sent);
         let gap = apart(&record.end, present);
@@ -174,7 +174,7 @@ impl State {
         let has_left = !near && record.course == Course::Tracked && (led || !sent);
         let back = if has_left { found(record, present) } else { None };
         let tracking = Tracking {
-            place: if place == Whereabouts::Known { Knowledge::Known } else { Knowledge::Unknown },
+            place: if place == PlaceKnowledge::Known { Knowledge::Known } else { Knowledge::Unknown },
             course: record.course,
             mover: match record.by_hand {
                 _ if sent && !led => Mover::Emove,

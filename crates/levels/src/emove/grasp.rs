@@ -1,0 +1,54 @@
+//! What the fingers are to close on: object and grip of a command, with the sizes of the object forms (VII.7.1).
+
+use interfaces::{
+    emove::{EmoveCommand, Grasped, ObjectGrip},
+    grip::Felt,
+};
+use rcs_core::name::Name16;
+use taskdata::files::{EndEffId, EndEffPara, TaskData};
+
+use super::{EmoveInputs, gripper::Gripper, robot_place::commanded_pose};
+
+/// Grip number of a holster object with the gripper on the robot; its approach size is the opening with which
+/// the gripper goes through the holster.
+const GRIPPER_ON: i32 = 1;
+
+/// Parameters of the holster object of a command with the gripper on.
+pub(super) fn gripper_on<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
+    data.object(&command.object?, GRIPPER_ON).map(|(_, parameters)| parameters)
+}
+
+/// Parameters of the object of a command.
+pub(super) fn sizes<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
+    data.end_eff(EndEffId::from_option(command.object_parameters))
+}
+
+/// What the fingers are to close on, for the command.
+pub(super) fn grasp_of(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Grasped {
+    let gripper = Gripper::attached(inputs.memory);
+    Grasped {
+        object: ObjectGrip { object: command.object.unwrap_or_default(), grip: command.grip },
+        parameters: command.object_parameters,
+        gripper: gripper.id(),
+        grasp_size: sizes(command, inputs.data).map_or(0, |sizes| sizes.grasp_size),
+        opening: gripper.opening(inputs.memory).unwrap_or_default(),
+        pose: commanded_pose(inputs.memory).unwrap_or_default(),
+    }
+}
+
+/// What the fingers hold, by its name and grip; `None` if they feel nothing, or the task data do not have the object.
+pub(super) fn named_grasp(object: Name16, grip: i32, inputs: &EmoveInputs<'_>) -> Option<Grasped> {
+    let (parameters, _) = inputs.data.object(&object, grip)?;
+    let gripper = Gripper::attached(inputs.memory);
+    if gripper.felt(inputs.memory) != Felt::Something {
+        return None;
+    }
+    gripper.opening(inputs.memory)?;
+    let command = EmoveCommand {
+        object: Some(object),
+        grip,
+        object_parameters: parameters.to_option(),
+        ..EmoveCommand::default()
+    };
+    Some(grasp_of(&command, inputs))
+}

@@ -1,0 +1,296 @@
+//! The change of a gripper: quick change, gripper on the robot, and position of the robot in the holster
+//! (docs/design/recovery.md "Exchange").
+//!
+//! ```text
+//!   bare:     above --- fast --- slow (seat)      QC-ATTACH reads it from left to right and down,
+//!                                 |               QC-DETACH the other way round
+//!   mated:       up --- lift --- back (low)
+//! ```
+//!
+//! All points follow from the pose of the holster and the relative moves of the two commands.
+
+use core::mem;
+
+use geometry::{
+    frame::{Frame, norm},
+    pose::Pose,
+};
+use interfaces::{
+    CommonMemory, EmoveOutputs, Reason,
+    emove::{Beliefs, EmoveCommand, EmoveVerb, Exchange},
+    quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb, RingPosition},
+};
+use rcs_core::{
+    Plain,
+    handshake::{Commander, Lower},
+    tick::Tick,
+};
+use taskdata::files::TaskData;
+
+use super::{
+    EmoveInputs,
+    grasp::gripper_on,
+    gripper::{Gripper, is_open},
+    localization::{ASIDE_INCHES, LOST_RADIANS, path::beside},
+    motion::relative::Relative,
+    robot_place::{base, command_at, gone_to, is_led, present_frame, robot_at},
+    tables::{Along, Holster, Lock, Ring, Shut},
+};
+
+/// The robot is at the seat within this, in: much less than a relative move is long.
+const AT_POINT: f64 = 0.12;
+/// It is at the low point within this, in: QCD-DOWN may end a little above or below it.
+const AT_LOW: f64 = 0.3;
+/// It is clear of the holster within this of the upper points, or beyond them, in.
+const CLEAR: f64 = 0.3;
+/// It is on a segment within [`ASIDE_INCHES`], and this much above it on the way to the seat: QCD-SEAT begins
+/// where the large sensors see the ears, up to half an inch above the low point (V.2.1). QCD-UP ends as much
+/// above its point, in.
+const ABOVE: f64 = 0.6;
+
+/// The points of the exchange in a holster.
+struct Points {
+    above: Frame,
+    fast: Frame,
+    slow: Frame,
+    back: Frame,
+    lift: Frame,
+    up: Frame,
+}
+
+impl Points {
+    /// The points for a command that names a holster, whose pose is `base`.
+    fn of(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Option<Self> {
+        let moved = |from: &Frame, relative: Relative| {
+            Some(data.moved(from, relative.record(command, data)?.movetable))
+        };
+        let slow = moved(base, Relative::QcaSlow)?;
+        Some(Self {
+            above: moved(&slow, Relative::QcdUp)?,
+            fast: moved(base, Relative::QcaFast)?,
+            slow,
+            back: moved(base, Relative::QcaBack)?,
+            lift: moved(base, Relative::QcaLift)?,
+            up: moved(base, Relative::QcaUp)?,
+        })
+    }
+
+    /// Where a frame is along them.
+    fn along(&self, present: &Frame) -> Along {
+        let at = |point: &Frame| norm(&(present.position - point.position));
+        let segments = [
+            (beside(present, &self.above, &self.fast), ASIDE_INCHES, Along::Out),
+            (beside(present, &self.fast, &self.slow), ASIDE_INCHES, Along::Coming),
+            (beside(present, &self.slow, &self.back), ABOVE, Along::Sliding),
+            (beside(present, &self.back, &self.lift), ASIDE_INCHES, Along::Lifting),
+            (beside(present, &self.lift, &self.up), ASIDE_INCHES, Along::Raising),
+        ];
+        let within = segments.into_iter().filter(|(distance, limit, _)| distance <= limit);
+        let nearest = within.min_by(|(a, ..), (b, ..)| a.total_cmp(b));
+        let turned = self.slow.distance(present).radians > LOST_RADIANS;
+        if at(&self.slow) <= AT_POINT && !turned {
+            Along::Seat
+        } else if at(&self.back) <= AT_LOW && !turned {
+            Along::Low
+        } else if at(&self.above) <= ABOVE {
+            Along::Above
+        } else if at(&self.up) <= CLEAR {
+            Along::Clear
+        } else {
+            match nearest {
+                Some((.., segment)) if !turned => segment,
+                _ => Along::Off,
+            }
+        }
+    }
+}
+
+const fn is_exchange(verb: EmoveVerb) -> bool {
+    matches!(verb, EmoveVerb::QcAttach | EmoveVerb::QcDetach)
+}
+
+/// Bits of the four sensors of a holster (V.1.2).
+const HOLSTER_SENSORS: u8 = 0x0F;
+
+/// What the sensors of a gripper's own holster see: parts gripper right, v-gripper left, tool gripper centre
+/// (ASSUMED).
+pub(super) fn holster(gripper: Option<u8>, memory: &CommonMemory) -> Holster {
+    let status = &memory.prim.status;
+    let bits = match Gripper::of(gripper) {
+        Gripper::None => return Holster::Empty,
+        Gripper::Parts => status.holster_right,
+        Gripper::V => status.holster_left,
+        Gripper::Tool => status.holster_centre,
+    };
+    match bits & HOLSTER_SENSORS {
+        0 => Holster::Empty,
+        HOLSTER_SENSORS => Holster::Full,
+        _ => Holster::Partial,
+    }
+}
+
+/// Position of the robot in the exchange of the command.
+pub(super) fn along(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Along {
+    if !is_exchange(command.command) {
+        return Along::Off;
+    }
+    let base = base(command, inputs.memory, inputs.data);
+    let points = base.and_then(|base| Points::of(command, &base, inputs.data));
+    match (points, present_frame(inputs.memory)) {
+        (Some(points), Some(present)) => points.along(&present),
+        _ => Along::Off,
+    }
+}
+
+/// Are the fingers at the opening with which the gripper goes through its holster?
+pub(super) fn shut(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Shut {
+    let opening = gripper_on(command, inputs.data).map(|on| on.appr_size);
+    let attached = Gripper::attached(inputs.memory);
+    match opening {
+        _ if attached.is_uncalibrated(inputs.memory) => Shut::Raw,
+        Some(opening) if attached.stands_at(opening, inputs.memory) => Shut::Shut,
+        _ => Shut::Open,
+    }
+}
+
+/// Where a gripper is left in the holster of a command.
+pub(super) fn seat_pose(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Pose> {
+    let base = base(command, memory, data)?;
+    Some(Pose::from_frame(&Points::of(command, &base, data)?.slow))
+}
+
+/// The quick change, and the gripper on it.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct GripperExchange {
+    /// Commands to Quick Change.
+    commander: Commander,
+    /// The gripper on the robot in the tick before.
+    attached: Gripper,
+    /// The holster in which the robot changes a gripper.
+    holster: Option<Exchange>,
+}
+
+impl GripperExchange {
+    pub(super) const fn adopt(&mut self, beliefs: &Beliefs) {
+        self.holster = beliefs.exchange;
+    }
+
+    /// Adopt the gripper that was on in the tick before.
+    pub const fn adopt_gripper(&mut self, attached: Gripper) {
+        self.attached = attached;
+    }
+
+    pub(super) const fn write_to(&self, beliefs: &mut Beliefs) {
+        beliefs.exchange = self.holster;
+    }
+
+    pub(super) fn start(&mut self, tick: Tick, memory: &CommonMemory) {
+        let (order, ring) = (&memory.emove.quick_change, &memory.quick_change.status);
+        self.commander.start_from(tick, order.number, ring.echo);
+    }
+
+    pub(super) fn send(&mut self, verb: QuickChangeVerb, tick: Tick, outputs: &mut EmoveOutputs) {
+        outputs.quick_change = QuickChangeCommand { number: self.commander.send(tick), command: verb };
+    }
+
+    /// What Quick Change has made of its last command.
+    pub(super) fn status(&self, tick: Tick, memory: &CommonMemory) -> Lower {
+        self.commander.status_of(tick, &memory.quick_change)
+    }
+
+    /// Where the sensors see the locking ring.
+    pub(super) fn lock(&self, tick: Tick, memory: &CommonMemory) -> Lock {
+        match (self.status(tick, memory), memory.quick_change.status.ring) {
+            (Lower::Lost, _) | (_, RingPosition::Implausible) => Lock::Faulty,
+            (_, RingPosition::Locked) => Lock::Locked,
+            (_, RingPosition::Unlocked) => Lock::Unlocked,
+            (_, RingPosition::Unread | RingPosition::Between) => Lock::Between,
+        }
+    }
+
+    /// What Quick Change says of its ring to the last command.
+    pub(super) fn ring(&self, tick: Tick, memory: &CommonMemory) -> Ring {
+        match (self.status(tick, memory), memory.quick_change.status.report) {
+            (Lower::Pending | Lower::Executing, _) => Ring::Busy,
+            (Lower::Error | Lower::Joystick | Lower::Lost, _) => Ring::Faulty,
+            (Lower::Done, QuickChangeReport::Locked) => Ring::Locked,
+            (Lower::Done, QuickChangeReport::Unlocked) => Ring::Unlocked,
+            (Lower::Done, _) => Ring::Busy,
+        }
+    }
+
+    /// What is wrong with the quick change.
+    pub(super) fn fault(&self, tick: Tick, memory: &CommonMemory) -> Reason {
+        match self.status(tick, memory) {
+            Lower::Lost => Reason::NeighbourLost,
+            _ if memory.quick_change.status.report == QuickChangeReport::Stuck => Reason::QuickChangeStuck,
+            _ => Reason::QuickChangeFault,
+        }
+    }
+
+    /// Do the id pins say that the gripper has gone, while the ring has been locked ever since it was there?
+    /// Then it is on, and its pins have a bad contact. What it holds is not known until they read as before.
+    /// A gripper that its own holster feels, while the robot is in no holster, has been torn off the ring.
+    pub(super) fn is_misread(&self, memory: &CommonMemory) -> bool {
+        let read = Gripper::attached(memory);
+        let locked = memory.quick_change.status.ring == RingPosition::Locked;
+        let rests = self.holster.is_none() && holster(self.attached.id(), memory) == Holster::Full;
+        locked && self.attached != Gripper::None && read != self.attached && !rests
+    }
+
+    /// The gripper on the robot. Pins with a bad contact do not make the robot bare: Subtask would fetch the gripper
+    /// that is on.
+    pub(super) fn end_effector_id(&self, memory: &CommonMemory) -> Option<u8> {
+        if self.is_misread(memory) { self.attached.id() } else { memory.quick_change.status.end_effector_id }
+    }
+
+    /// Which gripper is on. True if it is another one than before.
+    pub(super) fn sense_gripper(&mut self, memory: &CommonMemory) -> bool {
+        let attached = Gripper::attached(memory);
+        attached != mem::replace(&mut self.attached, attached)
+    }
+
+    /// A relative move of the command is ordered: a robot that changes a gripper is in the holster.
+    pub(super) fn note_move(&mut self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
+        let gripper = command.end_effector_id.filter(|_| is_exchange(command.command));
+        if let (Some(gripper), Some(base)) = (gripper, base(command, inputs.memory, inputs.data)) {
+            let place = robot_at(command, gone_to(command), Pose::from_frame(&base));
+            self.holster = Some(Exchange { gripper, place });
+        }
+    }
+
+    /// The robot is in a holster, between the first and the last point of an exchange.
+    pub(super) const fn is_half_done(&self) -> bool {
+        self.holster.is_some()
+    }
+
+    pub(super) const fn end(&mut self) {
+        self.holster = None;
+    }
+
+    /// A robot that is away from the holster when the operator gives it back changes no gripper any more.
+    pub(super) fn sense(&mut self, inputs: &EmoveInputs<'_>) {
+        let (Some(exchange), Some(present)) = (self.holster, present_frame(inputs.memory)) else {
+            return;
+        };
+        let command = command_at(&exchange.place);
+        let base = exchange.place.pose.to_frame().ok();
+        let points = base.and_then(|base| Points::of(&command, &base, inputs.data));
+        let along = points.map_or(Along::Off, |points| points.along(&present));
+        if along == Along::Off && !is_led(inputs.memory) {
+            self.holster = None;
+        }
+    }
+
+    /// The gripper whose change is not finished: the robot is in its holster, or the gripper hangs on a ring that is
+    /// not locked, at any position of the robot.
+    pub(super) fn changing(&self, memory: &CommonMemory) -> Option<u8> {
+        let loose = memory.quick_change.status.end_effector_id.filter(|_| is_open(memory));
+        self.holster.map(|exchange| exchange.gripper).or(loose)
+    }
+
+    /// Commands to Quick Change, for a search that numbers them anew (docs/proof.md).
+    pub const fn commander(&mut self) -> &mut Commander {
+        &mut self.commander
+    }
+}

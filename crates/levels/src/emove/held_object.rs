@@ -1,0 +1,397 @@
+//! The object in the fingers: what they hold, whether it is still where they have grasped it, and what they have
+//! released last.
+
+use geometry::pose::Pose;
+use interfaces::{
+    CommonMemory,
+    emove::{Beliefs, EmoveCommand, EmoveVerb, Grasped, Holding, PlacedObject, RobotPlace, Seat},
+    grip::Felt,
+    prim::PrimReport,
+};
+use rcs_core::{Plain, handshake::Lower};
+use taskdata::files::EndEffId;
+
+use super::{
+    EmoveInputs,
+    grasp::sizes,
+    gripper::{Gripper, is_open},
+    grippers::{FingerVerb, Grippers},
+    localization::{LOST_INCHES, LOST_RADIANS},
+    motion::route::{FULL_OPENING, near},
+    robot_place::{is_led, may_push, present_frame},
+    tables::{Fingers, Load},
+};
+use crate::{
+    execution::{Execution, Outcome},
+    places::LocationKey,
+};
+
+/// Ticks in which neither finger may feel what is held (0.2 s): longer than it takes to push a part from one
+/// finger to the other.
+const UNFELT_TICKS: u8 = 5;
+/// Something unknown is let go by this much at least, 0.01 in (ASSUMED).
+const LEAST_RELEASE: i32 = 50;
+
+/// The object in the fingers.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct HeldObject {
+    /// What the gripper holds.
+    held: Option<Grasped>,
+    /// The object that it was last commanded to grasp. None while something is held: it has been half let go, and the
+    /// release was cut off.
+    grasping: Option<Grasped>,
+    /// The fingers were empty, and have not been commanded to close since.
+    empty: bool,
+    /// Where along the fingers the object is that they have closed on last.
+    seat: Seat,
+    /// The last place where an object may not be where the data say.
+    disturbed: Option<RobotPlace>,
+    /// The object that the gripper has released, and where.
+    placed: Option<PlacedObject>,
+    /// The last order to the fingers was to release the held object.
+    releasing: bool,
+    /// Ticks in which neither finger has felt what is held.
+    unfelt: u8,
+    /// Something was held when the current command came.
+    carrying: bool,
+    /// What was held last went away with its gripper.
+    gripper_gone: bool,
+}
+
+impl HeldObject {
+    pub(super) const fn adopt(&mut self, beliefs: &Beliefs) {
+        (self.held, self.grasping, self.empty) = (beliefs.held, beliefs.grasping, beliefs.empty);
+        (self.seat, self.disturbed, self.placed) = (beliefs.seat, beliefs.disturbed, beliefs.placed);
+    }
+
+    pub(super) const fn write_to(&self, beliefs: &mut Beliefs) {
+        (beliefs.held, beliefs.grasping, beliefs.empty) = (self.held, self.grasping, self.empty);
+        (beliefs.seat, beliefs.disturbed, beliefs.placed) = (self.seat, self.disturbed, self.placed);
+    }
+
+    /// In the first tick after a restart: a release may have been cut off.
+    pub(super) fn start(&mut self, order: FingerVerb) {
+        let is_cut_off = self.held.is_some() && self.grasping.is_none();
+        self.releasing = is_cut_off || order == FingerVerb::Release;
+    }
+
+    /// A new command comes.
+    pub const fn begin(&mut self) {
+        self.carrying = self.held.is_some();
+    }
+
+    pub(super) const fn held(&self) -> Option<&Grasped> {
+        self.held.as_ref()
+    }
+
+    pub(super) const fn seat(&self) -> Seat {
+        self.seat
+    }
+
+    pub(super) const fn placed(&self) -> Option<PlacedObject> {
+        self.placed
+    }
+
+    /// An object is held. `at` is the place of the robot.
+    pub(super) fn hold(&mut self, grasped: Grasped, at: Option<RobotPlace>) {
+        (self.held, self.placed) = (Some(grasped), None);
+        self.forget_disturbance(at);
+        self.unfelt = 0;
+    }
+
+    /// A person says what is held: nothing, if it has no name.
+    pub(super) const fn name(&mut self, grasped: Option<Grasped>) {
+        self.grasping = grasped;
+        if grasped.is_some() {
+            self.empty = false;
+        } else {
+            self.held = None;
+        }
+    }
+
+    /// A person says that what was placed does not count.
+    pub(super) const fn forget_placed(&mut self) {
+        self.placed = None;
+    }
+
+    /// The fingers are commanded to close: on an object, or by hand. By hand only what is held already has a name, and
+    /// it is not let go any more.
+    pub(super) const fn close(&mut self, on: Option<Grasped>, seat: Seat) {
+        if on.is_some() {
+            // What is closed on anew is held when the fingers have closed on it.
+            (self.held, self.carrying, self.grasping) = (None, false, on);
+        } else {
+            self.grasping = self.held;
+        }
+        // What was placed may be taken, and lost elsewhere.
+        (self.seat, self.placed, self.empty) = (seat, None, false);
+    }
+
+    pub(super) fn note_order(&mut self, order: FingerVerb) {
+        self.releasing = order == FingerVerb::Release;
+    }
+
+    /// A release is paused: the order no longer says that it has not ended. If E-move is restarted, this does.
+    pub(super) const fn pause_release(&mut self) {
+        self.grasping = None;
+    }
+
+    /// Has a release been begun at the place of the robot that has not ended?
+    #[must_use]
+    pub const fn is_letting_go(&self, at_place: bool) -> bool {
+        self.releasing && self.held.is_some() && at_place
+    }
+
+    /// What was held when the command came.
+    pub(super) const fn load(&self, is_misread: bool) -> Load {
+        match self.held {
+            None if self.carrying && self.gripper_gone => Load::GripperGone,
+            None if self.carrying => Load::Lost,
+            Some(_) if self.carrying && is_misread => Load::PinsFail,
+            _ => Load::Kept,
+        }
+    }
+
+    /// Another gripper is on. A ring that is open takes a gripper only in its holster, where none is left that may hold
+    /// something.
+    pub(super) const fn note_gripper(&mut self, memory: &CommonMemory) {
+        (self.empty, self.grasping) = (is_open(memory), None);
+    }
+
+    /// Whether the fingers are empty, and what they hold that they were commanded to grasp: something that they feel,
+    /// although nothing counts as held.
+    pub(super) fn sense_grasp(
+        &mut self,
+        command: &EmoveCommand,
+        grippers: &Grippers,
+        execution: &Execution,
+        inputs: &EmoveInputs<'_>,
+    ) -> Option<Grasped> {
+        let (tick, memory) = (inputs.tick, inputs.memory);
+        let attached = Gripper::attached(memory);
+        // Before the fingers have closed they feel nothing: that says nothing of what they will hold.
+        let closing = grippers.order() == FingerVerb::Grasp && grippers.are_moving(tick, memory);
+        self.empty |= grippers.has_let_go(tick, memory);
+        match attached.felt(memory) {
+            Felt::Nothing => self.empty |= !closing,
+            Felt::Something
+                if self.held.is_none() && self.may_adopt(command, grippers, execution, inputs) =>
+            {
+                let at = |grasped: &Grasped| {
+                    let (Ok(then), Some(now)) = (grasped.pose.to_frame(), present_frame(memory)) else {
+                        return false;
+                    };
+                    near(&then, &now, LOST_INCHES, LOST_RADIANS)
+                };
+                let grasped = self.grasping.filter(at)?;
+                let opening = attached.opening(memory).unwrap_or(grasped.opening);
+                return Some(Grasped { opening, gripper: attached.id(), ..grasped });
+            }
+            Felt::Something | Felt::NotKnown => {}
+        }
+        None
+    }
+
+    /// May something that is felt count as grasped? Not while the fingers move or do not press it, nor before the
+    /// command that closes them has looked, nor if they were only opened since nothing was felt.
+    fn may_adopt(
+        &self,
+        command: &EmoveCommand,
+        grippers: &Grippers,
+        execution: &Execution,
+        inputs: &EmoveInputs<'_>,
+    ) -> bool {
+        let grasps = matches!(command.command, EmoveVerb::GraspObj | EmoveVerb::AcquireTool);
+        let looks = grasps && execution.outcome == Outcome::Executing;
+        let status = grippers.status(inputs.tick, inputs.memory);
+        let moving = matches!(status, Lower::Pending | Lower::Executing);
+        let presses = Gripper::attached(inputs.memory).presses(inputs.memory);
+        !looks && !moving && presses && !self.empty
+    }
+
+    /// Where along the fingers the object is: nothing measures it. With the robot it slides as soon as it meets
+    /// anything, while a person leads the robot or the arm has no pressure: then the robot controller is off, whatever
+    /// Prim has made of its last command, or the resolvers give no position. An arm that moves away from an object
+    /// which it has just released pushes it in the same way, and so does one that a person leads past an object before
+    /// it is grasped.
+    ///
+    /// `origin` is the place of the robot, or the one that it has left last; `ends` are all places to which it belongs;
+    /// `drum` is the drum at which it is half way.
+    pub(super) fn sense_seat(
+        &mut self,
+        origin: Option<RobotPlace>,
+        ends: [Option<RobotPlace>; 3],
+        drum: Option<RobotPlace>,
+        memory: &CommonMemory,
+    ) {
+        let prim = &memory.prim.status;
+        let is_off = prim.controller_off || prim.report == PrimReport::T3LinkOff;
+        let is_off = is_off || present_frame(memory).is_none();
+        if !is_led(memory) && !is_off {
+            return;
+        }
+        let have_closed = !self.empty && (self.held.is_some() || self.grasping.is_some());
+        if have_closed || self.is_placed_at(origin) {
+            self.seat = Seat::NotKnown;
+        }
+        let near = || ends.into_iter().flatten().find(|at| may_push(&at.pose, memory));
+        self.disturbed = drum.or_else(near).or(self.disturbed);
+    }
+
+    /// Has an object been released at a place?
+    fn is_placed_at(&self, at: Option<RobotPlace>) -> bool {
+        self.placed.zip(at).is_some_and(|(placed, at)| LocationKey::of(&placed) == LocationKey::of(&at))
+    }
+
+    /// The seat of what the fingers are to close on. An object that may have been pushed, or that has slid before it was
+    /// let go, is not known to be at its place, unless a picture shows where it is.
+    pub(super) fn next_seat(&self, command: &EmoveCommand, is_located: bool) -> Seat {
+        let is_disturbed =
+            self.disturbed.is_some_and(|at| LocationKey::of(&at).has_location_of(LocationKey::of(command)));
+        match (self.empty, is_located, is_disturbed) {
+            (false, ..) => self.seat,
+            (true, false, true) => Seat::NotKnown,
+            (true, ..) => Seat::Kept,
+        }
+    }
+
+    /// The robot has grasped an object where it stands, or has let one go there that has not slid: it is not disturbed
+    /// any more.
+    fn forget_disturbance(&mut self, here: Option<RobotPlace>) {
+        let is_here = |at: &RobotPlace| {
+            here.is_some_and(|here| LocationKey::of(at).has_location_of(LocationKey::of(&here)))
+        };
+        self.disturbed = self.disturbed.filter(|at| !is_here(at));
+    }
+
+    /// Whether the held object is still held. Opening fingers count as holding it until they have released it: if they
+    /// stop half-way, the object is still between them, and the command that releases it can be sent again. `at` is the
+    /// place of the robot.
+    pub(super) fn sense_loss(
+        &mut self,
+        at: Option<RobotPlace>,
+        grippers: &Grippers,
+        inputs: &EmoveInputs<'_>,
+    ) {
+        let memory = inputs.memory;
+        let Some(held) = self.held else { return };
+        let letting_go = self.is_letting_go(at.is_some());
+        let gripper = Gripper::of(held.gripper);
+        // A part that was held with little force leaves the fingers where they are when it falls: only the
+        // force tells.
+        let felt = letting_go || !gripper.feels_nothing(memory);
+        self.unfelt = if felt { 0 } else { self.unfelt.saturating_add(1) };
+        // A gripper that was restarted knows no opening: what was held is not lost for that.
+        let slipped = !letting_go
+            && gripper
+                .opening(memory)
+                .is_some_and(|opening| !gripper.still_grips(opening, held.grasp_size, held.opening));
+        let gone = Gripper::attached(memory) != gripper;
+        let unfelt = self.unfelt > UNFELT_TICKS;
+        let has_let_go = grippers.has_let_go(inputs.tick, memory);
+        if slipped || unfelt || gone || has_let_go {
+            (self.held, self.grasping, self.gripper_gone) = (None, None, gone);
+            let let_go = |at: RobotPlace| PlacedObject {
+                object: held.object.object,
+                grip: held.object.grip,
+                location: at.location,
+                record: at.record,
+                array: at.array,
+                sector: at.sector,
+            };
+            let put = at.filter(|_| has_let_go && !gone);
+            self.placed = put.map(let_go);
+            match (put, self.seat) {
+                (Some(_), Seat::Kept) => self.forget_disturbance(put),
+                (Some(_), Seat::NotKnown) => self.disturbed = put,
+                (None, _) => {}
+            }
+        }
+    }
+
+    /// What the gripper holds: what was grasped and is still felt, else what its sensors say. `is_misread` says that
+    /// the id pins have a bad contact.
+    pub(super) fn holding(&self, is_misread: bool, memory: &CommonMemory) -> Holding {
+        let attached = Gripper::attached(memory);
+        match (self.held, attached.felt(memory)) {
+            (None, _) if is_misread && self.empty => Holding::Nothing,
+            _ if is_misread => Holding::NotKnown,
+            (Some(held), _) => Holding::Object(held.object),
+            (None, Felt::Nothing) => Holding::Nothing,
+            (None, Felt::NotKnown) if self.empty => Holding::Nothing,
+            // Jaws that were stopped on their way to open stand between their stops, too.
+            (None, Felt::Something) if self.empty && attached.has_stops() => Holding::Nothing,
+            (None, Felt::Something) => Holding::Something,
+            (None, Felt::NotKnown) => Holding::NotKnown,
+        }
+    }
+
+    /// What the fingers have between them. A gripper that does not know its opening has what counts as held.
+    pub(super) fn fingers(
+        &self,
+        at_place: bool,
+        command: &EmoveCommand,
+        grippers: &Grippers,
+        inputs: &EmoveInputs<'_>,
+    ) -> Fingers {
+        let memory = inputs.memory;
+        let grasp_size = sizes(command, inputs.data).map_or(0, |sizes| sizes.grasp_size);
+        let gripper = Gripper::attached(memory);
+        let gripping = match gripper.opening(memory) {
+            Some(opening) => gripper.grips(opening, grasp_size),
+            None => self.held.is_some(),
+        };
+        if gripping && !self.is_half_let_go(at_place, grippers, inputs) {
+            Fingers::Gripping
+        } else {
+            Fingers::Empty
+        }
+    }
+
+    /// Does something count as held that the fingers have been told to let go of, or do not feel or press at rest?
+    fn is_half_let_go(&self, at_place: bool, grippers: &Grippers, inputs: &EmoveInputs<'_>) -> bool {
+        let Some(held) = self.held else { return false };
+        let (gripper, memory) = (Gripper::of(held.gripper), inputs.memory);
+        let around = gripper.felt(memory) != Felt::Nothing && gripper.presses(memory);
+        self.is_letting_go(at_place) || (!around && !grippers.are_moving(inputs.tick, memory))
+    }
+
+    /// The opening to release the held object, or the object of the command, 0.01 in. Something unknown may be wider
+    /// than the object of the command: the fingers open from where they are.
+    pub(super) fn depart_opening(
+        &self,
+        holding: Holding,
+        command: &EmoveCommand,
+        inputs: &EmoveInputs<'_>,
+    ) -> i32 {
+        let EmoveInputs { data, memory, .. } = inputs;
+        let held = self.held.and_then(|held| data.end_eff(EndEffId::from_option(held.parameters)));
+        let size = held.or_else(|| sizes(command, data)).map_or(FULL_OPENING, |sizes| sizes.depart_size);
+        let now = match holding {
+            Holding::Something | Holding::NotKnown => Gripper::attached(memory).opening(memory),
+            Holding::Nothing | Holding::Object(_) => None,
+        };
+        now.map_or(size, |now| size.max(now.saturating_add(LEAST_RELEASE).min(FULL_OPENING)))
+    }
+
+    /// Forget where objects were released or disturbed.
+    pub const fn forget_places(&mut self) {
+        (self.placed, self.disturbed) = (None, None);
+    }
+
+    /// Forget what makes no difference, for a search that compares states (docs/proof.md).
+    pub const fn forget_unread(&mut self) {
+        match &mut self.grasping {
+            grasping if self.held.is_none() && self.empty => *grasping = None,
+            Some(grasping) => grasping.opening = 0,
+            None => {}
+        }
+        if self.held.is_none() {
+            self.unfelt = 0;
+        }
+    }
+
+    pub(super) fn grasped_at(&self) -> Option<Pose> {
+        self.held.map(|held| held.pose)
+    }
+}

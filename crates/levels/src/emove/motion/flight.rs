@@ -1,0 +1,278 @@
+//! How a motion command is carried out from where the robot is: from its place, or
+//! on from an interrupted path (docs/design/recovery.md "On the way").
+//!
+//! ```text
+//!   from ---depart---> end of depart ---trajectory---> . ---approach---> to
+//!                           |     <==== back ====  robot  ==== on ===>
+//!                           `---trajectory---> . ---approach---> another goal
+//! ```
+//!
+//! The robot moves on to the same goal, or back along the path to the end of the depart leg and from there to another
+//! goal. If it was stopped inside the depart leg, it first completes that leg. If a person has moved it off the path
+//! with the joystick, it first returns to the path and stops there, because the goal may be a nest that is closed at
+//! its sides. The points of the path are not stored: they follow from its two ends and the task data.
+
+use geometry::pose::Pose;
+use interfaces::{
+    emove::{Direction, GoneTo, RobotPlace, Way},
+    track::{Course, Track},
+};
+use rcs_core::Plain;
+use taskdata::files::{TaskData, TrajParaId};
+
+use super::route::{Ahead, Goal, Leg, LegGoal, Planning, Route, slower};
+use crate::{
+    emove::{
+        localization::{
+            path::route_of,
+            returning::{Origination, settle_at},
+        },
+        robot_place::{is_same_goal, is_same_pose},
+        tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
+    },
+    execution::Progress,
+    places::LocationKey,
+};
+
+/// The motion of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Flight {
+    /// The way to its goal.
+    pub route: Option<Route>,
+    /// The part of an interrupted way that is flown back before.
+    pub back: Option<Back>,
+    /// The points to which the robot goes first, back to its place or path.
+    pub rejoin: Option<Rejoin>,
+}
+
+/// The part of an interrupted way that is flown back.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Back {
+    /// The way.
+    pub route: Route,
+    /// The point before which the robot is, in the direction of the goal: it goes to the one before that.
+    pub next: u16,
+    /// The end of the depart leg has been commanded.
+    pub complete: bool,
+}
+
+/// The points to which the robot goes before its route begins: first back along the record of how the joystick box has
+/// moved it.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Rejoin {
+    /// Points of the record that lie ahead; the last of them is the next one.
+    pub track: u8,
+    /// The points after them.
+    pub points: [Option<Pose>; 2],
+    /// Parameters of the motions.
+    pub parameters: TrajParaId,
+}
+
+impl Back {
+    /// The next leg back. `None` if a record is missing.
+    fn leg(&self, data: &TaskData<'_>) -> Option<Leg> {
+        let (_, from) = self.route.point(self.next, data)?;
+        let (frame, to) = match self.next.checked_sub(1) {
+            Some(point) => self.route.point(point, data)?,
+            None => (self.route.from.pose.to_frame().ok()?, from),
+        };
+        Some(Leg { at: LegGoal::Computed(frame), parameters: slower(from, to, data) })
+    }
+
+    /// Note that it has been commanded.
+    fn advance(&mut self, data: &TaskData<'_>) {
+        if self.next <= self.route.depart_points(data) {
+            self.complete = true;
+        } else {
+            self.next = self.next.saturating_sub(1);
+        }
+    }
+}
+
+impl Rejoin {
+    /// Straight to a pose.
+    pub(in crate::emove) const fn to(pose: Pose, parameters: TrajParaId) -> Self {
+        Self { track: 0, points: [None, Some(pose)], parameters }
+    }
+
+    /// How many points lie ahead.
+    fn ahead(&self) -> u8 {
+        self.points.iter().flatten().fold(self.track, |ahead, _| ahead.saturating_add(1))
+    }
+
+    /// Take the next point.
+    fn next(&mut self, record: &Track) -> Option<Pose> {
+        if record.course != Course::Tracked {
+            // The robot has come back into the neighbourhood of its place or path, which is gone to straight.
+            self.track = 0;
+        }
+        if let Some(before) = self.track.checked_sub(1) {
+            self.track = before;
+            return record.points.get(usize::from(before)).copied();
+        }
+        self.points.iter_mut().find_map(Option::take)
+    }
+}
+
+/// The path on which a robot heads for a point of a route.
+fn way(route: &Route, next: u16, rest: Pose, data: &TaskData<'_>) -> Way {
+    Way {
+        from: route.from,
+        to: route.to,
+        next,
+        leg: route.part(next, data),
+        direction: Direction::Forward,
+        straight: false,
+        rest,
+        by_hand: false,
+        cut_off: false,
+    }
+}
+
+/// The whole way from a place whose depart leg is complete.
+///
+/// # Errors
+/// Why there is none.
+fn from_outside(from: &RobotPlace, to: &RobotPlace, data: &TaskData<'_>) -> Result<Route, Planning> {
+    let route = Route::between(from, to, data)?;
+    Ok(Route { commanded: route.depart_points(data), ..route })
+}
+
+/// The state variables of RESUME for a goal.
+fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> Start {
+    let robot = match (&begin.place, &begin.way) {
+        (Some(_), _) => Robot::AtPlace,
+        (None, Some(_)) => Robot::OnWay,
+        (None, None) => Robot::Lost,
+    };
+    let is_here = begin.place.is_some_and(|from| is_same_pose(&from, goal));
+    let Some(way) = begin.way.as_ref().filter(|_| robot == Robot::OnWay) else {
+        let goal = if is_here { GoalOf::Place } else { GoalOf::Another };
+        return Start { robot, goal, back: WayBack::Free, leg: LegNow::Later };
+    };
+    let route = route_of(way, data).unwrap_or_default();
+    let departs = way.next < route.depart_points(data);
+    let here = LocationKey::of(&way.from).has_location_of(LocationKey::of(&way.to));
+    let closed = here
+        && !way.straight
+        && route.depart_points(data) == 0
+        && matches!(way.from.gone_to, GoneTo::Object(_) | GoneTo::Brought(_))
+        && matches!(way.to.gone_to, GoneTo::Object(_));
+    Start {
+        robot,
+        goal: if is_same_goal(&way.to, goal) { GoalOf::Way } else { GoalOf::Another },
+        back: if closed { WayBack::Closed } else { WayBack::Free },
+        leg: if departs { LegNow::Depart } else { LegNow::Later },
+    }
+}
+
+impl Flight {
+    /// Plan the motion to a goal, which as a place is `to`, from where the robot begins.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub(in crate::emove) fn plan(
+        goal: &Goal,
+        to: &RobotPlace,
+        begin: &Origination,
+        data: &TaskData<'_>,
+    ) -> Result<Self, Planning> {
+        let rejoin = begin.rejoin;
+        let flight = |route, back| Self { route: Some(route), back, rejoin };
+        if let (Some(nest), true) = (&begin.place, begin.is_out) {
+            return Ok(flight(Route { opening: goal.opening, ..from_outside(nest, to, data)? }, None));
+        }
+        match (resume((), &start(to, begin, data)).action, begin.place, begin.way) {
+            (Beginning::Depart, Some(from), _) => {
+                Ok(flight(Route { opening: goal.opening, ..Route::between(&from, to, data)? }, None))
+            }
+            (Beginning::Settle, Some(from), _) => {
+                let back = settle_at(&from, begin.offset, data)?;
+                let route = Route::here(&from, to, goal.opening);
+                Ok(Self { rejoin: rejoin.or(back), ..flight(route, None) })
+            }
+            (Beginning::GoOn, _, Some(way)) => {
+                let on = Route { commanded: way.next, opening: goal.opening, ..route_of(&way, data)? };
+                Ok(flight(on, None))
+            }
+            (Beginning::GoOut, _, Some(way)) => {
+                let out = Route::between(&way.from, to, data)?;
+                Ok(flight(Route { commanded: way.next, opening: goal.opening, ..out }, None))
+            }
+            (Beginning::GoBack, _, Some(way)) => {
+                let (route, then) = (route_of(&way, data)?, Route::between(&way.from, to, data)?);
+                let back = Back { route, next: way.next, complete: false };
+                let commanded = route.depart_points(data);
+                Ok(flight(Route { commanded, opening: goal.opening, ..then }, Some(back)))
+            }
+            (Beginning::RefuseBack, ..) => Err(Planning::ForwardOnly),
+            _ => Err(Planning::NoStart),
+        }
+    }
+
+    /// What lies ahead: first the way itself, if the robot is beside it, then the way back, then the route.
+    pub(in crate::emove) fn ahead(&self, data: &TaskData<'_>) -> Ahead {
+        match (&self.back, &self.route) {
+            _ if self.rejoin.is_some() => Ahead::Beside,
+            (Some(back), _) if !back.complete => {
+                if back.leg(data).is_some() {
+                    Ahead::Through
+                } else {
+                    Ahead::Missing
+                }
+            }
+            (_, Some(route)) => route.ahead(data),
+            (_, None) => Ahead::Nothing,
+        }
+    }
+
+    /// True while the fingers must not move yet: beside the way, on the way back, and as long as the next point is a
+    /// depart point (docs/design/motion.md "Finger opening").
+    pub(in crate::emove) fn departing(&self, data: &TaskData<'_>) -> bool {
+        let back = self.back.is_some_and(|back| !back.complete);
+        self.rejoin.is_some() || back || self.route.is_some_and(|route| route.departing(data))
+    }
+
+    /// The next leg, which is noted as commanded, and the path on which the robot is then ([`super::Motion::send_leg`]).
+    pub(super) fn next_leg(
+        &mut self,
+        track: &Track,
+        is_straight: bool,
+        rest: Pose,
+        data: &TaskData<'_>,
+    ) -> (Option<Leg>, Option<Way>) {
+        if let Some(rejoin) = &mut self.rejoin {
+            let (next, parameters) = (rejoin.next(track), rejoin.parameters);
+            if rejoin.ahead() == 0 {
+                self.rejoin = None;
+            }
+            let frame = next.and_then(|pose| pose.to_frame().ok());
+            return (frame.map(|frame| Leg { at: LegGoal::Computed(frame), parameters }), None);
+        }
+        if let Some(back) = self.back.as_mut().filter(|back| !back.complete) {
+            let leg = back.leg(data);
+            let way = Way {
+                direction: Direction::Back,
+                straight: is_straight,
+                ..way(&back.route, back.next, rest, data)
+            };
+            back.advance(data);
+            return (leg, Some(way));
+        }
+        let Some(route) = &mut self.route else { return (None, None) };
+        let leg = route.leg(data);
+        route.advance(data);
+        (leg, Some(way(route, route.heading(), rest, data)))
+    }
+
+    /// The points that were sent.
+    pub(in crate::emove) fn progress(&self) -> Progress {
+        Progress {
+            on: self.route.map_or(0, |route| route.commanded),
+            back: self.back.map_or(0, |back| back.next),
+            is_back: self.back.is_some_and(|back| back.complete),
+            rejoin: self.rejoin.map_or(0, |rejoin| rejoin.ahead()),
+            tries: 0,
+        }
+    }
+}

@@ -1,0 +1,254 @@
+//! The motion of the current command: its route, and the commands to Prim.
+//!
+//! * [`flight`]: how the motion is carried out from where the robot is;
+//! * [`route`]: depart, trajectory, approach and stop as one list of points;
+//! * [`relative`]: the short moves at holsters and tool drum.
+
+pub mod flight;
+pub mod relative;
+pub mod route;
+
+use geometry::pose::Pose;
+use interfaces::{
+    ChangingPose, CommonMemory, EmoveOutputs,
+    emove::{EmoveCommand, RobotPlace, Way},
+    pose_range,
+    prim::{PrimCommand, PrimReport, PrimVerb},
+    track::Track,
+};
+use rcs_core::{
+    Plain,
+    handshake::{Commander, Lower},
+};
+use taskdata::files::TrajParaId;
+
+use self::{flight::Flight, relative::Relative, route::LegGoal};
+use super::{
+    EmoveInputs,
+    tables::{Contact, Initialization, Pause},
+};
+
+/// Ticks for which a GO-UNTIL may stay not-detected (1 s): the robot stands, and what has not come by then
+/// does not come.
+const PATIENCE: u32 = 25;
+
+/// Which changing pose stands where in the outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Slot {
+    Departure,
+    Goal,
+    Between,
+    Located,
+}
+
+/// The motion of the current command.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Motion {
+    /// Commands to Prim.
+    commander: Commander,
+    /// The motion, if the command is a motion command.
+    flight: Flight,
+    /// Ticks for which Prim has reported not-detected.
+    undetected: u32,
+    /// Last record number given to a changing pose.
+    last_pose: u32,
+    /// The last `.R` that has been done.
+    robot_init: u32,
+}
+
+impl Motion {
+    /// In the first tick: only an `.R` that is entered from now on counts.
+    pub(super) const fn start(&mut self, robot_init: u32) {
+        self.robot_init = robot_init;
+    }
+
+    /// Follow the echo until the first command, and count how long Prim has not detected anything.
+    pub(super) fn sense(&mut self, inputs: &EmoveInputs<'_>) {
+        let (order, prim) = (&inputs.memory.emove.prim, &inputs.memory.prim.status);
+        self.commander.start_from(inputs.tick, order.number, prim.echo);
+        let undetected = prim.echo == self.commander.number && prim.report == PrimReport::NotDetected;
+        self.undetected = if undetected { self.undetected.saturating_add(1) } else { 0 };
+    }
+
+    /// A new command, with its motion.
+    pub(super) const fn begin(&mut self, flight: Flight) {
+        (self.flight, self.undetected) = (flight, 0);
+    }
+
+    /// What Prim makes of its last command.
+    pub(super) fn status(&self, inputs: &EmoveInputs<'_>) -> Lower {
+        self.commander.status_of(inputs.tick, &inputs.memory.prim)
+    }
+
+    /// The same for the robot: one that has passed a through point flies on to it.
+    pub(super) fn robot(&self, inputs: &EmoveInputs<'_>) -> Lower {
+        match self.status(inputs) {
+            Lower::Done if inputs.memory.emove.prim.command == PrimVerb::GoThru => Lower::Executing,
+            lower => lower,
+        }
+    }
+
+    pub(super) fn contact(&self, memory: &CommonMemory) -> Contact {
+        match memory.prim.status.report {
+            PrimReport::DetectedErr => Contact::Met,
+            _ if self.undetected > PATIENCE => Contact::Missed,
+            _ => Contact::Awaited,
+        }
+    }
+
+    /// `.R`: what is to be done for it, or was. It waits for a pause that stands.
+    pub(super) fn initialization(&self, pause: Pause, inputs: &EmoveInputs<'_>) -> Initialization {
+        let is_over = || matches!(self.status(inputs), Lower::Done | Lower::Error);
+        if pause != Pause::Standing {
+            Initialization::None
+        } else if inputs.external.operator.robot_init != self.robot_init {
+            Initialization::Asked
+        } else if inputs.memory.emove.prim.command == PrimVerb::RobotInit && is_over() {
+            Initialization::Over
+        } else {
+            Initialization::None
+        }
+    }
+
+    pub(super) const fn flight(&self) -> &Flight {
+        &self.flight
+    }
+
+    /// Opening of the fingers at the goal, 0.01 in, and whether it has been commanded; `None` if it does not matter.
+    pub(super) fn opening(&self) -> Option<(i32, bool)> {
+        let route = self.flight.route?;
+        Some((route.opening?, route.opening_sent))
+    }
+
+    pub(super) const fn note_opening(&mut self) {
+        if let Some(route) = &mut self.flight.route {
+            route.opening_sent = true;
+        }
+    }
+
+    /// Commands to Prim, for a search that numbers them anew (docs/proof.md).
+    pub const fn commander(&mut self) -> &mut Commander {
+        &mut self.commander
+    }
+
+    /// The route with the record numbers of its ends, and the last record number given, for such a search.
+    pub const fn pose_numbers(&mut self) -> (Option<&mut route::Route>, &mut u32) {
+        (self.flight.route.as_mut(), &mut self.last_pose)
+    }
+
+    /// Forget the motion of a command that has ended.
+    pub fn forget_flight(&mut self) {
+        self.flight = Flight::default();
+    }
+
+    /// The goal of the motion.
+    #[must_use]
+    pub const fn goal(&self) -> Option<RobotPlace> {
+        match self.flight.route {
+            Some(route) => Some(route.to),
+            None => None,
+        }
+    }
+
+    /// Give a changing pose a new record number and value.
+    pub(super) const fn publish(&mut self, slot: Slot, pose: Pose, outputs: &mut EmoveOutputs) -> u32 {
+        self.last_pose = pose_range::next(pose_range::EMOVE, self.last_pose);
+        let [departure, goal, between, located] = &mut outputs.poses;
+        let record = match slot {
+            Slot::Departure => departure,
+            Slot::Goal => goal,
+            Slot::Between => between,
+            Slot::Located => located,
+        };
+        *record = ChangingPose { number: Some(self.last_pose), pose };
+        self.last_pose
+    }
+
+    /// Give the ends of the route of a new command record numbers.
+    pub(super) fn publish_route(&mut self, outputs: &mut EmoveOutputs) {
+        if let Some(mut route) = self.flight.route {
+            route.departure = self.publish(Slot::Departure, route.from.pose, outputs);
+            route.goal = self.publish(Slot::Goal, route.to.pose, outputs);
+            self.flight.route = Some(route);
+        }
+    }
+
+    /// A command to Prim that names no goal.
+    pub(super) fn send(&mut self, verb: PrimVerb, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
+        outputs.prim = PrimCommand {
+            number: self.commander.send(inputs.tick),
+            command: verb,
+            sensor: None,
+            pose: 0,
+            movetable: None,
+            trajectory_parameters: TrajParaId::NULL.number(),
+            end_effector_id: inputs.memory.quick_change.status.end_effector_id,
+        };
+    }
+
+    pub(super) fn initialize(&mut self, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
+        self.robot_init = inputs.external.operator.robot_init;
+        self.send(PrimVerb::RobotInit, inputs, outputs);
+    }
+
+    /// GO-THRU or GOTO-PT with the next point: back along `track`, or of the route. Returns the path on which the robot is
+    /// then; `None` on its return to one. `is_straight` is that of the path which is flown back, `rest` the pose
+    /// commanded last.
+    pub(super) fn send_leg(
+        &mut self,
+        verb: PrimVerb,
+        (track, is_straight, rest): (&Track, bool, Pose),
+        inputs: &EmoveInputs<'_>,
+        outputs: &mut EmoveOutputs,
+    ) -> Option<Way> {
+        let (leg, path) = self.flight.next_leg(track, is_straight, rest, inputs.data);
+        let Some(leg) = leg else { return path };
+        let (pose, movetable) = match leg.at {
+            LegGoal::Record { pose, movetable } => (pose, movetable),
+            LegGoal::Computed(frame) => {
+                (self.publish(Slot::Between, Pose::from_frame(&frame), outputs), None)
+            }
+        };
+        self.send(verb, inputs, outputs);
+        outputs.prim.pose = pose;
+        outputs.prim.movetable = movetable;
+        outputs.prim.trajectory_parameters = leg.parameters.number();
+        path
+    }
+
+    /// GOTO-PT with a goal that no route leads to.
+    pub(super) fn send_goal(
+        &mut self,
+        goal: Pose,
+        parameters: TrajParaId,
+        inputs: &EmoveInputs<'_>,
+        outputs: &mut EmoveOutputs,
+    ) {
+        let record = self.publish(Slot::Goal, goal, outputs);
+        self.send(PrimVerb::GotoPt, inputs, outputs);
+        outputs.prim.pose = record;
+        outputs.prim.trajectory_parameters = parameters.number();
+    }
+
+    /// DELTA-MOVE, GO-UNTIL or GO-WHILE to Prim from a record of POSE. False if the task data lack the move.
+    pub(super) fn send_relative(
+        &mut self,
+        verb: PrimVerb,
+        relative: Relative,
+        pose: u32,
+        command: &EmoveCommand,
+        inputs: &EmoveInputs<'_>,
+        outputs: &mut EmoveOutputs,
+    ) -> bool {
+        let Some(found) = relative.record(command, inputs.data) else { return false };
+        self.send(verb, inputs, outputs);
+        outputs.prim.pose = pose;
+        outputs.prim.movetable = found.movetable.to_option();
+        outputs.prim.trajectory_parameters = found.para.number();
+        if relative.is_guarded() {
+            outputs.prim.sensor = Some(found.sensor);
+        }
+        self.undetected = 0;
+        true
+    }
+}

@@ -1,0 +1,112 @@
+//! The status to Subtask, and the estimates of the world: outputs that E-move has again after a restart.
+
+use interfaces::{
+    EmoveOutputs, Reason, StatusReport, Unconfirmed,
+    emove::{Beliefs, EmoveStatus, EmoveVerb, Offset, Pins},
+    operator::{Variable, Write},
+    prim::PrimReport,
+};
+use rcs_core::handshake::Lower;
+
+use super::{
+    EmoveInputs, State, grasp::named_grasp, gripper::Gripper, localization::returning::offset_of_place,
+    robot_place::standing,
+};
+use crate::execution::Outcome;
+
+impl State {
+    /// The estimates of all parts.
+    #[must_use]
+    pub fn beliefs(&self) -> Beliefs {
+        let mut beliefs = Beliefs::default();
+        self.held.write_to(&mut beliefs);
+        self.exchange.write_to(&mut beliefs);
+        self.drum.write_to(&mut beliefs);
+        self.localization.write_to(&mut beliefs);
+        self.vision.write_to(&mut beliefs);
+        beliefs
+    }
+
+    /// Adopt the estimates.
+    pub fn adopt(&mut self, beliefs: &Beliefs) {
+        self.held.adopt(beliefs);
+        self.exchange.adopt(beliefs);
+        self.drum.adopt(beliefs);
+        self.localization.adopt(beliefs);
+        self.vision.adopt(beliefs);
+    }
+
+    /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), whatever was done
+    /// before, and E-PAUSE keeps it until the processes below pause again. Another command that was given up for it
+    /// ends in an error and is not resumed (docs/design/ownership.md "Joystick box").
+    fn outcome(&self, inputs: &EmoveInputs<'_>) -> (StatusReport, Reason, Unconfirmed) {
+        let prim = &inputs.memory.prim;
+        let taken =
+            prim.status.report == PrimReport::JoystickOn && prim.header.stamp == inputs.tick.previous();
+        let pauses = inputs.memory.subtask.emove.command == EmoveVerb::Pause;
+        let has_failed = || self.motion.status(inputs) == Lower::Error;
+        let below = || if has_failed() { prim.status.reason } else { Reason::None };
+        let ended = self.execution.report(pauses.then(below));
+        match (taken, ended.outcome) {
+            (true, Outcome::Done | Outcome::Joystick) => {
+                (StatusReport::JoystickOn, Reason::JoystickOn, Unconfirmed::None)
+            }
+            (false, Outcome::Joystick) if pauses => {
+                (StatusReport::JoystickOn, Reason::JoystickOn, Unconfirmed::None)
+            }
+            (false, Outcome::Joystick) => (StatusReport::Error, Reason::JoystickOn, Unconfirmed::None),
+            _ => (ended.outcome.report(), ended.reason, ended.unconfirmed),
+        }
+    }
+
+    /// Write the status to Subtask and the flags of the gripper processes.
+    pub(super) fn report(&self, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
+        let memory = inputs.memory;
+        let (holding, place) = (self.holding(memory), self.localization.place());
+        let (report, reason, unconfirmed) = self.outcome(inputs);
+        outputs.header = self.execution.rows.header(inputs.tick, self.step.text());
+        outputs.dormant = Gripper::attached(memory).dormancy();
+        outputs.beliefs = self.beliefs();
+        outputs.nearest = self.localization.surroundings().nearest;
+        outputs.status = EmoveStatus {
+            echo: self.execution.receiver.echo,
+            report,
+            reason,
+            unconfirmed,
+            reference_pose: memory.prim.status.sensor_pose,
+            held: holding,
+            seat: self.held.seat(),
+            placed: self.held.placed(),
+            located: self.vision.located(),
+            end_effector_id: self.exchange.end_effector_id(memory),
+            pins: if self.exchange.is_misread(memory) { Pins::Differ } else { Pins::Agree },
+            at: place.as_ref().map(standing),
+            offset: place.map_or(Offset::None, |place| offset_of_place(&place, holding, inputs)),
+            exchange: self.exchange.changing(memory),
+            drum: self.drum.is_around_tool(
+                self.localization.last_place().as_ref(),
+                self.held.held().is_some(),
+                inputs,
+            ),
+        };
+    }
+
+    /// Take over a value that a person writes (IV.2.6). E-move was not stepped in the tick before: its state and its
+    /// outputs have the same estimates, or it has been restarted and adopts those of the outputs.
+    pub(super) fn write(&mut self, write: &Write, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
+        self.adopt(&outputs.beliefs);
+        match (write.variable, write.object) {
+            (Variable::Placed, _) => self.held.forget_placed(),
+            (Variable::Located, _) => self.vision.forget(),
+            (Variable::Held, None) => self.held.name(None),
+            (Variable::Held, Some(object)) => {
+                if let Some(grasped) = named_grasp(object, write.grip, inputs) {
+                    self.hold(grasped);
+                    self.held.name(Some(grasped));
+                }
+            }
+            _ => {}
+        }
+        outputs.beliefs = self.beliefs();
+    }
+}

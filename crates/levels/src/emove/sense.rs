@@ -1,0 +1,343 @@
+//! Preprocess of E-move: held object, place of the robot, and the state variables of the tables.
+
+use interfaces::{
+    CommonMemory, EmoveOutputs,
+    emove::{EmoveCommand, EmoveVerb, Grasped, Holding},
+    prim::PrimVerb,
+    quick_change::QuickChangeVerb,
+};
+use rcs_core::handshake::Lower;
+
+use super::{
+    EmoveInputs, State,
+    gripper::Gripper,
+    gripper_exchange::{along, holster, shut},
+    grippers::FingerVerb,
+    motion::route::Ahead,
+    robot_place::present_frame,
+    tables::{
+        FingerMotion, Knowledge, Link, Lock, Mate, Opening, Pause, PlaceKnowledge, Readiness, Request, Ring,
+        Situation, Spread, StateVariables, Step, Subordinates, Tooling, Watch,
+        e_pause::EPauseStep,
+        number,
+        search::{Look, search},
+    },
+    vision::{can_aim, sight},
+};
+use crate::{
+    execution::{Asked, Progress, Work},
+    halt::{Above, Below, BoxState, Intake, Kind, Replaced},
+    held::Held,
+};
+
+const fn known(known: bool) -> Knowledge {
+    if known { Knowledge::Known } else { Knowledge::Unknown }
+}
+
+/// Do the fingers stand at an opening, 0.01 in, without air that moves them from there?
+fn stands_at(opening: i32, memory: &CommonMemory) -> bool {
+    let attached = Gripper::attached(memory);
+    let goes = attached.has_air(!attached.closes_for(opening), memory);
+    attached != Gripper::None && attached.stands_at(opening, memory) && !goes
+}
+
+impl State {
+    /// Read the inputs of a tick.
+    pub(super) fn sense(&mut self, inputs: &EmoveInputs<'_>, outputs: &EmoveOutputs) -> StateVariables {
+        let command = &inputs.memory.subtask.emove;
+        if !self.execution.receiver.started {
+            self.start(inputs, outputs);
+        }
+        let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
+        self.sense_neighbours(inputs);
+        self.localization.sense_path(inputs.memory, inputs.data);
+        self.vision.sense(inputs.memory);
+        self.sense_held(command, inputs);
+        let watch = self.sense_place(command, inputs);
+        self.exchange.sense(inputs);
+        self.sense_drum(inputs);
+        let replaced = self.replaced(&watch, inputs);
+        let at_rest = replaced.below == Below::AtRest || replaced.joystick == BoxState::On;
+        let request = if asked == Asked::Now && (at_rest || replaced.kind == Kind::Pause) {
+            self.look_up(command, replaced.joystick, inputs)
+        } else {
+            Request::default()
+        };
+        let subordinates = self.subordinates(command, inputs);
+        let situation = self.situation(command, &subordinates, inputs);
+        let seen = StateVariables {
+            arrival,
+            verb: command.command,
+            asked,
+            replaced,
+            progress: Progress { tries: self.vision.vain_pictures(), ..self.motion.flight().progress() },
+            request,
+            watch,
+            subordinates,
+            proof: self.proof(command, &situation, inputs, outputs),
+            situation,
+        };
+        self.grippers.note_button(inputs.memory);
+        seen
+    }
+
+    /// In its first tick E-move adopts its estimates from before a restart.
+    fn start(&mut self, inputs: &EmoveInputs<'_>, outputs: &EmoveOutputs) {
+        let memory = inputs.memory;
+        self.motion.start(inputs.external.operator.robot_init);
+        self.adopt(&outputs.beliefs);
+        // Another gripper may have come in the meantime; one whose pins read as none may still be on.
+        let (before, now) = (Gripper::of(outputs.status.end_effector_id), Gripper::attached(memory));
+        let is_same = now == Gripper::None || now == before;
+        self.exchange.adopt_gripper(if is_same { before } else { Gripper::None });
+        self.grippers.adopt(memory);
+        self.held.start(self.grippers.order());
+    }
+
+    /// What a new command replaces: motion, ring or fingers that are under way.
+    fn replaced(&self, watch: &Watch, inputs: &EmoveInputs<'_>) -> Replaced {
+        let (tick, memory) = (inputs.tick, inputs.memory);
+        let written = &memory.emove;
+        let robot = self.motion.robot(inputs);
+        let fingers = self.grippers.status(tick, memory);
+        let ring = self.exchange.status(tick, memory);
+        let below = Below::of(robot, written.prim.command == PrimVerb::Pause)
+            .and(Below::of(fingers, self.grippers.order() == FingerVerb::Pause))
+            .and(Below::of(ring, written.quick_change.command == QuickChangeVerb::Pause));
+        Replaced {
+            intake: Intake::Taken,
+            kind: if watch.pause == Pause::Other { Kind::Other } else { Kind::Pause },
+            above: Above::of(&memory.subtask.header, tick),
+            joystick: if robot == Lower::Joystick { BoxState::On } else { BoxState::Off },
+            below,
+        }
+    }
+
+    /// Follow the echoes until the first command.
+    fn sense_neighbours(&mut self, inputs: &EmoveInputs<'_>) {
+        self.motion.sense(inputs);
+        self.grippers.start(inputs.tick, inputs.memory);
+        self.exchange.start(inputs.tick, inputs.memory);
+        self.vision.start(&inputs.external.devices.vision);
+    }
+
+    /// Whether the held object is still held, and whether anything is between the fingers.
+    fn sense_held(&mut self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
+        let (memory, robot) = (inputs.memory, &self.localization);
+        if self.exchange.is_misread(memory) {
+            return;
+        }
+        self.held.sense_loss(robot.place(), &self.grippers, inputs);
+        self.held.sense_seat(robot.origin(), robot.ends(), self.drum.half_way(), memory);
+        if self.exchange.sense_gripper(memory) {
+            self.held.note_gripper(memory);
+            self.grippers.note_gripper(memory);
+        }
+        if let Some(grasped) = self.held.sense_grasp(command, &self.grippers, &self.execution, inputs) {
+            self.hold(grasped);
+        }
+        if self.held.held().is_none() {
+            self.localization.note_empty_fingers();
+        }
+    }
+
+    /// An object is held: where it has been released or located before does not count.
+    pub(super) fn hold(&mut self, grasped: Grasped) {
+        self.held.hold(grasped, self.localization.place());
+        self.vision.forget();
+    }
+
+    pub(super) fn holding(&self, memory: &CommonMemory) -> Holding {
+        self.held.holding(self.exchange.is_misread(memory), memory)
+    }
+
+    /// Has a release been begun at the place of the robot that has not ended?
+    pub(super) fn is_letting_go(&self) -> bool {
+        self.held.is_letting_go(self.localization.place().is_some())
+    }
+
+    /// Whether it is known where the robot is.
+    fn place_knowledge(&self, inputs: &EmoveInputs<'_>) -> PlaceKnowledge {
+        let is_moving = matches!(self.motion.robot(inputs), Lower::Pending | Lower::Executing);
+        let is_half_way = self.exchange.is_half_done() || self.drum.half_way().is_some();
+        self.localization.knowledge(is_moving, is_half_way, inputs)
+    }
+
+    /// Is the robot still where its last move ended? If [`search`] says so, look where else it is.
+    fn sense_place(&mut self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Watch {
+        let present = present_frame(inputs.memory);
+        if let Some(present) = &present {
+            self.localization.sense_place(present);
+        }
+        let pause = match (command.command, self.step) {
+            (
+                EmoveVerb::Pause,
+                Step::EPause(EPauseStep::Standing | EPauseStep::Led | EPauseStep::Resting),
+            ) => Pause::Standing,
+            (EmoveVerb::Pause, _) => Pause::UnderWay,
+            _ => Pause::Other,
+        };
+        let watch = Watch {
+            initialization: self.motion.initialization(pause, inputs),
+            pause,
+            outcome: self.execution.outcome,
+            place: self.place_knowledge(inputs),
+            resolvers: known(present.is_some()),
+        };
+        self.localization.sense_track(watch.place, inputs.memory);
+        self.localization.sense_surroundings(watch.place, present.as_ref(), inputs.data);
+        let decision = search(self.step, &watch);
+        self.execution.rows.beside(&decision.of(number::SEARCH));
+        match (decision.action, &present) {
+            (Look::Look, Some(present)) => self.localization.search(present, inputs.data),
+            (Look::Look, None) | (Look::Rest, _) => {}
+        }
+        watch
+    }
+
+    /// Is a robot that is half way at the drum so still, and does one that stands there stand there still?
+    fn sense_drum(&mut self, inputs: &EmoveInputs<'_>) {
+        if self.drum.sense_moved_tool(self.localization.last_place(), inputs) {
+            self.localization.set_place(None);
+        }
+        let grasped_at = self.held.grasped_at();
+        let stands = self.drum.sense(grasped_at, &mut self.execution, inputs);
+        if stands.is_some() {
+            self.localization.set_place(stands);
+        }
+    }
+
+    /// How the last order stands.
+    fn subordinates(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Subordinates {
+        let (tick, memory) = (inputs.tick, inputs.memory);
+        let gripper = self.grippers.status(tick, memory);
+        Subordinates {
+            verb: command.command,
+            load: self.held.load(self.exchange.is_misread(memory)),
+            ordered: self.ordered,
+            prim: if self.uses_prim { self.motion.status(inputs) } else { Lower::Done },
+            contact: self.motion.contact(memory),
+            opening: self.opening(gripper, inputs),
+            gripper,
+            ring: self.exchange.ring(tick, memory),
+            vision: self.vision.answer(inputs),
+        }
+    }
+
+    /// Set the state variables of the commands.
+    fn situation(
+        &self,
+        command: &EmoveCommand,
+        subordinates: &Subordinates,
+        inputs: &EmoveInputs<'_>,
+    ) -> Situation {
+        let (tick, memory) = (inputs.tick, inputs.memory);
+        let &Subordinates { prim, opening, gripper, ring, .. } = subordinates;
+        let at_place = self.localization.place().is_some();
+        Situation {
+            work: Work::Busy,
+            ahead: self.motion.flight().ahead(inputs.data),
+            opening,
+            held: Held::of(self.holding(memory), command.object),
+            fingers: self.held.fingers(at_place, command, &self.grippers, inputs),
+            spread: self.spread(gripper, command, inputs),
+            readiness: self.readiness(gripper, memory),
+            mate: match memory.quick_change.status.end_effector_id {
+                None => Mate::None,
+                id if id == command.end_effector_id => Mate::Right,
+                _ => Mate::Wrong,
+            },
+            holster: holster(command.end_effector_id, memory),
+            lock: self.exchange.lock(tick, memory),
+            along: along(command, inputs),
+            shut: shut(command, inputs),
+            at: self.localization.at(command),
+            drum: self.drum.at(command, inputs),
+            bias: self.drum.bias(memory),
+            sight: sight(self.localization.last_place().as_ref(), inputs),
+            aim: known(can_aim(command, inputs)),
+            reach: self.vision.reach(command, inputs),
+            tries: self.vision.tries(),
+            link: if memory.prim.status.link_running { Link::Up } else { Link::Down },
+            prim,
+            motion: if self.grippers.are_moving(tick, memory) {
+                FingerMotion::Moving
+            } else {
+                FingerMotion::AtRest
+            },
+            tooling: self.tooling(ring, gripper, inputs),
+            place: self.place_knowledge(inputs),
+            button: self.grippers.pressed(memory),
+        }
+    }
+
+    /// State of the attached gripper after its last order; without an order, the initial state.
+    fn readiness(&self, gripper: Lower, memory: &CommonMemory) -> Readiness {
+        let attached = Gripper::attached(memory);
+        let idle = gripper == Lower::Done || !self.grippers.are_ordered(memory);
+        match (idle, attached.is_uncalibrated(memory)) {
+            (true, true) => Readiness::Uncalibrated,
+            (true, false) => Readiness::Ready,
+            (false, _) => Readiness::Faulty,
+        }
+    }
+
+    /// Quick change and gripper while pausing. Grip's PAUSE is done only when a calibration at the start is (VI.3.1
+    /// UP-INIT); with no gripper, or one that has come since, there is nothing to wait for. A ring that stands half-way
+    /// is at rest, too: ACCEPT decides which commands it prevents.
+    fn tooling(&self, ring: Ring, gripper: Lower, inputs: &EmoveInputs<'_>) -> Tooling {
+        let asked = self.grippers.are_ordered(inputs.memory);
+        match (ring, gripper) {
+            (Ring::Faulty, _) if self.exchange.lock(inputs.tick, inputs.memory) != Lock::Between => {
+                Tooling::RingFaulty
+            }
+            (Ring::Busy, _) => Tooling::Busy,
+            (_, Lower::Error | Lower::Joystick | Lower::Lost) if asked => Tooling::GripFaulty,
+            (_, Lower::Pending | Lower::Executing) => Tooling::Busy,
+            (Ring::Faulty | Ring::Locked | Ring::Unlocked, _) => Tooling::Ready,
+        }
+    }
+
+    /// The opening for the goal of the route.
+    fn opening(&self, gripper: Lower, inputs: &EmoveInputs<'_>) -> Opening {
+        let EmoveInputs { memory, data, .. } = *inputs;
+        if self.is_letting_go() {
+            return Opening::LettingGo;
+        }
+        let Some((opening, is_sent)) = self.motion.opening() else { return Opening::Set };
+        if is_sent {
+            match gripper {
+                Lower::Pending | Lower::Executing => Opening::Moving,
+                Lower::Done => Opening::Set,
+                Lower::Error | Lower::Joystick | Lower::Lost => Opening::Failed,
+            }
+        } else if gripper == Lower::Done && stands_at(opening, memory) {
+            Opening::Set
+        } else if self.motion.flight().departing(data) {
+            Opening::Departing
+        } else if Gripper::attached(memory).is_uncalibrated(memory)
+            && self.holding(memory) == Holding::Nothing
+        {
+            match (self.localization.place(), self.motion.flight().ahead(data)) {
+                (None, _) => Opening::Uncalibrated,
+                (Some(_), Ahead::Through) => Opening::Departing,
+                (Some(_), _) => Opening::Due,
+            }
+        } else {
+            Opening::Due
+        }
+    }
+
+    /// Are the fingers as wide open as letting go would leave them?
+    fn spread(&self, gripper: Lower, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Spread {
+        let attached = Gripper::attached(inputs.memory);
+        let opening = self.held.depart_opening(self.holding(inputs.memory), command, inputs);
+        let open = attached.is_open(opening, inputs.memory);
+        let at_rest = attached == Gripper::None || gripper == Lower::Done;
+        match (attached.is_uncalibrated(inputs.memory), open && at_rest) {
+            (true, _) => Spread::Unknown,
+            (false, true) => Spread::Open,
+            (false, false) => Spread::Narrow,
+        }
+    }
+}

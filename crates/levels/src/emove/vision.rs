@@ -1,0 +1,349 @@
+//! Vision (V.2.1 LOCATE-OBJ): pictures, and from a picture to a part frame.
+//!
+//! A view movetable leads from a place to the tool frame from which the camera looks at it. Its inverse leads from the
+//! tool frame at which a picture was taken to the place in the middle of the picture; no other mounting data of the
+//! camera is needed. Vision answers in the axes of that place.
+
+use geometry::{
+    frame::{Frame, Rotation, Vector},
+    pose::Pose,
+    units::{inches, radians},
+};
+use interfaces::{
+    CommonMemory, EmoveOutputs,
+    device::{Picture, VisionRequest, VisionResponse, VisionStatus},
+    emove::{Beliefs, EmoveCommand, EmoveVerb, Located, LocatedObject, RobotPlace},
+    pose_range,
+    prim::PrimReport,
+};
+use rcs_core::{Plain, handshake::Commander};
+use taskdata::files::{MovtabId, PoseId, TaskData, TrajParaId, VisionId, VisionPara};
+
+use super::{
+    EmoveInputs,
+    motion::route::{Goal, Planning, near},
+    robot_place::{is_led, may_push, place_named, present_frame},
+    tables::{Action, Reach, Sight, Tries, VisionAnswer},
+};
+
+/// Ticks after which vision counts as silent (4 s).
+const VISION_LIMIT: u64 = 100;
+/// Pictures of a kind that are taken in vain before LOCATE-OBJ gives up.
+const MAX_TRIES: u8 = 3;
+/// A picture says where a part is if the robot is within this of where it was sent, in …
+const STANDS_INCHES: f64 = 0.1;
+/// … and radians (half a degree).
+const STANDS_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0;
+/// Millimetres in an inch: vision's range is in millimetres (VII.7.6).
+const MM_PER_INCH: f64 = 25.4;
+
+/// View parameters that a command names (VII.7.6).
+#[must_use]
+pub(super) fn view_of<'a>(command: &EmoveCommand, data: &TaskData<'a>) -> Option<&'a VisionPara> {
+    data.vision_para(VisionId::from_option(command.object_vision))
+}
+
+/// The place in the middle of a picture taken with the tool at `tool`.
+fn looked_at(tool: &Frame, view: MovtabId, data: &TaskData<'_>) -> Frame {
+    data.movetable(view).map_or(*tool, |movetable| movetable.unapply(tool))
+}
+
+/// The place moved to the centroid that vision reports.
+fn centred(place: &Frame, seen: &VisionResponse) -> Frame {
+    place.shifted(Vector::new(0.0, inches(seen.y), inches(seen.z)))
+}
+
+/// The part frame: at the centroid, turned so that tool Y lies across the dimension to grip.
+fn part_frame(place: &Frame, seen: &VisionResponse) -> Frame {
+    centred(place, seen).turned(&Rotation::from_axis_angle(&Vector::x_axis(), radians(seen.angle)))
+}
+
+/// Half a turn about the tool's X changes nothing for two fingers: no answer needs more than a quarter, 0.01
+/// degree.
+const QUARTER_TURN: u32 = 9_000;
+
+/// False if no picture can show what vision answers: then the arm must not be sent there. The centroid lies
+/// at most half the expected range beside the optical axis (ASSUMED: as with a lens of 53 degrees), and the
+/// roll is within a quarter turn.
+fn is_plausible(request: &VisionRequest, answer: &VisionResponse) -> bool {
+    let widest = f64::from(request.range_mm) / (2.0 * MM_PER_INCH);
+    let inside = |hundredths: i32| inches(hundredths).abs() <= widest;
+    inside(answer.y) && inside(answer.z) && answer.angle.unsigned_abs() <= QUARTER_TURN
+}
+
+/// A finger of any gripper: 0.50 in thick along the tool's Y (ASSUMED), and 1.50 in wide along its Z (VIII.9.5).
+const FINGER: [f64; 2] = [0.50, 1.50];
+
+/// True if the fingers, open by `opening` in at the tool frame `grip`, stay within the array of their `sector`: half a
+/// step from the middle of its outer sectors stands the wall of the tray (VIII.6). `out` are the steps out of the
+/// array, in, in the axes of the sector.
+fn stays_in_array(sector: &Frame, grip: &Frame, opening: f64, out: &[Option<Vector>]) -> bool {
+    let axes = sector.rotation.inverse();
+    let aside = axes * (grip.position - sector.position);
+    let [across, along] = [axes * grip.y(), axes * grip.z()];
+    let [thick, wide] = FINGER;
+    let [reach, half_wide] = [opening / 2.0 + thick, wide / 2.0];
+    out.iter().flatten().all(|step| {
+        let farthest = aside.dot(step) + reach * across.dot(step).abs() + half_wide * along.dot(step).abs();
+        farthest <= step.dot(step) / 2.0
+    })
+}
+
+/// True if vision has recognised another object than the requested one (V.2.1: recognition is part of the second
+/// picture).
+fn is_another(request: &VisionRequest, answer: &VisionResponse) -> bool {
+    request.picture == Picture::Precise && answer.recognised != Some(request.object_id)
+}
+
+/// A request for a picture.
+fn request(number: u32, picture: Picture, variation: u8, view: &VisionPara) -> VisionRequest {
+    VisionRequest {
+        number,
+        picture,
+        object_id: u16::try_from(view.id).unwrap_or(0),
+        grip: i16::try_from(view.grip).unwrap_or(0),
+        range_mm: u16::try_from(view.range).unwrap_or(0),
+        variation,
+    }
+}
+
+/// From where the camera is moved next, and how.
+struct Aim {
+    /// Where the tool is.
+    tool: Frame,
+    /// View movetable of the object.
+    view: MovtabId,
+    /// Parameters of the motion: those with which the view is approached last.
+    parameters: TrajParaId,
+}
+
+/// From where LOCATE-OBJ moves the camera next, and how; `None` if the resolvers or the task data do not say.
+fn aim(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Option<Aim> {
+    if command.command != EmoveVerb::LocateObj {
+        return None;
+    }
+    let data = inputs.data;
+    let approach = data.view_approach(&command.object?, command.grip, &place_named(command))?;
+    Some(Aim {
+        tool: present_frame(inputs.memory)?,
+        view: view_of(command, data)?.movetable,
+        parameters: data.path(approach).last()?.para,
+    })
+}
+
+/// The resolvers and the task data say from where the camera is moved next.
+pub(super) fn can_aim(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> bool {
+    aim(command, inputs).is_some()
+}
+
+/// Does the robot stand where it was sent, as far as that is known? An arm that sinks has moved since the
+/// picture was taken.
+fn is_where_sent(place: Option<&RobotPlace>, memory: &CommonMemory) -> bool {
+    let sent = place.and_then(|place| place.pose.to_frame().ok());
+    match (sent, present_frame(memory)) {
+        (Some(sent), Some(present)) => near(&sent, &present, STANDS_INCHES, STANDS_RADIANS),
+        _ => true,
+    }
+}
+
+/// What vision has answered. `place` is that of the robot.
+pub(super) fn sight(place: Option<&RobotPlace>, inputs: &EmoveInputs<'_>) -> Sight {
+    let (request, answer) = (&inputs.memory.emove.vision, &inputs.external.devices.vision);
+    match answer.status {
+        VisionStatus::NotRecognised => Sight::Unrecognised,
+        VisionStatus::Done if !is_plausible(request, answer) || !is_where_sent(place, inputs.memory) => {
+            Sight::Implausible
+        }
+        VisionStatus::Done if is_another(request, answer) => Sight::Unrecognised,
+        VisionStatus::Done => Sight::Seen,
+        _ => Sight::Missing,
+    }
+}
+
+/// The next view of an object.
+pub(super) struct View {
+    /// Where the tool goes.
+    pub goal: Pose,
+    /// Parameters of the motion.
+    pub parameters: TrajParaId,
+    /// Where the part is, if the last picture says so.
+    pub part: Option<Pose>,
+}
+
+/// Pictures of the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Vision {
+    /// Requests to vision: number and tick of the last one.
+    commander: Commander,
+    /// Pictures taken in vain in this step.
+    tries: u8,
+    /// What vision has located.
+    located: Option<Located>,
+}
+
+impl Vision {
+    pub(super) const fn adopt(&mut self, beliefs: &Beliefs) {
+        self.located = beliefs.located;
+    }
+
+    pub(super) const fn write_to(&self, beliefs: &mut Beliefs) {
+        beliefs.located = self.located;
+    }
+
+    pub(super) fn start(&mut self, answer: &VisionResponse) {
+        self.commander.start(answer.echo);
+    }
+
+    /// A new command comes.
+    pub const fn begin(&mut self) {
+        self.tries = 0;
+    }
+
+    pub(super) const fn forget(&mut self) {
+        self.located = None;
+    }
+
+    pub(super) fn located(&self) -> Option<LocatedObject> {
+        self.located.map(|Located { object, record, array, sector, .. }| LocatedObject {
+            object,
+            record,
+            array,
+            sector,
+        })
+    }
+
+    /// The pictures no longer count after a robot controller was switched off, because the arm has sunk, perhaps onto
+    /// the located object; nor after a person has moved the robot near the object, because the fingers may have pushed
+    /// it.
+    pub(super) fn sense(&mut self, memory: &CommonMemory) {
+        let may_touch = |located: &Located| may_push(&located.pose, memory);
+        let is_pushed = is_led(memory) && self.located.as_ref().is_some_and(may_touch);
+        if is_pushed || memory.prim.status.report == PrimReport::T3LinkOff {
+            self.located = None;
+        }
+    }
+
+    /// Has vision answered?
+    pub(super) fn answer(&self, inputs: &EmoveInputs<'_>) -> VisionAnswer {
+        let answer = &inputs.external.devices.vision;
+        let over = matches!(
+            answer.status,
+            VisionStatus::Done | VisionStatus::NothingSeen | VisionStatus::NotRecognised
+        );
+        if over && answer.echo == self.commander.number {
+            VisionAnswer::Answered
+        } else if inputs.tick.since(self.commander.sent) > VISION_LIMIT {
+            VisionAnswer::Silent
+        } else {
+            VisionAnswer::Waiting
+        }
+    }
+
+    pub(super) const fn tries(&self) -> Tries {
+        if self.tries.saturating_add(1) < MAX_TRIES { Tries::Left } else { Tries::Spent }
+    }
+
+    /// The pose of a command, or where vision has found the object.
+    pub(super) fn base_frame(
+        &self,
+        command: &EmoveCommand,
+        inputs: &EmoveInputs<'_>,
+    ) -> Result<Frame, Planning> {
+        let located = self.located.filter(|located| {
+            command.command == EmoveVerb::MovToObj
+                && Some(located.object) == command.object
+                && located.record == command.location_record
+                && located.array == command.location_array
+                && located.sector == command.location_sector
+        });
+        let pose = match (located, command.pose) {
+            (Some(located), _) => located.pose,
+            (None, None) => return Err(Planning::NoPose),
+            (None, Some(pose @ 0..pose_range::CHANGING)) => {
+                let record = inputs.data.pose(PoseId::new(pose)).ok_or(Planning::NoPose)?;
+                return Ok(record.frame);
+            }
+            (None, Some(pose)) => *inputs.memory.changing_pose(pose).ok_or(Planning::NoPose)?,
+        };
+        pose.to_frame().map_err(|_| Planning::BadPose)
+    }
+
+    /// Would the open fingers at the object that the second picture shows stay within its array? A place that is in
+    /// none has no edge, and what the task data lack is named by the motion to the object.
+    pub(super) fn reach(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Reach {
+        let data = inputs.data;
+        let inside = || {
+            let Aim { tool, view, .. } = aim(command, inputs)?;
+            let place = place_named(command);
+            let array = data.array(place.array)?;
+            let corner = data.locpt(place.locpt).map(|corner| corner.frame);
+            let base = corner.or_else(|| Some(data.pose(array.pose)?.frame))?;
+            let sector = self.base_frame(command, inputs).ok()?;
+            let out = data.steps_out(array, &base, &sector);
+            let part = part_frame(&looked_at(&tool, view, data), &inputs.external.devices.vision);
+            let command = EmoveCommand { command: EmoveVerb::MovToObj, ..*command };
+            let goal = Goal::new(&command, &part, data).ok()?;
+            Some(stays_in_array(&sector, &goal.frame, inches(goal.opening?), &out))
+        };
+        if inside() == Some(false) { Reach::Outside } else { Reach::Inside }
+    }
+
+    /// Ask vision for a picture.
+    pub(super) fn take_picture(
+        &mut self,
+        action: Action,
+        command: &EmoveCommand,
+        inputs: &EmoveInputs<'_>,
+        outputs: &mut EmoveOutputs,
+    ) {
+        let again = matches!(action, Action::FloodAgain | Action::PreciseAgain);
+        self.tries = if again { self.tries.saturating_add(1) } else { 0 };
+        let picture = match action {
+            Action::Flood | Action::FloodAgain => Picture::FastFlood,
+            _ => Picture::Precise,
+        };
+        if action == Action::Flood {
+            self.located = None;
+        }
+        if let Some(view) = view_of(command, inputs.data) {
+            outputs.vision = request(self.commander.send(inputs.tick), picture, self.tries, view);
+        }
+    }
+
+    /// The next view: over the centroid, and for [`Action::Align`] turned with the part, which is located then.
+    pub(super) fn next_view(
+        &mut self,
+        action: Action,
+        command: &EmoveCommand,
+        inputs: &EmoveInputs<'_>,
+    ) -> Option<View> {
+        let (object, Aim { tool, view, parameters }) = (command.object?, aim(command, inputs)?);
+        let seen = &inputs.external.devices.vision;
+        let middle = looked_at(&tool, view, inputs.data);
+        let (target, part) = if action == Action::Align {
+            let part = part_frame(&middle, seen);
+            let pose = Pose::from_frame(&part);
+            self.located = Some(Located {
+                object,
+                record: command.location_record,
+                array: command.location_array,
+                sector: command.location_sector,
+                pose,
+            });
+            (part, Some(pose))
+        } else {
+            (centred(&middle, seen), None)
+        };
+        Some(View { goal: Pose::from_frame(&inputs.data.moved(&target, view)), parameters, part })
+    }
+
+    /// Pictures that were taken in vain.
+    pub(super) const fn vain_pictures(&self) -> u8 {
+        self.tries
+    }
+
+    /// Requests to vision, for a search that numbers them anew (docs/proof.md).
+    pub const fn commander(&mut self) -> &mut Commander {
+        &mut self.commander
+    }
+}
