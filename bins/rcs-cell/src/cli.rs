@@ -13,7 +13,7 @@ use programs::pages::{DataArgument, fault_file};
 #[command(
     name = "rcs-cell",
     version,
-    about,
+    about = "The simulated T3 controller behind a pseudo-terminal",
     after_help = "\
 Commands are read from standard input, one a line; help lists them. The start-up is that of the manual \
 (NBSIR 88-3692, IV.3.3): control power on, fault reset, hydraulics enable, manual on, align, auto, \

@@ -16,7 +16,7 @@ const DATA: &str = "Task data whose blocks screen 5 lists [with --operate those 
 #[command(
     name = "rcs-console",
     version,
-    about,
+    about = "Shows what every control process does and why: in a run, or at any tick of a log",
     mut_arg("data", |data| data.help(DATA)),
     after_help = "\
 Examples:

@@ -39,7 +39,7 @@ const UNUSABLE: u8 = 2;
 #[command(
     name = "rcs-log",
     version,
-    about,
+    about = "Examines the logs of runs: what happened, why, and whether the present code would do the same",
     after_help = "\
 Examples:
   rcs-log info runs/linkbar.mcap            what ran, its commands, link, end

@@ -13,7 +13,7 @@ use crate::vision::fault::Fault;
 #[command(
     name = "rcs-neighbour",
     version,
-    about,
+    about = "Neighbour systems of the RCS-II/T3 controller, as separate processes",
     after_help = "\
 Examples:
   rcs-run --network unix:/tmp/rcs.sock --outside workstation

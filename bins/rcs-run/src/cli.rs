@@ -16,7 +16,7 @@ use crate::rcs_run::{
 #[command(
     name = "rcs-run",
     version,
-    about,
+    about = "The RCS-II/T3 controller",
     args_conflicts_with_subcommands = true,
     after_help = "\
 Examples:
