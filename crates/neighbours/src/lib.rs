@@ -6,7 +6,8 @@
 //! * [`data_system`]: the command of Figure IX.2 as bytes, its status, and a server that keeps the items of the
 //!   workstation;
 //! * [`pedestal`]: the Active Pedestal as a separate system, and its mailboxes as bytes;
-//! * [`vision`]: the areas of the vision mailbox (IX.4), which E-move reads and writes.
+//! * [`vision`]: the areas of the vision mailbox (IX.4), which E-move reads and writes;
+//! * [`line`]: the bytes between the controller and a neighbour: frames, pulses, and the protocol of both sides.
 //!
 //! This crate has no file, socket, thread or clock: `sessions` carries mailboxes to other processes, and keeps the items
 //! in a database.
@@ -20,6 +21,7 @@
 pub mod data_system;
 pub mod fields;
 pub mod layout;
+pub mod line;
 pub mod mailbox;
 pub mod pedestal;
 pub mod vision;

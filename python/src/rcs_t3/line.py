@@ -7,9 +7,10 @@ import socket
 import ssl
 import struct
 from types import TracebackType
-from typing import Optional, Tuple, Type, TypeVar
+from typing import Optional, Tuple, Type, TypeVar, Union
 
 from .errors import ConnectionLost, Disconnected, ProtocolError
+from .gateway import GatewaySocket, is_gateway
 
 PULSE, DISCONNECT, WELCOME = 0, 1, 2
 _HELLO, _VERSION = struct.Struct("<4sHH"), 3
@@ -29,8 +30,9 @@ def plain(data: bytes) -> str:
 class Line:
     """A connection on which both sides have sent their hello, and the controller its welcome.
 
-    `address` is ``unix:PATH``; ``tcp:IP:PORT`` needs the directory `keys` that ``rcs-neighbour keys`` has made, in which
-    the certificate of the role has the name `certificate`. `timeout` is the longest silence of the controller in
+    `address` is ``unix:PATH``; ``CELL@tls/IP:PORT`` for the gateway of a cell, with the path `keys` of a certificate
+    without ``.pem`` and ``.key``; or ``tcp:IP:PORT`` with the directory `keys` that ``rcs-neighbour keys`` has made, in
+    which the certificate of the role has the name `certificate`. `timeout` is the longest silence of the controller in
     seconds; `None` waits without a limit, for example for a run that an operator holds.
     """
 
@@ -38,7 +40,7 @@ class Line:
         self, address: str, role: int, certificate: str, keys: Optional[str] = None, timeout: Optional[float] = None
     ) -> None:
         try:
-            self._socket = _connect(address, certificate, keys, timeout)
+            self._socket = _connect(address, role, certificate, keys, timeout)
         except (OSError, ValueError) as error:
             raise ConnectionLost(f"{address}: {error}") from error
         try:
@@ -118,7 +120,11 @@ class Line:
         return ConnectionLost(f"the connection to the controller is lost: {error}")
 
 
-def _connect(address: str, certificate: str, keys: Optional[str], timeout: Optional[float]) -> socket.socket:
+def _connect(
+    address: str, role: int, certificate: str, keys: Optional[str], timeout: Optional[float]
+) -> Union[socket.socket, GatewaySocket]:
+    if is_gateway(address):
+        return GatewaySocket(address, role, keys, timeout)
     kind, _, place = address.partition(":")
     if kind == "unix" and place and keys is None:
         line = socket.socket(socket.AF_UNIX)
@@ -130,7 +136,7 @@ def _connect(address: str, certificate: str, keys: Optional[str], timeout: Optio
             raise
         return line
     if kind != "tcp" or keys is None:
-        raise ValueError("unix:PATH was expected, or tcp:IP:PORT with a directory of keys")
+        raise ValueError("unix:PATH was expected, CELL@tls/IP:PORT or tcp:IP:PORT with keys")
     host, _, port = place.rpartition(":")
     context = ssl.create_default_context(cafile=os.path.join(keys, "ca.pem"))
     context.minimum_version = ssl.TLSVersion.TLSv1_3

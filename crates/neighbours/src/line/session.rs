@@ -32,7 +32,7 @@ use super::{
     clock::answer_limit,
     frame::{self, DISCONNECT, Frame, FrameError, WELCOME},
 };
-use neighbours::mailbox::{Mailbox, Place};
+use crate::mailbox::{Mailbox, Place};
 
 /// Length of a hello, bytes.
 pub const HELLO: usize = 8;

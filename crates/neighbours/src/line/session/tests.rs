@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use neighbours::mailbox::{HWSC_COMMAND, HWSC_STATUS, MAX_SIZE, VISION_PICTURE, VISION_REQUEST};
+use crate::mailbox::{HWSC_COMMAND, HWSC_STATUS, MAX_SIZE, VISION_PICTURE, VISION_REQUEST};
 
 const TICK: Duration = Duration::from_millis(40);
 

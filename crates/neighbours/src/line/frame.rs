@@ -14,7 +14,7 @@
 //! * 1, the **disconnect reason**: its data are a text. The controller closes the connection after it;
 //! * 2, the **welcome**, without data: the neighbour is admitted.
 
-use neighbours::mailbox::{HEAD, MAX_SIZE, Mailbox, Place};
+use crate::mailbox::{HEAD, MAX_SIZE, Mailbox, Place};
 
 /// Number of bytes before the mailbox in a frame.
 pub const ADDRESS: usize = 4;
@@ -137,7 +137,7 @@ fn names(places: &[Place]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use neighbours::mailbox::HWSC_COMMAND;
+    use crate::mailbox::HWSC_COMMAND;
 
     fn pulse(tick: u64) -> Vec<u8> {
         let mut bytes = Vec::new();

@@ -1,0 +1,88 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::address::{Allow, CellAddress, Endpoint, Name, Right, UnixAddress};
+
+/// Carries the mailboxes of a controller between machines, over Zenoh with TLS.
+#[derive(Debug, Parser)]
+#[command(
+    name = "rcs-gateway",
+    version,
+    about,
+    after_help = "\
+Examples:
+  tools/keys.sh keys t3 10.0.0.1 hwsc-1 mes
+                                       keys and certificates for a cell, once
+  rcs-run --clock real --network unix:/run/user/1000/t3.sock --outside workstation
+                                       the controller
+  rcs-gateway serve t3 tls/10.0.0.1:7447 --run unix:/run/user/1000/t3.sock --keys keys \\
+      --allow workstation=hwsc-1 monitor=mes
+                                       its gateway, on the same machine
+  rcs-gateway connect t3@tls/10.0.0.1:7447 workstation unix:/tmp/t3.sock --keys keys
+                                       on the other machine, for any program at its Unix socket
+  rcs-neighbour workstation --network unix:/tmp/t3.sock linkbar
+                                       such a program
+
+Exit status: 0 ended by a signal; 2 usage, keys, or an address that cannot be used."
+)]
+pub struct Cli {
+    /// Which end.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The two ends.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Serve a cell: beside its run
+    Serve(ServeArguments),
+    /// Connect to the gateway of a cell: beside a neighbour or an operator
+    Connect(ConnectArguments),
+}
+
+/// Arguments of `serve`.
+#[derive(Clone, Debug, Args)]
+pub struct ServeArguments {
+    /// Name of the cell, and of its certificate: CELL.pem and CELL.key in the directory of keys
+    #[arg(value_name = "CELL")]
+    pub cell: Name,
+    /// Where neighbours connect: tls/IP:PORT
+    #[arg(value_name = "ENDPOINT")]
+    pub endpoint: Endpoint,
+    /// Where the run listens, its --network: unix:PATH. The gateway may be started first
+    #[arg(long, value_name = "ADDRESS")]
+    pub run: UnixAddress,
+    /// Router that passes the status on to monitors: tls/IP:PORT. Commands never go through it
+    #[arg(long, value_name = "ENDPOINT")]
+    pub router: Option<Endpoint>,
+    /// Directory with ca.pem, CELL.pem and CELL.key; tools/keys.sh makes it
+    #[arg(long, value_name = "DIR")]
+    pub keys: PathBuf,
+    /// Which certificates may do what: ROLE=NAME[,NAME], where NAME is the common name of a certificate, and ROLE is
+    /// workstation, data-system, pedestal, vision, operator or monitor. Everything else is denied
+    #[arg(long, value_name = "ROLE=NAME", num_args = 1.., required = true)]
+    pub allow: Vec<Allow>,
+}
+
+/// Arguments of `connect`.
+#[derive(Clone, Debug, Args)]
+pub struct ConnectArguments {
+    /// The cell and its gateway: CELL@tls/IP:PORT
+    #[arg(value_name = "CELL")]
+    pub cell: CellAddress,
+    /// Role of the program at the socket: workstation, data-system, pedestal, vision or operator
+    #[arg(value_name = "ROLE")]
+    pub role: Right,
+    /// Where this program listens for the neighbour: unix:PATH
+    #[arg(value_name = "ADDRESS")]
+    pub socket: UnixAddress,
+    /// Directory with ca.pem, NAME.pem and NAME.key
+    #[arg(long, value_name = "DIR")]
+    pub keys: PathBuf,
+    /// Name of the certificate; may be left out if the directory has only one
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<Name>,
+}

@@ -1,0 +1,39 @@
+//! How a claim ends.
+
+use std::{fmt, time::Duration};
+
+/// How long the end of a connection may take.
+pub const CLOSING: Duration = Duration::from_secs(1);
+/// How long a claim waits for the last sample after the token of the other side has gone.
+pub const GRACE: Duration = Duration::from_millis(100);
+
+/// Why a claim has ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The program at the socket has ended it, with its reason; empty if it has only closed the socket.
+    Local(String),
+    /// The other end has ended it, with its reason; empty if it has none.
+    Network(String),
+    /// The other end has broken the protocol.
+    Violation(String),
+    /// The other end has gone without a word.
+    Gone,
+    /// Nothing was received from the other end for too long.
+    Silent,
+    /// This process ends.
+    Stopped,
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Local(reason) | Self::Network(reason) if reason.is_empty() => {
+                f.write_str("the connection was closed")
+            }
+            Self::Local(reason) | Self::Network(reason) | Self::Violation(reason) => f.write_str(reason),
+            Self::Gone => f.write_str("the other end has gone: killed, or the line is cut"),
+            Self::Silent => f.write_str("nothing was received for 10 s"),
+            Self::Stopped => f.write_str("this gateway ends"),
+        }
+    }
+}

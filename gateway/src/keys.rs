@@ -1,0 +1,181 @@
+//! Keys and certificates: `ca.pem`, `NAME.pem` and `NAME.key` in one directory. `tools/keys.sh` makes them.
+//!
+//! Zenoh does not check who can read a private key, so the gateway does. It also checks its own certificate, because
+//! Zenoh reports a wrong one only as a failed connection.
+
+use std::{
+    fs, io,
+    os::unix::fs::MetadataExt as _,
+    path::{Path, PathBuf},
+};
+
+use rustix::process::geteuid;
+use x509_parser::prelude::{FromDer as _, Pem, X509Certificate};
+
+use crate::address::Name;
+
+/// Certificates of the trusted authority.
+const AUTHORITY: &str = "ca.pem";
+/// Name of the authority's private key without its extension: not that of a gateway or a neighbour.
+const AUTHORITY_KEY: &str = "ca";
+/// Mode bits of access for others than the owner.
+const OTHERS: u32 = 0o077;
+
+/// Why keys cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum KeysError {
+    /// A file cannot be read.
+    #[error("{}: {source}; tools/keys.sh makes keys and certificates", .path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Error of the system.
+        source: io::Error,
+    },
+    /// Others can read a private key.
+    #[error("{}: other users can read this private key (mode {mode:o}): use chmod 600", .path.display())]
+    Open {
+        /// The file.
+        path: PathBuf,
+        /// Its mode.
+        mode: u32,
+    },
+    /// A private key of another user.
+    #[error("{}: expected a private key of user {expected}, found one of user {found}", .path.display())]
+    Owner {
+        /// The file.
+        path: PathBuf,
+        /// This user.
+        expected: u32,
+        /// Owner of the file.
+        found: u32,
+    },
+    /// Not a certificate.
+    #[error("{}: expected a certificate in PEM, found something else", .0.display())]
+    Certificate(PathBuf),
+    /// The certificate has another common name than its file.
+    #[error("{}: expected a certificate with the common name {expected}, found {found:?}", .path.display())]
+    CommonName {
+        /// The file.
+        path: PathBuf,
+        /// Name of the file.
+        expected: Name,
+        /// The common name.
+        found: String,
+    },
+    /// The certificate is not valid now.
+    #[error("{}: valid from {from} until {until}, and not now: make a new certificate", .path.display())]
+    Expired {
+        /// The file.
+        path: PathBuf,
+        /// Start of its validity.
+        from: String,
+        /// End of its validity.
+        until: String,
+    },
+    /// It is not clear which certificate is meant.
+    #[error("{}: expected one private key NAME.key, found {}; choose one with --name NAME", .directory.display(), list(.found))]
+    Which {
+        /// The directory.
+        directory: PathBuf,
+        /// Names found.
+        found: Vec<String>,
+    },
+}
+
+fn list(names: &[String]) -> String {
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+/// The files of one side of a connection.
+#[derive(Clone, Debug)]
+pub struct Keys {
+    /// Common name of the certificate.
+    pub name: Name,
+    /// The authority.
+    pub authority: PathBuf,
+    /// The certificate.
+    pub certificate: PathBuf,
+    /// Its private key.
+    pub key: PathBuf,
+}
+
+impl Keys {
+    /// The keys of `name` in a directory, checked.
+    ///
+    /// # Errors
+    /// [`KeysError`].
+    pub fn load(directory: &Path, name: &Name) -> Result<Self, KeysError> {
+        let keys = Self {
+            name: name.clone(),
+            authority: directory.join(AUTHORITY),
+            certificate: directory.join(format!("{name}.pem")),
+            key: directory.join(format!("{name}.key")),
+        };
+        keys.check_key()?;
+        certificate(&keys.authority, |_| Ok(()))?;
+        certificate(&keys.certificate, |certificate| keys.check_certificate(certificate))?;
+        Ok(keys)
+    }
+
+    /// The only keys in a directory, apart from those of the authority.
+    ///
+    /// # Errors
+    /// [`KeysError`]; [`KeysError::Which`] unless there is exactly one private key.
+    pub fn only(directory: &Path) -> Result<Self, KeysError> {
+        let failed = |source| KeysError::File { path: directory.to_owned(), source };
+        let mut found = Vec::new();
+        for entry in fs::read_dir(directory).map_err(failed)? {
+            let path = entry.map_err(failed)?.path();
+            if path.extension().is_some_and(|extension| extension == "key") {
+                found.extend(path.file_stem().map(|stem| stem.to_string_lossy().into_owned()));
+            }
+        }
+        found.retain(|name| name != AUTHORITY_KEY);
+        found.sort();
+        match found.first().map(|name| name.parse()) {
+            Some(Ok(name)) if found.len() == 1 => Self::load(directory, &name),
+            _ => Err(KeysError::Which { directory: directory.to_owned(), found }),
+        }
+    }
+
+    fn check_key(&self) -> Result<(), KeysError> {
+        let path = self.key.clone();
+        let found = fs::metadata(&path).map_err(|source| KeysError::File { path: path.clone(), source })?;
+        let expected = geteuid().as_raw();
+        if found.uid() != expected {
+            return Err(KeysError::Owner { path, expected, found: found.uid() });
+        }
+        if found.mode() & OTHERS != 0 {
+            return Err(KeysError::Open { path, mode: found.mode() & 0o777 });
+        }
+        Ok(())
+    }
+
+    fn check_certificate(&self, found: &X509Certificate<'_>) -> Result<(), KeysError> {
+        let path = self.certificate.clone();
+        let common = found.subject().iter_common_name().next().and_then(|name| name.as_str().ok());
+        if common != Some(self.name.as_str()) {
+            let found = common.unwrap_or_default().to_owned();
+            return Err(KeysError::CommonName { path, expected: self.name.clone(), found });
+        }
+        let validity = found.validity();
+        if !validity.is_valid() {
+            let (from, until) = (validity.not_before.to_string(), validity.not_after.to_string());
+            return Err(KeysError::Expired { path, from, until });
+        }
+        Ok(())
+    }
+}
+
+/// Read the first certificate of a file and check it.
+fn certificate(
+    path: &Path,
+    check: impl FnOnce(&X509Certificate<'_>) -> Result<(), KeysError>,
+) -> Result<(), KeysError> {
+    let text = fs::read(path).map_err(|source| KeysError::File { path: path.to_owned(), source })?;
+    let wrong = || KeysError::Certificate(path.to_owned());
+    let pem = Pem::iter_from_buffer(&text).next().and_then(Result::ok).ok_or_else(wrong)?;
+    let (_, found) = X509Certificate::from_der(&pem.contents).map_err(|_| wrong())?;
+    check(&found)
+}

@@ -1,0 +1,111 @@
+//! Moves an operator's lines (docs/operator.md "The protocol") between a Unix socket and the network. A payload has whole
+//! lines; an empty one is the end. Nothing is sent on an operator's behalf: the run ends motion by hand 250 ms after the
+//! last line of the operator, not of a gateway.
+
+use std::{os::fd::AsFd as _, time::Instant};
+
+use crate::{
+    address::Name,
+    end::{CLOSING, End, GRACE},
+    inbox::Inbox,
+    line::Line,
+};
+
+/// Greatest length of a line, bytes; the run refuses a line that is longer than 260.
+const LONGEST: usize = 1024;
+/// Greatest length of an operator's name, bytes.
+const NAME: usize = 24;
+const HELLO: &str = "hello ";
+
+/// Moves lines until the claim ends. `unread` are bytes of the socket that were received already; at the gateway `name`
+/// is put before the operator's.
+pub fn relay(
+    mut line: Line,
+    mut unread: Vec<u8>,
+    mut name: Option<&Name>,
+    inbox: &Inbox,
+    publish: &mut dyn FnMut(&[u8]),
+) -> End {
+    let (mut outgoing, mut gone) = (Vec::new(), None);
+    let end = loop {
+        match turn(&mut line, &mut unread, &mut outgoing, &mut name, inbox, publish, &mut gone) {
+            Ok(()) => {}
+            Err(end) => break end,
+        }
+    };
+    if !matches!(end, End::Network(_) | End::Gone) {
+        publish(&[]);
+    }
+    line.finish(&mut outgoing, Instant::now() + CLOSING);
+    end
+}
+
+fn turn(
+    line: &mut Line,
+    unread: &mut Vec<u8>,
+    outgoing: &mut Vec<u8>,
+    name: &mut Option<&Name>,
+    inbox: &Inbox,
+    publish: &mut dyn FnMut(&[u8]),
+    gone: &mut Option<Instant>,
+) -> Result<(), End> {
+    if inbox.is_stopped() {
+        return Err(End::Stopped);
+    }
+    if inbox.has_overflown() {
+        return Err(End::Violation("lines were lost: more waited than the run takes".to_owned()));
+    }
+    if let Some(payload) = line.is_flushed().then(|| inbox.take()).flatten() {
+        if payload.is_empty() {
+            return Err(End::Network(String::new()));
+        }
+        match name.take() {
+            Some(name) => outgoing.extend(signed(&payload, name)),
+            None => outgoing.extend(payload),
+        }
+    } else if inbox.is_gone() && gone.get_or_insert_with(Instant::now).elapsed() >= GRACE {
+        return Err(End::Gone);
+    }
+    let lost = |error: std::io::Error| End::Local(error.to_string());
+    line.send(outgoing).map_err(lost)?;
+    if let Some(last) = unread.iter().rposition(|&byte| byte == b'\n') {
+        let lines: Vec<u8> = unread.drain(..=last).collect();
+        publish(&lines);
+    }
+    if unread.len() > LONGEST {
+        return Err(End::Violation(format!("expected a line of at most {LONGEST} bytes")));
+    }
+    let wake = line.is_flushed().then(|| inbox.as_fd());
+    let ready = line.wait(wake, gone.map(|since| since + GRACE)).map_err(lost)?;
+    if ready && !line.receive(|bytes| unread.extend_from_slice(bytes)).map_err(lost)? {
+        publish(unread);
+        return Err(End::Local(String::new()));
+    }
+    Ok(())
+}
+
+/// The first payload of an operator, `hello anna`, with the name of its certificate: `hello op-1.anna`.
+fn signed(payload: &[u8], name: &Name) -> Vec<u8> {
+    let Some(rest) = payload.strip_prefix(HELLO.as_bytes()) else { return payload.to_vec() };
+    let end = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
+    let (own, rest) = rest.split_at(end);
+    let whole = format!("{name}.{}", String::from_utf8_lossy(own));
+    let whole: String = whole.chars().take(NAME).collect();
+    [HELLO.as_bytes(), whole.as_bytes(), rest].concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn name_of_the_certificate_precedes_the_operators() {
+        let name: Name = "op-1".parse().unwrap();
+        assert_eq!(signed(b"hello anna\n\n", &name), b"hello op-1.anna\n\n");
+        assert_eq!(signed(b"1 stop\n", &name), b"1 stop\n");
+        assert_eq!(
+            signed(b"hello an-operator-with-a-long-name\n", &name),
+            b"hello op-1.an-operator-with-a-\n"
+        );
+    }
+}

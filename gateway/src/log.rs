@@ -1,0 +1,157 @@
+//! Messages on standard error, which no flood of connections can fill: each source has a limited rate, and the next line
+//! says how many were left out.
+
+use std::{
+    fmt::{self, Write as _},
+    sync::{Mutex, PoisonError},
+    time::{Duration, Instant},
+};
+
+use os_io::stderr_line;
+use tracing::{
+    Event, Level, Metadata, Subscriber,
+    field::{Field, Visit},
+    span,
+};
+
+/// Number of lines that a source may write at once.
+const BURST: u32 = 10;
+/// Time after which a source may write one more line.
+const REFILL: Duration = Duration::from_secs(2);
+/// Greatest length of a line, characters.
+const LINE: usize = 400;
+
+/// Who writes a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The gateway's own events.
+    Gateway,
+    /// Clients that are refused.
+    Refused,
+    /// Warnings of Zenoh, among them failed handshakes.
+    Zenoh,
+}
+
+/// Lines that a source may still write.
+#[derive(Clone, Copy, Debug)]
+struct Budget {
+    left: u32,
+    since: Option<Instant>,
+    omitted: u64,
+}
+
+impl Budget {
+    const FULL: Self = Self { left: BURST, since: None, omitted: 0 };
+
+    /// Asks for a line: the number of lines that were left out before it, or `None` if it is left out, too.
+    fn take(&mut self, now: Instant) -> Option<u64> {
+        let since = *self.since.get_or_insert(now);
+        let periods = now.saturating_duration_since(since).as_millis() / REFILL.as_millis();
+        if periods > 0 {
+            self.left = self.left.saturating_add(u32::try_from(periods).unwrap_or(BURST)).min(BURST);
+            self.since = Some(now);
+        }
+        if self.left == 0 {
+            self.omitted += 1;
+            return None;
+        }
+        self.left -= 1;
+        Some(std::mem::take(&mut self.omitted))
+    }
+}
+
+static BUDGETS: Mutex<[Budget; 3]> = Mutex::new([Budget::FULL; 3]);
+
+/// Writes a line, unless its source has written too many.
+pub fn write(source: Source, text: &dyn fmt::Display) {
+    let omitted = {
+        let mut budgets = BUDGETS.lock().unwrap_or_else(PoisonError::into_inner);
+        budgets[source as usize].take(Instant::now())
+    };
+    let Some(omitted) = omitted else { return };
+    let text: String = text.to_string().chars().take(LINE).collect();
+    let front = if source == Source::Zenoh { "zenoh: " } else { "" };
+    match omitted {
+        0 => stderr_line!("rcs-gateway: {front}{text}"),
+        count => stderr_line!("rcs-gateway: {front}{text} ({count} lines before it were left out)"),
+    }
+}
+
+/// Writes a line of the gateway.
+#[macro_export]
+macro_rules! say {
+    ($($text:tt)*) => { $crate::log::write($crate::log::Source::Gateway, &::std::format_args!($($text)*)) };
+}
+
+/// Writes a line about a client that is refused.
+#[macro_export]
+macro_rules! say_refused {
+    ($($text:tt)*) => { $crate::log::write($crate::log::Source::Refused, &::std::format_args!($($text)*)) };
+}
+
+/// Passes Zenoh's warnings and errors to the log.
+struct Warnings;
+
+struct Text(String);
+
+impl Visit for Text {
+    fn record_debug(&mut self, field: &Field, value: &dyn fmt::Debug) {
+        if field.name() == "message" {
+            // Writing to a `String` does not fail.
+            let _ = write!(self.0, "{value:?}");
+        }
+    }
+}
+
+impl Subscriber for Warnings {
+    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
+        metadata.is_event() && *metadata.level() <= Level::WARN
+    }
+
+    fn new_span(&self, _: &span::Attributes<'_>) -> span::Id {
+        span::Id::from_u64(1)
+    }
+
+    fn record(&self, _: &span::Id, _: &span::Record<'_>) {}
+
+    fn record_follows_from(&self, _: &span::Id, _: &span::Id) {}
+
+    fn event(&self, event: &Event<'_>) {
+        let mut text = Text(String::new());
+        event.record(&mut text);
+        // It is disabled on purpose.
+        if text.0.starts_with("Gossip is disabled") {
+            return;
+        }
+        // Zenoh explains every failed handshake by the limit of open files.
+        let text = text.0.replace(". Hint: increase the system open file limit.", "");
+        write(Source::Zenoh, &text);
+    }
+
+    fn enter(&self, _: &span::Id) {}
+
+    fn exit(&self, _: &span::Id) {}
+}
+
+/// Passes Zenoh's warnings to the log from now on.
+pub fn hear_zenoh() {
+    // It fails only if another subscriber was set before, and this program sets one.
+    let _ = tracing::subscriber::set_global_default(Warnings);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn budget_limits_a_flood_and_counts_omitted_lines() {
+        let (mut budget, start) = (Budget::FULL, Instant::now());
+        let written = (0..1000).filter(|_| budget.take(start).is_some()).count();
+        assert_eq!(written, 10);
+        assert_eq!(budget.take(start + REFILL), Some(990));
+        assert_eq!(budget.take(start + REFILL), None);
+        assert_eq!(budget.take(start + 1000 * REFILL), Some(1));
+        let written = (0..1000).filter(|_| budget.take(start + 1000 * REFILL).is_some()).count();
+        assert_eq!(written, 9);
+    }
+}

@@ -1,0 +1,21 @@
+//! SIGINT, SIGTERM and SIGHUP end a gateway in order.
+
+use std::io;
+
+use signal_hook::{
+    consts::{SIGHUP, SIGINT, SIGTERM},
+    iterator::Signals,
+};
+
+/// Receive signals from now on.
+///
+/// # Errors
+/// Errors of the system.
+pub fn receive() -> io::Result<Signals> {
+    Signals::new([SIGINT, SIGTERM, SIGHUP])
+}
+
+/// Wait for the first signal.
+pub fn wait(mut signals: Signals) {
+    signals.forever().next();
+}

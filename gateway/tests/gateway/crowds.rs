@@ -1,0 +1,72 @@
+//! Clients that keep the gateway busy.
+
+use std::{
+    io::Write as _,
+    net::TcpStream,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use crate::shop::Shop;
+
+/// Number of bad clients.
+const CROWD: usize = 300;
+
+/// How long an honest client needs while a crowd is there.
+fn admitted_beside(shop: &Shop, crowd: impl FnOnce(&Arc<AtomicBool>)) -> Duration {
+    let _run = shop.real_run();
+    let gateway = shop.serve(&["workstation=hwsc-1"]);
+    let _connect = shop.connect("workstation", "hwsc-1");
+    let is_over = Arc::new(AtomicBool::new(false));
+    crowd(&is_over);
+    thread::sleep(Duration::from_millis(500));
+    let start = Instant::now();
+    shop.hwsc("hwsc-1").unwrap();
+    let needed = start.elapsed();
+    is_over.store(true, Ordering::SeqCst);
+    let lines = gateway.errors().lines().count();
+    println!("beside {CROWD} bad clients: admitted after {needed:?}; the log has {lines} lines");
+    assert!(lines < 60, "the log is flooded: {lines} lines");
+    needed
+}
+
+#[test]
+fn silent_clients_do_not_delay_an_honest_one() {
+    let shop = Shop::new(&["hwsc-1"]);
+    let port = shop.port;
+    let mut silent = Vec::new();
+    let needed = admitted_beside(&shop, |_| {
+        silent.extend((0..CROWD).map(|_| TcpStream::connect(("127.0.0.1", port)).unwrap()));
+    });
+    assert!(needed < Duration::from_secs(1), "{needed:?}");
+}
+
+#[test]
+fn clients_that_send_garbage_do_not_delay_an_honest_one() {
+    let shop = Shop::new(&["hwsc-1"]);
+    let port = shop.port;
+    let needed = admitted_beside(&shop, |is_over| {
+        for _ in 0..4 {
+            let is_over = Arc::clone(is_over);
+            thread::spawn(move || {
+                let mut open = Vec::new();
+                while !is_over.load(Ordering::SeqCst) {
+                    if let Ok(mut stream) = TcpStream::connect(("127.0.0.1", port)) {
+                        // The gateway may have closed it already.
+                        let _ = stream.write_all(&[0xA5; 600]);
+                        open.push(stream);
+                    }
+                    if open.len() > CROWD / 4 {
+                        open.clear();
+                    }
+                    thread::sleep(Duration::from_millis(2));
+                }
+            });
+        }
+    });
+    assert!(needed < Duration::from_secs(1), "{needed:?}");
+}

@@ -1,0 +1,14 @@
+//! The acceptance of the gateway, with processes: a run, its gateway, and neighbours behind it.
+//!
+//! They need `rcs-run` and `rcs-neighbour`: `cargo build --release --workspace` in the repository.
+
+mod attacks;
+mod certificates;
+mod claims;
+mod crowds;
+mod cuts;
+mod line;
+mod native;
+mod operators;
+mod shop;
+mod status;

@@ -1,0 +1,312 @@
+//! A cell with its gateway, as processes: run, `serve`, `connect` and neighbours. Every process ends with its owner.
+
+use std::{
+    fs::{self, File},
+    io::{Read as _, Write as _},
+    net::TcpListener,
+    os::unix::net::UnixStream,
+    path::{Path, PathBuf},
+    process::{Child, Command, ExitStatus, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use neighbours::{
+    line::{Role, Session, session::Event},
+    mailbox::{HWSC_COMMAND, HWSC_STATUS, Mailbox},
+    workstation::{command, player, status},
+};
+use tempfile::TempDir;
+
+pub const CELL: &str = "t3";
+
+/// A program of the main workspace; RCS_PROGRAMS names another directory than `target/release`.
+pub fn program(name: &str) -> PathBuf {
+    let built = concat!(env!("CARGO_MANIFEST_DIR"), "/../target/release");
+    let path =
+        std::env::var_os("RCS_PROGRAMS").map_or_else(|| PathBuf::from(built), PathBuf::from).join(name);
+    assert!(path.exists(), "{}: cargo build --release --workspace builds it", path.display());
+    path
+}
+
+/// A child process that ends with its owner; its standard error is in a file.
+pub struct Process {
+    pub child: Child,
+    errors: PathBuf,
+}
+
+impl Process {
+    pub fn start(command: &mut Command, errors: PathBuf) -> Self {
+        command.stderr(File::create(&errors).unwrap()).stdin(Stdio::null());
+        Self { child: command.spawn().unwrap(), errors }
+    }
+
+    /// What it has written to standard error.
+    pub fn errors(&self) -> String {
+        fs::read_to_string(&self.errors).unwrap()
+    }
+
+    /// Wait until standard error has a text.
+    pub fn wait_for(&self, text: &str) {
+        assert!(within(10.0, || self.errors().contains(text)), "expected {text:?} in:\n{}", self.errors());
+    }
+
+    /// Wait for the end.
+    pub fn finish(&mut self, seconds: f64) -> ExitStatus {
+        let child = &mut self.child;
+        let mut status = None;
+        let ended = within(seconds, || {
+            status = child.try_wait().unwrap();
+            status.is_some()
+        });
+        assert!(ended, "still running after {seconds} s:\n{}", self.errors());
+        status.unwrap()
+    }
+
+    /// Kill it as `kill -9` does.
+    pub fn kill(&mut self) {
+        // It may have ended already.
+        let _ = self.child.kill();
+        self.child.wait().unwrap();
+    }
+
+    /// Send SIGTERM.
+    pub fn terminate(&self) {
+        let pid = rustix::process::Pid::from_child(&self.child);
+        rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        self.kill();
+        if thread::panicking() {
+            eprintln!("--- {}\n{}", self.errors.display(), self.errors());
+        }
+    }
+}
+
+/// True if a condition holds within a time.
+pub fn within(seconds: f64, mut condition: impl FnMut() -> bool) -> bool {
+    let until = Instant::now() + Duration::from_secs_f64(seconds);
+    loop {
+        if condition() {
+            return true;
+        }
+        if Instant::now() >= until {
+            return false;
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// A free port of 127.0.0.1.
+pub fn free_port() -> u16 {
+    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+}
+
+/// A directory with keys, and a port for the gateway.
+pub struct Shop {
+    pub directory: TempDir,
+    pub port: u16,
+}
+
+impl Shop {
+    /// Keys for the cell and for `names`.
+    pub fn new(names: &[&str]) -> Self {
+        let shop = Self { directory: tempfile::tempdir().unwrap(), port: free_port() };
+        make_keys(&shop.path("keys"), CELL, names);
+        shop
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.directory.path().join(name)
+    }
+
+    pub fn run_socket(&self) -> PathBuf {
+        self.path("run.sock")
+    }
+
+    pub fn endpoint(&self) -> String {
+        format!("tls/127.0.0.1:{}", self.port)
+    }
+
+    /// A run whose `--network` is the socket of this shop.
+    pub fn run(&self, arguments: &[&str]) -> Process {
+        let mut command = Command::new(program("rcs-run"));
+        command.args(arguments).args(["--log", "none", "--shared-memory", "off", "--json", "--network"]);
+        command.arg(format!("unix:{}", self.run_socket().display())).current_dir(self.directory.path());
+        command.arg("--data").arg(concat!(env!("CARGO_MANIFEST_DIR"), "/../data"));
+        command.stdout(File::create(self.path("run.json")).unwrap());
+        // A run that was killed leaves its socket.
+        let _ = fs::remove_file(self.run_socket());
+        let run = Process::start(&mut command, self.path("run.err"));
+        assert!(within(20.0, || self.run_socket().exists()), "no socket:\n{}", run.errors());
+        run
+    }
+
+    /// A run in real time that a workstation controller commands.
+    pub fn real_run(&self) -> Process {
+        self.run(&["--clock", "real", "--outside", "workstation"])
+    }
+
+    /// The digest in the result of a run that is over.
+    pub fn digest(&self) -> String {
+        let result = fs::read_to_string(self.path("run.json")).unwrap();
+        let result: serde_json::Value = serde_json::from_str(&result).unwrap();
+        result["digest"].as_str().unwrap().to_owned()
+    }
+
+    /// The gateway.
+    pub fn serve(&self, allow: &[&str]) -> Process {
+        let gateway = self.start_serve(allow);
+        gateway.wait_for("t3 at tls/");
+        gateway
+    }
+
+    /// The gateway, which may not come up.
+    pub fn start_serve(&self, allow: &[&str]) -> Process {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-gateway"));
+        command
+            .args(["serve", CELL, &self.endpoint(), "--run"])
+            .arg(format!("unix:{}", self.run_socket().display()));
+        command.arg("--keys").arg(self.path("keys")).arg("--allow").args(allow);
+        Process::start(&mut command, self.path("serve.err"))
+    }
+
+    /// The other end for a role, with a certificate; it listens at the socket with the name of the certificate.
+    pub fn connect(&self, role: &str, name: &str) -> Process {
+        self.connect_to(&self.endpoint(), role, name)
+    }
+
+    /// As [`Shop::connect`], to another endpoint.
+    pub fn connect_to(&self, endpoint: &str, role: &str, name: &str) -> Process {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-gateway"));
+        command.args([
+            "connect",
+            &format!("{CELL}@{endpoint}"),
+            role,
+            &self.socket_address(name),
+            "--name",
+            name,
+        ]);
+        command.arg("--keys").arg(self.path("keys"));
+        let connect = Process::start(&mut command, self.path(&format!("connect-{name}.err")));
+        connect.wait_for("waits for a program");
+        connect
+    }
+
+    pub fn socket_address(&self, name: &str) -> String {
+        format!("unix:{}", self.path(&format!("{name}.sock")).display())
+    }
+
+    /// A program of the workspace that connects to a socket.
+    pub fn neighbour(&self, role: &str, network: &str, arguments: &[&str]) -> Process {
+        let mut command = Command::new(program("rcs-neighbour"));
+        command.args([role, "--network", network, "--wait", "20"]).args(arguments).stdout(Stdio::null());
+        command.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+        Process::start(&mut command, self.path(&format!("neighbour-{role}.err")))
+    }
+
+    /// A workstation controller at the socket of a certificate, or of the run.
+    pub fn hwsc(&self, name: &str) -> Result<Hwsc, String> {
+        Hwsc::connect(&self.path(&format!("{name}.sock")))
+    }
+}
+
+pub fn make_keys(directory: &Path, cell: &str, names: &[&str]) {
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../tools/keys.sh");
+    let made = Command::new(script).arg(directory).args([cell, "127.0.0.1"]).args(names).output().unwrap();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+}
+
+/// A workstation controller.
+pub struct Hwsc {
+    session: Session,
+    stream: UnixStream,
+    command: Mailbox,
+    status: Mailbox,
+    tick: u64,
+}
+
+impl Hwsc {
+    /// Connect, and read up to the first pulse.
+    pub fn connect(path: &Path) -> Result<Self, String> {
+        let stream = UnixStream::connect(path).map_err(|error| error.to_string())?;
+        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+        let mut hwsc = Self {
+            session: Session::neighbour(Role::Workstation, Instant::now()),
+            stream,
+            command: Mailbox::initialized(HWSC_COMMAND),
+            status: Mailbox::initialized(HWSC_STATUS),
+            tick: 0,
+        };
+        hwsc.read()?;
+        Ok(hwsc)
+    }
+
+    /// Read up to the next pulse.
+    fn read(&mut self) -> Result<(), String> {
+        loop {
+            match self.session.event(Instant::now()).map_err(|error| error.to_string())? {
+                Some(Event::Mailgram(HWSC_STATUS, used)) => self.status.receive(used).unwrap(),
+                Some(Event::Pulse(tick)) => {
+                    self.tick = tick;
+                    return Ok(());
+                }
+                Some(_) => {}
+                None => {
+                    self.flush()?;
+                    let mut bytes = [0; 8192];
+                    let count = self.stream.read(&mut bytes).map_err(|error| error.to_string())?;
+                    if count == 0 {
+                        return Err("closed".to_owned());
+                    }
+                    self.session.receive(&bytes[..count], Instant::now());
+                }
+            }
+        }
+    }
+
+    fn flush(&mut self) -> Result<(), String> {
+        let bytes = std::mem::take(self.session.output());
+        self.stream.write_all(&bytes).map_err(|error| error.to_string())
+    }
+
+    /// Answer the last pulse, and read up to the next one.
+    pub fn tick(&mut self) -> Result<u64, String> {
+        self.session.pulse(self.tick, Instant::now());
+        self.flush()?;
+        self.read()?;
+        Ok(self.tick)
+    }
+
+    pub fn status(&self) -> status::Status<'_> {
+        status::decode(self.status.data()).unwrap()
+    }
+
+    /// Send PAUSE and wait until it is finished; returns how many ticks that took.
+    pub fn pause(&mut self) -> Result<u64, String> {
+        while self.status.data().is_empty() {
+            self.tick()?;
+        }
+        let number = self.status().echo.checked_add(1).unwrap_or(1);
+        let pause = neighbours_command(number);
+        self.command.write(&pause).unwrap();
+        self.session.send(&self.command);
+        let start = self.tick;
+        loop {
+            let tick = self.tick()?;
+            let status = self.status();
+            if status.echo == number && status.report.to_string() == "finished" {
+                return Ok(tick - start);
+            }
+        }
+    }
+}
+
+fn neighbours_command(number: u16) -> Vec<u8> {
+    let mut pause = player::pause();
+    pause.number = u32::from(number);
+    command::encode(&pause).unwrap().to_vec()
+}
