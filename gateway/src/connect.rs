@@ -33,7 +33,7 @@ use crate::{
     cli::ConnectArguments,
     config,
     end::{CLOSING, End},
-    error::Error,
+    error::{Error, words},
     inbox::Inbox,
     keys::Keys,
     keyspace::{ANY, CellKeys, ClaimId},
@@ -188,8 +188,9 @@ impl Neighbourhood {
         let Self { address, role, keys, .. } = self;
         let absent = |error: zenoh::Error| {
             Refusal::Absent(format!(
-                "{address} cannot be reached: {error} (is rcs-gateway serve running, and does it accept the \
+                "{address} cannot be reached: {} (is rcs-gateway serve running, and does it accept the \
                  certificate of {}?)",
+                words(&error),
                 keys.name
             ))
         };
@@ -201,7 +202,7 @@ impl Neighbourhood {
     fn claim(&self, session: &Session) -> Result<Claim, Refusal> {
         let Self { role, keys: Keys { name, .. }, address, .. } = self;
         let cell = CellKeys::of(address.cell.as_str());
-        let failed = |error: zenoh::Error| Refusal::Absent(error.to_string());
+        let failed = |error: zenoh::Error| Refusal::Absent(words(&error));
         let system = |error: io::Error| Refusal::Absent(error.to_string());
         let id = ClaimId::random().map_err(|error| Refusal::Absent(error.to_string()))?;
         let keys = cell.claim(*role, name, id.as_str());
@@ -307,7 +308,7 @@ fn put(publisher: &Publisher<'_>, sample: Vec<u8>) {
 
 /// Ask the gateway to open a claim; returns the clock of the run.
 fn ask(session: &Session, key: &str, id: &ClaimId, role: Role, name: &Name) -> Result<ClockKind, Refusal> {
-    let failed = |error: zenoh::Error| Refusal::Absent(error.to_string());
+    let failed = |error: zenoh::Error| Refusal::Absent(words(&error));
     let replies =
         session.get(key).payload(id.as_str()).timeout(ANSWER).consolidation(ConsolidationMode::None);
     let replies = replies.wait().map_err(failed)?;

@@ -48,6 +48,13 @@ impl Error {
     #[must_use]
     #[expect(clippy::needless_pass_by_value, reason = "used as an argument of map_err")]
     pub fn zenoh(error: zenoh::Error) -> Self {
-        Self::Zenoh(error.to_string())
+        Self::Zenoh(words(&error))
     }
+}
+
+/// An error of Zenoh without the file and line of its source code, which Zenoh appends.
+#[must_use]
+pub fn words(error: &zenoh::Error) -> String {
+    let text = error.to_string();
+    text.split(" at /").next().unwrap_or_default().trim_end_matches('.').to_owned()
 }

@@ -29,7 +29,7 @@ use crate::{
     cli::ServeArguments,
     config,
     end::End,
-    error::Error,
+    error::{Error, words},
     inbox::Inbox,
     keys::Keys,
     keyspace::{CellKeys, ClaimId},
@@ -162,7 +162,7 @@ impl Gateway {
         let Request { role, name, query } = request;
         match self.carry(role, &name, query, &claim, admitted) {
             Ok(end) => say!("{role} {name} has disconnected: {end}"),
-            Err(error) => say!("{role} {name}: {error}"),
+            Err(error) => say!("{role} {name}: {}", words(&error)),
         }
     }
 

@@ -58,10 +58,10 @@ impl Board {
             .priority(Priority::Data)
             .congestion_control(CongestionControl::Drop)
             .wait()?;
-        let (asked, path) = (Arc::clone(&known), run.clone());
+        let (asked, path, key) = (Arc::clone(&known), run.clone(), cell.run());
         let answer = move |query: Query| {
-            // Who gets no answer has gone.
-            let _ = query.reply(query.key_expr(), lock(&asked).describe(is_socket(&path))).wait();
+            // The key of the query may be that of all cells. Who gets no answer has gone.
+            let _ = query.reply(&key, lock(&asked).describe(is_socket(&path))).wait();
         };
         session.declare_queryable(cell.run()).callback(answer).background().wait()?;
         let (weak, path): (Weak<Mutex<Known>>, _) = (Arc::downgrade(&known), run.clone());

@@ -149,7 +149,7 @@ fn lost_answer_to_a_pulse_in_fast_clock_is_repeated() {
 
 #[test]
 fn vanished_neighbour_ends_the_claim_within_a_second() {
-    let Pair { mut run, inboxes, ends: [end, _], .. } = pair(ClockKind::Real, 0);
+    let Pair { mut run, neighbour: _neighbour, inboxes, ends: [end, _] } = pair(ClockKind::Real, 0);
     let start = Instant::now();
     inboxes[0].set_gone();
     assert_eq!(run.event(), "closed");
@@ -160,7 +160,7 @@ fn vanished_neighbour_ends_the_claim_within_a_second() {
 
 #[test]
 fn mailbox_of_the_other_direction_ends_the_claim_and_does_not_reach_the_run() {
-    let Pair { mut run, inboxes, ends: [end, _], .. } = pair(ClockKind::Real, 0);
+    let Pair { mut run, neighbour: _neighbour, inboxes, ends: [end, _] } = pair(ClockKind::Real, 0);
     inboxes[0].deliver(State::initialized(ROLE.from_controller()).encode(None));
     assert_eq!(run.event(), "closed");
     drop(run);

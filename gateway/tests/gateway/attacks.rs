@@ -14,8 +14,8 @@ use neighbours::{
 use zenoh::{Session, Wait as _, query::ConsolidationMode};
 
 use crate::{
-    native::{Claim, connect},
-    shop::{CELL, Shop},
+    native::{Claim, connect, router},
+    shop::{CELL, Shop, free_port, within},
 };
 
 const VICTIM: &str = "hwsc-1";
@@ -42,15 +42,15 @@ fn end() -> Vec<u8> {
 /// What an attacker has heard.
 type Heard = Arc<Mutex<Vec<String>>>;
 
-/// All attacks of a certificate on the claim `id` of the victim. Returns what it has heard, by key.
-fn attack(session: &Session, id: &str) -> (Heard, u32) {
+/// Listens to the claim `id` of the victim, and answers in the place of the gateway. Returns what is heard, by key.
+fn listen(listener: &Session, id: &str) -> (Heard, u32) {
     let heard = Heard::default();
     let listen = |key: &str| {
         let heard = Arc::clone(&heard);
         let take =
             move |sample: zenoh::sample::Sample| heard.lock().unwrap().push(sample.key_expr().to_string());
         // A denied subscriber is declared, and hears nothing.
-        session.declare_subscriber(key.to_owned()).callback(take).background().wait().unwrap();
+        listener.declare_subscriber(key.to_owned()).callback(take).background().wait().unwrap();
     };
     let mut attacks = 0;
     let front = format!("rcs/{CELL}/workstation/{VICTIM}/{id}");
@@ -69,8 +69,8 @@ fn attack(session: &Session, id: &str) -> (Heard, u32) {
     let take = move |token: zenoh::sample::Sample| {
         tokens.lock().unwrap().push(format!("token {}", token.key_expr()))
     };
-    let liveliness = session.liveliness();
-    liveliness
+    listener
+        .liveliness()
         .declare_subscriber(format!("{front}/alive"))
         .history(true)
         .callback(take)
@@ -78,6 +78,19 @@ fn attack(session: &Session, id: &str) -> (Heard, u32) {
         .wait()
         .unwrap();
     attacks += 1;
+    // Answers in the place of the gateway.
+    let answer = |query: zenoh::query::Query| drop(query.reply_err("refused forged").wait());
+    for key in [format!("rcs/{CELL}/open/workstation/{VICTIM}"), format!("rcs/{CELL}/open/**")] {
+        listener.declare_queryable(key).callback(answer).background().wait().unwrap();
+        attacks += 1;
+    }
+    (heard, attacks)
+}
+
+/// Sends commands and ends in the place of the victim, and asks for claims in its name. Returns what is answered.
+fn speak(session: &Session, id: &str) -> (Vec<String>, u32) {
+    let (mut heard, mut attacks) = (Vec::new(), 0);
+    let front = format!("rcs/{CELL}/workstation/{VICTIM}/{id}");
     // Commands, and the end of the claim: direct, by wildcards, and to the neighbour.
     for key in [
         format!("{front}/in"),
@@ -96,15 +109,10 @@ fn attack(session: &Session, id: &str) -> (Heard, u32) {
     }
     // The tokens of the victim and of a gateway, which vanish at once.
     for key in [format!("{front}/alive"), format!("rcs/{CELL}/alive/0123")] {
-        drop(liveliness.declare_token(key).wait().unwrap());
+        drop(session.liveliness().declare_token(key).wait().unwrap());
         attacks += 1;
     }
-    // Answers and status in the place of the gateway.
-    let answer = |query: zenoh::query::Query| drop(query.reply_err("refused forged").wait());
-    for key in [format!("rcs/{CELL}/open/workstation/{VICTIM}"), format!("rcs/{CELL}/open/**")] {
-        session.declare_queryable(key).callback(answer).background().wait().unwrap();
-        attacks += 1;
-    }
+    // The status.
     session.put(format!("rcs/{CELL}/status/run"), "forged").wait().unwrap();
     attacks += 1;
     // A claim in the name of the victim, and by wildcard.
@@ -112,9 +120,9 @@ fn attack(session: &Session, id: &str) -> (Heard, u32) {
         let replies = session.get(key).payload("0".repeat(32)).consolidation(ConsolidationMode::None);
         for reply in replies.timeout(Duration::from_secs(1)).wait().unwrap() {
             match reply.into_result() {
-                Ok(sample) => heard.lock().unwrap().push(format!("claim {}", sample.key_expr())),
+                Ok(sample) => heard.push(format!("claim {}", sample.key_expr())),
                 Err(error) if error.payload().to_bytes().starts_with(b"refused") => {
-                    heard.lock().unwrap().push("an answer".into());
+                    heard.push("an answer".into());
                 }
                 // Time is up.
                 Err(_) => {}
@@ -123,6 +131,14 @@ fn attack(session: &Session, id: &str) -> (Heard, u32) {
         attacks += 1;
     }
     (heard, attacks)
+}
+
+/// Numbers of the last command and of the last mailgram that the run has read.
+fn echo(claim: &Claim) -> (u16, u16) {
+    let frames = claim.frames();
+    let (_, data) = frames.iter().find(|(address, _)| *address == HWSC_STATUS.address).unwrap();
+    let status = status::decode(data).unwrap();
+    (status.echo, status.mailgram_echo)
 }
 
 #[test]
@@ -149,16 +165,13 @@ fn no_certificate_gets_beyond_its_role() {
     let honest = connect(&keys, VICTIM, &shop.endpoint()).unwrap();
     let claim = Claim::open(honest, CELL, VICTIM, &"c".repeat(32)).unwrap();
     assert!(claim.is_alive(), "{}", run.errors());
-    let echo = |claim: &Claim| {
-        let frames = claim.frames();
-        let (_, data) = frames.iter().find(|(address, _)| *address == HWSC_STATUS.address).unwrap();
-        let status = status::decode(data).unwrap();
-        (status.echo, status.mailgram_echo)
-    };
     let before = echo(&claim);
     for name in attackers {
-        let attacker = connect(&keys, name, &shop.endpoint()).unwrap();
-        let (heard, attacks) = attack(&attacker, &claim.id);
+        // Two sessions, because a session hears itself.
+        let attacker = || connect(&keys, name, &shop.endpoint()).unwrap();
+        let (listener, speaker) = (attacker(), attacker());
+        let (heard, listening) = listen(&listener, &claim.id);
+        let (answers, speaking) = speak(&speaker, &claim.id);
         thread::sleep(Duration::from_millis(300));
         assert_eq!(echo(&claim), before, "{name} has commanded the run");
         assert!(claim.is_alive(), "{name} has ended the claim");
@@ -166,7 +179,8 @@ fn no_certificate_gets_beyond_its_role() {
         heard.sort();
         heard.dedup();
         assert!(heard.is_empty(), "{name} has heard {heard:?}");
-        println!("{name}: {attacks} attacks, without effect");
+        assert!(answers.is_empty(), "{name} was answered {answers:?}");
+        println!("{name}: {} attacks, without effect", listening + speaking);
     }
     assert!(!gateway.errors().contains("disconnected"), "{}", gateway.errors());
     assert_eq!(Role::ALL.len(), 5, "a new role needs an attacker");
@@ -199,4 +213,30 @@ fn neighbour_believes_no_gateway_with_another_name() {
     let error = shop.hwsc("hwsc-1").err().unwrap();
     assert!(error == "closed" || error.starts_with("the gateway gives no answer"), "{error}");
     assert_eq!(*asked.lock().unwrap(), 0, "{}", connect.errors());
+}
+
+/// The gateway connects to a router, for monitors. One that was taken over hears the status, and commands nothing.
+#[test]
+fn router_that_was_taken_over_commands_nothing_and_hears_no_claim() {
+    let shop = Shop::new(&[VICTIM, "router@127.0.0.1"]);
+    let _run = shop.real_run();
+    let keys = shop.path("keys");
+    let endpoint = format!("tls/127.0.0.1:{}", free_port());
+    let router = router(&keys, "router", &endpoint).unwrap();
+    let _gateway = shop.serve(&["workstation=hwsc-1", "monitor=router", "--router", &endpoint]);
+    let honest = connect(&keys, VICTIM, &shop.endpoint()).unwrap();
+    let claim = Claim::open(honest, CELL, VICTIM, &"c".repeat(32)).unwrap();
+    let states = Arc::new(Mutex::new(0));
+    let count = Arc::clone(&states);
+    let take = move |_| *count.lock().unwrap() += 1;
+    router.declare_subscriber("rcs/*/status/run").callback(take).background().wait().unwrap();
+    assert!(within(5.0, || *states.lock().unwrap() > 0), "the router is not connected");
+    let before = echo(&claim);
+    let (heard, _) = listen(&router, &claim.id);
+    assert!(claim.is_alive());
+    assert!(heard.lock().unwrap().is_empty(), "the router has heard {heard:?}");
+    speak(&router, &claim.id);
+    thread::sleep(Duration::from_millis(300));
+    assert_eq!(echo(&claim), before, "the router has commanded the run");
+    assert!(claim.is_alive(), "the router has ended the claim");
 }

@@ -13,8 +13,10 @@ use std::{
 
 use crate::shop::Shop;
 
-/// Number of bad clients.
+/// Number of bad clients; as many of them as this connect again in a second.
 const CROWD: usize = 300;
+/// Number of threads with bad clients.
+const THREADS: usize = 4;
 
 /// How long an honest client needs while a crowd is there.
 fn admitted_beside(shop: &Shop, crowd: impl FnOnce(&Arc<AtomicBool>)) -> Duration {
@@ -50,7 +52,7 @@ fn clients_that_send_garbage_do_not_delay_an_honest_one() {
     let shop = Shop::new(&["hwsc-1"]);
     let port = shop.port;
     let needed = admitted_beside(&shop, |is_over| {
-        for _ in 0..4 {
+        for _ in 0..THREADS {
             let is_over = Arc::clone(is_over);
             thread::spawn(move || {
                 let mut open = Vec::new();
@@ -60,10 +62,10 @@ fn clients_that_send_garbage_do_not_delay_an_honest_one() {
                         let _ = stream.write_all(&[0xA5; 600]);
                         open.push(stream);
                     }
-                    if open.len() > CROWD / 4 {
+                    if open.len() > CROWD / THREADS {
                         open.clear();
                     }
-                    thread::sleep(Duration::from_millis(2));
+                    thread::sleep(Duration::from_secs(1) / u32::try_from(CROWD / THREADS).unwrap());
                 }
             });
         }

@@ -131,6 +131,15 @@ impl Claim {
 
 /// A peer that listens in the place of a gateway, with another certificate and without access control.
 pub fn rogue_gateway(keys: &Path, name: &str, endpoint: &str) -> Result<Session, zenoh::Error> {
+    listening("peer", keys, name, endpoint)
+}
+
+/// A router without access control.
+pub fn router(keys: &Path, name: &str, endpoint: &str) -> Result<Session, zenoh::Error> {
+    listening("router", keys, name, endpoint)
+}
+
+fn listening(mode: &str, keys: &Path, name: &str, endpoint: &str) -> Result<Session, zenoh::Error> {
     let mut config = Config::default();
     let tls = json!({
         "root_ca_certificate": keys.join("ca.pem"),
@@ -139,7 +148,7 @@ pub fn rogue_gateway(keys: &Path, name: &str, endpoint: &str) -> Result<Session,
         "enable_mtls": true,
     });
     for (key, value) in [
-        ("mode", json!("peer")),
+        ("mode", json!(mode)),
         ("listen/endpoints", json!([endpoint])),
         ("scouting/multicast/enabled", json!(false)),
         ("transport/link/tls", tls),

@@ -3,12 +3,13 @@
 use std::{
     io::{BufRead as _, BufReader, Write as _},
     os::unix::net::UnixStream,
+    thread,
     time::{Duration, Instant},
 };
 
 use neighbours::line::{Role, Session, session::Event};
 
-use crate::shop::Shop;
+use crate::shop::{Shop, within};
 
 /// An operator's session behind a gateway.
 struct Operator {
@@ -19,15 +20,20 @@ struct Operator {
 }
 
 impl Operator {
-    fn connect(shop: &Shop) -> Self {
+    /// Connect; `None` if the run has not begun.
+    fn connect(shop: &Shop) -> Option<Self> {
         let mut stream = UnixStream::connect(shop.path("op-1.sock")).unwrap();
         stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
         let mut session = Session::neighbour(Role::Operator, Instant::now());
         loop {
-            match session.event(Instant::now()).unwrap() {
-                Some(Event::Welcome(_)) => break,
-                Some(_) => {}
-                None => {
+            match session.event(Instant::now()) {
+                Ok(Some(Event::Welcome(_))) => break,
+                Ok(Some(_)) => {}
+                Err(error) => {
+                    assert!(error.to_string().contains("has not begun"), "{error}");
+                    return None;
+                }
+                Ok(None) => {
                     let bytes = std::mem::take(session.output());
                     stream.write_all(&bytes).unwrap();
                     let mut byte = [0];
@@ -41,7 +47,7 @@ impl Operator {
         let greeting = operator.line();
         assert!(greeting.starts_with("rcs-operator 2 ") && greeting.contains("op-1.anna"), "{greeting}");
         operator.hear(&greeting);
-        operator
+        Some(operator)
     }
 
     fn line(&mut self) -> String {
@@ -70,16 +76,48 @@ impl Operator {
     }
 }
 
-/// The stick is held by keep-alives of the operator: without them the motion ends after 250 ms, also through a gateway.
+/// What an operator holds by hand.
+const HELD: [&str; 3] = ["joystick velocity 0", "joystick frame WORLD", "joystick stick 0 300 36000"];
+/// The answer to `leave` if something was held.
+const RELEASED: &str = "stick and buttons are released";
+
+impl Operator {
+    /// Hold the stick for a while, with or without keep-alives; true if it was still held then.
+    fn holds(&mut self, has_keep_alives: bool) -> bool {
+        for request in HELD {
+            let answer = self.request(request);
+            assert!(answer.starts_with("ok"), "{request}: {answer}");
+        }
+        for _ in 0..12 {
+            thread::sleep(Duration::from_millis(50));
+            if has_keep_alives {
+                self.send("\n");
+            }
+        }
+        self.request("leave").contains(RELEASED)
+    }
+}
+
+/// The stick is held by keep-alives of the operator: without them the motion ends after 250 ms, also through a gateway,
+/// which sends none of its own.
 #[test]
-fn operator_moves_by_hand_through_a_gateway_and_the_motion_ends_when_it_falls_silent() {
+fn stick_behind_a_gateway_is_held_by_keep_alives_and_released_without() {
     let shop = Shop::new(&["op-1"]);
-    let _run = shop.run(&["--clock", "real", "--operator", "network"]);
+    let run = shop.run(&["--stand-by", "--clock", "real", "--operator", "network"]);
     let gateway = shop.serve(&["operator=op-1"]);
     let _connect = shop.connect("operator", "op-1");
-    let mut operator = Operator::connect(&shop);
+    let mut connected = None;
+    assert!(within(20.0, || {
+        connected = Operator::connect(&shop);
+        connected.is_some()
+    }));
+    let mut operator = connected.unwrap();
     gateway.wait_for("operator op-1 has connected");
-    assert!(operator.request("stop").starts_with("ok"));
+    let status = operator.request("status");
+    assert!(status.contains("nobody commands"), "{status}\n{}", run.errors());
+    assert!(!operator.holds(false), "the stick was held for 600 ms without a sign of life");
+    // On a busy machine a keep-alive may be late.
+    assert!(within(20.0, || operator.holds(true)), "the stick was released in spite of keep-alives");
     drop(operator);
     gateway.wait_for("operator op-1 has disconnected");
 }

@@ -134,7 +134,9 @@ impl Shop {
     /// A run whose `--network` is the socket of this shop.
     pub fn run(&self, arguments: &[&str]) -> Process {
         let mut command = Command::new(program("rcs-run"));
-        command.args(arguments).args(["--log", "none", "--shared-memory", "off", "--json", "--network"]);
+        // Operators need shared memory; its place is this shop's.
+        let memory = if arguments.contains(&"--operator") { "on" } else { "off" };
+        command.args(arguments).args(["--log", "none", "--shared-memory", memory, "--json", "--network"]);
         command.arg(format!("unix:{}", self.run_socket().display())).current_dir(self.directory.path());
         command.arg("--data").arg(concat!(env!("CARGO_MANIFEST_DIR"), "/../data"));
         command.stdout(File::create(self.path("run.json")).unwrap());

@@ -1,6 +1,8 @@
 //! What monitors read.
 
 use std::{
+    collections::BTreeSet,
+    process::Command,
     sync::{Arc, Mutex},
     time::{Duration, Instant},
 };
@@ -8,8 +10,8 @@ use std::{
 use zenoh::{Wait as _, query::ConsolidationMode, sample::SampleKind};
 
 use crate::{
-    native::connect,
-    shop::{CELL, Shop, within},
+    native::{connect, router},
+    shop::{CELL, Process, Shop, free_port, make_keys, within},
 };
 
 #[test]
@@ -51,4 +53,61 @@ fn monitor_sees_the_run_its_mailboxes_and_the_end_of_the_gateway() {
     assert!(answer.recv().unwrap().result().is_ok());
     gateway.kill();
     assert!(within(1.0, || *gone.lock().unwrap()), "the killed gateway is not missed");
+}
+
+/// A shop: each cell has a gateway of its own, and all connect to one router.
+#[test]
+fn monitor_sees_twenty_cells_through_a_router_and_misses_a_killed_one() {
+    const CELLS: usize = 20;
+    let directory = tempfile::tempdir().unwrap();
+    let keys = directory.path().join("keys");
+    let cells: Vec<_> = (1..=CELLS).map(|number| format!("c{number:02}")).collect();
+    let addresses: Vec<_> = cells.iter().map(|cell| format!("{cell}@127.0.0.1")).collect();
+    let mut names: Vec<_> = addresses.iter().map(String::as_str).collect();
+    names.extend(["router@127.0.0.1", "mes"]);
+    make_keys(&keys, CELL, &names);
+    let endpoint = format!("tls/127.0.0.1:{}", free_port());
+    let first = router(&keys, "router", &endpoint).unwrap();
+    let mut gateways: Vec<_> = cells
+        .iter()
+        .map(|cell| {
+            let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-gateway"));
+            command.args(["serve", cell, &format!("tls/127.0.0.1:{}", free_port()), "--router", &endpoint]);
+            command.arg("--run").arg(format!("unix:{}", directory.path().join(cell).display()));
+            command.arg("--keys").arg(&keys).args(["--allow", "monitor=mes,router"]);
+            Process::start(&mut command, directory.path().join(format!("{cell}.err")))
+        })
+        .collect();
+    gateways.iter().for_each(|gateway| gateway.wait_for(" at tls/"));
+    let watch = |monitor: &zenoh::Session| {
+        let here = Arc::new(Mutex::new(BTreeSet::new()));
+        let cells = Arc::clone(&here);
+        let take = move |token: zenoh::sample::Sample| {
+            let cell = token.key_expr().split('/').nth(1).unwrap().to_owned();
+            match token.kind() {
+                SampleKind::Put => cells.lock().unwrap().insert(cell),
+                SampleKind::Delete => cells.lock().unwrap().remove(&cell),
+            };
+        };
+        let tokens = monitor.liveliness();
+        tokens.declare_subscriber("rcs/*/alive/*").history(true).callback(take).background().wait().unwrap();
+        here
+    };
+    let monitor = connect(&keys, "mes", &endpoint).unwrap();
+    let (here, start) = (watch(&monitor), Instant::now());
+    assert!(within(2.0, || here.lock().unwrap().len() == CELLS), "{:?}", here.lock().unwrap());
+    println!("{CELLS} cells seen after {:?}", start.elapsed());
+    gateways[6].kill();
+    let start = Instant::now();
+    assert!(within(1.0, || !here.lock().unwrap().contains("c07")), "the killed cell is not missed");
+    println!("killed cell missed after {:?}", start.elapsed());
+    // A restarted router has all cells again within a second or two: gateways try once a second.
+    drop(monitor);
+    first.close().wait().unwrap();
+    let _second = router(&keys, "router", &endpoint).unwrap();
+    let start = Instant::now();
+    let monitor = connect(&keys, "mes", &endpoint).unwrap();
+    let here = watch(&monitor);
+    assert!(within(2.5, || here.lock().unwrap().len() == CELLS - 1), "{:?}", here.lock().unwrap());
+    println!("all cells are back {:?} after the restart of the router", start.elapsed());
 }

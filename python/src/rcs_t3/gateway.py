@@ -82,7 +82,8 @@ def configuration(endpoints: Sequence[str], keys: str) -> "zenoh.Config":
         ("listen/endpoints", []),
         ("connect/endpoints", list(endpoints)),
         ("connect/exit_on_failure", is_client),
-        ("connect/timeout_ms", 5000 if is_client else -1),
+        ("connect/timeout_ms", 0 if is_client else -1),
+        ("open/return_conditions/connect_scouted", False),
         ("scouting/multicast/enabled", False),
         ("scouting/gossip/enabled", False),
         ("transport/link/protocols", ["tls"]),
@@ -162,7 +163,7 @@ class GatewaySocket:
             config.insert_json5("access_control", _access_control(cell, _claim_rules(cell, word, name)))
             self._session = zenoh.open(config)
         except zenoh.ZError as error:
-            raise ConnectionLost(f"{address}: {error}") from error
+            raise ConnectionLost(f"{address}: {str(error).partition(' at /')[0]}") from error
         try:
             self._open(zenoh, cell, word, name)
         except BaseException:
