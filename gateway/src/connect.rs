@@ -1,7 +1,7 @@
 //! `rcs-gateway connect`: the other end of a claim, beside a neighbour or an operator.
 //!
-//! It listens at a Unix socket. Each program that connects there gets a Zenoh session and a claim of its own, so nothing
-//! of a former connection is left when the next one begins.
+//! It listens at a Unix socket. Each program that connects there gets a Zenoh session and a claim of its own, so
+//! nothing of a former connection is left when the next one begins.
 
 use std::{
     fs, io,

@@ -74,7 +74,10 @@ pub enum KeysError {
         until: String,
     },
     /// It is not clear which certificate is meant.
-    #[error("{}: expected one private key NAME.key, found {}; choose one with --name NAME", .directory.display(), list(.found))]
+    #[error(
+        "{}: expected one private key NAME.key, found {}; choose one with --name NAME",
+        .directory.display(), list(.found)
+    )]
     Which {
         /// The directory.
         directory: PathBuf,

@@ -1,5 +1,5 @@
-//! The keys of a cell. Everything is under `rcs/CELL`; ROLE is a role of the run, NAME the common name of a certificate,
-//! and CLAIM 32 random hexadecimal digits.
+//! The keys of a cell. Everything is under `rcs/CELL`; ROLE is a role of the run, NAME the common name of a
+//! certificate, and CLAIM 32 random hexadecimal digits.
 //!
 //! | key | contents |
 //! |---|---|

@@ -52,7 +52,7 @@ def _frames(data: bytes) -> List[Tuple[int, bytes]]:
         address, length = struct.unpack_from("<IH", data, at)
         end = at + 4 + length
         if not 8 <= length <= 4096 or end > len(data):
-            raise ProtocolError(f"a frame of 8 to 4096 bytes was expected behind the address {address:05X}, found {length}")
+            raise ProtocolError(f"a frame of 8 to 4096 bytes was expected after the address {address:05X}, found {length}")
         found.append((address, data[at:end]))
         at = end
     return found
@@ -133,8 +133,8 @@ def _claim_rules(cell: str, role: str, name: str) -> List[Dict[str, Any]]:
 class GatewaySocket:
     """A claim of a role at a gateway, with the methods of a socket.
 
-    `address` is ``CELL@tls/IP:PORT``; `keys` a path without ``.pem`` and ``.key``, whose last part is the common name of
-    the certificate; ``ca.pem`` is beside them. Raises :class:`ConnectionLost` if there is no gateway or no run, and
+    `address` is ``CELL@tls/IP:PORT``; `keys` a path without ``.pem`` and ``.key``, whose last part is the common name
+    of the certificate; ``ca.pem`` is beside them. Raises :class:`ConnectionLost` if there is no gateway or no run, and
     :class:`Disconnected` if the run refuses the claim.
     """
 
