@@ -1,6 +1,6 @@
-//! Moves an operator's lines (docs/operator.md "The protocol") between a Unix socket and the network. A payload has whole
-//! lines; an empty one is the end. Nothing is sent on an operator's behalf: the run ends motion by hand 250 ms after the
-//! last line of the operator, not of a gateway.
+//! Moves an operator's lines (docs/operator.md "The protocol") between a Unix socket and the network. A payload has
+//! whole lines; an empty one is the end. Nothing is sent on an operator's behalf: the run ends motion by hand 250 ms
+//! after the last line of the operator, not of a gateway.
 
 use std::{os::fd::AsFd as _, time::Instant};
 

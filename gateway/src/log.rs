@@ -1,5 +1,5 @@
-//! Messages on standard error, which no flood of connections can fill: each source has a limited rate, and the next line
-//! says how many were left out.
+//! Messages on standard error, which no flood of connections can fill: each source has a limited rate, and the next
+//! line says how many were left out.
 
 use std::{
     fmt::{self, Write as _},

@@ -1,5 +1,5 @@
-//! The answer to a request for a claim, as text: `real` or `fast`, the clock of the run; or, as an error, `refused TEXT`
-//! in the words of the run, or `absent TEXT` if there is no run: a later request may succeed.
+//! The answer to a request for a claim, as text: `real` or `fast`, the clock of the run; or, as an error, `refused
+//! TEXT` in the words of the run, or `absent TEXT` if there is no run: a later request may succeed.
 
 use std::fmt;
 

@@ -4,8 +4,8 @@
 //!   run -- socket -- Relay (Side::Run) == samples == Relay (Side::Neighbour) -- socket -- neighbour
 //! ```
 //!
-//! Each pulse from the socket, and each mailgram without one, makes a sample. Each sample is written to the socket as the
-//! mailboxes that have changed and the pulse.
+//! Each pulse from the socket, and each mailgram without one, makes a sample. Each sample is written to the socket as
+//! the mailboxes that have changed and the pulse.
 
 use std::{
     io,

@@ -18,7 +18,7 @@ impl Sources {
     /// Read them.
     pub fn read() -> Self {
         let mut all = BTreeMap::new();
-        for directory in CRATES.into_iter().chain(["tests"]) {
+        for directory in CRATES.into_iter().chain(["tests", "gateway"]) {
             gather(&root().join(directory), &mut all);
         }
         Self(all)

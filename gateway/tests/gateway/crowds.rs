@@ -11,6 +11,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+use os_io::stdout_line;
+
 use crate::shop::Shop;
 
 /// Number of bad clients; as many of them as this connect again in a second.
@@ -31,7 +33,7 @@ fn admitted_beside(shop: &Shop, crowd: impl FnOnce(&Arc<AtomicBool>)) -> Duratio
     let needed = start.elapsed();
     is_over.store(true, Ordering::SeqCst);
     let lines = gateway.errors().lines().count();
-    println!("beside {CROWD} bad clients: admitted after {needed:?}; the log has {lines} lines");
+    stdout_line!("beside {CROWD} bad clients: admitted after {needed:?}; the log has {lines} lines");
     assert!(lines < 60, "the log is flooded: {lines} lines");
     needed
 }

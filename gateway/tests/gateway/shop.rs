@@ -16,6 +16,7 @@ use neighbours::{
     mailbox::{HWSC_COMMAND, HWSC_STATUS, Mailbox},
     workstation::{command, player, status},
 };
+use os_io::stderr_line;
 use tempfile::TempDir;
 
 pub const CELL: &str = "t3";
@@ -81,7 +82,7 @@ impl Drop for Process {
     fn drop(&mut self) {
         self.kill();
         if thread::panicking() {
-            eprintln!("--- {}\n{}", self.errors.display(), self.errors());
+            stderr_line!("--- {}\n{}", self.errors.display(), self.errors());
         }
     }
 }
