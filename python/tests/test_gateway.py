@@ -43,6 +43,7 @@ class Zenoh(types.ModuleType):
     ZError = type("ZError", (Exception,), {})
     CongestionControl = types.SimpleNamespace(DROP="drop")
     Priority = types.SimpleNamespace(INTERACTIVE_HIGH="high")
+    handlers = types.SimpleNamespace(Callback=lambda callback, indirect: callback)
     SampleKind = types.SimpleNamespace(PUT="put", DELETE="delete")
 
     def __init__(self, answers, samples=()):

@@ -6,6 +6,7 @@ docs/neighbours.md "On the line". So every client of this package works through 
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
 import re
@@ -16,7 +17,7 @@ import struct
 import threading
 import time
 from collections import deque
-from typing import TYPE_CHECKING, Any, Deque, Dict, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Deque, Dict, List, Optional, Sequence, Tuple
 
 from .errors import ConnectionLost, Disconnected, ProtocolError
 
@@ -169,20 +170,28 @@ class GatewaySocket:
         except BaseException:
             self._session.close()
             raise
+        # A session of Zenoh that is open when Python ends keeps it from ending.
+        atexit.register(self.close)
 
     def _open(self, zenoh: Any, cell: str, role: str, name: str) -> None:
         claim = secrets.token_hex(16)
         front = f"rcs/{cell}/{role}/{name}/{claim}"
-        self._subscriber = self._session.declare_subscriber(front + "/out", self._deliver)
+        self._deleted = zenoh.SampleKind.DELETE
+
+        def direct(callback: Callable[[Any], None]) -> Any:
+            # Otherwise Zenoh starts a thread for each callback, which keeps Python from ending.
+            return zenoh.handlers.Callback(callback, indirect=False)
+
+        self._subscriber = self._session.declare_subscriber(front + "/out", direct(self._deliver))
         liveliness = self._session.liveliness()
-        self._watcher = liveliness.declare_subscriber(f"rcs/{cell}/alive/*", self._watch, history=True)
+        alive = f"rcs/{cell}/alive/*"
+        self._watcher = liveliness.declare_subscriber(alive, direct(self._watch), history=True)
         self._publisher = self._session.declare_publisher(
             front + "/in",
             congestion_control=zenoh.CongestionControl.DROP,
             priority=zenoh.Priority.INTERACTIVE_HIGH,
             express=True,
         )
-        self._deleted = zenoh.SampleKind.DELETE
         self._token = liveliness.declare_token(front + "/alive")
         for reply in self._session.get(f"rcs/{cell}/open/{role}/{name}", payload=claim, timeout=_ANSWER):
             if reply.ok is not None:
@@ -290,6 +299,7 @@ class GatewaySocket:
 
     def close(self) -> None:
         """End the claim in order."""
+        atexit.unregister(self.close)
         if not self._session.is_closed():
             self._publisher.put(b"") if self._is_operator else self._publish(_frame(_DISCONNECT))
             self._session.close()
