@@ -87,15 +87,13 @@ impl Drop for Process {
     }
 }
 
-/// True if a condition holds within a time.
+/// True if a condition holds within a time; false if it becomes true later.
 pub fn within(seconds: f64, mut condition: impl FnMut() -> bool) -> bool {
     let until = Instant::now() + Duration::from_secs_f64(seconds);
     loop {
-        if condition() {
-            return true;
-        }
-        if Instant::now() >= until {
-            return false;
+        let holds = condition();
+        if holds || Instant::now() >= until {
+            return holds && Instant::now() < until;
         }
         thread::sleep(Duration::from_millis(5));
     }
