@@ -52,9 +52,31 @@ impl Error {
     }
 }
 
-/// An error of Zenoh without the file and line of its source code, which Zenoh appends.
+/// An error of Zenoh in one sentence.
 #[must_use]
 pub fn words(error: &zenoh::Error) -> String {
-    let text = error.to_string();
-    text.split(" at /").next().unwrap_or_default().trim_end_matches('.').to_owned()
+    without_places(&error.to_string()).trim_end_matches(['.', '!', ' ']).to_owned()
+}
+
+/// A text of Zenoh without the files and lines of its source code, ` at /…/tcp.rs:105.`, which it appends.
+#[must_use]
+pub fn without_places(text: &str) -> String {
+    let (mut words, mut rest) = (String::new(), text);
+    while let Some((before, place)) = rest.split_once(" at /") {
+        words.push_str(before);
+        rest = &place[place.find([' ', ']']).unwrap_or(place.len())..];
+    }
+    words + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_in_the_source_code_are_left_out() {
+        let text = "no link: [refused (os error 111) at /a/b-1.0/tcp.rs:105.] at /a/c.rs:133. at /a/d.rs:1";
+        assert_eq!(without_places(text), "no link: [refused (os error 111)]");
+        assert_eq!(without_places("look at this"), "look at this");
+    }
 }

@@ -14,6 +14,8 @@ use tracing::{
     span,
 };
 
+use crate::error::without_places;
+
 /// Number of lines that a source may write at once.
 const BURST: u32 = 10;
 /// Time after which a source may write one more line.
@@ -124,7 +126,7 @@ impl Subscriber for Warnings {
             return;
         }
         // Zenoh explains every failed handshake by the limit of open files.
-        let text = text.0.replace(". Hint: increase the system open file limit.", "");
+        let text = without_places(&text.0.replace(". Hint: increase the system open file limit.", ""));
         write(Source::Zenoh, &text);
     }
 
