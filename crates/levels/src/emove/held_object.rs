@@ -17,8 +17,8 @@ use super::{
     gripper::{Gripper, is_open},
     grippers::{FingerVerb, Grippers},
     localization::{LOST_INCHES, LOST_RADIANS},
-    motion::route::{FULL_OPENING, near},
-    robot_place::{is_led, may_push, present_frame},
+    motion::route::FULL_OPENING,
+    robot_place::{is_led, may_push, near, present_frame},
     tables::{Fingers, Load},
 };
 use crate::{

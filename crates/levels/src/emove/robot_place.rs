@@ -9,8 +9,14 @@ use interfaces::{
 };
 use taskdata::files::{Place, TaskData};
 
-use super::motion::route::near;
 use crate::places::{LocationKey, pose_of};
+
+/// True if two frames are the same for a robot that is at rest.
+#[must_use]
+pub fn near(a: &Frame, b: &Frame, inches: f64, radians: f64) -> bool {
+    let distance = a.distance(b);
+    distance.inches <= inches && distance.radians <= radians
+}
 
 /// What a command goes to.
 #[must_use]

@@ -24,8 +24,8 @@ use taskdata::files::{LocptId, TaskData};
 use super::{
     EmoveInputs,
     localization::{ASIDE_INCHES, LOST_RADIANS},
-    motion::{relative::Relative, route::near},
-    robot_place::{base, command_at, commanded_pose, is_led, present_frame, robot_at},
+    motion::relative::Relative,
+    robot_place::{base, command_at, commanded_pose, is_led, near, present_frame, robot_at},
     tables::{
         AtDrum, Bias,
         drum::{AtTheDrum, Belief, Tool, drum},

@@ -21,8 +21,8 @@ use taskdata::files::{MovtabId, PoseId, TaskData, TrajParaId, VisionId, VisionPa
 
 use super::{
     EmoveInputs,
-    motion::route::{Goal, Planning, near},
-    robot_place::{is_led, may_push, place_named, present_frame},
+    motion::route::{Goal, Planning},
+    robot_place::{is_led, may_push, near, place_named, present_frame},
     tables::{Action, Reach, Sight, Tries, VisionAnswer},
 };
 

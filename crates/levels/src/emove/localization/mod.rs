@@ -23,8 +23,7 @@ use taskdata::files::{LocptId, TaskData};
 use self::surroundings::{Surroundings, is_plain};
 use super::{
     EmoveInputs,
-    motion::route::near,
-    robot_place::{commanded_pose, robot_at},
+    robot_place::{commanded_pose, near, robot_at},
     tables::{At, PlaceKnowledge},
 };
 use crate::places::{LocationKey, named, place_of};

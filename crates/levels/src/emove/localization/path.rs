@@ -17,8 +17,8 @@ use taskdata::files::{TaskData, TrajParaId};
 use super::{LOST_INCHES, LOST_RADIANS, Localization};
 use crate::emove::{
     EmoveInputs,
-    motion::route::{Planning, Route, near},
-    robot_place::{commanded_pose, is_cut_off, present_frame},
+    motion::route::{Planning, Route},
+    robot_place::{commanded_pose, is_cut_off, near, present_frame},
 };
 
 /// The farthest that a commanded pose moves in a tick, in: 14 in/s (A 2.3), and a little more.

@@ -28,9 +28,9 @@ use crate::{
         EmoveInputs,
         motion::{
             flight::{Flight, Rejoin},
-            route::{Planning, approach_to, near},
+            route::{Planning, approach_to},
         },
-        robot_place::{self, THERE_INCHES, THERE_RADIANS, commanded_pose, place, present_frame},
+        robot_place::{self, THERE_INCHES, THERE_RADIANS, commanded_pose, near, place, present_frame},
         tables::{
             Knowledge,
             resume::{Offset, Stance, Standing, stance},

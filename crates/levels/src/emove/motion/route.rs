@@ -171,13 +171,6 @@ impl Goal {
     }
 }
 
-/// True if two frames are the same for a robot that is at rest.
-#[must_use]
-pub fn near(a: &Frame, b: &Frame, inches: f64, radians: f64) -> bool {
-    let distance = a.distance(b);
-    distance.inches <= inches && distance.radians <= radians
-}
-
 /// The approach to a place, if one is written.
 #[must_use]
 pub fn approach_to(at: &RobotPlace, data: &TaskData<'_>) -> Option<PathId> {
