@@ -76,8 +76,18 @@ impl Copied {
     }
 
     /// Copy all files that git knows, `switched` in the place of some, but only those that differ: what is built
-    /// already stays fresh.
+    /// already stays fresh. Sources of an earlier copy that are no longer there are removed.
     fn write(&self, switched: &Switched) -> io::Result<()> {
+        let mut earlier = Vec::new();
+        if self.source.is_dir() {
+            mutate::files(&self.source, &mut earlier)?;
+        }
+        for path in earlier {
+            let name = path.strip_prefix(&self.source).unwrap_or(&path);
+            if !self.root.join(name).exists() {
+                fs::remove_file(&path)?;
+            }
+        }
         let listed = Command::new("git").args(["ls-files", "-z"]).current_dir(&self.root).output()?;
         for name in listed.stdout.split(|byte| *byte == 0).filter(|name| !name.is_empty()) {
             let name = String::from_utf8_lossy(name).into_owned();

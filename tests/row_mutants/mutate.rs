@@ -248,7 +248,8 @@ fn only(steps: &[String]) -> Option<&String> {
     Some(step).filter(|step| *step != "any")
 }
 
-fn files(directory: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
+/// All Rust sources under a directory.
+pub fn files(directory: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     for entry in fs::read_dir(directory)? {
         let path = entry?.path();
         if path.is_dir() {

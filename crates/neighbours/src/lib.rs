@@ -7,7 +7,7 @@
 //!   workstation;
 //! * [`pedestal`]: the Active Pedestal as a separate system, and its mailboxes as bytes;
 //! * [`vision`]: the areas of the vision mailbox (IX.4), which E-move reads and writes;
-//! * [`line`]: the bytes between the controller and a neighbour: frames, pulses, and the protocol of both sides.
+//! * [`mod@line`]: the bytes between the controller and a neighbour: frames, pulses, and the protocol of both sides.
 //!
 //! This crate has no file, socket, thread or clock: `sessions` carries mailboxes to other processes, and keeps the items
 //! in a database.
