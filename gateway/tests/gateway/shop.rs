@@ -87,7 +87,8 @@ impl Drop for Process {
     }
 }
 
-/// True if a condition holds within a time; false if it becomes true later.
+/// True if a condition holds within a time; false if it becomes true later. It is tried ten times a second: a run keeps
+/// out a client that it has refused eight times in a second (docs/neighbours.md "Security").
 pub fn within(seconds: f64, mut condition: impl FnMut() -> bool) -> bool {
     let until = Instant::now() + Duration::from_secs_f64(seconds);
     loop {
@@ -95,7 +96,7 @@ pub fn within(seconds: f64, mut condition: impl FnMut() -> bool) -> bool {
         if holds || Instant::now() >= until {
             return holds && Instant::now() < until;
         }
-        thread::sleep(Duration::from_millis(5));
+        thread::sleep(Duration::from_millis(100));
     }
 }
 
