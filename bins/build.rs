@@ -55,7 +55,7 @@ fn write(name: &str, entries: impl IntoIterator<Item = String>) -> io::Result<()
     fs::write(out.join(name), format!("&[\n{}]\n", entries.into_iter().collect::<String>()))
 }
 
-/// All files below a directory, in order. Cargo builds anew if one of them changes.
+/// All files below a directory, sorted by path. A change of one of them makes cargo run this script again.
 fn files(directory: &Path) -> io::Result<Vec<PathBuf>> {
     println!("cargo::rerun-if-changed={}", directory.display());
     let mut files = Vec::new();

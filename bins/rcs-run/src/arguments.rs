@@ -31,8 +31,8 @@ pub struct RunArguments {
     /// Name of a job in the data directory, or a path; `rcs-run jobs` lists the names
     #[arg(default_value = "linkbar", value_parser = pages::job(), hide_possible_values = true)]
     pub job: String,
-    /// Task data, jobs and cell description [default: data; if there is none: built-in, the data of the program, but not
-    /// with a robot at a port]
+    /// Task data, jobs and cell description [default: data; if there is none: built-in, the data of the program, but
+    /// not with a robot at a port]
     #[arg(long, value_name = "DIR", value_parser = data_directory())]
     pub data: Option<PathBuf>,
     /// When ticks run. fast: one after the other, without waiting; real: one every 40 ms; Nx, such as 5x: N every 40

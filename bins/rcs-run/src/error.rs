@@ -100,7 +100,10 @@ pub enum Error {
     #[error(transparent)]
     Board(#[from] MemberError),
     /// The console is not installed.
-    #[error("the console is not there: {} was expected; cargo build --release --bin rcs-console makes it", .0.display())]
+    #[error(
+        "the console is not there: {} was expected; cargo build --release --bin rcs-console makes it",
+        .0.display()
+    )]
     NoConsole(PathBuf),
     /// The console cannot be started.
     #[error("the console cannot be started: {0}")]

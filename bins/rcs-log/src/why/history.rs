@@ -141,7 +141,7 @@ pub fn effect(row: &Row, step: &str) -> String {
 /// The conditions as a reason: `because step is Start, gripper is None`.
 pub fn because(conditions: &[String]) -> String {
     match conditions {
-        [] => "whatever the state".to_owned(),
+        [] => "in any state".to_owned(),
         conditions => format!("because {}", conditions.join(", ")),
     }
 }
@@ -213,6 +213,6 @@ mod tests {
             Values { step: Outcome::Done.code(), variables: Buffer { arrival: Arrival::Same }.code() };
         assert_eq!(of_row(5, Some(values)), "because step is Done, arrival is Same");
         assert_eq!(of_row(5, None), "because step is Idle or Done or Error or Joystick, arrival is Same");
-        assert_eq!(because(&[]), "whatever the state");
+        assert_eq!(because(&[]), "in any state");
     }
 }

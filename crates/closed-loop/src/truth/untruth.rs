@@ -5,7 +5,7 @@ use super::NotSensed;
 /// A claim that is untrue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Untruth {
-    /// What is true instead: a sentence without its full stop.
+    /// The actual state, as a sentence without a full stop.
     pub text: String,
     /// Why no sensor could show it; `None` if the confirmation is false.
     pub not_sensed: Option<NotSensed>,

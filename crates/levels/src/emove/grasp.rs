@@ -1,4 +1,4 @@
-//! What the fingers are to close on: object and grip of a command, with the sizes of the object forms (VII.7.1).
+//! Grasps: object and grip of a command, with the sizes of the object forms (VII.7.1).
 
 use interfaces::{
     emove::{EmoveCommand, Grasped, ObjectGrip},
@@ -23,7 +23,7 @@ pub(super) fn sizes<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&
     data.end_eff(EndEffId::from_option(command.object_parameters))
 }
 
-/// What the fingers are to close on, for the command.
+/// The grasp that a command asks for.
 pub(super) fn grasp_of(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Grasped {
     let gripper = Gripper::attached(inputs.memory);
     Grasped {
@@ -36,7 +36,7 @@ pub(super) fn grasp_of(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Gras
     }
 }
 
-/// What the fingers hold, by its name and grip; `None` if they feel nothing, or the task data do not have the object.
+/// The grasp of a named object with a grip; `None` if no finger feels anything, or the task data lack the object.
 pub(super) fn named_grasp(object: Name16, grip: i32, inputs: &EmoveInputs<'_>) -> Option<Grasped> {
     let (parameters, _) = inputs.data.object(&object, grip)?;
     let gripper = Gripper::attached(inputs.memory);

@@ -112,8 +112,8 @@ const fn is_exchange(verb: EmoveVerb) -> bool {
 /// Bits of the four sensors of a holster (V.1.2).
 const HOLSTER_SENSORS: u8 = 0x0F;
 
-/// What the sensors of a gripper's own holster see: parts gripper right, v-gripper left, tool gripper centre
-/// (ASSUMED).
+/// The state of a gripper's own holster, by its four sensors. ASSUMED: the parts gripper's is the right holster, the
+/// v-gripper's the left, the tool gripper's the centre.
 pub(super) fn holster(gripper: Option<u8>, memory: &CommonMemory) -> Holster {
     let status = &memory.prim.status;
     let bits = match Gripper::of(gripper) {
@@ -219,7 +219,7 @@ impl GripperExchange {
         }
     }
 
-    /// What is wrong with the quick change.
+    /// The reason to report for a failed order to Quick Change.
     pub(super) fn fault(&self, tick: Tick, memory: &CommonMemory) -> Reason {
         match self.status(tick, memory) {
             Lower::Lost => Reason::NeighbourLost,
@@ -289,7 +289,7 @@ impl GripperExchange {
         self.holster.map(|exchange| exchange.gripper).or(loose)
     }
 
-    /// Commands to Quick Change, for a search that numbers them anew (docs/proof.md).
+    /// The handshake with Quick Change. Searches renumber its commands (docs/proof.md).
     pub const fn commander(&mut self) -> &mut Commander {
         &mut self.commander
     }

@@ -29,7 +29,7 @@ use rcs_core::{
 
 use super::gripper::Gripper;
 
-/// What is asked of the attached gripper.
+/// A command to the attached gripper, whichever of the three it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum FingerVerb {
     /// Nothing yet.
@@ -278,7 +278,8 @@ impl Grippers {
         self.order == FingerVerb::Release && self.status(tick, memory) == Lower::Done
     }
 
-    /// Commands to a gripper, for a search that numbers them anew (docs/proof.md); without one, to the parts gripper.
+    /// The handshake with a gripper; that with the parts gripper for none. Searches renumber its commands
+    /// (docs/proof.md).
     pub const fn commander(&mut self, of: Gripper) -> &mut Commander {
         match of {
             Gripper::None | Gripper::Parts => &mut self.parts,

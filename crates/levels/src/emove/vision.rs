@@ -342,7 +342,7 @@ impl Vision {
         self.tries
     }
 
-    /// Requests to vision, for a search that numbers them anew (docs/proof.md).
+    /// The handshake with vision. Searches renumber its requests (docs/proof.md).
     pub const fn commander(&mut self) -> &mut Commander {
         &mut self.commander
     }

@@ -63,7 +63,8 @@ impl Names {
     }
 }
 
-/// The words that can follow the first words of a line, except those of the station ([`following`]). `*` in an entry matches any word.
+/// The words that can follow the first words of a line, except those of the station ([`following`]). `*` in an entry
+/// matches any word.
 static FOLLOWING: [(&[&str], &[&str]); 14] = [
     (&["job"], &["wait", "go", "skip"]),
     (&["db-done"], ON_OFF),

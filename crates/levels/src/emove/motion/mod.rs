@@ -126,12 +126,12 @@ impl Motion {
         }
     }
 
-    /// Commands to Prim, for a search that numbers them anew (docs/proof.md).
+    /// The handshake with Prim. Searches renumber its commands (docs/proof.md).
     pub const fn commander(&mut self) -> &mut Commander {
         &mut self.commander
     }
 
-    /// The route with the record numbers of its ends, and the last record number given, for such a search.
+    /// The route with the record numbers of its ends, and the last record number given. Searches renumber them.
     pub const fn pose_numbers(&mut self) -> (Option<&mut route::Route>, &mut u32) {
         (self.flight.route.as_mut(), &mut self.last_pose)
     }
