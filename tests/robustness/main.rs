@@ -2,11 +2,12 @@
 //!
 //! ```text
 //! cargo run --release -p whole-system-tests --bin robustness -- --help
-//! cargo run --release -p whole-system-tests --bin robustness -- --markdown docs/robustness.md
+//! cargo run --release -p whole-system-tests --bin robustness -- --markdown runs/robustness.md
 //! ```
 //!
 //! It prints how many cases there were and how they ended, and each finding on standard error; the exit
-//! status is 1 if there is one. The tests `survival::campaign` run a sample of it. Everything happens in a
+//! status is 1 if there is one. The tests `survival::campaign` run a sample of it. docs/evidence.md has the sums of
+//! all cases. Everything happens in a
 //! `/dev/shm` and an `RCS_RUNS` of its own.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program of the developers, at a terminal")]
@@ -52,7 +53,7 @@ struct Arguments {
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1988)]
     seed: u64,
-    /// Write the page with the table to FILE
+    /// Write the table to FILE as Markdown
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
     /// Be one of the processes that attack a run
@@ -156,13 +157,7 @@ fn main() -> ExitCode {
     }
     print!("{}", table::plain(&rows));
     if let Some(file) = &arguments.markdown {
-        let page = format!(
-            "{HEAD}The table shows {}, with seed {}.\n\n{}{TAIL}",
-            if extent.sample { "a sample" } else { "all cases" },
-            extent.seed,
-            table::markdown(&rows)
-        );
-        if let Err(error) = fs::write(file, page) {
+        if let Err(error) = fs::write(file, table::markdown(&rows)) {
             eprintln!("{}: {error}", file.display());
             return ExitCode::from(2);
         }
@@ -171,27 +166,3 @@ fn main() -> ExitCode {
     findings.iter().for_each(|finding| eprintln!("not held: {finding}"));
     if findings.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
-
-/// What stands before the table on the page.
-const HEAD: &str = "\
-# Robustness campaign
-
-After this page you know how often each attack was tried, and how the programs took it. [Security](security.md)
-says what is promised.
-
-    cargo run --release -p whole-system-tests --bin robustness -- --markdown docs/robustness.md
-
-makes this page; `--help` lists the parts. With `--sample` it tries a few cases of each row, as the tests do
-(`cargo test --release -p whole-system-tests --test runs survival::campaign`). ";
-
-/// What stands behind it.
-const TAIL: &str = "
-- **went on**: to its end as without the attack; a tool gave its answer.
-- **ended in order**: the robot was brought to rest, the log is complete, exit status 1; a tool found a difference.
-- **ended with words**: the last line on standard error says why.
-- **ended by force**: by the signal that was sent, by one of the system, or by iceoryx2 whose memory was garbage.
-- **not held**: anything else, such as a panic, a hang, a wrong result, or what is named below.
-
-After each case on a run the next run starts with all its buffers in shared memory, `rcs-run clean` leaves nothing, no board lives on,
-and what there is of a log can be read.
-";

@@ -8,9 +8,9 @@ use std::{
 /// How the attacked program took it. What is none of these is a panic of the judge, and a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It went on to its end as without the attack; a tool gave its answer.
+    /// It continued to its normal end; a tool printed its answer.
     WentOn,
-    /// A run brought the robot to rest and ended with status 1; a tool found a difference.
+    /// The robot came to rest, the log is complete, and the exit status is 3; a tool found a difference.
     InOrder,
     /// It ended, or refused to begin, and its last line says why.
     InWords,
@@ -19,7 +19,7 @@ pub enum Outcome {
 }
 
 /// The columns, in the order of [`Outcome`].
-const COLUMNS: [&str; 4] = ["went on", "ended in order", "ended with words", "ended by force"];
+const COLUMNS: [&str; 4] = ["continued", "ended in order", "ended with a message", "ended by force"];
 
 /// Random numbers: the same for the same seed.
 pub struct Chance(u64);

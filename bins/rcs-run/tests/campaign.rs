@@ -66,7 +66,7 @@ fn the_table_is_written_as_markdown() {
     assert!(table.contains("| interruption | linkbar | clevis |"), "{table}");
 }
 
-/// Branches of docs/campaign.md "Found by series": each was hurt before the tables were mended.
+/// Branches that were hurt in earlier campaigns (docs/evidence.md "Series").
 #[test]
 fn what_searches_have_found_hurts_nothing_any_more() {
     for (job, tick, kind) in [

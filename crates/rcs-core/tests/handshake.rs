@@ -280,7 +280,7 @@ fn search(start: Start) -> Found {
 fn between_processes_each_content_is_executed_once_and_each_status_is_about_its_command() {
     let found = search(Start::Buffer);
     assert!(found.wrong.is_none(), "{:#?}", found.wrong);
-    assert_eq!((found.states, found.ticks), (292_636, 15_443_840), "the size that docs/proof.md states");
+    assert_eq!((found.states, found.ticks), (292_636, 15_443_840), "the size that docs/evidence.md states");
 }
 
 /// A known limit: a commander that follows the echo alone gives a number twice if it restarts before its first command is

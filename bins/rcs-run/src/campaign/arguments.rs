@@ -83,8 +83,8 @@ pub struct CampaignArguments {
     /// Print one JSON object a job on standard output, a line each, and nothing else there
     #[arg(long)]
     pub json: bool,
-    /// Write the table as Markdown, between the two marks of a page that has them (docs/campaign.md); its rows of other
-    /// jobs stay
+    /// Write the table as Markdown, one column per job. In a FILE that has the table already, columns of other jobs
+    /// stay
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
     /// Ticks before and after the interruption for which a single branch prints every row that fires

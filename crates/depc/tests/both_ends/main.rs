@@ -54,9 +54,9 @@ fn is_sound(setting: &Setting) -> Found {
 /// The page states the size of the search exactly: an image that merges different states makes the search smaller, and
 /// lets it pass.
 fn is_stated(found: &Found) {
-    let size = format!(" {} states {} ticks", found.states, found.ticks);
-    let page = include_str!("../../../../docs/proof.md").replace(',', "");
-    assert!(page.contains(&size), "docs/proof.md does not state{size}");
+    let size = format!("| {} | {} |", found.states, found.ticks);
+    let page = include_str!("../../../../docs/evidence.md").replace(',', "");
+    assert!(page.contains(&size), "docs/evidence.md needs a row with `{size}`");
 }
 
 #[test]

@@ -289,7 +289,7 @@ impl GripperExchange {
         self.holster.map(|exchange| exchange.gripper).or(loose)
     }
 
-    /// The handshake with Quick Change. Searches renumber its commands (docs/proof.md).
+    /// The handshake with Quick Change. Searches renumber its commands (docs/evidence.md).
     pub const fn commander(&mut self) -> &mut Commander {
         &mut self.commander
     }

@@ -279,7 +279,7 @@ impl Grippers {
     }
 
     /// The handshake with a gripper; that with the parts gripper for none. Searches renumber its commands
-    /// (docs/proof.md).
+    /// (docs/evidence.md).
     pub const fn commander(&mut self, of: Gripper) -> &mut Commander {
         match of {
             Gripper::None | Gripper::Parts => &mut self.parts,

@@ -379,7 +379,7 @@ impl HeldObject {
         (self.placed, self.disturbed) = (None, None);
     }
 
-    /// Forget what makes no difference, for a search that compares states (docs/proof.md).
+    /// Forget what makes no difference, for a search that compares states (docs/evidence.md).
     pub const fn forget_unread(&mut self) {
         match &mut self.grasping {
             grasping if self.held.is_none() && self.empty => *grasping = None,

@@ -342,7 +342,7 @@ impl Vision {
         self.tries
     }
 
-    /// The handshake with vision. Searches renumber its requests (docs/proof.md).
+    /// The handshake with vision. Searches renumber its requests (docs/evidence.md).
     pub const fn commander(&mut self) -> &mut Commander {
         &mut self.commander
     }

@@ -41,6 +41,13 @@ fn is_full() -> bool {
     std::env::var("RCS_PAIRS").is_ok_and(|value| value == "full")
 }
 
+/// A number as the page has it, with commas.
+fn grouped(number: impl ToString) -> String {
+    let digits = number.to_string();
+    let groups = digits.as_bytes().rchunks(3).rev();
+    groups.map(String::from_utf8_lossy).collect::<Vec<_>>().join(",")
+}
+
 fn is_sound<W: World>(name: &str, first: W, most: usize) -> Found<W::Event> {
     let found = search(first, most);
     println!(
@@ -50,9 +57,9 @@ fn is_sound<W: World>(name: &str, first: W, most: usize) -> Found<W::Event> {
     assert!(found.wrong.is_none(), "{name}: {:#?}", found.wrong);
     if !is_full() {
         // A role or an image that merges different states makes a search smaller, and lets it pass.
-        let size = format!(" {} states {} ticks", found.states, found.ticks);
-        let page = include_str!("../../../../docs/proof.md").replace(',', "");
-        assert!(page.contains(&size), "{name}: docs/proof.md does not state{size}");
+        let row = format!("| {name} | {} | {} |", grouped(found.states), grouped(found.ticks));
+        let page = include_str!("../../../../docs/evidence.md");
+        assert!(page.contains(&row), "docs/evidence.md needs the row `{row}`");
     }
     found
 }
@@ -66,14 +73,14 @@ fn commands() -> &'static [PedestalVerb] {
 
 #[test]
 fn pedestal_and_table() {
-    let found = is_sound("pedestal and table", pedestal::Pair::first(0, commands()), 1_000_000);
+    let found = is_sound("Pedestal and table", pedestal::Pair::first(0, commands()), 1_000_000);
     assert!(found.pause <= 22 && found.any <= 44, "{} and {}", found.pause, found.any);
 }
 
 #[test]
 fn pedestal_and_table_with_a_mishap() {
     let commands = if is_full() { SOME } else { &[PedestalVerb::Flip, PedestalVerb::Pause] };
-    is_sound("pedestal and table, a mishap", pedestal::Pair::first(1, commands), 8_000_000);
+    is_sound("Pedestal and table, a mishap", pedestal::Pair::first(1, commands), 8_000_000);
 }
 
 const HOLDING: &[PedestalVerb] = &[PedestalVerb::Grip, PedestalVerb::Release, PedestalVerb::Pause];
@@ -81,14 +88,14 @@ const HOLDING: &[PedestalVerb] = &[PedestalVerb::Grip, PedestalVerb::Release, Pe
 #[test]
 fn pedestal_and_hand() {
     let commands = if is_full() { PedestalVerb::ALL } else { HOLDING };
-    let found = is_sound("pedestal and hand", hand::Pair::first(0, commands), 1_000_000);
+    let found = is_sound("Pedestal and hand", hand::Pair::first(0, commands), 1_000_000);
     assert!(found.pause <= 21 && found.any <= 29, "{} and {}", found.pause, found.any);
 }
 
 #[test]
 fn pedestal_and_hand_with_a_mishap() {
     let commands = if is_full() { HOLDING } else { &[PedestalVerb::Grip, PedestalVerb::Pause] };
-    is_sound("pedestal and hand, a mishap", hand::Pair::first(1, commands), 1_000_000);
+    is_sound("Pedestal and hand, a mishap", hand::Pair::first(1, commands), 1_000_000);
 }
 
 /// Commands that handle an object.
@@ -111,13 +118,13 @@ fn tasks(name: &str, mishaps: u8, lines: &[&str], any: u32) {
 #[test]
 fn task_and_subtask_handle_an_object() {
     let some = if is_full() { 5 } else { 3 };
-    tasks("task and subtask, an object", 0, &HANDLING[..some], 23);
+    tasks("Task and Subtask, an object", 0, &HANDLING[..some], 23);
 }
 
 #[test]
 fn task_and_subtask_tell_the_data_system() {
     let some = if is_full() { 4 } else { 3 };
-    tasks("task and subtask, the Data System", 0, &TELLING[..some], 23);
+    tasks("Task and Subtask, the Data System", 0, &TELLING[..some], 23);
 }
 
 /// Ticks to the end of a TRANSFER that tells first where the command that it replaces has left an object, and then
@@ -129,7 +136,7 @@ fn task_and_subtask_let_an_object_go() {
     let mut commands = data::commands(&[HANDLING[0], HANDLING[2], HANDLING[1]]);
     commands.truncate(if is_full() { 3 } else { 2 });
     let pair = task::Pair::first(0, commands.clone()).carrying(&commands[1]);
-    let found = is_sound("task and subtask, an object that the data base follows", pair, 4_000_000);
+    let found = is_sound("Task and Subtask, an object in the database", pair, 4_000_000);
     assert!(found.pause <= 14 && found.any <= TELLING_TWICE, "{} and {}", found.pause, found.any);
 }
 
@@ -139,18 +146,18 @@ fn task_and_subtask_take_an_object_out_of_the_mbd() {
         data::commands(&["TRANSFER LINKBAR1 +2 UNIT_1 1 +2 PFIXTURE 0 SAFE 0", HANDLING[2], HANDLING[0]]);
     commands.truncate(if is_full() { 3 } else { 2 });
     let pair = task::Pair::first(0, commands).connected("UNIT_1").promptly(!is_full());
-    let found = is_sound("task and subtask, an object that is taken out of the MBD", pair, 4_000_000);
+    let found = is_sound("Task and Subtask, an object taken out of the MBD", pair, 4_000_000);
     assert!(found.pause <= 14 && found.any <= TELLING_TWICE, "{} and {}", found.pause, found.any);
 }
 
 #[test]
 fn task_and_subtask_with_a_mishap() {
-    tasks("task and subtask, a mishap", 1, &["PAUSE", "MOVE -- +0 -- 0 +0 HOME 0 -- 0"], 14);
+    tasks("Task and Subtask, a mishap", 1, &["PAUSE", "MOVE -- +0 -- 0 +0 HOME 0 -- 0"], 14);
 }
 
 #[test]
 fn task_and_subtask_transfer_with_a_mishap() {
-    tasks("task and subtask, TRANSFER with a mishap", 1, &HANDLING[..2], 25);
+    tasks("Task and Subtask, TRANSFER with a mishap", 1, &HANDLING[..2], 25);
 }
 
 const GRASPING: &[emove::Line] =

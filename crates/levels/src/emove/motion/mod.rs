@@ -126,7 +126,7 @@ impl Motion {
         }
     }
 
-    /// The handshake with Prim. Searches renumber its commands (docs/proof.md).
+    /// The handshake with Prim. Searches renumber its commands (docs/evidence.md).
     pub const fn commander(&mut self) -> &mut Commander {
         &mut self.commander
     }
