@@ -146,7 +146,7 @@ pub fn because(conditions: &[String]) -> String {
     }
 }
 
-/// A row as text: `table QC-DETACH row 7: Unlock, then Unlocking, because step is Start`.
+/// A row as text: `table QC-DETACH row 3: Unlock, then Unlocking, because step is Lowering, lock is Locked`.
 pub fn row_words(process: ProcessId, fired: &Fired) -> String {
     match row_of(process, fired) {
         None => "by no row of a table".to_owned(),

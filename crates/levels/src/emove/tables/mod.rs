@@ -7,6 +7,7 @@ pub mod attend;
 pub mod carried;
 pub mod drum;
 pub mod e_pause;
+pub mod exchange;
 pub mod grasp_obj;
 pub mod insert_tool;
 pub mod locate_obj;
@@ -359,7 +360,7 @@ commands! {
             resume::STANCE;
         before: EXECUTE, HALT, ATTEND by attend, ACCEPT(request), CARRIED(subordinates), ORDERED(subordinates -> situation.work);
         after: EFFECT, CONFIRM;
-        None | Pause: goals::REST           => e_pause::e_pause;
+        None | Pause: goals::REST           => e_pause::standing then e_pause::e_pause;
         MovToLoc: goals::PLACE              => motion::motion;
         MovToObj: goals::PLACE              => mov_to_obj::mov_to_obj then motion::motion;
         MovObjTo: goals::BROUGHT            => mov_obj_to::mov_obj_to then motion::motion;
@@ -368,8 +369,8 @@ commands! {
         LocateObj: goals::LOCATED           => locate_obj::locate_obj;
         GraspObj: goals::HELD               => grasp_obj::grasp_obj;
         Release: goals::RELEASED            => release::release;
-        QcDetach: goals::DETACHED           => qc_detach::qc_detach;
-        QcAttach: goals::ATTACHED           => qc_attach::qc_attach;
+        QcDetach: goals::DETACHED           => exchange::exchange then qc_detach::qc_leave then qc_detach::qc_detach;
+        QcAttach: goals::ATTACHED           => exchange::exchange then qc_attach::qc_lift then qc_attach::qc_attach;
         Withdraw: goals::WITHDRAWN          => withdraw::withdraw;
         InsertTool: goals::INSERTED         => insert_tool::insert_tool;
         ReleaseTool: goals::TOOL_RELEASED   => release_tool::release_tool;

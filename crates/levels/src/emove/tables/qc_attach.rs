@@ -1,112 +1,140 @@
-//! QC-ATTACH (V.2.1).
+//! QC-ATTACH (V.2.1): the way of the bare robot to the gripper, and out of the holster with it.
 
-use rcs_core::decision_table;
+use rcs_core::{Plain, decision_table};
+
+/// Steps of QC-ATTACH: what was ordered last.
+///
+/// ```text
+///   QC-ATTACH (bare):  Start -> (Unlocking) -> Approaching -> Mating        no gripper: Undoing -> Leaving
+///                                                               |
+///   QC-LIFT (mated):                                         Locking -> (Closing) -> Backing -> Lifting
+///                                                                       (Calibrating) <- Raising <-'
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum QcAttachStep {
+    /// Nothing done yet.
+    Start,
+    /// The quick change of the bare robot is unlocking.
+    Unlocking,
+    /// The robot is moving close to the gripper.
+    Approaching,
+    /// The seat was empty: the robot moves away from it.
+    Undoing,
+    /// The bare robot moves up out of the holster.
+    Leaving,
+    /// The robot is moving slowly onto the gripper.
+    Mating,
+    /// The quick change is locking.
+    Locking,
+    /// The gripper is closing.
+    Closing,
+    /// The gripper is sliding back out of its seat.
+    Backing,
+    /// It is being lifted a distance out of the holster.
+    Lifting,
+    /// It is being lifted completely out of the holster.
+    Raising,
+    /// It is being calibrated.
+    Calibrating,
+}
+
+decision_table! {
+    /// QC-LIFT: second part of QC-ATTACH (V.2.1), with the gripper mated: lock, close the gripper, back,
+    /// lift, up, calibrate if required. Done at once if the gripper is locked on and clear of its holster.
+    pub QC_LIFT: fn qc_lift(self::QcAttachStep, super::Situation) -> super::Action or () {
+        any {
+            1:  mate: None | Wrong                                   => consult;
+        }
+        Start {
+            2:  at: There, holster: Empty, lock: Locked              => Finish;
+            3:  along: Off, holster: Empty, lock: Locked             => Finish;
+            4:  along: Off, holster: Empty, lock: Unlocked | Between => Fail(RingNotLocked);
+        }
+        any {
+            5:  along: Off | Above | Out                             => Fail(NotPrepared);
+        }
+        Mating {
+            6:  along: Seat                                          => Lock               -> Locking;
+        }
+        Locking {
+            7:  along: Seat, lock: Unlocked | Between                => FailRing;
+        }
+        any {
+            8:  along: Lifting | Raising | Clear, lock: Unlocked | Between => Fail(RingNotLocked);
+            // EXCHANGE passes no faulty ring on.
+            9:  along: Coming, lock: Locked | Between | Faulty       => Fail(RingNotLocked);
+            // Near the seat is not at it, and the ring would catch nothing.
+            10: lock: Unlocked | Between                             => DeltaMove(QcaSlow) -> Mating;
+        }
+        Closing | Backing {
+            11: along: Seat | Sliding                                => DeltaMove(QcaBack) -> Backing;
+        }
+        any {
+            12: along: Seat | Sliding, shut: Open                    => CloseForHolster    -> Closing;
+            13: along: Seat | Sliding                                => DeltaMove(QcaBack) -> Backing;
+        }
+        Lifting | Raising {
+            14: along: Lifting                                       => DeltaMove(QcaUp)   -> Raising;
+        }
+        any {
+            15: along: Low | Lifting                                 => DeltaMove(QcaLift) -> Lifting;
+            16: along: Raising                                       => DeltaMove(QcaUp)   -> Raising;
+        }
+        Calibrating {
+            17: readiness: Uncalibrated                              => FailGrip;
+        }
+        any {
+            18: readiness: Uncalibrated                              => Calibrate          -> Calibrating;
+            19: readiness: Ready                                     => Stand;
+            20: readiness: Faulty                                    => FailGrip;
+        }
+    }
+}
 
 decision_table! {
     /// QC-ATTACH (V.2.1): down fast, down slowly, lock, close the gripper, back, lift, check the id, up,
     /// calibrate if required. What is done next depends on where the robot is in the holster and on what is
     /// mated and locked, so that a command that is sent again goes on (docs/design/recovery.md "Exchange");
-    /// an order that has changed nothing ends it. A bare robot that has found no gripper leaves upward. Done
-    /// at once if the gripper is locked on and clear of its holster.
-    pub QC_ATTACH: fn qc_attach(enum QcAttachStep, super::Situation) -> super::Action {
-        any {
-            1:  work: Busy                                                => Wait;
-            2:  lock: Faulty                                              => FailRing;
-        }
-        /// Nothing done yet.
+    /// an order that has changed nothing ends it. This table moves the bare robot onto the gripper;
+    /// QC-LIFT, which is consulted before, does the rest once the gripper is mated. A bare robot that has
+    /// found no gripper leaves upward.
+    pub QC_ATTACH: fn qc_attach(self::QcAttachStep, super::Situation) -> super::Action {
         Start {
-            3:  mate: Wrong                                               => Fail(WrongGripper);
-            4:  mate: Right, at: There, holster: Empty, lock: Locked      => Finish;
-            5:  mate: Right, along: Off, holster: Partial | Full          => Fail(NotPrepared);
-            6:  mate: Right, along: Off, holster: Empty, lock: Locked     => Finish;
-            7:  mate: Right, along: Off, holster: Empty, lock: Unlocked | Between => Fail(RingNotLocked);
-            8:  mate: None, along: Above, holster: Empty | Partial        => Leave(HolsterEmpty);
-            9:  mate: None, along: Out, holster: Partial                  => DeltaMove(QcdOut) -> Leaving;
-            10: mate: None, along: Out | Coming | Seat, holster: Empty    => DeltaMove(QcdOut) -> Leaving;
+            1:  mate: Wrong                                      => Fail(WrongGripper);
         }
         any {
-            11: mate: Wrong                                               => Fail(WrongGripperId);
-            12: along: Off                                                => Fail(NotPrepared);
-            13: mate: Right, along: Above | Out                           => Fail(NotPrepared);
+            2:  mate: Wrong                                      => Fail(WrongGripperId);
+            3:  along: Off                                       => Fail(NotPrepared);
         }
-        /// The quick change of the bare robot is unlocking.
+        Start | Leaving {
+            4:  along: Above, holster: Empty | Partial           => Leave(HolsterEmpty);
+        }
+        Start {
+            5:  along: Out, holster: Partial                     => DeltaMove(QcdOut)  -> Leaving;
+            6:  along: Out | Coming | Seat, holster: Empty       => DeltaMove(QcdOut)  -> Leaving;
+        }
         Unlocking {
-            14: mate: None, along: Above | Out | Coming | Seat, lock: Locked | Between => FailRing;
+            7:  along: Above | Out | Coming | Seat, lock: Locked | Between => FailRing;
         }
         any {
             // At the seat the ring may hold a gripper whose id pins have no contact.
-            15: mate: None, along: Above | Out | Coming | Seat, lock: Locked | Between => Unlock -> Unlocking;
+            8:  along: Above | Out | Coming | Seat, lock: Locked | Between => Unlock -> Unlocking;
         }
-        /// The robot is moving close to the gripper.
-        Approaching {
-            16: mate: None, along: Above | Out | Coming                   => DeltaMove(QcaSlow) -> Mating;
+        Approaching | Mating {
+            9:  along: Above | Out                               => DeltaMove(QcaSlow) -> Mating;
         }
-        /// The seat was empty: the robot moves away from it.
         Undoing {
-            17: mate: None, along: Out | Coming                           => DeltaMove(QcdOut) -> Leaving;
+            10: along: Out | Coming                              => DeltaMove(QcdOut)  -> Leaving;
         }
-        /// The bare robot moves up out of the holster.
         Leaving {
-            18: mate: None, along: Above, holster: Empty | Partial        => Leave(HolsterEmpty);
-            19: mate: None, along: Above, holster: Full                   => Leave(NotAttached);
-            20: mate: None, along: Out | Coming | Seat                    => Fail(NoEffect);
-        }
-        /// The robot is moving slowly onto the gripper.
-        Mating {
-            21: mate: None, along: Above | Out                            => Fail(NoEffect);
-            22: mate: Right, along: Seat                                  => Lock -> Locking;
+            11: along: Above                                     => Leave(NotAttached);
+            12: along: Out | Coming | Seat                       => Fail(NoEffect);
         }
         any {
-            23: mate: None, along: Above | Out                          => DeltaMove(QcaFast) -> Approaching;
-            24: mate: None, along: Coming                                 => DeltaMove(QcaSlow) -> Mating;
-            25: mate: None, along: Seat                                   => DeltaMove(QcaFast) -> Undoing;
-            26: mate: None, along: Sliding | Low                          => Fail(NotAttached);
-            27: mate: None, along: Lifting | Raising | Clear              => Fail(NotAttached);
-            28: mate: Right, along: Coming | Sliding | Low, lock: Unlocked => DeltaMove(QcaSlow) -> Mating;
-            29: mate: Right, along: Coming, lock: Locked | Between        => Fail(RingNotLocked);
-            30: mate: Right, along: Sliding | Low, lock: Between          => DeltaMove(QcaSlow) -> Mating;
-            31: along: Lifting | Raising | Clear, lock: Unlocked | Between => Fail(RingNotLocked);
-        }
-        /// The quick change is locking.
-        Locking {
-            32: mate: Right, along: Seat, lock: Unlocked | Between        => FailRing;
-        }
-        /// The gripper is closing.
-        Closing {
-            33: mate: Right, along: Seat | Sliding, lock: Locked          => DeltaMove(QcaBack) -> Backing;
-        }
-        /// The gripper is sliding back out of its seat.
-        Backing {
-            34: mate: Right, along: Low | Lifting, lock: Locked           => DeltaMove(QcaLift) -> Lifting;
-            35: mate: Right, along: Seat | Sliding, lock: Locked          => Fail(NoEffect);
-        }
-        any {
-            // Near the seat is not at it, and the ring would catch nothing.
-            36: mate: Right, along: Seat, lock: Unlocked | Between        => DeltaMove(QcaSlow) -> Mating;
-            37: mate: Right, along: Seat | Sliding, lock: Locked, shut: Open => CloseForHolster -> Closing;
-            38: mate: Right, along: Seat | Sliding, lock: Locked           => DeltaMove(QcaBack) -> Backing;
-        }
-        /// It is being lifted a distance out of the holster.
-        Lifting {
-            39: mate: Right, along: Lifting | Raising, lock: Locked       => DeltaMove(QcaUp) -> Raising;
-        }
-        /// It is being lifted completely out of the holster.
-        Raising {
-            40: along: Clear, readiness: Uncalibrated                     => Calibrate -> Calibrating;
-            41: mate: Right, along: Lifting, lock: Locked                 => Fail(NoEffect);
-        }
-        any {
-            42: mate: Right, along: Low | Lifting, lock: Locked           => DeltaMove(QcaLift) -> Lifting;
-            43: mate: Right, along: Raising, lock: Locked                 => DeltaMove(QcaUp) -> Raising;
-        }
-        /// It is being calibrated.
-        Calibrating {
-            44: along: Clear, readiness: Uncalibrated                     => FailGrip;
-        }
-        any {
-            45: along: Clear, readiness: Uncalibrated                     => Calibrate -> Calibrating;
-            46: along: Clear, readiness: Ready                            => Stand;
-            47: along: Clear, readiness: Faulty                           => FailGrip;
+            13: along: Above | Out                               => DeltaMove(QcaFast) -> Approaching;
+            14: along: Coming                                    => DeltaMove(QcaSlow) -> Mating;
+            15: along: Seat                                      => DeltaMove(QcaFast) -> Undoing;
+            16: along: Sliding | Low | Lifting | Raising | Clear => Fail(NotAttached);
         }
     }
 }

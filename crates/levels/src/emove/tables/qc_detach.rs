@@ -1,80 +1,110 @@
-//! QC-DETACH (V.2.1).
+//! QC-DETACH (V.2.1): the way of the gripper into its holster, and out of the holster without it.
 
-use rcs_core::decision_table;
+use rcs_core::{Plain, decision_table};
+
+/// Steps of QC-DETACH: what was ordered last.
+///
+/// ```text
+///   QC-DETACH (mated):  Start -> Lowering -> Unlocking -> Seating -> Rising
+///   QC-LEAVE (bare):    Start -> (Unlocking) -> Rising                       no gripper: Start -> Leaving
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum QcDetachStep {
+    /// Nothing done yet.
+    Start,
+    /// A bare robot that has found no gripper moves up out of the holster.
+    Leaving,
+    /// The robot is moving up out of the gripper.
+    Rising,
+    /// The gripper is moving down into the holster.
+    Lowering,
+    /// The gripper is being pushed to its seat.
+    Seating,
+    /// The quick change is unlocking; the gripper drops.
+    Unlocking,
+}
 
 decision_table! {
-    /// QC-DETACH (V.2.1): down until the large sensors of the holster see the ears, unlock, forward until the
-    /// small ones see them, up, and check that the gripper stayed there. What is done next depends on where
-    /// the robot is in the holster and on what is mated and locked, so that a command that is sent again goes
-    /// on (docs/design/recovery.md "Exchange"); a bare robot in an empty holster leaves upward. Done at once
-    /// if the gripper is in its holster and the robot clear.
-    pub QC_DETACH: fn qc_detach(enum QcDetachStep, super::Situation) -> super::Action {
+    /// QC-LEAVE: last part of QC-DETACH (V.2.1), with nothing mated: up, and check that the gripper stayed
+    /// in its holster. A bare robot in an empty holster leaves upward. Done at once if the gripper is in
+    /// its holster and the robot clear.
+    pub QC_LEAVE: fn qc_leave(self::QcDetachStep, super::Situation) -> super::Action or () {
         any {
-            1:  work: Busy                                                   => Wait;
-            2:  lock: Faulty                                                 => FailRing;
+            1:  mate: Right | Wrong                                => consult;
         }
-        /// Nothing done yet.
         Start {
-            3:  mate: None, holster: Full, at: There | Before | InDrum       => Finish;
-            4:  mate: None, holster: Full, along: Above | Clear              => Stand;
-            5:  mate: None, holster: Full, along: Off                        => Finish;
-            6:  mate: None, holster: Empty | Partial, along: Above | Clear   => Stand;
-            7:  mate: None, holster: Empty, along: Out | Coming | Seat       => DeltaMove(QcdOut) -> Leaving;
-            8:  mate: None, holster: Partial, along: Out | Coming | Seat, lock: Unlocked
-                                                                             => DeltaMove(QcdOut) -> Leaving;
-            9:  mate: None, holster: Empty | Partial                         => Fail(WrongGripper);
+            2:  holster: Full, at: There | Before | InDrum         => Finish;
+            3:  holster: Full, along: Off                          => Finish;
         }
-        /// A bare robot that has found no gripper moves up out of the holster.
+        Start | Leaving {
+            4:  along: Above | Clear                               => Stand;
+        }
+        Start {
+            5:  holster: Empty, along: Out | Coming | Seat         => DeltaMove(QcdOut) -> Leaving;
+            6:  holster: Partial, along: Out | Coming | Seat, lock: Unlocked => DeltaMove(QcdOut) -> Leaving;
+            7:  holster: Empty | Partial                           => Fail(WrongGripper);
+        }
         Leaving {
-            10: mate: None, along: Above                                     => Stand;
-            11: mate: None, along: Out | Coming | Seat                       => Fail(NoEffect);
+            8:  along: Out | Coming | Seat                         => Fail(NoEffect);
         }
-        /// The robot is moving up out of the gripper.
+        any {
+            9:  holster: Empty | Partial                           => Fail(NotDetached);
+        }
         Rising {
-            12: mate: Right | Wrong                                          => Fail(NotDetached);
-            13: mate: None, holster: Empty | Partial                         => Fail(NotDetached);
-            14: lock: Locked | Between                                       => FailRing;
-            15: mate: None, holster: Full                                    => Stand;
+            10: lock: Locked | Between                             => FailRing;
+            11: lock: Unlocked | Faulty                            => Stand;
         }
-        /// The gripper is moving down into the holster.
-        Lowering {
-            16: mate: Right, lock: Locked | Between                          => Unlock -> Unlocking;
-        }
-        /// The gripper is being pushed to its seat.
-        Seating {
-            17: mate: Right, lock: Unlocked                                  => DeltaMove(QcdUp) -> Rising;
-        }
-        any {
-            18: mate: Wrong                                                  => Fail(WrongGripper);
-            19: mate: None, holster: Empty | Partial                         => Fail(NotDetached);
-            20: mate: None, along: Off | Above | Clear                       => Fail(NotDetached);
-            21: mate: None, along: Sliding | Low | Lifting | Raising         => Fail(NotDetached);
-            22: mate: Right, along: Off                                      => Fail(NotPrepared);
-            23: mate: Right, along: Above | Out                              => Fail(NotDetached);
-            24: mate: Right, along: Coming, lock: Locked | Between           => Fail(NotDetached);
-        }
-        /// The quick change is unlocking; the gripper drops.
         Unlocking {
-            25: lock: Locked | Between                                       => FailRing;
-            26: mate: Right, lock: Unlocked                                  => GoUntil(QcdSeat) -> Seating;
+            12: along: Out | Coming | Seat, lock: Locked | Between => FailRing;
         }
         any {
-            27: mate: None, along: Out | Coming | Seat, lock: Locked | Between => Unlock -> Unlocking;
-            28: mate: None, along: Out | Coming | Seat, lock: Unlocked       => DeltaMove(QcdOut) -> Rising;
+            13: along: Out | Coming | Seat, lock: Locked | Between => Unlock            -> Unlocking;
+            14: along: Out | Coming | Seat                         => DeltaMove(QcdOut) -> Rising;
+            15:                                                    => Fail(NotDetached);
+        }
+    }
+}
+
+decision_table! {
+    /// QC-DETACH (V.2.1): down until the large sensors of the holster see the ears, unlock, forward until
+    /// the small ones see them, up, and check that the gripper stayed there. What is done next depends on
+    /// where the robot is in the holster and on what is mated and locked, so that a command that is sent
+    /// again goes on (docs/design/recovery.md "Exchange"). This table leaves the gripper in the holster;
+    /// QC-LEAVE, which is consulted before, does the rest once the robot is bare.
+    pub QC_DETACH: fn qc_detach(self::QcDetachStep, super::Situation) -> super::Action {
+        Rising {
+            1:                                                           => Fail(NotDetached);
         }
         any {
-            29: along: Raising | Clear, lock: Unlocked | Between             => Fail(RingNotLocked);
-            30: along: Lifting, holster: Empty, lock: Unlocked | Between     => Fail(RingNotLocked);
-            31: along: Lifting | Raising | Clear, lock: Locked, held: Right | Other => Fail(AlreadyHolding);
-            32: along: Lifting | Raising | Clear, lock: Locked, held: Something => Fail(AlreadyHolding);
-            33: along: Lifting | Raising | Clear, lock: Locked, held: NotKnown => Fail(HeldNotKnown);
-            34: along: Raising | Clear, holster: Partial | Full              => Fail(HolsterOccupied);
-            35: along: Lifting | Raising | Clear, lock: Locked               => GoUntil(QcdDown) -> Lowering;
-            36: along: Low, holster: Empty, lock: Locked                     => GoUntil(QcdDown) -> Lowering;
-            37: along: Lifting | Low | Sliding | Seat, lock: Locked | Between => Unlock -> Unlocking;
-            38: along: Lifting | Low | Sliding, lock: Unlocked               => GoUntil(QcdSeat) -> Seating;
-            39: along: Coming | Seat, holster: Empty | Partial, lock: Unlocked => GoUntil(QcdSeat) -> Seating;
-            40: along: Coming | Seat, holster: Full, lock: Unlocked          => DeltaMove(QcdUp) -> Rising;
+            2:  mate: Wrong                                              => Fail(WrongGripper);
+        }
+        Lowering {
+            3:  lock: Locked | Between                                   => Unlock           -> Unlocking;
+        }
+        Seating {
+            4:  lock: Unlocked                                           => DeltaMove(QcdUp) -> Rising;
+        }
+        any {
+            5:  along: Off                                               => Fail(NotPrepared);
+            6:  along: Above | Out                                       => Fail(NotDetached);
+            7:  along: Coming, lock: Locked | Between                    => Fail(NotDetached);
+        }
+        Unlocking {
+            8:  lock: Locked | Between                                   => FailRing;
+            9:  lock: Unlocked                                           => GoUntil(QcdSeat) -> Seating;
+        }
+        any {
+            10: along: Raising | Clear, lock: Unlocked | Between         => Fail(RingNotLocked);
+            11: along: Lifting, holster: Empty, lock: Unlocked | Between => Fail(RingNotLocked);
+            12: along: Lifting | Raising | Clear, lock: Locked, held: Right | Other | Something
+                                                                         => Fail(AlreadyHolding);
+            13: along: Lifting | Raising | Clear, lock: Locked, held: NotKnown => Fail(HeldNotKnown);
+            14: along: Raising | Clear, holster: Partial | Full          => Fail(HolsterOccupied);
+            15: along: Lifting | Raising | Clear, lock: Locked           => GoUntil(QcdDown) -> Lowering;
+            16: along: Low, holster: Empty, lock: Locked                 => GoUntil(QcdDown) -> Lowering;
+            17: along: Coming | Seat, holster: Full, lock: Unlocked      => DeltaMove(QcdUp) -> Rising;
+            18: lock: Unlocked                                           => GoUntil(QcdSeat) -> Seating;
+            19:                                                          => Unlock           -> Unlocking;
         }
     }
 }

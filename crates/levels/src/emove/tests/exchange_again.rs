@@ -30,6 +30,7 @@ pub const SCENARIOS: &[fn()] = &[
     an_exchange_goes_on_from_where_it_is,
     what_cannot_be_attached_is_named,
     an_order_without_effect_ends_the_command,
+    ring_that_stays_locked_under_a_bare_robot_ends_the_command,
     what_cannot_be_detached_is_named,
     in_a_holster_only_the_exchange_goes_on,
     a_robot_that_is_led_out_of_a_holster_and_back_goes_on,
@@ -247,6 +248,16 @@ fn a_locked_ring_at_the_seat_is_opened_before_the_robot_leaves() {
     let mut bench = halfway(SEAT, 0, true, 0b1111);
     send(&mut bench, ATTACH);
     assert_eq!(bench.log()[0], "QC-UNLOCK", "{:?}", bench.log());
+}
+
+#[test]
+fn ring_that_stays_locked_under_a_bare_robot_ends_the_command() {
+    for command in [ATTACH, DETACH] {
+        let mut bench = halfway(SEAT, 0, true, 0b1111);
+        bench.spoil("QC-UNLOCK", Mishap::Ring(QuickChangeReport::Locked));
+        assert_eq!(send(&mut bench, command), error(Reason::QuickChangeFault));
+        assert_eq!(bench.motions(), [""; 0], "the robot stays at the seat");
+    }
 }
 
 #[test]

@@ -1,17 +1,16 @@
 //! The tables of a gripper change against a world in which no order has an effect (docs/design/recovery.md
 //! "Exchange").
 
-use interfaces::prim::JoystickGrip;
-use rcs_core::{handshake::Lower, table::Decision};
+use interfaces::{emove::EmoveVerb, prim::JoystickGrip};
+use rcs_core::handshake::Lower;
 
 use crate::{
     emove::{
         motion::route::Ahead,
         tables::{
-            Action, Along, At, AtDrum, Bias, FingerMotion, Fingers, Held, Holster, Knowledge, Link, Lock,
-            Mate, Opening, PlaceKnowledge, Reach, Readiness, Shut, Sight, Situation, Spread, Tooling, Tries,
-            qc_attach::{QcAttachStep, qc_attach},
-            qc_detach::{QcDetachStep, qc_detach},
+            Along, At, AtDrum, Bias, FingerMotion, Fingers, Held, Holster, Knowledge, Link, Lock, Mate,
+            Opening, PlaceKnowledge, Reach, Readiness, Shut, Sight, Situation, Spread, Step, Tooling, Tries,
+            of_command,
         },
     },
     execution::Work,
@@ -64,27 +63,28 @@ fn situations() -> impl Iterator<Item = Situation> {
     })
 }
 
-/// The orders that a table gives from its first step until it ends, or until EFFECT ends it: the row that
+/// The orders that a command gives from its first step until it ends, or until EFFECT ends it: the row that
 /// ordered last orders again, and nothing has changed.
-fn orders<Step: Copy>(first: Step, decide: impl Fn(Step) -> Decision<Action, Step>) {
-    let (mut step, mut last) = (first, None);
+fn orders(verb: EmoveVerb, situation: &Situation) {
+    let (mut step, mut last) = (Step::first(verb), None);
     let mut orders = Vec::new();
     loop {
-        let decision = decide(step);
-        let futile = last == Some(decision.row);
-        if futile || !decision.action.is_order() {
+        let choice = of_command(verb, step, situation);
+        let row = Some((choice.table, choice.row));
+        let futile = last == row;
+        if futile || !choice.action.is_order() {
             return;
         }
-        orders.push(decision.action);
+        orders.push(choice.action);
         assert!(orders.len() < 12, "no end: {orders:?}");
-        (step, last) = (decision.next, Some(decision.row));
+        (step, last) = (choice.next, row);
     }
 }
 
 #[test]
 fn a_gripper_change_ends_in_a_world_that_ignores_every_order() {
     for situation in situations() {
-        orders(QcAttachStep::Start, |step| qc_attach(step, &situation));
-        orders(QcDetachStep::Start, |step| qc_detach(step, &situation));
+        orders(EmoveVerb::QcAttach, &situation);
+        orders(EmoveVerb::QcDetach, &situation);
     }
 }

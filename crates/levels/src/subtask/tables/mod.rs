@@ -248,7 +248,7 @@ commands! {
         None | Pause: goals::REST               => s_pause::s_pause;
         GetEndeff: goals::ATTACHED              => get_endeff::get_endeff;
         GetObject: goals::HELD                  => get_object::get_object;
-        FixGrip: goals::REGRIPPED               => fix_grip::fix_grip;
+        FixGrip: goals::REGRIPPED               => fix_grip::at_pedestal then fix_grip::fix_grip;
         PlaceObj: goals::PLACED                 => place_obj::place_obj;
         MoveObjToDest: goals::BROUGHT           => move_obj_to_dest::move_obj_to_dest;
         GotoEndpt | GotoDest: goals::PLACE      => goto::goto;
