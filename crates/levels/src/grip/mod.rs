@@ -68,14 +68,13 @@ use interfaces::{
     operator::{Variable, Write},
     process::{Inputs, Process},
 };
-use rcs_core::table::{Table, Verdict};
+use rcs_core::table::{Choice, Table, Verdict};
 
 use self::{
     site::{PartsGripper, Site},
     state::State,
     tables::{
-        Action, Duty, Phase, Situation, StateVariables, Step, accept::accept, number, of_command,
-        up_init::up_init,
+        Action, Duty, Phase, Situation, StateVariables, Step, accept::accept, number, of_command, up_init,
     },
 };
 use crate::execution::Course;
@@ -85,6 +84,20 @@ use crate::execution::Course;
 pub struct Servo<S> {
     state: State,
     site: PhantomData<S>,
+}
+
+/// Consult UP-INIT and CALIBRATION: what they leave to decide.
+///
+/// # Errors
+/// The row that decides.
+fn calibrating(phase: Phase, situation: &Situation) -> Result<Duty, Choice<Action, Phase>> {
+    match up_init::up_init(phase, situation) {
+        Verdict::Decided(decision) => Err(decision.of(number::UP_INIT)),
+        Verdict::Passed(()) => match up_init::calibration(phase, situation) {
+            Verdict::Decided(decision) => Err(decision.of(number::CALIBRATION)),
+            Verdict::Passed(duty) => Ok(duty),
+        },
+    }
 }
 
 /// The Grip process.
@@ -117,19 +130,19 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
         let accepted = state.execution.accepts(accept(state.step, &seen.request));
         let command = state.goal.command(course, accepted);
         let situation = Situation { command, ..seen.situation };
-        match up_init(state.phase, &situation) {
-            Verdict::Decided(decision) => {
-                state.phase = decision.next;
+        match calibrating(state.phase, &situation) {
+            Err(choice) => {
+                state.phase = choice.next;
                 if accepted {
-                    state.execution.rows.decide(&decision.of(number::UP_INIT));
+                    state.execution.rows.decide(&choice);
                 } else {
-                    state.execution.rows.beside(&decision.of(number::UP_INIT));
+                    state.execution.rows.beside(&choice);
                 }
-                decision.action
+                choice.action
             }
-            Verdict::Passed(Duty::Nothing) => Action::Keep,
-            Verdict::Passed(Duty::Refused) => Action::Refuse,
-            Verdict::Passed(Duty::Command) => {
+            Ok(Duty::Nothing) => Action::Keep,
+            Ok(Duty::Refused) => Action::Refuse,
+            Ok(Duty::Command) => {
                 let choice = of_command(state.goal.verb, state.step, &situation);
                 state.execution.rows.decide(&choice);
                 state.step = choice.next;
@@ -150,7 +163,7 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
         *outputs = self.state.report(action, seen, inputs.tick);
     }
 
-    /// Without a calibration the sensors do not agree with it: UP_INIT row 5 forgets it.
+    /// Without a calibration the sensors do not agree with it: CALIBRATION row 5 forgets it.
     fn write(&mut self, write: &Write, _: &Inputs<'_, Data>, outputs: &mut GripOutputs) {
         if write.variable == Variable::Calibration {
             (self.state.calibration, outputs.calibration) = (None, None);

@@ -266,7 +266,7 @@ pub struct StateVariables {
     pub measured: Measured,
 }
 
-/// What [`up_init::UP_INIT`] leaves to decide.
+/// What [`up_init::CALIBRATION`] leaves to decide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Duty {
     /// Nothing: the valves stay as they are.
@@ -327,7 +327,7 @@ pub enum Action {
 commands! {
     /// Consult the table of a command.
     pub fn of_command(GripVerb, Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, up_init::UP_INIT;
+        others: EXECUTE, accept::ACCEPT, up_init::UP_INIT, up_init::CALIBRATION;
         Position | OpenGrip: goals::OPENING => servo::servo then position::position;
         CloseGrip: goals::FORCE             => servo::servo then close_grip::close_grip;
         None | Pause: goals::REST           => pause::pause;

@@ -1,55 +1,65 @@
-//! UP-INIT (VI.3.1).
+//! UP-INIT (VI.3.1), and what follows from a calibration that is missing.
 
 use rcs_core::decision_table;
 
 decision_table! {
     /// UP-INIT (VI.3.1): close and open the gripper and read the sensors at both ends of travel and without
-    /// force. Runs by itself if the gripper is there when the system is booted, and commands wait for it.
-    /// Later it runs by command alone, since a part may be held: commands that need the calibration are
-    /// refused. OPEN-GRIP to the open end does not need it: what is held without a calibration can be let go.
-    pub UP_INIT: fn up_init(super::Phase, super::Situation) -> super::Action or super::Duty {
-        Missing {
-            1:  command: Nothing, gripper: Attached             => Begin                    -> Closing;
+    /// force. OPEN-GRIP without a calibration opens it to the end of travel. CALIBRATION, which is
+    /// consulted after it, begins both.
+    pub UP_INIT: fn up_init(super::Phase, super::Situation) -> super::Action or () {
+        Missing | Deferred | Adopting | Valid | Failed {
+            1:                                      => consult;
         }
-        Missing | Deferred | Failed {
-            2:  command: Motion, gripper: Attached              => Fail(GripNotCalibrated);
-            3:  command: OpenWide, gripper: Attached            => Widen                    -> Widening;
-        }
-        Adopting {
-            4:  gripper: Attached, sensors: Plausible           => Adopt                    -> Valid;
-            5:  gripper: Attached, sensors: Implausible         => Forget                   -> Deferred;
-        }
-        Missing | Deferred | Failed | Valid {
-            6:  command: UpInit, gripper: Attached              => Begin                    -> Closing;
-        }
-        Missing | Deferred | Adopting | Failed | Valid {
-            7:  command: Pause | UpInit | Motion | OpenWide     => consult(Command);
-            8:  command: Refused                                => consult(Refused);
-            9:  command: Nothing                                => consult(Nothing);
-        }
-        Closing | Opening | Venting | Widening {
-            10: gripper: Detached, command: UpInit | Motion | OpenWide => Fail(WrongGripper) -> Deferred;
-            11: gripper: Detached                               => GiveUp                   -> Deferred;
-            12: readings: Late | Implausible, command: Nothing | Refused => GiveUp          -> Failed;
-            13: readings: Late | Implausible                    => Fail(GripNotCalibrated)  -> Failed;
+        any {
+            2:  gripper: Detached, command: UpInit | Motion | OpenWide => Fail(WrongGripper) -> Deferred;
+            3:  gripper: Detached                   => GiveUp                  -> Deferred;
+            4:  readings: Late | Implausible, command: Nothing | Refused => GiveUp -> Failed;
+            5:  readings: Late | Implausible        => Fail(GripNotCalibrated) -> Failed;
         }
         Closing {
-            14: readings: Unsteady                              => CloseFully;
-            15: readings: Steady                                => NoteClosed               -> Opening;
+            6:  readings: Unsteady                  => CloseFully;
+            7:  readings: Steady                    => NoteClosed              -> Opening;
+        }
+        Opening | Widening {
+            8:  readings: Unsteady                  => OpenFully;
         }
         Opening {
-            16: readings: Unsteady                              => OpenFully;
-            17: readings: Steady                                => NoteOpen                 -> Venting;
+            9:  readings: Steady                    => NoteOpen                -> Venting;
         }
         Venting {
-            18: readings: Unsteady                              => Vent;
-            19: readings: Steady, command: UpInit               => CalibrateAndFinish       -> Valid;
-            20: readings: Steady                                => Calibrate                -> Valid;
+            10: readings: Unsteady                  => Vent;
+            11: readings: Steady, command: UpInit   => CalibrateAndFinish      -> Valid;
+            12: readings: Steady                    => Calibrate               -> Valid;
         }
         Widening {
-            21: readings: Unsteady                              => OpenFully;
-            22: readings: Steady, command: OpenWide             => Finish                   -> Deferred;
-            23: readings: Steady                                => GiveUp                   -> Deferred;
+            13: readings: Steady, command: OpenWide => Finish                  -> Deferred;
+            14: readings: Steady                    => GiveUp                  -> Deferred;
+        }
+    }
+}
+
+decision_table! {
+    /// CALIBRATION: UP-INIT runs by itself if the gripper is there when the system is booted (VI.3.1), and
+    /// commands wait for it. Later it runs by command alone, since a part may be held: commands that need
+    /// the calibration are refused. OPEN-GRIP to the open end does not need it: what is held without a
+    /// calibration can be released.
+    pub CALIBRATION: fn calibration(super::Phase, super::Situation) -> super::Action or super::Duty {
+        Missing {
+            1: gripper: Attached, command: Nothing         => Begin  -> Closing;
+        }
+        Missing | Deferred | Failed {
+            2: gripper: Attached, command: Motion          => Fail(GripNotCalibrated);
+            3: gripper: Attached, command: OpenWide        => Widen  -> Widening;
+        }
+        Adopting {
+            4: gripper: Attached, sensors: Plausible       => Adopt  -> Valid;
+            5: gripper: Attached, sensors: Implausible     => Forget -> Deferred;
+        }
+        any {
+            6: gripper: Attached, command: UpInit          => Begin  -> Closing;
+            7: command: Pause | UpInit | Motion | OpenWide => consult(Command);
+            8: command: Refused                            => consult(Refused);
+            9: command: Nothing                            => consult(Nothing);
         }
     }
 }

@@ -628,7 +628,8 @@ fn settle(bench: &mut Bench) {
 #[test]
 fn every_row_fires() {
     let mut bench = Bench::new(Gripper::new(1.0, 18));
-    // UP-INIT 1, 13 to 17, 10: taken off on the way, while no command waits; 2; 9: while one waits.
+    // CALIBRATION 1, UP-INIT 6 to 9, 3: taken off on the way, while no command waits; CALIBRATION 2; UP-INIT 2: while
+    // one waits.
     bench.wait(40);
     bench.attach(false);
     bench.wait(2);
@@ -640,7 +641,7 @@ fn every_row_fires() {
     bench.attach(false);
     bench.finish();
     bench.attach(true);
-    // UP-INIT 11, 12: noise hides the ends; a dead strain gage, for a command and for none.
+    // UP-INIT 5, 4: noise hides the ends; a dead strain gage, for a command and for none.
     bench.gripper.noise = 40;
     bench.command(GripVerb::UpInit, 0.0, 0);
     bench.finish();
@@ -649,7 +650,7 @@ fn every_row_fires() {
     bench.wait(5);
     bench.command(GripVerb::None, 0.0, 0);
     bench.wait(200);
-    // UP-INIT 5, 18; 19: at last, for a command.
+    // CALIBRATION 6, UP-INIT 11; 12: at last, for a command.
     bench.gripper.strain[0].1 = 40.5;
     bench.done(GripVerb::UpInit, 0.0, 0);
     bench.command(GripVerb::UpInit, 0.0, 0);
@@ -712,7 +713,7 @@ fn every_row_fires() {
     bench.attach(true);
     bench.command(GripVerb::Position, 9.0, 0);
     bench.finish();
-    // UP-INIT 3, 21 to 23: OPEN-GRIP without a calibration.
+    // CALIBRATION 3, UP-INIT 8, 13, 14: OPEN-GRIP without a calibration.
     for pauses in [false, true] {
         bench.memory.grip.calibration = None;
         bench.process = Grip::default();
@@ -725,7 +726,7 @@ fn every_row_fires() {
         bench.finish();
     }
     bench.done(GripVerb::UpInit, 0.0, 0);
-    // UP-INIT 4, 5: a calibration from before a restart.
+    // CALIBRATION 4, 5: a calibration from before a restart.
     bench.process = Grip::default();
     bench.wait(2);
     bench.process = Grip::default();
