@@ -104,24 +104,23 @@ decision_table! {
         1:  evidence: Holds | Unsensed          => consult;
         2:  reading: Awaited                    => Wait;
         3:  evidence: Elsewhere | Moving        => Fail(NotAtGoal);
-        4:  evidence: NotHeld                   => Fail(ObjectLost);
+        4:  evidence: NotHeld | NotPlaced       => Fail(ObjectLost);
         5:  evidence: OtherGrip                 => Fail(RegripNeeded);
         6:  evidence: StillHeld                 => Fail(ReleaseNotEnded);
         7:  evidence: Unknown                   => Fail(UnknownHeld);
         8:  evidence: NotKnown                  => Fail(HeldNotKnown);
-        9:  evidence: NotPlaced                 => Fail(ObjectLost);
-        10: evidence: GripperOff                => Fail(NotAttached);
-        11: evidence: GripperOn                 => Fail(NotDetached);
-        12: evidence: Ring                      => Fail(RingNotLocked);
-        13: evidence: InHolster                 => Fail(InHolster);
-        14: evidence: OutsideDrum               => Fail(NotPrepared);
-        15: evidence: InsideDrum                => Fail(InDrum);
-        16: evidence: InPedestal                => Fail(PartInPedestal);
-        17: evidence: HandEmpty                 => Fail(HandMissed);
-        18: evidence: HandNarrow                => Fail(HandTimeout);
-        19: evidence: TableElsewhere            => Fail(TableStuck);
-        20: evidence: NoAnswer                  => Fail(DataBaseSilent);
-        21: evidence: PinsDiffer                => Fail(PinsFail);
+        9:  evidence: GripperOff                => Fail(NotAttached);
+        10: evidence: GripperOn                 => Fail(NotDetached);
+        11: evidence: Ring                      => Fail(RingNotLocked);
+        12: evidence: InHolster                 => Fail(InHolster);
+        13: evidence: OutsideDrum               => Fail(NotPrepared);
+        14: evidence: InsideDrum                => Fail(InDrum);
+        15: evidence: InPedestal                => Fail(PartInPedestal);
+        16: evidence: HandEmpty                 => Fail(HandMissed);
+        17: evidence: HandNarrow                => Fail(HandTimeout);
+        18: evidence: TableElsewhere            => Fail(TableStuck);
+        19: evidence: NoAnswer                  => Fail(DataBaseSilent);
+        20: evidence: PinsDiffer                => Fail(PinsFail);
     }
 }
 
@@ -309,19 +308,19 @@ mod tests {
             (Evidence::StillHeld, 6, Reason::ReleaseNotEnded),
             (Evidence::Unknown, 7, Reason::UnknownHeld),
             (Evidence::NotKnown, 8, Reason::HeldNotKnown),
-            (Evidence::NotPlaced, 9, Reason::ObjectLost),
-            (Evidence::GripperOff, 10, Reason::NotAttached),
-            (Evidence::GripperOn, 11, Reason::NotDetached),
-            (Evidence::Ring, 12, Reason::RingNotLocked),
-            (Evidence::InHolster, 13, Reason::InHolster),
-            (Evidence::OutsideDrum, 14, Reason::NotPrepared),
-            (Evidence::InsideDrum, 15, Reason::InDrum),
-            (Evidence::InPedestal, 16, Reason::PartInPedestal),
-            (Evidence::HandEmpty, 17, Reason::HandMissed),
-            (Evidence::HandNarrow, 18, Reason::HandTimeout),
-            (Evidence::TableElsewhere, 19, Reason::TableStuck),
-            (Evidence::NoAnswer, 20, Reason::DataBaseSilent),
-            (Evidence::PinsDiffer, 21, Reason::PinsFail),
+            (Evidence::NotPlaced, 4, Reason::ObjectLost),
+            (Evidence::GripperOff, 9, Reason::NotAttached),
+            (Evidence::GripperOn, 10, Reason::NotDetached),
+            (Evidence::Ring, 11, Reason::RingNotLocked),
+            (Evidence::InHolster, 12, Reason::InHolster),
+            (Evidence::OutsideDrum, 13, Reason::NotPrepared),
+            (Evidence::InsideDrum, 14, Reason::InDrum),
+            (Evidence::InPedestal, 15, Reason::PartInPedestal),
+            (Evidence::HandEmpty, 16, Reason::HandMissed),
+            (Evidence::HandNarrow, 17, Reason::HandTimeout),
+            (Evidence::TableElsewhere, 18, Reason::TableStuck),
+            (Evidence::NoAnswer, 19, Reason::DataBaseSilent),
+            (Evidence::PinsDiffer, 20, Reason::PinsFail),
         ] {
             let mut execution = Execution::default();
             assert_eq!(execution.execute(Arrival::New), Course::Begin);

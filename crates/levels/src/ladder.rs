@@ -265,3 +265,23 @@ impl Ladder {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tables that are larger, by process and name (docs/design/tables.md "Large tables").
+    const LARGE: &[(&str, &str)] = &[("Task", "ACCEPT"), ("Task", "POSITION"), ("E-move", "ACCEPT")];
+
+    #[test]
+    fn tables_have_at_most_20_rows_and_12_variables() {
+        let tables = Ladder::processes()
+            .iter()
+            .flat_map(|process| process.tables.iter().map(move |table| (process.name, *table)));
+        let large: Vec<_> = tables
+            .filter(|(_, table)| table.rows.len() > 20 || table.asked().count() > 12)
+            .map(|(process, table)| (process, table.name))
+            .collect();
+        assert_eq!(large, LARGE);
+    }
+}

@@ -24,37 +24,36 @@ decision_table! {
             9:  at: Before | There                         => OpenToApproach       -> Opening;
             10: drum: Before | Beside                      => OpenToApproach       -> Opening;
             11: drum: Sliding, spread: Open                => GoUntil(AcqSlideOn)  -> Sliding;
-            12: drum: Sliding, spread: Narrow | Unknown    => Fail(NotPrepared);
-            13: drum: Off | Entering                       => Fail(NotPrepared);
+            12: drum: Off | Entering | Sliding             => Fail(NotPrepared);
         }
         /// The gripper is opening.
         Opening {
-            14: work: Over                                 => DeltaMove(AcqNear)   -> Approaching;
+            13: work: Over                                 => DeltaMove(AcqNear)   -> Approaching;
         }
         /// The robot is moving towards the machine tool.
         Approaching {
-            15: work: Over                                 => CalSensor(Drum)      -> Calibrating;
+            14: work: Over                                 => CalSensor(Drum)      -> Calibrating;
         }
         /// The force sensor is being calibrated for the contact.
         Calibrating {
-            16: work: Over                                 => GoUntil(AcqStrike)   -> Striking;
+            15: work: Over                                 => GoUntil(AcqStrike)   -> Striking;
         }
         /// The robot is moving into contact with the strike plate.
         Striking {
-            17: work: Over                                 => CalSensor(Drum)      -> Recalibrating;
+            16: work: Over                                 => CalSensor(Drum)      -> Recalibrating;
         }
         /// The force sensor is being calibrated for the slide.
         Recalibrating {
-            18: work: Over                                 => GoUntil(AcqSlide)    -> Sliding;
+            17: work: Over                                 => GoUntil(AcqSlide)    -> Sliding;
         }
         /// The gripper is sliding to the left.
         Sliding {
-            19: work: Over                                 => Close                -> Grasping;
+            18: work: Over                                 => Close                -> Grasping;
         }
         /// The gripper is closing.
         Grasping {
-            20: fingers: Gripping                          => Acquired;
-            21: fingers: Empty                             => Fail(NoToolInDrum);
+            19: fingers: Gripping                          => Acquired;
+            20: fingers: Empty                             => Fail(NoToolInDrum);
         }
     }
 }
