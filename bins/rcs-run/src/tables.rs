@@ -31,8 +31,8 @@ and if each variable that the row names has one of the values behind it. It name
 step where the step changes.
 
 `consult` is no decision: the process goes on to another table, with the value in brackets, until a row
-decides. First come the tables that all commands have in common, then the one of the command, and last one
-that several commands share.
+decides. First come the tables that all commands have in common, then those of the command: at most three, for
+what it shares with other commands and for its phases. Their comments say which one is consulted first.
 
 The goals of a process stand before its tables: what must hold at the end of a command, the sensors that confirm
 it, the tolerance, the greatest age of a reading in ticks, and what no sensor confirms. CONFIRM compares them.
